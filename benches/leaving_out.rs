@@ -69,16 +69,13 @@ fn run_pairs(criterion: &mut Criterion) {
 fn print_ratios() {
     let counts = has_valgrind();
     println!("\na run without a feature over one with it at zero, {MASSES} masses");
-    println!("{:<32} {:>8} {:>8} {:>6} {:>12} {:>15} {:>6}", "", "ms", "ms", "ratio", "instructions", "bytes", "ratio");
+    println!("{:<32} {:>8} {:>8} {:>6} {:>12}", "", "ms", "ms", "ratio", "instructions");
     for (i, pair) in all().iter().enumerate() {
         let (mut without, mut with) = (run(&pair.without, PIECES), run(&pair.with, PIECES));
         let times = side_by_side([&mut without, &mut with], Duration::from_secs(2));
         let [a, b] = times.shortest.map(|time| 1e3 * time);
         let counted = if counts { format!("{:.4}", counted_ratio(i)) } else { "-".into() };
-        let bytes = [&pair.without, &pair.with].map(|scene| started(scene).bytes());
-        let ratio = bytes[0] as f64 / bytes[1] as f64;
-        let bytes = format!("{}/{}", bytes[0], bytes[1]);
-        println!("{:<32} {a:>8.3} {b:>8.3} {:>6.3} {counted:>12} {bytes:>15} {ratio:>6.3}", pair.feature, times.ratio);
+        println!("{:<32} {a:>8.3} {b:>8.3} {:>6.3} {counted:>12}", pair.feature, times.ratio);
     }
 }
 

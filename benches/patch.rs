@@ -1,7 +1,7 @@
 //! The time of a step of a patch by element and part, beside the bare loops of its arithmetic in C.
 //!
-//! The patch turns, rolls and slides so that every element bears, its law is looked up at both ends of each step, and most
-//! slip: what `common/patch_cost.c` does. That is compiled with the C compiler `cc` where there is one, with the
+//! The patch turns, rolls and slides so that every element bears, its law is looked up at both ends of each step, and
+//! most slip: what `common/patch_cost.c` does. That is compiled with the C compiler `cc` where there is one, with the
 //! instructions that this processor has, and run side by side; the least of several runs counts.
 #![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout, reason = "a bench may fail and prints")]
 

@@ -11,7 +11,7 @@ mod floor;
 
 use std::time::Duration;
 
-use asperity::integrator::{ContactModes, Integrator, LayerState, MAX_STAGES, Scheme, StepSpan, Tolerance, Tracked};
+use asperity::integrator::{ContactModes, Integrator, LayerState, MAX_STAGES, Scheme, TimeSpan, Tolerance, Tracked};
 use asperity::model::{ByAxis, Carrier, Forces, Mode, Model, State};
 use common::{layer, parse, prints_tables, side_by_side};
 use criterion::{BenchmarkId, Criterion, Throughput};
@@ -70,7 +70,7 @@ impl Stages {
     /// All stages of a step, and its error estimate.
     fn run(&mut self) {
         let Self { model, start, carrier, integrator, tolerance } = self;
-        let span = StepSpan { start: 0.0, length: STEP };
+        let span = TimeSpan { start: 0.0, length: STEP };
         let attempt = integrator.attempt(ContactModes::Held, (&*model, &*start, &*carrier), span, tolerance);
         std::hint::black_box(attempt.unwrap());
     }

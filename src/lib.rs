@@ -7,7 +7,7 @@
 //! # Modules
 //!
 //! Each module uses only those before it in this table. `docs/theory.md` has the derivations, with the files that hold
-//! them.
+//! them; `CONTRIBUTING.md` says which files a change takes.
 //!
 //! | module | contents |
 //! |---|---|
@@ -23,25 +23,6 @@
 //! | [`fmi`] | the FMI 2.0 co-simulation interface |
 //! | `robustness` | catalogue of perturbations of a scene and the judge of their runs, for reports and tests |
 //! | program | the command line program: simulate, sweep, converge, fit, pack, report, plot |
-//!
-//! # Where to make a change
-//!
-//! | change | files |
-//! |---|---|
-//! | what the links stand for | `scene/foundation` (kernels, weights, fit, warnings); `program/foundation.rs` prints it |
-//! | a friction law | `model/friction.rs` (limit at rest, force in slip, derivatives, power, impact); its keys as below |
-//! | a kind of link | `LinkKind` in `scene/link_kind.rs`, which one lies along an axis in `scene/axis.rs`, its keys in `scene/keys/mod.rs`, its size in `scene/material.rs`; `model/forces.rs` (its elongation; its force is `LinkLaw`), `model/scales.rs`; its blocks in `integrator/stage/newton.rs`, the forces on one mass in `integrator/dense.rs` |
-//! | a key of the scene, a parameter | a line in `scene/keys/mod.rs`, a field in `scene/mod.rs`, a line in `scene/reader`; a parameter also in `scene/parameters/mod.rs` |
-//! | an output | a variant of [`outputs::Output`] and a row in `outputs/table.rs` |
-//! | a column of a sweep's table | `element/table_format.rs`; its value in `program/sweep/point.rs` and `slide.rs` |
-//! | the rules of mode changes, the impact | `contact/laws.rs`, for both methods; stops and breaks within a time step also in `integrator/stage/modes.rs` |
-//! | an element's law in a patch, its step | `element/resampled.rs`; `element/spring.rs` (closed form), `patch/contact_times.rs` (touch and lift), `patch/block.rs` |
-//! | an output of a patch | `patch/variables.rs`, `patch/element_sums.rs`, `patch/derivatives.rs` |
-//! | a picture of a patch | `program/figure/patch.rs`; its maps `moment.rs` (what is drawn) and `maps.rs` (how), from `patch/face_layout.rs` |
-//! | how long steps are, when they are cut | `simulation/controller.rs`; `simulation/event_driven.rs` or `time_stepping.rs` |
-//! | what an FMU state holds | `FmuState` in `fmi/state.rs`, `RunState` in `simulation/state.rs` |
-//! | what acts on a carrier that is a body | `scene/carrier.rs` (keys in `scene/reader/carrier.rs`), `Body` and `Outside` in `model/carrier.rs`; its equation in `integrator/stage/border.rs`, its sensitivity in `integrator/sensitivity.rs` |
-//! | an input of the FMU | [`scene::Input`], `Inputs` in `fmi/inputs.rs`, `layer_motion` in `fmi/layer.rs`, `Motion` in `scene/excitation.rs`, `CarrierSample` in `program/runner.rs` |
 //!
 //! ```
 //! use asperity::outputs::variables;
@@ -95,7 +76,7 @@
 //! | H, B, A = B Δx | `Layer::thickness`, `width`, `element_area()` | m, m² | material form |
 //! | K(q), M = E/(1 - ν²) | `Body::normal()`, `tangential()`, `Material::plane_modulus()` | 1/m, Pa | stiffness of a surface against a wave over the plane modulus |
 //! | α, β, ℓ | `Foundation::normal`, `tangential`, `depth` | 1/m, m, m | links and mass fitted to a body |
-//! | A_r, h'_s, M_c | `RealArea`, `FineRoughness` | m², 1, Pa | area that touches below the profile's resolution, the gradient there, and the modulus it meets |
+//! | A_r, h'_s, M_c | `RealAreaLaw`, `FineRoughness` | m², 1, Pa | area that touches below the profile's resolution, the gradient there, and the modulus it meets |
 //! | a_T | `Material::shift_factor()` | 1 | shift of all times with temperature (Williams, Landel and Ferry) |
 //! | E', E'' | `Material::complex_modulus()` | Pa | storage and loss modulus (2) |
 //! | f_x,i, f_z,i | `Forces::on_mass_x`, `on_mass_z` | N | forces of the links on mass i (3), (4) |
@@ -110,8 +91,8 @@
 //! | T(v_t) | `ContactForces::friction()` | N | friction force in slip, μ F_N + A τ_0 + A τ_f(v_t) |
 //! | T(0) | `FrictionLaw::limit()`, `ContactForces::limit` | N | largest friction force at rest, μ F_N + A τ_0 + A τ_f(v_c) |
 //! | μ, A τ_0 + A τ_f(v_c) | `FrictionLaw::coulomb`, `shear` | 1, N | friction law at rest |
-//! | A τ_f(v_c) | `RateShear::plateau()` | N | shear strength of rubber up to the creep speed v_c |
-//! | A τ_f(v) - A τ_f(v_c) | `RateShear::excess()` | N | excess of the shear strength in slip over its plateau |
+//! | A τ_f(v_c) | `RateShearLaw::plateau()` | N | shear strength of rubber up to the creep speed v_c |
+//! | A τ_f(v) - A τ_f(v_c) | `SlipCurve::excess()` | N | excess of the shear strength in slip over its plateau |
 //! | σ | `Mode::direction()` | 1 | direction of slip along t |
 //! | h, γ, β | `h`, `Tableau::gamma()`, `beta` | s, 1, s | step, coefficient of a stage, γh |
 //! | G, K | `Jenkins::force`, `stiffness` | N, N/m | spring of a point-contact element, G = -F_x |

@@ -3,7 +3,7 @@
 //! A run is judged by a tight run: the same perturbed scene at a far lower tolerance. `asperity report` perturbs a
 //! user's scene so, `tests/extreme` its base scenes. How a scene is run is up to them.
 
-use crate::scene::{Method, Parameter, ParameterError, Path, Phase, Scene, Value};
+use crate::scene::{Axis, Method, Parameter, ParameterError, Path, Phase, Scene, Value};
 use crate::simulation::SimulationError;
 
 /// A tight run's tolerance is so many times lower.
@@ -250,28 +250,6 @@ pub enum RunFailure {
     Stopped(String),
 }
 
-/// A force of the layer on the carrier.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ForceComponent {
-    /// F_x.
-    X,
-    /// F_z.
-    Z,
-}
-
-impl ForceComponent {
-    /// Both.
-    pub const BOTH: [Self; 2] = [Self::X, Self::Z];
-
-    /// The name of its variable.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::X => "F_x",
-            Self::Z => "F_z",
-        }
-    }
-}
-
 /// The forces of a run, row by row.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ForceHistory {
@@ -286,8 +264,8 @@ pub struct ForceHistory {
 pub struct Difference {
     /// Over the largest force.
     pub share: f64,
-    /// Which force differs so much.
-    pub of: ForceComponent,
+    /// Which of F_x and F_z differs so much.
+    pub of: Axis,
     /// When, s.
     pub time: f64,
 }
@@ -295,11 +273,10 @@ pub struct Difference {
 impl ForceHistory {
     /// The largest difference of any of `forces` from a reference that has the same rows, over the largest of these
     /// forces in it.
-    pub fn difference(&self, reference: &Self, forces: &[ForceComponent]) -> Difference {
+    pub fn difference(&self, reference: &Self, forces: &[Axis]) -> Difference {
         let all = reference.rows.iter().flat_map(|row| forces.iter().map(|&force| row[force as usize]));
         let largest = all.fold(0.0, |most, force| larger(most, force.abs()));
-        let mut found =
-            Difference { share: 0.0, of: ForceComponent::Z, time: reference.times.first().copied().unwrap_or(0.0) };
+        let mut found = Difference { share: 0.0, of: Axis::Z, time: reference.times.first().copied().unwrap_or(0.0) };
         for ((row, wanted), &time) in self.rows.iter().zip(&reference.rows).zip(&reference.times) {
             for &of in forces {
                 let difference = (row[of as usize] - wanted[of as usize]).abs();
@@ -344,11 +321,11 @@ impl Accuracy {
         tight: &ForceHistory,
         moved: impl FnOnce() -> Option<ForceHistory>,
     ) -> Self {
-        let error = run.difference(tight, &ForceComponent::BOTH);
+        let error = run.difference(tight, &Axis::ALL);
         if error.share <= NOTABLE * scene.solver.relative_tolerance {
             return Self::Error(error);
         }
-        let moved = moved().map_or(0.0, |moved| moved.difference(tight, &ForceComponent::BOTH).share);
+        let moved = moved().map_or(0.0, |moved| moved.difference(tight, &Axis::ALL).share);
         let sensitive = moved > divergence(scene).max(OF_ERROR * error.share);
         if sensitive { Self::Sensitive { error, moved } } else { Self::Error(error) }
     }
@@ -547,16 +524,15 @@ kind = 'flat'";
     #[test]
     fn a_difference_is_a_share_of_the_largest_force() {
         let wanted = [[0.0, 1.0], [-4.0, 2.0]];
-        let between =
-            |rows: &[[f64; 2]], tight: &[[f64; 2]]| history(rows).difference(&history(tight), &ForceComponent::BOTH);
+        let between = |rows: &[[f64; 2]], tight: &[[f64; 2]]| history(rows).difference(&history(tight), &Axis::ALL);
         let found = between(&[[0.0, 1.0], [-4.0, 3.0]], &wanted);
-        assert_eq!(found, Difference { share: 0.25, of: ForceComponent::Z, time: 1.0 });
-        assert_eq!(history(&[[0.0, 1.0], [-4.0, 3.0]]).difference(&history(&wanted), &[ForceComponent::Z]).share, 0.5);
+        assert_eq!(found, Difference { share: 0.25, of: Axis::Z, time: 1.0 });
+        assert_eq!(history(&[[0.0, 1.0], [-4.0, 3.0]]).difference(&history(&wanted), &[Axis::Z]).share, 0.5);
         assert_eq!(between(&wanted, &wanted).share, 0.0);
         assert_eq!(between(&[[0.0; 2]; 2], &[[0.0; 2]; 2]).share, 0.0);
         assert_eq!(between(&[[1.0, 0.0]], &[[0.0; 2]]).share, f64::INFINITY);
         let nowhere = between(&[[f64::NAN, 1.0], wanted[1]], &wanted);
-        assert_eq!(nowhere, Difference { share: f64::INFINITY, of: ForceComponent::X, time: 0.0 });
+        assert_eq!(nowhere, Difference { share: f64::INFINITY, of: Axis::X, time: 0.0 });
     }
 
     #[test]

@@ -1,6 +1,10 @@
 //! A run allocates nothing: all memory is allocated by `Simulation::new`.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic, reason = "tests may fail")]
 
+#[allow(dead_code, unreachable_pub, reason = "shared with the tests of physics and the benchmark")]
+#[path = "physics/leaving_out/pairs.rs"]
+mod pairs;
+
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::path::Path as FilePath;
@@ -11,6 +15,7 @@ use asperity::outputs::{Snapshot, Variable, variables};
 use asperity::patch::{Patch, PatchMotion, PatchRun, PatchStart, Pose};
 use asperity::scene::{Force, Path, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
+use pairs::{pairs, reduced, started};
 
 thread_local! {
     static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
@@ -71,6 +76,15 @@ fn peak<T>(work: impl FnOnce() -> T) -> usize {
     BYTES.set((before, before));
     drop(work());
     BYTES.get().1 - before
+}
+
+/// Bytes that what `work` makes holds on this thread.
+fn held<T>(work: impl FnOnce() -> T) -> usize {
+    let (before, _) = BYTES.get();
+    let made = work();
+    let (after, _) = BYTES.get();
+    drop(made);
+    after - before
 }
 
 /// Maxwell elements on every kind of link, stick and slip, impacts, all outputs.
@@ -172,8 +186,8 @@ fn bodies_allocate_nothing() {
     }
 }
 
-/// What an instance of an FMU reckons before it allocates is no less than it takes, and within a factor: some scenes need
-/// less than the worst, whose figures are used.
+/// What an instance of an FMU reckons before it allocates is no less than it takes, and within a factor: some scenes
+/// need less than the worst, whose figures are used.
 #[test]
 fn memory_reckoned_is_memory_taken() {
     const FACTOR: usize = 8;
@@ -327,4 +341,16 @@ fmu = { outputs = ["forces", "dissipation", "contact", "friction", "energy", "ta
     assert_eq!(states, 0, "a state is copied into the arrays that there are");
     let energy = variables.iter().position(|variable| variable.name == "E_diss").unwrap();
     assert!(values[energy] > 0.0 && count == 0, "{count} allocations, {} J lost", values[energy]);
+}
+
+#[test]
+fn a_feature_left_out_takes_no_memory() {
+    const MASSES: usize = 12;
+    for pair in pairs(MASSES).into_iter().chain([reduced(MASSES)]) {
+        let [without, with] = [&pair.without, &pair.with].map(|scene| held(|| started(scene)));
+        assert!(without <= with, "{}: {without} bytes without it, {with} with it", pair.feature);
+        if pair.feature.starts_with("link") || pair.feature.contains("Maxwell") || pair.feature.contains("reduce") {
+            assert!(without < with, "{}: {without} bytes without it, {with} with it", pair.feature);
+        }
+    }
 }

@@ -2,7 +2,8 @@
 //!
 //! A step finds stops and breaks by itself (`integrator`), but free masses stay free in it and contacts in contact. The
 //! state at its end shows where that was wrong: a free mass is below the profile, a contact has F_N < 0; or a mass that
-//! stopped on the way is not held by the forces alone. The step is not repeated. Only the masses concerned are corrected:
+//! stopped on the way is not held by the forces alone. The step is not repeated. Only the masses concerned are
+//! corrected:
 //!
 //! - A mass below the profile goes back to the instant of its touch, has its impact there, and moves along the profile
 //!   for the remaining time of the step. Its dashpots follow, and the lateral dampers pass its displacement on to the
@@ -11,43 +12,44 @@
 //!
 //! Then the rules of docs/model.md decide on these masses and their neighbours by the forces as they are.
 //!
-//! So a step takes any number of mode changes at its own cost. The error of their lateness falls with the square of the
+//! So a step takes any number of mode changes at its own cost. The error of their instants falls with the square of the
 //! step's length, like that of the method; it is estimated together with that one, and where it is too large the step
 //! is shortened. Repeating the step with the modes of its end would cost the stages again, and make the changes too
 //! early instead of too late.
 //!
-//! A corrected mass has received impulses that the step as tried does not know, and so have its neighbours. The energies
-//! count each impulse with the mean of the velocities before and after it: so the energy balance is closed however
-//! strong a damper or the friction is.
+//! A corrected mass has received impulses that the step as tried does not know, and so have its neighbours. The
+//! energies count each impulse with the mean of the velocities before and after it: so the energy balance is closed
+//! however strong a damper or the friction is.
 
 use super::laws::{collision, decide_mode};
-use crate::integrator::{OpenEnd, Parabolas, Rates, StepSpan, Tolerance};
+use crate::integrator::{OpenEnd, Parabolas, StageValues, TimeSpan, Tolerance};
 use crate::math::{Bounds, bracketed_root};
 use crate::model::{Carrier, CarrierPoint, ChannelEnergies, LinkKind, Mode, Model, SlipCurve, State, SurfacePoint};
 
 use crate::scene::{Axis, ByAxis};
 
-/// Weight of the lateness of mode changes in the error of a step of a layer of one mass. It falls with the root of the number of
-/// masses k: forces of a layer are sums, of which one mass makes a share of 1/k, and its share in a mean of squares is 1/√k.
+/// Weight of the late instants of mode changes in the error of a step of a layer of one mass. It falls with the root of
+/// the number of masses k: forces of a layer are sums, of which one mass makes a share of 1/k, and its share in a mean
+/// of squares is 1/√k.
 ///
-/// Recommended 20 to 60. With less, single late changes are the largest errors of a layer's forces; with more, steps become
-/// shorter where many masses touch and lift.
-const LATENESS: f64 = 30.0;
+/// Recommended 20 to 60. With less, single late changes are the largest errors of a layer's forces; with more, steps
+/// become shorter where many masses touch and lift.
+const EVENT_TIME_WEIGHT: f64 = 30.0;
 /// The largest weight.
 ///
 /// Recommended 5 to 20. With more, a layer of few masses takes short steps at every touch.
-const MAX_LATENESS: f64 = 10.0;
+const MAX_EVENT_TIME_WEIGHT: f64 = 10.0;
 /// The relative tolerance below which that weight grows, with the root of its ratio to the tolerance.
 ///
-/// Recommended 3e-4 to 3e-3. The finer the steps, the fewer changes one has, and the less a mean over all masses says of each:
-/// with a constant weight, forces just after a change were 10 to 200 tolerances off at 1e-6.
+/// Recommended 3e-4 to 3e-3. The finer the steps, the fewer changes one has, and the less a mean over all masses says
+/// of each: with a constant weight, forces just after a change were 10 to 200 tolerances off at 1e-6.
 const GROWS_BELOW: f64 = 1e-3;
 
 /// Number of masses to each side that a correction concerns: the neighbours receive impulses, and their neighbours the
 /// forces that these change.
 const REACH: usize = 2;
 
-/// Accuracy of the instant of a touch, as a share of the step: the error of the parabola is larger.
+/// Accuracy of the instant of a touch, as a fraction of the step: the error of the parabola is larger.
 const INSTANT: f64 = 1e-4;
 
 /// A step that was tried with its contacts kept: what the correction does not change.
@@ -58,11 +60,11 @@ pub struct FixedModeStep<'a> {
     /// The carrier's motion.
     pub carrier: &'a Carrier,
     /// Its start and length.
-    pub span: StepSpan,
+    pub span: TimeSpan,
     /// State at the start.
     pub start: &'a State,
-    /// Rates at the first stage.
-    pub first: &'a Rates,
+    /// The values at the first stage.
+    pub first: &'a StageValues,
 }
 
 /// Energies of the mode changes at the end of a step, J.
@@ -72,7 +74,8 @@ pub struct CorrectionEnergies {
     pub impact: f64,
     /// Through the channels from the instants of the impacts on: the difference that contact makes against free motion.
     pub channels: ChannelEnergies,
-    /// Impulses on the carrier along x and z, N s, that the step as tried does not know: they change the speeds of bodies.
+    /// Impulses on the carrier along x and z, N s, that the step as tried does not know: they change the speeds of
+    /// bodies.
     pub impulse: ByAxis<f64>,
 }
 
@@ -106,15 +109,15 @@ impl EndCorrection {
         }
     }
 
-    /// Finds the masses whose modes were violated in `step`. Returns the error of their lateness over the tolerance, as
-    /// a mean over all masses.
+    /// Finds the masses whose modes were violated in `step`. Returns the error of their late instants over the
+    /// tolerance, as a mean over all masses.
     pub fn detect(&mut self, step: &Parabolas<'_>, tolerance: &Tolerance) -> f64 {
         self.touches.clear();
         self.changed.clear();
         (self.force, self.pressed) = (0.0, 1.0);
         let frequency = step.model.frequency_without_rods();
         let stiffness = step.model.mass * frequency * frequency;
-        let of_layer = (LATENESS / (step.model.masses() as f64).sqrt()).min(MAX_LATENESS);
+        let of_layer = (EVENT_TIME_WEIGHT / (step.model.masses() as f64).sqrt()).min(MAX_EVENT_TIME_WEIGHT);
         let weight = of_layer * (GROWS_BELOW / tolerance.relative).sqrt().max(1.0);
         let mut sum = 0.0;
         for i in 0..step.model.masses() {
@@ -130,19 +133,19 @@ impl EndCorrection {
         (sum / step.model.masses() as f64).sqrt()
     }
 
-    /// Bound of the change that the correction of what [`detect`](Self::detect) found makes in the forces on the carrier, N:
-    /// the forces of springs and dampers by the penetrations, and those past the limits.
+    /// Bound of the change that the correction of what [`detect`](Self::detect) found makes in the forces on the
+    /// carrier, N: the forces of springs and dampers by the penetrations, and those past the limits.
     pub fn uncorrected_force(&self) -> f64 {
         self.force
     }
 
-    /// Whether the touches and lifts that [`detect`](Self::detect) found in `step` come after its fraction `theta`. Of dips,
-    /// which the correction leaves alone, and of breaks, which begin at the end, nothing is asked.
+    /// Whether the touches and lifts that [`detect`](Self::detect) found in `step` come after its fraction `theta`. Of
+    /// dips, which the correction leaves alone, and of breaks, which begin at the end, nothing is asked.
     pub fn comes_after(&self, step: &Parabolas<'_>, theta: f64) -> bool {
         theta <= self.pressed && self.touches.iter().all(|&i| step.gap(i, theta) >= 0.0)
     }
 
-    /// The lateness of the touch of free mass `i`, if there is one.
+    /// How late the touch of free mass `i` is, if there is one.
     fn detect_touch(&mut self, step: &Parabolas<'_>, i: usize) -> Option<EventTimeError> {
         let (height, highest) = (step.end_height(i), self.profile.z_max);
         if height > highest && step.height(i, Parabolas::FIRST_STAGE) > highest {
@@ -161,8 +164,8 @@ impl EndCorrection {
         Some(EventTimeError { length: -gap, time })
     }
 
-    /// A mass that is above the profile at the end, at `x` and `height` and by `gap`, and below it at the first stage has passed
-    /// through an asperity: the whole penetration is an error.
+    /// A mass that is above the profile at the end, at `x` and `height` and by `gap`, and below it at the first stage
+    /// has passed through an asperity: the whole penetration is an error.
     fn detect_dip(&self, step: &Parabolas<'_>, i: usize, gap: f64, (x, height): (f64, f64)) -> Option<EventTimeError> {
         let rise = height - step.height(i, Parabolas::FIRST_STAGE);
         let distance = (x - step.position(i, Parabolas::FIRST_STAGE)).abs();
@@ -173,7 +176,7 @@ impl EndCorrection {
         (gap_at_first < 0.0).then_some(EventTimeError { length: -gap_at_first, time: f64::INFINITY })
     }
 
-    /// The lateness of the lift of contact `i`, if F_N < 0, by the elongation that makes such a force.
+    /// How late the lift of contact `i` is, if F_N < 0, by the elongation that makes such a force.
     fn detect_lift(&mut self, step: &Parabolas<'_>, i: usize, stiffness: f64) -> Option<EventTimeError> {
         let (first, last) = (step.first.normal[i], step.last.normal[i]);
         if last >= 0.0 {
@@ -186,8 +189,8 @@ impl EndCorrection {
         Some(EventTimeError { length: -last / stiffness, time })
     }
 
-    /// The lateness of a contact that slipped at the start and sticks at the first stage already: none of the way of its
-    /// stop is seen. One that the forces alone would no longer hold breaks loose at the end.
+    /// How late a contact sticks that slipped at the start and sticks at the first stage already: none of the way of
+    /// its stop is seen. One that the forces alone would no longer hold breaks loose at the end.
     fn detect_stop(&mut self, step: &Parabolas<'_>, i: usize) -> Option<EventTimeError> {
         if step.end.mode[i] != Mode::Stick {
             return None;
@@ -204,11 +207,11 @@ impl EndCorrection {
         Some(EventTimeError { length: 0.5 * speed * time, time: f64::INFINITY })
     }
 
-    /// What the touches that [`detect`](Self::detect) found before the fraction `theta` of `step` add to F_x and F_z there, N:
-    /// the forces of the links to the carrier of masses that have had their impacts and lie on the profile.
-    pub fn forces_of_touches(&self, step: &Parabolas<'_>, theta: f64) -> (f64, f64) {
+    /// What the touches that [`detect`](Self::detect) found before the fraction `theta` of `step` add to F_x and F_z
+    /// there, N: the forces of the links to the carrier of masses that have had their impacts and lie on the profile.
+    pub fn forces_of_touches(&self, step: &Parabolas<'_>, theta: f64) -> ByAxis<f64> {
         let forces = self.touches.iter().map(|&i| forces_of_touch(step, i, theta));
-        forces.fold((0.0, 0.0), |sum, force| (sum.0 + force.0, sum.1 + force.1))
+        forces.fold(ByAxis::default(), |sum, force| sum + force)
     }
 
     /// Corrects the masses that [`detect`](Self::detect) found; `None` where there are none.
@@ -291,8 +294,8 @@ impl<'a> Correction<'a> {
         Parabolas::new(model, carrier, span, start, first, self.end.state, self.end.rates)
     }
 
-    /// Takes mass `i`, which is free and below the profile, back to its touch and through its impact, and moves it along
-    /// the profile for the remaining time.
+    /// Takes mass `i`, which is free and below the profile, back to its touch and through its impact, and moves it
+    /// along the profile for the remaining time.
     fn touch(&mut self, i: usize) {
         let (model, dense) = (self.step.model, self.dense());
         let theta = instant_of_touch(&dense, i);
@@ -326,8 +329,8 @@ impl<'a> Correction<'a> {
         self.end.state.release(i);
     }
 
-    /// Moves mass `i` from the position `from` to `x` on `surface`. In the last `time` (s) its dashpots have not followed
-    /// that displacement, and the lateral dampers have passed it on to the neighbours as an impulse.
+    /// Moves mass `i` from the position `from` to `x` on `surface`. In the last `time` (s) its dashpots have not
+    /// followed that displacement, and the lateral dampers have passed it on to the neighbours as an impulse.
     fn move_to(&mut self, i: usize, from: ByAxis<f64>, x: f64, surface: SurfacePoint, time: f64) {
         let moved = ByAxis { x: x - from.x, z: surface.height - from.z };
         let state = &mut *self.end.state;
@@ -346,8 +349,8 @@ impl<'a> Correction<'a> {
         }
     }
 
-    /// The impulse d Δ of the damper to the carrier of a mass that was displaced by Δ (m), on a body along `axis`; `time` (s)
-    /// bounds the velocity that it makes where the dampers are faster than that.
+    /// The impulse d Δ of the damper to the carrier of a mass that was displaced by Δ (m), on a body along `axis`;
+    /// `time` (s) bounds the velocity that it makes where the dampers are faster than that.
     fn pass_impulse_to_body(&mut self, axis: Axis, displacement: f64, time: f64) {
         let model = self.step.model;
         let Some(body) = &model.bodies[axis] else { return };
@@ -414,8 +417,8 @@ impl<'a> Correction<'a> {
         self.step.model.links[kind].damping
     }
 
-    /// The part of a damper d between two masses, N s/m, by which a correction of one of them within the `time` (s) acts
-    /// on the other: all of d, unless the damper makes both velocities equal within that time.
+    /// The part of a damper d between two masses, N s/m, by which a correction of one of them within the `time` (s)
+    /// acts on the other: all of d, unless the damper makes both velocities equal within that time.
     fn passing(&self, kind: LinkKind, time: f64) -> f64 {
         let (damping, mass) = (self.damping(kind), self.step.model.mass);
         damping * mass / (mass + 2.0 * time * damping)
@@ -493,9 +496,9 @@ impl<'a> Correction<'a> {
     }
 }
 
-/// The excess of the friction in slip over that at rest, N, of a mass that slips along `sigma`, starts with v_t (m/s) and is
-/// driven by a force (N) against its inertia over the time, `weight` (kg/s): at the end of that time, since the law is
-/// steep at creep speeds.
+/// The excess of the friction in slip over that at rest, N, of a mass that slips along `sigma`, starts with v_t (m/s)
+/// and is driven by a force (N) against its inertia over the time, `weight` (kg/s): at the end of that time, since the
+/// law is steep at creep speeds.
 fn rate_excess(curve: &SlipCurve<'_>, sigma: f64, v_t: f64, driving: f64, weight: f64) -> f64 {
     let (from, driving) = (sigma * v_t, sigma * driving);
     sigma * (driving - weight * (curve.balance(from, driving, weight) - from))
@@ -506,13 +509,14 @@ fn neighbours(i: usize) -> [usize; 2] {
     [i.wrapping_sub(1), i + 1]
 }
 
-/// What the links of free mass `i` would exert on the carrier along x and z beyond what they do, N, if the mass did not pass
-/// below the profile but had its impact and went on along it: at the fraction `theta` of the step (docs/theory.md, \[12a\]).
-fn forces_of_touch(step: &Parabolas<'_>, i: usize, theta: f64) -> (f64, f64) {
+/// What the links of free mass `i` would exert on the carrier along x and z beyond what they do, N, if the mass did not
+/// pass below the profile but had its impact and went on along it: at the fraction `theta` of the step (docs/theory.md,
+/// \[12a\]).
+fn forces_of_touch(step: &Parabolas<'_>, i: usize, theta: f64) -> ByAxis<f64> {
     let surface = step.model.surface_at(step.position(i, theta));
     let depth = surface.height - step.height(i, theta);
     if depth <= 0.0 {
-        return (0.0, 0.0);
+        return ByAxis::default();
     }
     let (slope, velocity) = (surface.slope, step.velocity(i, theta));
     let (closing, since_start) = (slope * velocity.x - velocity.z, theta * step.span.length);
@@ -529,7 +533,10 @@ fn forces_of_touch(step: &Parabolas<'_>, i: usize, theta: f64) -> (f64, f64) {
         let elements = step.model.element_force(kind, |row| row.left_of(displacement, time));
         link.stiffness * displacement + elements + link.damping * gain
     };
-    (force(LinkKind::Horizontal, moved, gain.0), force(LinkKind::Vertical, depth + slope * moved, gain.1))
+    ByAxis {
+        x: force(LinkKind::Horizontal, moved, gain.0),
+        z: force(LinkKind::Vertical, depth + slope * moved, gain.1),
+    }
 }
 
 /// The fraction of the step at which free mass `i`, below the profile at the end, touched it.

@@ -1,13 +1,13 @@
 //! The mode changes within a step, or the first of them: touch, lift, stop or break.
 
 use super::gap::first_touch;
-use crate::integrator::{DenseOutput, DenseWorkspace, Motions, Rates, Tolerance};
+use crate::integrator::{DenseOutput, DenseWorkspace, Polynomials, StageValues, Tolerance};
 use crate::math::{Spline, root_between, with_widest_vectors};
 use crate::model::{CarrierPosition, LinkKind, Mode, Model, State};
 
-/// How far a quantity may pass its limit before the mode changes: as far as a step may err, velocities less. An event is located where the
-/// quantity is half as far past it, so that the limit has been passed for certain, and other changes that are about to come
-/// are made at the same instant.
+/// How far a quantity may pass its limit before the mode changes: as far as a step may err, velocities less. An event
+/// is located where the quantity is half as far past it, so that the limit has been passed for certain, and other
+/// changes that are about to come are made at the same instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EventTolerance {
     /// Of the gap, m.
@@ -24,15 +24,15 @@ pub struct EventTolerance {
 
 /// The velocity tolerance of stops as a share of that of steps.
 ///
-/// Recommended 0.001 to 0.1. Until a slip that has reversed is stopped, friction drives it on; where the reversal is slow, it
-/// goes far in the meantime.
+/// Recommended 0.001 to 0.1. Until a slip that has reversed is stopped, friction drives it on; where the reversal is
+/// slow, it goes far in the meantime.
 const OF_STOPS: f64 = 0.01;
 
 /// The gap tolerance as a share of the position tolerance, over the relative tolerance.
 ///
-/// A mass that grazes the profile less deep than the gap tolerance is not seen to touch. It touches later, by a time that
-/// goes with the root of that depth, and friction and impact come later by as much. Coarse steps know dips only to the
-/// position tolerance.
+/// A mass that grazes the profile less deep than the gap tolerance is not seen to touch. It touches later, by a time
+/// that goes with the root of that depth, and friction and impact come later by as much. Coarse steps know dips only to
+/// the position tolerance.
 const SHARE_OF_DIPS: f64 = 1e3;
 /// The least such share.
 ///
@@ -57,9 +57,9 @@ impl EventTolerance {
         let link = LinkKind::Horizontal;
         let impedance = model.links[link].damping + (model.glassy[link] * model.mass).sqrt();
         let share_of_dips = (SHARE_OF_DIPS * tolerance.relative).clamp(MIN_SHARE_OF_DIPS, 1.0);
-        let least_gap = (MIN_DIP * height).max(rounding_of_gap(model, height));
+        let min_gap = (MIN_DIP * height).max(rounding_of_gap(model, height));
         Self {
-            gap: (share_of_dips * tolerance.position).max(least_gap.min(tolerance.position)),
+            gap: (share_of_dips * tolerance.position).max(min_gap.min(tolerance.position)),
             velocity: OF_STOPS * tolerance.velocity,
             force: (tolerance.position * stiffness).max(rounding),
             rounding,
@@ -74,14 +74,14 @@ impl EventTolerance {
         Self { velocity: self.velocity.min(OF_STOPS * force * self.mobility), force, ..*self }
     }
 
-    /// The tolerance of [`Rates::margin`] in `mode`.
+    /// The tolerance of [`StageValues::margin`] in `mode`.
     fn margin(&self, mode: Mode) -> f64 {
         if mode == Mode::Stick { self.force } else { self.velocity }
     }
 }
 
-/// The rounding error of a mass's gap to the profile in a scene of this `height`, m: the height at a position along x is as far
-/// off as that position, times the slope.
+/// The rounding error of a mass's gap to the profile in a scene of this `height`, m: the height at a position along x
+/// is as far off as that position, times the slope.
 fn rounding_of_gap(model: &Model, height: f64) -> f64 {
     let reach = model.rest_x.iter().fold(0.0, |most: f64, x| most.max(x.abs())) + model.profile.reach();
     ROUNDINGS * f64::EPSILON * (height + model.profile.bounds().slope_max_abs * reach)
@@ -90,7 +90,7 @@ fn rounding_of_gap(model: &Model, height: f64) -> f64 {
 /// The fraction of the step at which the first mode change is due; `None` if none is.
 pub fn first_event(step: &DenseOutput<'_>, tolerance: &EventTolerance, workspace: &mut DenseWorkspace) -> Option<f64> {
     let mut first = Contacts { step, tolerance, workspace }.first_change();
-    let (motions, profile) = (Motions::new(step), &step.model.profile);
+    let (motions, profile) = (Polynomials::new(step), &step.model.profile);
     for i in 0..step.model.masses() {
         if step.start.mode[i] == Mode::Free && may_touch(&motions, i, profile, tolerance.gap) {
             let motion = (motions.position(i), motions.height(i));
@@ -110,7 +110,7 @@ pub fn mode_changes(
     changes.clear();
     let mut contacts = Contacts { step, tolerance, workspace };
     contacts.all_changes(changes);
-    let (motions, profile) = (Motions::new(step), &step.model.profile);
+    let (motions, profile) = (Polynomials::new(step), &step.model.profile);
     for i in 0..step.model.masses() {
         if step.start.mode[i] == Mode::Free && may_touch(&motions, i, profile, tolerance.gap) {
             let motion = (motions.position(i), motions.height(i));
@@ -120,8 +120,8 @@ pub fn mode_changes(
 }
 
 /// Whether mass `i` may come below -`tolerance` (m) above the profile. Bounds that are nearly free are enough for most.
-fn may_touch(motions: &Motions<'_>, i: usize, profile: &Spline, tolerance: f64) -> bool {
-    let least = motions.least_height(i);
+fn may_touch(motions: &Polynomials<'_>, i: usize, profile: &Spline, tolerance: f64) -> bool {
+    let least = motions.min_height(i);
     let clear = |top: f64| least - top > -tolerance;
     let clear_near = || {
         let (low, high) = motions.position_bounds(i);
@@ -150,13 +150,13 @@ struct Contacts<'a> {
 enum EventFunction {
     /// F_N ≥ 0.
     Normal,
-    /// [`Rates::margin`] ≥ 0.
+    /// [`StageValues::margin`] ≥ 0.
     Margin,
 }
 
 impl EventFunction {
     /// The quantity of all masses at one stage.
-    fn values(self, stage: &Rates) -> &[f64] {
+    fn values(self, stage: &StageValues) -> &[f64] {
         if self == Self::Normal { &stage.normal } else { &stage.margin }
     }
 }
@@ -170,14 +170,14 @@ impl Contacts<'_> {
         self.step.carrier.shortest_period() < f64::INFINITY
     }
 
-    /// As a bit each, the masses in contact of which a quantity may pass its limit within the step, of the [`BLOCK`] from mass
-    /// `first` on: those of which one does at a stage or on a parabola through its values there.
+    /// As a bit each, the masses in contact of which a quantity may pass its limit within the step, of the [`BLOCK`]
+    /// from mass `first` on: those of which one does at a stage or on a parabola through its values there.
     fn suspects(&self, first: usize) -> u64 {
         let modes = &self.step.start.mode[first..];
         let overshoot = if self.carrier_swings() { self.step.interpolation().overshoot() } else { 0.0 };
         let least = |function: EventFunction| {
             let stages = self.step.stages().iter().map(|stage| &function.values(stage)[first..]);
-            least_within(stages, overshoot)
+            min_within(stages, overshoot)
         };
         let (normal, margin) = (least(EventFunction::Normal), least(EventFunction::Margin));
         let mut falls = [false; BLOCK];
@@ -235,8 +235,8 @@ impl Contacts<'_> {
         self.dip(i, EventFunction::Margin, of_margin, first)
     }
 
-    /// The first fraction at which a quantity of mass `i` falls below its tolerance between the stages alone: at the vertex of
-    /// the parabola through its least value at a stage and those before and after.
+    /// The first fraction at which a quantity of mass `i` falls below its tolerance between the stages alone: at the
+    /// vertex of the parabola through its least value at a stage and those before and after.
     fn dip(&mut self, i: usize, function: EventFunction, tolerance: f64, first: Option<f64>) -> Option<f64> {
         let inner = 1..self.step.stages().len() - 1;
         let least =
@@ -312,7 +312,7 @@ impl Contacts<'_> {
 /// How near to half its tolerance a quantity is where an event is located, as a share of the tolerance: any place where
 /// the limit has been passed for certain serves, and each evaluation costs.
 const NEAR: f64 = 0.1;
-/// Accuracy of an event's instant as a share of the step: far below the resolution of the tolerances.
+/// Accuracy of an event's instant as a fraction of the step: far below the resolution of the tolerances.
 const LOCATED: f64 = 1e-12;
 
 /// The vertex of the parabola through three points, place and value, if it is a minimum between the outer ones.
@@ -326,7 +326,7 @@ fn vertex(before: (f64, f64), here: (f64, f64), after: (f64, f64)) -> Option<(f6
 }
 
 /// The least value of each mass at the `stages`, less the share `overshoot` of the range of its values there.
-fn least_within<'a>(stages: impl Iterator<Item = &'a [f64]>, overshoot: f64) -> [f64; BLOCK] {
+fn min_within<'a>(stages: impl Iterator<Item = &'a [f64]>, overshoot: f64) -> [f64; BLOCK] {
     with_widest_vectors(
         #[inline(always)]
         || {
@@ -347,7 +347,13 @@ fn least_within<'a>(stages: impl Iterator<Item = &'a [f64]>, overshoot: f64) -> 
 const PASSED: f64 = 0.05;
 
 /// Whether an event is due at the end of a step: `state`, `rates` and the carrier's position `at` are those there.
-pub fn is_due(model: &Model, state: &State, rates: &Rates, at: CarrierPosition, tolerance: &EventTolerance) -> bool {
+pub fn is_due(
+    model: &Model,
+    state: &State,
+    rates: &StageValues,
+    at: CarrierPosition,
+    tolerance: &EventTolerance,
+) -> bool {
     let limits = rates.normal.iter().zip(&rates.margin);
     // Without a branch, so that the loop becomes vector instructions. Those of free masses are beyond no limit.
     let of_contacts = state.mode.iter().zip(limits).fold(false, |due, (mode, (normal, margin))| {

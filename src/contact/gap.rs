@@ -2,8 +2,8 @@
 
 use crate::math::{Bounds, Quintic, Spline};
 
-/// A part over which the gap bends by less than this share of the tolerance is decided by its ends: a deeper dip between
-/// them does not matter. So the search ends even where a mass moves along the limit.
+/// A part over which the gap bends by less than this share of the tolerance is decided by its ends: a deeper dip
+/// between them does not matter. So the search ends even where a mass moves along the limit.
 const NEGLIGIBLE_BEND: f64 = 0.01;
 /// Parts of a step after which a part is also decided by its ends where the gap bends by no more than rounding. Metres
 /// away from the origin, the rounding of a position exceeds the tolerance.
@@ -13,29 +13,29 @@ const ROUNDINGS: f64 = 64.0;
 /// Halvings of a step after which a part is decided by its ends: a step over 2⁴⁰ is below the resolution of time.
 const MAX_HALVINGS: u32 = 40;
 
-/// Largest number of parts of a step that are examined. A few are usual; where numbers are so large that no bounds hold,
-/// the search would not end.
+/// Largest number of parts of a step that are examined. A few are usual; where numbers are so large that no bounds
+/// hold, the search would not end.
 const MAX_PARTS: u32 = 10_000;
 
 /// The first fraction of a step at which the gap between a mass and the profile falls below -`tolerance` (m), located
 /// where it is -`tolerance`/2; `None` if it does not. `position` (along x) and `height`
 /// are the mass's motion through the step, m. What comes after the fraction `latest` does not matter.
 ///
-/// Nothing is sampled: a part of the step is skipped only if bounds of the motion and of the profile there show that the
-/// gap stays above the limit. So no dip is missed, however short. Other parts are halved. Where that would not end, the
-/// fraction up to which there is no touch is returned: the step is to be cut there, too.
+/// Nothing is sampled: a part of the step is skipped only if bounds of the motion and of the profile there show that
+/// the gap stays above the limit. So no dip is missed, however short. Other parts are halved. Where that would not end,
+/// the fraction up to which there is no touch is returned: the step is to be cut there, too.
 pub fn first_touch(
     profile: &Spline,
     (position, height): (Quintic, Quintic),
     tolerance: f64,
     latest: f64,
 ) -> Option<f64> {
-    let mut search = Search { profile, tolerance, latest, parts: 0 };
+    let mut search = GapSearch { profile, tolerance, latest, parts: 0 };
     let whole = Part { position, height, start: 0.0, length: 1.0 };
     search.first_touch(&whole, 0)
 }
 
-struct Search<'a> {
+struct GapSearch<'a> {
     profile: &'a Spline,
     tolerance: f64,
     latest: f64,
@@ -58,7 +58,7 @@ struct Ends {
     bend: f64,
 }
 
-impl Search<'_> {
+impl GapSearch<'_> {
     fn first_touch(&mut self, part: &Part, halvings: u32) -> Option<f64> {
         if part.start >= self.latest {
             return None;
@@ -183,7 +183,7 @@ mod tests {
         assert_eq!(first_touch(&flat, (straight(0.0, 0.5), dip(depth + 1e-9, depth)), 1e-12, 1.0), None);
     }
 
-    /// The same by the profile: a spike a thousandth of the way wide that reaches 1e-9 m into the mass's straight path.
+    /// The profile as the dip: a spike a thousandth of the way wide that reaches 1e-9 m into the mass's straight path.
     #[test]
     fn finds_a_spike_a_thousandth_of_the_way_wide() {
         // Level but for the spike: the points beside it keep the spline from swinging.
@@ -227,7 +227,7 @@ mod tests {
             let (end, end_slope, ..) = wave.evaluate(x + dx);
             let position = Quintic::hermite(at(x, dx), at(x + dx, dx), 1.0);
             let height = Quintic::hermite(at(z - 1e-14, slope * dx), at(end - 1e-14, end_slope * dx), 1.0);
-            let mut search = Search { profile: &wave, tolerance: 3e-16, latest: 1.0, parts: 0 };
+            let mut search = GapSearch { profile: &wave, tolerance: 3e-16, latest: 1.0, parts: 0 };
             search.first_touch(&Part { position, height, start: 0.0, length: 1.0 }, 0);
             assert!(search.parts < 2 * FEW_PARTS, "{} parts at {x}", search.parts);
         }

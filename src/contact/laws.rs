@@ -46,7 +46,7 @@ fn place_dashpots(model: &Model, state: &mut State) {
     for row in &model.rows {
         let e = if row.kind.is_along_x() { &state.elongation_x } else { &state.elongation_z };
         for (i, a) in state.maxwell[row.range.clone()].iter_mut().enumerate() {
-            *a = if row.kind.is_lateral() { e[i + 1] - e[i] } else { e[i] };
+            *a = row.kind.difference(e, 0.0, i);
         }
     }
 }
@@ -64,8 +64,9 @@ pub fn free_unloaded(model: &Model, state: &mut State, at: CarrierPosition, forc
 /// Applies the impacts due: every free mass within `reach` (m) of the profile that moves into it has an impact. Each
 /// impact depends on the velocity of its own mass alone, so their order does not matter. Returns the energy lost, J.
 ///
-/// A mass that has gone below the profile is lifted onto it, which raises the energy of its springs. It has lost as much on its
-/// way down to its velocity, which the impact takes, and to the dampers, from whose part of `energies` the rest is taken back.
+/// A mass that has gone below the profile is lifted onto it, which raises the energy of its springs. It has lost as
+/// much on its way down to its velocity, which the impact takes, and to the dampers, from whose part of `energies` the
+/// rest is taken back.
 pub fn impacts_due(
     model: &Model,
     state: &mut State,

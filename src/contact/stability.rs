@@ -31,8 +31,9 @@ pub fn longest_weakening(model: &Model, state: &State, forces: &Forces) -> f64 {
 /// The growth rate, 1/s, of vibrations of contacts whose friction weakens with the speed, or up to twice that rate; 0
 /// if there are none. Slopes, the vertical links and the other masses only reduce it.
 ///
-/// A step much longer than friction's fall can throw a mass that breaks loose backwards: the implicit equations have that
-/// solution too. It would stop at once, break loose again, and so on. There the fall that it has passed over counts.
+/// A step much longer than friction's fall can throw a mass that breaks loose backwards: the implicit equations have
+/// that solution too. It would stop at once, break loose again, and so on. There the fall that it has passed over
+/// counts.
 fn weakening(model: &Model, start: Option<&State>, state: &State, forces: &Forces) -> f64 {
     if !model.friction.depends_on_speed() {
         return 0.0;
@@ -58,8 +59,8 @@ fn weakening(model: &Model, start: Option<&State>, state: &State, forces: &Force
     rate.max(frequency)
 }
 
-/// The steepest q² ∂T/∂v_t, N s/m, between rest and the speed of mass `i`, where it broke loose at the start of the step
-/// and runs backwards at its end; `None` elsewhere.
+/// The steepest q² ∂T/∂v_t, N s/m, between rest and the speed of mass `i`, where it broke loose at the start of the
+/// step and runs backwards at its end; `None` elsewhere.
 fn fall_passed_over(model: &Model, start: &State, state: &State, forces: &Forces, i: usize) -> Option<f64> {
     let sigma = state.mode[i].direction();
     let (before, after) = (sigma * start.velocity_x[i], sigma * state.velocity_x[i]);
@@ -75,7 +76,8 @@ fn longest(fastest: f64) -> f64 {
     if fastest > 0.0 { MAX_GROWTH / fastest } else { f64::MAX }
 }
 
-/// q² ∂T/∂v_t of slipping mass `i`, N s/m: its friction as a damper along x; 0 where friction does not depend on the speed.
+/// q² ∂T/∂v_t of slipping mass `i`, N s/m: its friction as a damper along x; 0 where friction does not depend on the
+/// speed.
 fn slope(model: &Model, state: &State, forces: &Forces, i: usize) -> f64 {
     let normal = forces.contact(model, i, state.velocity_x[i], &state.surface[i]).normal;
     let Some(curve) = model.friction.slip_curve(normal) else { return 0.0 };
@@ -95,8 +97,8 @@ struct Chain<'a, S: Fn(usize) -> f64> {
 
 impl<S: Fn(usize) -> f64> Chain<'_, S> {
     /// Whether no motion of the masses grows at the `rate` λ (1/s): whether D + λM is positive definite, by Cholesky's
-    /// pivots. D is the damping matrix for the velocities ẋ of the slipping masses, friction included; M are their masses
-    /// m q².
+    /// pivots. D is the damping matrix for the velocities ẋ of the slipping masses, friction included; M are their
+    /// masses m q².
     fn decays(&self, rate: f64) -> bool {
         let mut pivot = None;
         (0..self.model.masses()).all(|i| {
@@ -132,9 +134,9 @@ impl<S: Fn(usize) -> f64> Chain<'_, S> {
 
 /// The growth rate λ, 1/s, of a small displacement of slipping mass `i`; 0 if its position is stable.
 ///
-/// From (6)-(9) linearised in the displacement along x, with the part of friction that depends on the speed:
-/// m q² λ² + D λ = K, with D = d_x + s² d_z + q² A τ_f' and K = κ f_z - c_x - s² c_z of the links to the carrier. The
-/// other links and the Maxwell elements only reduce the rate. Where D < 0, D counts as 0: [`weakening`] accounts for it.
+/// From (6)-(9) linearised in the displacement along x, with the part of friction that depends on the speed: m q² λ² +
+/// D λ = K, with D = d_x + s² d_z + q² A τ_f' and K = κ f_z - c_x - s² c_z of the links to the carrier. The other links
+/// and the Maxwell elements only reduce the rate. Where D < 0, D counts as 0: [`weakening`] accounts for it.
 fn growth(model: &Model, state: &State, forces: &Forces, i: usize) -> f64 {
     let surface = &state.surface[i];
     let [x, z] = [LinkKind::Horizontal, LinkKind::Vertical].map(|kind| &model.links[kind]);

@@ -1,7 +1,7 @@
 //! One Jenkins element: a spring and a slider in series, along x.
 //!
-//! Leaps of the law and motions at constant height are those of [`spring`](super::spring), as for the elements of a patch;
-//! what is here follows a carrier whose height changes.
+//! Leaps of the law and motions at constant height are those of [`spring`](super::spring), as for the elements of a
+//! patch; what is here follows a carrier whose height changes.
 //!
 //! G = -F_x is the force in the spring, K the tangential stiffness, L = μ F_z the limit, σ the direction of slip.
 //!
@@ -11,8 +11,8 @@
 //!
 //! So a growing and a falling stiffness both dissipate energy: the spring stores V = G²/(2K), and ∫ G du = V + E_diss
 //! with E_diss never falling. Straight motions of the carrier are followed exactly: changes between stick and slip are
-//! roots, integrals are by Gauss's formula of six points over segments in which the integrand is a polynomial of degree 11
-//! at most (stick) or close to one (slip).
+//! roots, integrals are by Gauss's formula of six points over segments in which the integrand is a polynomial of degree
+//! 11 at most (stick) or close to one (slip).
 
 use super::law::{Contact, LawAtSpeed};
 use super::spring::{Advanced, Segment, SpringLaw, advance, apply_jump};
@@ -122,8 +122,8 @@ impl Jenkins {
         }
     }
 
-    /// The carrier moves straight through a segment of the approach, `from` to `to` (m), in which the stiffness only grows
-    /// or only falls; the segment begins `elapsed` s after the start of the motion.
+    /// The carrier moves straight through a segment of the approach, `from` to `to` (m), in which the stiffness only
+    /// grows or only falls; the segment begins `elapsed` s after the start of the motion.
     pub(super) fn change_approach(
         &mut self,
         curve: &LawAtSpeed,

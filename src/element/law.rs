@@ -247,8 +247,8 @@ impl LawAtSpeed {
         self.ends.push(self.approaches[self.approaches.len() - 1]);
     }
 
-    /// The ends of the segments of the approach, m, rising: the first begins where the contact does and ends at the least
-    /// pressure, the last ends at the largest.
+    /// The ends of the segments of the approach, m, rising: the first begins where the contact does and ends at the
+    /// least pressure, the last ends at the largest.
     pub(super) fn ends(&self) -> &[f64] {
         &self.ends
     }

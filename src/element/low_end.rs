@@ -8,8 +8,8 @@ use super::table::Table;
 pub struct LowEnd {
     /// How much farther away than where it bears the least load a layer touches, m.
     pub reach: f64,
-    /// The share of the load that is borne below the least one, of many layers whose separations are spread evenly from the
-    /// touch to that of the largest load, as those of an oblique face are.
+    /// The share of the load that is borne below the least one, of many layers whose separations are spread evenly from
+    /// the touch to that of the largest load, as those of an oblique face are.
     pub share: f64,
 }
 
@@ -18,8 +18,8 @@ impl Table {
     pub fn low_end(&self, speed: f64, temperature: f64) -> LowEnd {
         let curve = LawAtSpeed::new(&Law::new(self, temperature), speed);
         let ends = curve.ends();
-        // Simpson's rule is exact on the parabola; on the other segments, over which the pressure changes by a quarter, it
-        // errs by 1e-6.
+        // Simpson's rule is exact on the parabola; on the other segments, over which the pressure changes by a quarter,
+        // it errs by 1e-6.
         let loads = ends.windows(2).map(|segment| {
             let at = |fraction: f64| curve.at(segment[0] + fraction * (segment[1] - segment[0])).normal.value;
             (segment[1] - segment[0]) * (at(0.0) + 4.0 * at(0.5) + at(1.0)) / 6.0
@@ -36,8 +36,8 @@ mod tests {
 
     use super::*;
 
-    /// Two loads a factor e apart in separations 1 µm apart: ln p is straight, so the parabola touches 2 µm beyond the lower
-    /// one and bears p_1 2/3 µm, and all between bears p_1 (e - 1) µm.
+    /// Two loads a factor e apart in separations 1 µm apart: ln p is straight, so the parabola touches 2 µm beyond the
+    /// lower one and bears p_1 2/3 µm, and all between bears p_1 (e - 1) µm.
     #[test]
     fn of_an_exponential_law() {
         let columns =

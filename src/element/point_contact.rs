@@ -7,8 +7,8 @@ use super::table_format::Quantity;
 use crate::outputs::{Dependencies, Output, Variable, variable};
 use crate::scene::{Extrapolation, Parameter, ParameterError, Problem, TableExtrapolation, Value};
 
-/// The definition of an element, as a [`Scene`](crate::scene::Scene) is that of a layer: a table and the parameters that
-/// a master may set.
+/// The definition of an element, as a [`Scene`](crate::scene::Scene) is that of a layer: a table and the parameters
+/// that a master may set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointContact {
     table: Arc<Table>,

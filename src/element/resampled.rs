@@ -1,9 +1,9 @@
 //! The law of an element, per unit area and precomputed along the speed: for many elements of different speeds.
 //!
-//! Between two speeds of the table ln v is divided into even cells. At three speeds of each the law is a [`LawAtSpeed`];
-//! the coefficients of its cubics over the approach and over ln p are interpolated by parabolas of ln v. So an evaluation
-//! takes one logarithm, one exponential and polynomials, no division. Cells are computed when they are first needed
-//! at a temperature.
+//! Between two speeds of the table ln v is divided into even cells. At three speeds of each the law is a
+//! [`LawAtSpeed`]; the coefficients of its cubics over the approach and over ln p are interpolated by parabolas of ln
+//! v. So an evaluation takes one logarithm, one exponential and polynomials, no division. Cells are computed when they
+//! are first needed at a temperature.
 
 use super::law::{Law, LawAtSpeed};
 use super::table::Table;
@@ -47,9 +47,9 @@ impl<T: Number> LawPoint<T> {
     }
 }
 
-/// The law in an interval between two pressures of the table, by power of the fraction of the speed's cell: the approach
-/// where the interval begins; the slope of ln p over the approach from there and the next two coefficients of its cubic; four
-/// of μ and of κ over ln p from there. Above the last pressure: the slope of ln p, and constants.
+/// The law in an interval between two pressures of the table, by power of the fraction of the speed's cell: the
+/// approach where the interval begins; the slope of ln p over the approach from there and the next two coefficients of
+/// its cubic; four of μ and of κ over ln p from there. Above the last pressure: the slope of ln p, and constants.
 type Coefficients = [[f64; 12]; SAMPLES];
 
 /// The coefficients of hysteresis and contact ratio over ln p, in such an interval.
@@ -287,7 +287,8 @@ impl ResampledLaw {
         self.computed[cell.index] = self.temperature_number;
     }
 
-    /// Adds a sample of the law at a speed of a cell to the coefficients `row`, those of the interval from pressure `i` on.
+    /// Adds a sample of the law at a speed of a cell to the coefficients `row`, those of the interval from pressure `i`
+    /// on.
     fn add_sample(&mut self, row: usize, i: usize, weights: &[f64; SAMPLES]) {
         let [_, approaches, slopes] = self.curve.points();
         let along = |quantity| cubic_over(&self.log_pressures, self.curve.series(quantity), i);
@@ -321,8 +322,8 @@ impl ResampledLaw {
         }
     }
 
-    /// The index of the interval of the pressure at an approach: near the ends of intervals one or the other, which agree
-    /// there.
+    /// The index of the interval of the pressure at an approach: near the ends of intervals one or the other, which
+    /// agree there.
     #[inline(always)]
     pub fn pressure_interval(&self, cell: &SpeedCell, log_speed: f64, approach: f64) -> usize {
         let (fraction, count) = (cell.fraction(log_speed), starts_of(self.log_pressures.len()));
@@ -413,8 +414,8 @@ fn bins(speeds: &[f64]) -> (Vec<u32>, f64) {
     ((0..count as usize).map(|bin| below(bin) as u32).collect(), count / range)
 }
 
-/// The coefficients of the cubic that follows point `i` of a column over `x`, from there; after the last point its value
-/// and its slope. 0 where there is no column.
+/// The coefficients of the cubic that follows point `i` of a column over `x`, from there; after the last point its
+/// value and its slope. 0 where there is no column.
 fn cubic_over(x: &[f64], column: Option<[&[f64]; 2]>, i: usize) -> [f64; 4] {
     let Some([values, slopes]) = column else { return [0.0; 4] };
     if i + 1 == x.len() {

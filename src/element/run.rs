@@ -15,8 +15,8 @@ use crate::outputs::Variable;
 use crate::scene::{TableExtrapolation, is_possible};
 use crate::simulation::{ModeChange, OutOfRange, Start};
 
-/// Share of the speeds and separations of the table by which the carrier may exceed them: rounding of a master that goes
-/// to the very end.
+/// Share of the speeds and separations of the table by which the carrier may exceed them: rounding of a master that
+/// goes to the very end.
 const ROUNDING: f64 = 1e-9;
 
 /// Why a motion of an element is refused; the element is then as it was.
@@ -82,9 +82,9 @@ pub enum RestoreError {
     BeyondTable(#[from] ElementError),
 }
 
-/// Where in a step a carrier is.
+/// Where in a step a position of the carrier is checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum StepTime {
+enum CheckedAt {
     Start,
     End,
 }
@@ -150,7 +150,7 @@ impl Element {
         let table_extrapolation = contact.table_extrapolation();
         let element = Self { law, curve, table_extrapolation, state, spring, mode_changes: None };
         element.check_speed(state.u_rate)?;
-        element.check_separation(state.w, state.u_rate, StepTime::Start)?;
+        element.check_separation(state.w, state.u_rate, CheckedAt::Start)?;
         Ok(element)
     }
 
@@ -182,8 +182,8 @@ impl Element {
         self.check_speed(u_rate)?;
         let before = self.curve.speed();
         self.curve.set_speed(&self.law, u_rate);
-        let start = self.check_separation(w, u_rate, StepTime::Start);
-        if let Err(error) = start.and_then(|()| self.check_separation(end.w, u_rate, StepTime::End)) {
+        let start = self.check_separation(w, u_rate, CheckedAt::Start);
+        if let Err(error) = start.and_then(|()| self.check_separation(end.w, u_rate, CheckedAt::End)) {
             self.curve.set_speed(&self.law, before);
             return Err(error);
         }
@@ -240,9 +240,9 @@ impl Element {
         Err(ElementError::Speed { time: self.state.time, speed: speed.abs(), least: range.0, largest: range.1 })
     }
 
-    /// Refuses a position `w` (m) of the carrier, at the start or the end of a step at the present speed, that is beyond the
-    /// table.
-    fn check_separation(&self, w: f64, speed: f64, when: StepTime) -> Result<(), ElementError> {
+    /// Refuses a position `w` (m) of the carrier, at the start or the end of a step at the present speed, that is
+    /// beyond the table.
+    fn check_separation(&self, w: f64, speed: f64, when: CheckedAt) -> Result<(), ElementError> {
         let (separation, least) = (self.law.rest_separation + w, -self.curve.closest());
         let slack = ROUNDING * (self.curve.closest() - self.curve.touch);
         if self.table_extrapolation == TableExtrapolation::Hold || separation >= least - slack {
@@ -256,7 +256,7 @@ impl Element {
             load: self.law.load,
             largest: self.law.largest_pressure,
             speed: speed.abs(),
-            within: when == StepTime::End,
+            within: when == CheckedAt::End,
         })
     }
 
@@ -283,8 +283,8 @@ impl Element {
     /// Writes into `values` how `variables` change as the carrier moves along x and z by `direction` (m per unit), the
     /// modes held.
     ///
-    /// The force of a sticking spring follows u with the stiffness. Where w decreases the stiffness, the force decreases
-    /// in proportion, else it stays.
+    /// The force of a sticking spring follows u with the stiffness. Where w decreases the stiffness, the force
+    /// decreases in proportion, else it stays.
     pub fn directional_derivative(&self, variables: &[Variable], direction: (f64, f64), values: &mut [f64]) {
         let contact = self.contact();
         let (now, change) = (self.terms(&contact), self.change(&contact, direction.0, direction.1));

@@ -1,5 +1,5 @@
-//! The spring and slider of an element, in the plane or along a line of it: its passage through a segment of a motion, in
-//! closed form.
+//! The spring and slider of an element, in the plane or along a line of it: its passage through a segment of a motion,
+//! in closed form.
 //!
 //! G is the force of the spring on the ground, K its stiffness, L the limit, Δ the displacement of the face along the
 //! plane, e = G/K. While the stiffness grows, contacts that are made carry no force yet; while it falls, contacts that
@@ -54,8 +54,8 @@ pub(crate) struct Advanced<T> {
     pub(crate) release: f64,
 }
 
-/// Whether a stiffness stays, but for rounding. Where it grows and where it falls springs differ, with one value and two
-/// slopes between: there the mean of both is taken, as a difference quotient to both sides finds it.
+/// Whether a stiffness stays, but for rounding. Where it grows and where it falls springs differ, with one value and
+/// two slopes between: there the mean of both is taken, as a difference quotient to both sides finds it.
 #[inline(always)]
 fn is_level<T: Number>(before: T, after: T) -> bool {
     let (before, after) = (before.value(), after.value());

@@ -109,8 +109,8 @@ impl Table {
         self.values[quantity as usize].as_ref().map_or(0.0, |values| values[self.index(node)])
     }
 
-    /// The time (s) in which a carrier that is pressed the hardest passes the way to slip, μ F/k, at the largest speed of
-    /// the table; `None` where nothing sticks.
+    /// The time (s) in which a carrier that is pressed the hardest passes the way to slip, μ F/k, at the largest speed
+    /// of the table; `None` where nothing sticks.
     pub fn stick_time(&self) -> Option<f64> {
         let last = |axis: &[f64]| axis.len().saturating_sub(1);
         let node = Node { temperature: 0, load: last(&self.grid.loads), speed: last(&self.grid.speeds) };

@@ -146,8 +146,8 @@ pub struct TableHeader {
     pub basis: Basis,
     /// The points that the table is to have.
     pub grid: SweepGrid,
-    /// How far the law reaches below the least load, in words; `None` while points are missing. It follows from the rows and
-    /// is not read.
+    /// How far the law reaches below the least load, in words; `None` while points are missing. It follows from the
+    /// rows and is not read.
     pub low_end: Option<String>,
 }
 
@@ -354,8 +354,8 @@ impl TableText {
         }
     }
 
-    /// Checks that a sweep could have written a row: its fields, its point, which is one of the `grid`, and its values. Returns
-    /// the index of the point.
+    /// Checks that a sweep could have written a row: its fields, its point, which is one of the `grid`, and its values.
+    /// Returns the index of the point.
     fn check_row(&self, row: usize, load: Load, grid: &SweepGrid) -> Result<usize, TableError> {
         self.check_fields(row)?;
         let index = grid.index(&self.point(row, load)?);

@@ -11,7 +11,7 @@ use uuid::Uuid;
 use super::error::Error;
 use super::memory;
 use super::model::FmuModel;
-use super::resources::{self, Found, PATCH_FILE, SCENE_FILE, TABLE_FILE};
+use super::resources::{self, PATCH_FILE, Resource, SCENE_FILE, TABLE_FILE};
 use super::variables::VariableTable;
 use crate::element::{PointContact, Table};
 use crate::patch::Patch;
@@ -70,7 +70,7 @@ impl DerefMut for Definition {
 
 impl Definition {
     /// Reads the definition in the resources at `location`, or beside the `library`; also returns its file.
-    pub(super) fn find(location: &str, library: Option<&Path>) -> Result<(Self, Found), Error> {
+    pub(super) fn find(location: &str, library: Option<&Path>) -> Result<(Self, Resource), Error> {
         // The table of a patch may have any name.
         let found = resources::find(location, library, &[SCENE_FILE, PATCH_FILE, TABLE_FILE])?;
         let path = &found.path;
@@ -142,7 +142,7 @@ impl Sources {
     ///
     /// # Errors
     /// Where a file cannot be read.
-    pub fn of(path: &Path, definition: &dyn FmuModel) -> io::Result<Self> {
+    pub fn new(path: &Path, definition: &dyn FmuModel) -> io::Result<Self> {
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut files = vec![fs::read(path)?];
         for file in definition.files() {
@@ -152,7 +152,7 @@ impl Sources {
     }
 
     pub(super) fn read_from(path: &Path, definition: &dyn FmuModel) -> Result<Self, Error> {
-        Self::of(path, definition).map_err(|source| Error::Unreadable { path: path.into(), source })
+        Self::new(path, definition).map_err(|source| Error::Unreadable { path: path.into(), source })
     }
 }
 

@@ -34,7 +34,7 @@ impl FmuModel for PointContact {
     }
 
     fn calculated(&self) -> Vec<VariableRef> {
-        VariableRef::of_outputs(&PointContact::variables(self), element::dependencies)
+        VariableRef::from_outputs(&PointContact::variables(self), element::dependencies)
     }
 
     fn parameters(&self) -> Vec<Parameter> {
@@ -138,6 +138,6 @@ impl FmuRun for ElementRun {
 
     fn take_records(&mut self, _time: f64) -> Vec<Message> {
         // It has no masses: its contact is one.
-        self.element.take_mode_changes().iter().map(|change| Message::of_event(change, "the contact")).collect()
+        self.element.take_mode_changes().iter().map(|change| Message::from_mode_change(change, "the contact")).collect()
     }
 }

@@ -206,8 +206,8 @@ pub(super) fn catch_panic<T>(body: impl FnOnce() -> T) -> Result<T, String> {
     result.map_err(|payload| message(payload.as_ref()))
 }
 
-/// The hook for panics outside of guarded calls, such as those of the program's other threads. It is kept here and not in
-/// the new hook, which therefore needs no memory: that would leak when the library is unloaded.
+/// The hook for panics outside of guarded calls, such as those of the program's other threads. It is kept here and not
+/// in the new hook, which therefore needs no memory: that would leak when the library is unloaded.
 static USUAL: OnceLock<Hook> = OnceLock::new();
 
 /// Installs the new hook and returns the one before.

@@ -3,8 +3,8 @@
 //! # Safety
 //!
 //! All of them assume the standard's contract: a component is NULL or was returned by [`fmi2Instantiate`] and is not
-//! freed, and one thread at a time uses it; a pointer to data is NULL or valid for the number of elements passed; a string
-//! is NULL or ends with a zero. NULL is handled everywhere; other violations cannot be detected here.
+//! freed, and one thread at a time uses it; a pointer to data is NULL or valid for the number of elements passed; a
+//! string is NULL or ends with a zero. NULL is handled everywhere; other violations cannot be detected here.
 #![allow(unsafe_code, non_snake_case, non_upper_case_globals, clippy::missing_safety_doc)]
 
 use std::ffi::{CStr, c_char};
@@ -25,8 +25,9 @@ struct Component {
     callbacks: Callbacks,
 }
 
-/// Common part of all functions that take an instance: checks for NULL, the life cycle, panics, the default floating-point
-/// environment. Messages are delivered at the end, when the instance is no longer borrowed and the host's environment is back.
+/// Common part of all functions that take an instance: checks for NULL, the life cycle, panics, the default
+/// floating-point environment. Messages are delivered at the end, when the instance is no longer borrowed and the
+/// host's environment is back.
 unsafe fn call(
     component: fmi2Component,
     function: Function,

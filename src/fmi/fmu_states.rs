@@ -50,7 +50,7 @@ impl FmuStates {
     }
 
     /// Frees the state `handle`; 0 stands for no state.
-    pub(super) fn forget(&mut self, handle: usize) -> Result<(), Error> {
+    pub(super) fn remove(&mut self, handle: usize) -> Result<(), Error> {
         match (handle, self.states.remove(&handle)) {
             (0, _) | (_, Some(_)) => Ok(()),
             (_, None) => Err(Error::UnknownState("what FMUstate points to")),
@@ -77,7 +77,7 @@ struct WrittenState {
     run: Option<RunState>,
 }
 
-/// The same as it is written: a patch may be large.
+/// A state as it is written, borrowed: that of a patch may be large.
 #[derive(Serialize)]
 struct BorrowedState<'a> {
     lifecycle: LifecycleState,
@@ -111,8 +111,8 @@ pub(super) fn write(state: &FmuState, guid: &str) -> Result<Vec<u8>, RestoreErro
     Ok(bytes)
 }
 
-/// Reads a state of the FMU with this GUID, whose parameters were `original` before any was set. Its calculated variables
-/// must be finite: those of a forged state need not be.
+/// Reads a state of the FMU with this GUID, whose parameters were `original` before any was set. Its calculated
+/// variables must be finite: those of a forged state need not be.
 pub(super) fn read(
     bytes: &[u8],
     guid: &str,

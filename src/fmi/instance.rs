@@ -37,7 +37,8 @@ pub(super) struct Instance {
 }
 
 impl Instance {
-    /// Reads the resources at `location`, or beside the `library`, and checks them against the GUID that the master passes.
+    /// Reads the resources at `location`, or beside the `library`, and checks them against the GUID that the master
+    /// passes.
     pub(super) fn new(given_guid: &str, location: &str, library: Option<&Path>, logging: bool) -> Result<Self, Error> {
         let (definition, found) = Definition::find(location, library)?;
         memory::check("an instance", definition.memory())?;
@@ -47,12 +48,12 @@ impl Instance {
             return Err(Error::Guid { given: given_guid.into(), own });
         }
         let spelling = (given_guid != own).then(|| format!("the GUID is \"{given_guid}\": took it for \"{own}\""));
-        let mut instance = Self::of(definition, variables, own, logging);
+        let mut instance = Self::from_definition(definition, variables, own, logging);
         found.warning.into_iter().chain(spelling).for_each(|text| instance.warn(text));
         Ok(instance)
     }
 
-    fn of(definition: Definition, variables: VariableTable, guid: String, logging: bool) -> Self {
+    fn from_definition(definition: Definition, variables: VariableTable, guid: String, logging: bool) -> Self {
         let mut log = Log::new(logging);
         log.extend(definition.warnings().iter().map(|text| Message::from_status(Status::Warning, text.clone())));
         let original = Arc::new(Parameters::new(definition));
@@ -106,8 +107,8 @@ impl Instance {
         Ok(())
     }
 
-    /// fmi2SetupExperiment: the tolerance is the parameter `solver.relative_tolerance`, as if set now. Elements and patches
-    /// have none, and no error in time to keep to it.
+    /// fmi2SetupExperiment: the tolerance is the parameter `solver.relative_tolerance`, as if set now. Elements and
+    /// patches have none, and no error in time to keep to it.
     pub(super) fn setup_experiment(
         &mut self,
         tolerance: Option<f64>,
@@ -174,7 +175,8 @@ impl Instance {
         Ok(())
     }
 
-    /// fmi2Reset: back to the state after fmi2Instantiate. The FMU states handed out remain until the master frees them.
+    /// fmi2Reset: back to the state after fmi2Instantiate. The FMU states handed out remain until the master frees
+    /// them.
     pub(super) fn reset(&mut self) -> Result<(), Error> {
         self.state = InstanceState::new(Arc::clone(&self.original), &self.variables);
         self.outputs.invalidate();
@@ -205,7 +207,7 @@ impl Instance {
 
     /// fmi2FreeFMUstate
     pub(super) fn free_state(&mut self, handle: usize) -> Result<(), Error> {
-        self.fmu_states.forget(handle)
+        self.fmu_states.remove(handle)
     }
 
     /// fmi2SerializedFMUstateSize
@@ -305,7 +307,7 @@ pub(super) mod tests {
         let scene = Scene::parse(text, Path::new("scene.toml")).unwrap();
         let definition = Definition::from(scene);
         let variables = definition.variables();
-        Instance::of(definition, variables, "{}".into(), false)
+        Instance::from_definition(definition, variables, "{}".into(), false)
     }
 
     #[test]

@@ -8,7 +8,7 @@ use std::{io, slice};
 use super::error::{Error, InputOutOfRange, RestoreError};
 use super::inputs::{CommunicationStep, Inputs, MAX_INPUTS};
 use super::log::{Category, Message};
-use super::model::{Experiment, FmuModel, FmuRun, History, RunState};
+use super::model::{Experiment, FmuModel, FmuRun, RunRecord, RunState};
 use super::resources::SCENE_FILE;
 use super::variables::VariableRef;
 use crate::model::{Reduction, Replacement};
@@ -61,7 +61,7 @@ impl FmuModel for Arc<Scene> {
     }
 
     fn calculated(&self) -> Vec<VariableRef> {
-        VariableRef::of_outputs(&outputs::variables(self), |output| outputs::dependencies(self, output))
+        VariableRef::from_outputs(&outputs::variables(self), |output| outputs::dependencies(self, output))
     }
 
     fn parameters(&self) -> Vec<Parameter> {
@@ -210,7 +210,7 @@ struct LayerRun {
     scene: Arc<Scene>,
     variables: Vec<Variable>,
     simulation: Simulation,
-    history: History,
+    history: RunRecord,
     /// The largest displacement, m, that rounding leaves accurate.
     farthest: f64,
     /// Whether the solver's work is recorded.
@@ -262,11 +262,11 @@ impl FmuRun for LayerRun {
         Ok(self.simulation.set_state(state)?)
     }
 
-    fn history(&self) -> History {
-        History { run_time: self.simulation.run_time(), ..self.history }
+    fn history(&self) -> RunRecord {
+        RunRecord { run_time: self.simulation.run_time(), ..self.history }
     }
 
-    fn set_history(&mut self, history: History) {
+    fn set_history(&mut self, history: RunRecord) {
         self.simulation.set_run_time(history.run_time);
         self.history = history;
     }
@@ -279,12 +279,13 @@ impl FmuRun for LayerRun {
 
     fn take_records(&mut self, time: f64) -> Vec<Message> {
         let events = self.simulation.take_mode_changes();
-        let events = events.iter().map(|change| Message::of_event(change, &format!("mass {}", change.mass + 1)));
+        let events =
+            events.iter().map(|change| Message::from_mode_change(change, &format!("mass {}", change.mass + 1)));
         let switches = self.simulation.take_method_switches();
-        let switches = switches.iter().map(|switch| Message::of(Category::Solver, switch.to_string()));
+        let switches = switches.iter().map(|switch| Message::record(Category::Solver, switch.to_string()));
         let mut messages: Vec<_> = events.chain(switches).collect();
         if self.records_work {
-            messages.push(Message::of(Category::Solver, self.work(time)));
+            messages.push(Message::record(Category::Solver, self.work(time)));
         }
         messages
     }
@@ -308,7 +309,7 @@ impl LayerRun {
             scene: Arc::clone(scene),
             variables: outputs::variables(scene),
             simulation,
-            history: History { start, ..History::default() },
+            history: RunRecord { start, ..RunRecord::default() },
             farthest: farthest(scene),
             records_work: false,
         }

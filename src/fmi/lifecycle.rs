@@ -1,4 +1,5 @@
-//! The life cycle of an instance: which function may be called in which state, by the table of FMI 2.0.4, section 4.2.4.
+//! The life cycle of an instance: which function may be called in which state, by the table of FMI 2.0.4, section
+//! 4.2.4.
 
 use std::fmt;
 
@@ -113,8 +114,8 @@ const fn rule(function: Function, name: &'static str, states: &'static [Lifecycl
     Rule { function, name, states }
 }
 
-/// Every state. Fatal is an addition to the standard's table: an instance can be freed after a panic, since its memory is
-/// intact.
+/// Every state. Fatal is an addition to the standard's table: an instance can be freed after a panic, since its memory
+/// is intact.
 const EVERY: &[LifecycleState] = {
     use LifecycleState::{Error, Fatal, InitializationMode, Instantiated, StepComplete, StepFailed, Terminated};
     &[Instantiated, InitializationMode, StepComplete, StepFailed, Terminated, Error, Fatal]
@@ -131,8 +132,8 @@ const READABLE: &[LifecycleState] = {
     &[InitializationMode, StepComplete, StepFailed, Terminated, Error]
 };
 
-/// States in which inputs can be set. stepFailed is an addition to the standard's table: a discarded step left everything
-/// as it was, so a master without rollback may try a smaller step with other inputs.
+/// States in which inputs can be set. stepFailed is an addition to the standard's table: a discarded step left
+/// everything as it was, so a master without rollback may try a smaller step with other inputs.
 const WRITABLE: &[LifecycleState] = {
     use LifecycleState::{InitializationMode, Instantiated, StepComplete, StepFailed};
     &[Instantiated, InitializationMode, StepComplete, StepFailed]

@@ -68,14 +68,14 @@ impl Message {
     }
 
     /// A record of a call that succeeds.
-    pub(super) fn of(category: Category, text: String) -> Self {
+    pub(super) fn record(category: Category, text: String) -> Self {
         Self { status: Status::Ok, category, text }
     }
 
     /// A mode change of `what`.
-    pub(super) fn of_event(change: &ModeChange, what: &str) -> Self {
+    pub(super) fn from_mode_change(change: &ModeChange, what: &str) -> Self {
         let (time, from, to) = (change.time, mode(change.from), mode(change.to));
-        Self::of(Category::Events, format!("t = {time} s: {what} from {from} to {to}"))
+        Self::record(Category::Events, format!("t = {time} s: {what} from {from} to {to}"))
     }
 }
 
@@ -104,8 +104,8 @@ impl Log {
         Self { events: everything, solver: everything, waiting: Vec::new() }
     }
 
-    /// Switches on the categories named (all where none is, or by the name `logAll`) and off all others, except those that
-    /// are always on.
+    /// Switches on the categories named (all where none is, or by the name `logAll`) and off all others, except those
+    /// that are always on.
     pub(super) fn select(&mut self, on: bool, names: &[&str]) -> Result<(), Error> {
         let known = |name: &str| name == ALL || Category::ALL.iter().any(|category| category.name() == name);
         if let Some(&name) = names.iter().find(|name| !known(name)) {
@@ -150,7 +150,7 @@ mod tests {
     #[test]
     fn mode_changes_are_logged_in_words() {
         let change = ModeChange { time: 0.5, mass: 2, from: 0, to: -1 };
-        let message = Message::of_event(&change, "mass 3");
+        let message = Message::from_mode_change(&change, "mass 3");
         assert_eq!(message.text, "t = 0.5 s: mass 3 from free to slipping backwards");
     }
 

@@ -1,5 +1,5 @@
-//! Memory that the system would refuse: what a call needs is reckoned and asked for before it is used, since Rust ends the
-//! process where an allocation fails.
+//! Memory that the system would refuse: what a call needs is reckoned and asked for before it is used, since Rust ends
+//! the process where an allocation fails.
 
 use std::hint;
 

@@ -1,5 +1,5 @@
-//! What an FMU's model is: everything that the layers above ask of it, whatever it is. [`FmuModel`] is the definition with
-//! its parameters, [`FmuRun`] a run of it.
+//! What an FMU's model is: everything that the layers above ask of it, whatever it is. [`FmuModel`] is the definition
+//! with its parameters, [`FmuRun`] a run of it.
 
 use std::fmt::Debug;
 use std::path::{Path, PathBuf};
@@ -88,8 +88,8 @@ pub trait FmuModel: Debug {
     /// How inputs are extrapolated where the master gives no derivatives.
     fn extrapolation(&self) -> Extrapolation;
 
-    /// Memory in bytes that an instance takes, its variables and a run. It is an upper bound that tests hold against what
-    /// runs allocate.
+    /// Memory in bytes that an instance takes, its variables and a run. It is an upper bound that tests hold against
+    /// what runs allocate.
     fn memory(&self) -> usize;
 
     /// Memory in bytes that an FMU state takes, likewise.
@@ -131,7 +131,8 @@ pub trait FmuRun: Debug {
     /// Writes the values of the calculated variables into `values`, in their order.
     fn evaluate(&mut self, values: &mut [f64]);
 
-    /// Writes the derivatives of the calculated variables `outputs` as the inputs change by `direction`, all states held.
+    /// Writes the derivatives of the calculated variables `outputs` as the inputs change by `direction`, all states
+    /// held.
     fn directional_derivatives(&mut self, outputs: &[usize], direction: &[f64; MAX_INPUTS], values: &mut [f64]);
 
     /// The first derivative of a calculated variable, in its unit over s; `None` where it has none.
@@ -149,12 +150,12 @@ pub trait FmuRun: Debug {
     fn set_state(&mut self, state: &RunState) -> Result<(), RestoreError>;
 
     /// What it has done that is no part of its state.
-    fn history(&self) -> History {
-        History::default()
+    fn history(&self) -> RunRecord {
+        RunRecord::default()
     }
 
     /// Takes over the history of the run that it continues.
-    fn set_history(&mut self, _history: History) {}
+    fn set_history(&mut self, _history: RunRecord) {}
 
     /// Starts or stops recording events and the solver's work.
     fn record(&mut self, _events: bool, _solver: bool) {}
@@ -183,9 +184,10 @@ pub enum RunState {
     Patch(Box<PatchState>),
 }
 
-/// What a run has done that is no part of its state: a step that is repeated spends its time again but does not warn again.
+/// What a run has done that is no part of its state: a step that is repeated spends its time again but does not warn
+/// again.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct History {
+pub struct RunRecord {
     /// Processor time spent, s.
     pub run_time: f64,
     /// The time at which the run began, s; `None` where it is not known.

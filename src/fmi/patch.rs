@@ -1,5 +1,5 @@
-//! A contact patch as an FMU's model. Between communication points the pose is continuous and runs straight to its targets;
-//! a temperature is held.
+//! A contact patch as an FMU's model. Between communication points the pose is continuous and runs straight to its
+//! targets; a temperature is held.
 
 use std::path::PathBuf;
 

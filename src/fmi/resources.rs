@@ -17,18 +17,18 @@ pub const PATCH_FILE: &str = "patch.toml";
 
 /// A file of the resources.
 #[derive(Debug)]
-pub(super) struct Found {
+pub(super) struct Resource {
     pub(super) path: PathBuf,
     /// Where `location` does not name the folder that it is in.
     pub(super) warning: Option<String>,
 }
 
-/// The first of `files` that is in the resources at `location`; else in those of the FMU's folder, as which some masters
-/// pass it; else in those beside the folder of the `library`.
+/// The first of `files` that is in the resources at `location`; else in those of the FMU's folder, as which some
+/// masters pass it; else in those beside the folder of the `library`.
 ///
 /// # Errors
 /// [`Error::NoResource`] with the folders looked in.
-pub(super) fn find(location: &str, library: Option<&Path>, files: &'static [&'static str]) -> Result<Found, Error> {
+pub(super) fn find(location: &str, library: Option<&Path>, files: &'static [&'static str]) -> Result<Resource, Error> {
     let named: Vec<_> = folders(location).into_iter().map(PathBuf::from).collect();
     let guessed = named.iter().map(|folder| folder.join(RESOURCES)).chain(library.and_then(beside));
     let tried: Vec<_> = named.iter().cloned().chain(guessed).collect();
@@ -41,7 +41,7 @@ pub(super) fn find(location: &str, library: Option<&Path>, files: &'static [&'st
         let folder = folder.display();
         format!("fmuResourceLocation is \"{location}\", not the FMU's folder {RESOURCES}: took that at \"{folder}\"")
     });
-    Ok(Found { path, warning })
+    Ok(Resource { path, warning })
 }
 
 /// The folder in an FMU.
@@ -165,7 +165,7 @@ mod tests {
         let found = |location: &str| find(location, Some(&library), &[SCENE_FILE]).unwrap();
         assert!(found(resources.to_str().unwrap()).warning.is_none());
         for location in [fmu.to_str().unwrap(), "", "file:///elsewhere"] {
-            let Found { path, warning } = found(location);
+            let Resource { path, warning } = found(location);
             assert_eq!(path, resources.join(SCENE_FILE), "{location}");
             assert!(warning.unwrap().contains("resources"), "{location}");
         }

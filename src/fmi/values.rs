@@ -10,8 +10,8 @@ use super::variables::{Kind, Role};
 use crate::scene::{Value, is_possible};
 
 impl Instance {
-    /// Looks up the values of variables of the type `kind`, into `found`: all of them or none, and without an allocation
-    /// once it has been long enough, since masters ask at every communication point.
+    /// Looks up the values of variables of the type `kind`, into `found`: all of them or none, and without an
+    /// allocation once it has been long enough, since masters ask at every communication point.
     fn find(&mut self, references: &[u32], kind: Kind) -> Result<(), Error> {
         self.found.clear();
         for &reference in references {
@@ -74,8 +74,8 @@ impl Instance {
 
     /// fmi2SetReal, fmi2SetInteger and fmi2SetString: all of the values or none.
     ///
-    /// An input that is not a number or out of range is accepted here and refused by the step: a master may set it as long
-    /// as it does not ask the model to follow it.
+    /// An input that is not a number or out of range is accepted here and refused by the step: a master may set it as
+    /// long as it does not ask the model to follow it.
     pub(super) fn set(&mut self, references: &[u32], values: impl Iterator<Item = Value>) -> Result<(), Error> {
         let (mut parameters, mut inputs) = (Arc::clone(&self.state.parameters), self.state.inputs);
         for (&reference, value) in references.iter().zip(values) {
@@ -119,8 +119,8 @@ impl Instance {
         Ok(())
     }
 
-    /// Inputs and parameters set before the run are those that it starts from. Inputs set later are those of the next step;
-    /// the outputs remain those at the last communication point.
+    /// Inputs and parameters set before the run are those that it starts from. Inputs set later are those of the next
+    /// step; the outputs remain those at the last communication point.
     fn update_start(&mut self) {
         if self.state.lifecycle.before_run() {
             self.state.discard_start();
@@ -171,7 +171,8 @@ impl Instance {
         Ok(direction)
     }
 
-    /// fmi2GetRealOutputDerivatives: the first derivatives of forces, moments and the carrier's motion at the current time.
+    /// fmi2GetRealOutputDerivatives: the first derivatives of forces, moments and the carrier's motion at the current
+    /// time.
     pub(super) fn output_derivatives(
         &mut self,
         references: &[u32],

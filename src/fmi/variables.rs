@@ -31,11 +31,11 @@ impl Kind {
     }
 }
 
-impl From<outputs::Kind> for Kind {
-    fn from(kind: outputs::Kind) -> Self {
+impl From<outputs::OutputType> for Kind {
+    fn from(kind: outputs::OutputType) -> Self {
         match kind {
-            outputs::Kind::Real => Self::Real,
-            outputs::Kind::Integer => Self::Integer,
+            outputs::OutputType::Real => Self::Real,
+            outputs::OutputType::Integer => Self::Integer,
         }
     }
 }
@@ -103,7 +103,7 @@ impl VariableRef {
     pub(super) fn calculated(
         index: usize,
         (name, description): (&str, &str),
-        (kind, unit): (outputs::Kind, Unit),
+        (kind, unit): (outputs::OutputType, Unit),
         dependencies: Option<Vec<usize>>,
     ) -> Self {
         let role = dependencies.map_or(Role::Local(index), |dependencies| Role::Output { index, dependencies });
@@ -111,7 +111,7 @@ impl VariableRef {
     }
 
     /// The output variables of a layer or an element.
-    pub(super) fn of_outputs(variables: &[Variable], depends: impl Fn(Output) -> Dependencies) -> Vec<Self> {
+    pub(super) fn from_outputs(variables: &[Variable], depends: impl Fn(Output) -> Dependencies) -> Vec<Self> {
         let variable = |(index, variable): (usize, &Variable)| {
             let Dependencies { on_u, on_w } = depends(variable.output);
             let slots = [on_u.then_some(Input::U as usize), on_w.then_some(Input::W as usize)];

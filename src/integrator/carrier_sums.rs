@@ -1,30 +1,39 @@
 //! F_x and F_z within a step, from sums over the layer that are taken once a step.
 //!
-//! All that the forces on the carrier consist of is linear in the values at the stages and at both ends of the step. So is
-//! the height of a mass in contact, as far as the step's dense output goes; where a tolerance asks for more these masses are
-//! put on the profile one by one, see [`ContactHeights`].
+//! All that the forces on the carrier consist of is linear in the values at the stages and at both ends of the step. So
+//! is the height of a mass in contact, as far as the step's dense output goes; where a tolerance asks for more these
+//! masses are put on the profile one by one, see [`ContactHeights`].
 
 use std::ops::Range;
 
 use super::maxwell::ElementWeights;
-use super::rates::Rates;
 use super::scheme::ContactHeights;
+use super::stage_values::StageValues;
 use super::tableau::Weights;
 use crate::math::{BLOCK, dot, sum};
-use crate::model::{Carrier, CarrierPoint, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
+use crate::model::{ByAxis, Carrier, CarrierPoint, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
 
-/// Elongations of links to the carrier (m) and velocities of masses (m/s), along x and z: of one mass, or summed.
+/// Elongations of links (m) and velocities of masses (m/s), along x and z: of one mass, of one relative to another or
+/// to the carrier, or summed.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Motion {
-    pub elongation: (f64, f64),
-    pub velocity: (f64, f64),
+pub(super) struct LinkState {
+    pub elongation: ByAxis<f64>,
+    pub velocity: ByAxis<f64>,
 }
 
-impl Motion {
+impl LinkState {
     #[inline(always)]
     pub(super) fn add(&mut self, other: &Self) {
-        self.elongation = (self.elongation.0 + other.elongation.0, self.elongation.1 + other.elongation.1);
-        self.velocity = (self.velocity.0 + other.velocity.0, self.velocity.1 + other.velocity.1);
+        (self.elongation, self.velocity) = (self.elongation + other.elongation, self.velocity + other.velocity);
+    }
+
+    /// The links from a mass to its neighbour at the right (`sign` 1) or at the left (-1).
+    pub(super) fn between(here: &Self, there: &Self, sign: f64) -> Self {
+        let signed = |difference: ByAxis<f64>| difference.map(|difference| sign * difference);
+        Self {
+            elongation: signed(there.elongation - here.elongation),
+            velocity: signed(there.velocity - here.velocity),
+        }
     }
 
     /// Adds up to [`BLOCK`] masses, one after another from mass `first` on, that slip with the elongations `x` (m) and
@@ -40,8 +49,8 @@ impl Motion {
         }
         model.profile.evaluate_block(places, surface);
         for ((x, v_x), (rest_z, surface)) in x.iter().zip(v_x).zip(rest_z.iter().zip(surface)) {
-            let (elongation, velocity) = ((*x, surface.height - rest_z - placement.w), (*v_x, surface.slope * v_x));
-            self.add(&Self { elongation, velocity });
+            let elongation = ByAxis { x: *x, z: surface.height - rest_z - placement.w };
+            self.add(&Self { elongation, velocity: ByAxis { x: *v_x, z: surface.slope * v_x } });
         }
     }
 }
@@ -49,7 +58,7 @@ impl Motion {
 /// Where the carrier is at one instant, as masses that slip are put on the profile.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placement {
-    /// u as a position on the profile at the start of the carrier's piece, m.
+    /// u as a position on the profile at the start of the carrier's segment, m.
     profile_position: f64,
     /// Its displacement along x since then, m.
     du: f64,
@@ -109,7 +118,7 @@ impl CarrierSums {
     }
 
     /// A new step is attempted.
-    pub(super) fn forget(&mut self) {
+    pub(super) fn invalidate(&mut self) {
         self.known = false;
     }
 
@@ -118,20 +127,21 @@ impl CarrierSums {
         self.summed == self.is_summed.len() as f64
     }
 
-    /// Takes the sums over `masses` of a layer of `model`, of its step from `start` to `end` with these `stages`, unless they
-    /// are known.
+    /// Takes the sums over `masses` of a layer of `model`, of its step from `start` to `end` with these `stages`,
+    /// unless they are known.
     pub(super) fn collect(
         &mut self,
         model: &Model,
         masses: &Range<usize>,
         (start, end): (&State, &State),
-        stages: &[Rates],
+        stages: &[StageValues],
         heights: ContactHeights,
     ) {
         if self.known {
             return;
         }
         self.known = true;
+        // Which masses are summed: of others the dense output has each one's motion.
         (self.summed, self.moving, self.free) = (0.0, 0.0, 0.0);
         for (is_summed, mode) in self.is_summed.iter_mut().zip(&start.mode[masses.clone()]) {
             let is_free = !mode.in_contact();
@@ -140,6 +150,7 @@ impl CarrierSums {
             self.moving += one_if(*mode != Mode::Stick) * *is_summed;
             self.free += one_if(is_free);
         }
+        // Their elongations at the ends of the step and velocities at the stages, then what the links need.
         let of_summed = |values: &[f64]| dot(&self.is_summed, &values[masses.start..]);
         self.x.elongation = [of_summed(&start.elongation_x), of_summed(&end.elongation_x)];
         self.z.elongation = [of_summed(&start.elongation_z), of_summed(&end.elongation_z)];
@@ -150,21 +161,21 @@ impl CarrierSums {
         self.z.collect_links(model, masses, [start, end], stages);
     }
 
-    /// F_x and F_z (N) where the masses, of `model`, together move as `motion` says, under the `carrier`, with these weights of
-    /// the Maxwell elements.
+    /// F_x and F_z (N) where the masses, of `model`, together move as `motion` says, under the `carrier`, with these
+    /// weights of the Maxwell elements.
     pub(super) fn forces(
         &self,
         model: &Model,
-        motion: &Motion,
+        motion: &LinkState,
         carrier: &CarrierPoint,
         weights: impl Fn(&MaxwellRow) -> ElementWeights,
-    ) -> (f64, f64) {
+    ) -> ByAxis<f64> {
         let masses = model.masses() as f64;
-        let rate = (motion.velocity.0 - masses * carrier.x.speed, motion.velocity.1 - masses * carrier.z.speed);
-        (
-            self.x.force(model, (motion.elongation.0, rate.0), &weights),
-            self.z.force(model, (motion.elongation.1, rate.1), &weights),
-        )
+        let rate = motion.velocity - carrier.rates().map(|rate| masses * rate);
+        ByAxis {
+            x: self.x.force(model, (motion.elongation.x, rate.x), &weights),
+            z: self.z.force(model, (motion.elongation.z, rate.z), &weights),
+        }
     }
 }
 
@@ -179,7 +190,7 @@ impl AxisSums {
         Self { kind, elongation: [0.0; 2], velocity: none, rate: none, elements }
     }
 
-    fn collect_links(&mut self, model: &Model, masses: &Range<usize>, ends: [&State; 2], stages: &[Rates]) {
+    fn collect_links(&mut self, model: &Model, masses: &Range<usize>, ends: [&State; 2], stages: &[StageValues]) {
         for (row, sums) in model.rows_of(self.kind).zip(&mut self.elements) {
             *sums = ends.map(|state| sum(&state.maxwell[row.range.clone()][masses.clone()]));
         }

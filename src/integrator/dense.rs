@@ -8,13 +8,13 @@
 
 use std::ops::Range;
 
-use super::carrier_sums::{AxisSums, CarrierSums, Motion, Placement};
+use super::carrier_sums::{AxisSums, CarrierSums, LinkState, Placement};
 use super::interpolation::{Interpolation, Velocities, parabola};
 use super::maxwell::{ElementWeights, by_rate};
-use super::method::{RungeKutta, Stages, StepSpan};
+use super::method::{RungeKutta, Stages, TimeSpan};
 use super::parabolas::Parabolas;
-use super::rates::Rates;
 use super::scheme::Scheme;
+use super::stage_values::StageValues;
 use super::tableau::{GAMMA, Weights};
 use super::tolerance::Tolerance;
 use crate::math::{BLOCK, Relaxation, dot, weighted_sum, with_widest_vectors};
@@ -33,7 +33,7 @@ pub struct DenseOutput<'a> {
     /// The carrier's motion.
     pub carrier: &'a Carrier,
     /// The step.
-    pub span: StepSpan,
+    pub span: TimeSpan,
     /// The state at its start.
     pub start: &'a State,
     pub(super) method: &'a RungeKutta,
@@ -43,17 +43,17 @@ pub struct DenseOutput<'a> {
 impl<'a> DenseOutput<'a> {
     /// Of these masses alone.
     #[must_use]
-    pub fn of(&self, masses: Range<usize>) -> Self {
+    pub fn restricted_to(&self, masses: Range<usize>) -> Self {
         Self { masses, ..*self }
     }
 
-    /// The fraction of the step at the time `s` after the start of the carrier's piece.
+    /// The fraction of the step at the time `s` after the start of the carrier's segment.
     pub fn theta(&self, s: f64) -> f64 {
         (s - self.span.start) / self.span.length
     }
 
     /// The rates at its stages.
-    pub fn stages(&self) -> &'a [Rates] {
+    pub fn stages(&self) -> &'a [StageValues] {
         &self.values.rates[..self.method.coefficients.tableau.stages]
     }
 
@@ -95,7 +95,7 @@ impl<'a> DenseOutput<'a> {
         for row in &self.model.rows {
             let (of_row, further) = elements.split_at_mut(row.kind.count(self.masses.len()));
             elements = further;
-            let weights = workspace.of_elements(row);
+            let weights = workspace.element_weights(row);
             let first = row.range.start + self.masses.start;
             let ends = weights.ends.into_iter().zip([self.start, self.end()]).filter(|(weight, _)| *weight != 0.0);
             let terms = ends.map(|(weight, state)| (weight, &state.maxwell[first..]));
@@ -110,11 +110,11 @@ impl<'a> DenseOutput<'a> {
         state.mode.copy_from_slice(&start.mode[masses.clone()]);
         let carrier = self.carrier_at(theta, workspace);
         let DenseWorkspace { values, integral, .. } = workspace;
-        self.combine(&mut state.velocity_x, values, None, |stage| &stage.velocity_x, carrier.missing_rate.0);
-        self.combine(&mut state.velocity_z, values, None, |stage| &stage.velocity_z, carrier.missing_rate.1);
+        self.combine(&mut state.velocity_x, values, None, |stage| &stage.velocity_x, carrier.missing_rate.x);
+        self.combine(&mut state.velocity_z, values, None, |stage| &stage.velocity_z, carrier.missing_rate.z);
         let (from_x, from_z) = (Some(&start.elongation_x[..]), Some(&start.elongation_z[..]));
-        self.combine(&mut state.elongation_x, integral, from_x, |stage| &stage.velocity_x, -carrier.integrated.0);
-        self.combine(&mut state.elongation_z, integral, from_z, |stage| &stage.velocity_z, -carrier.integrated.1);
+        self.combine(&mut state.elongation_x, integral, from_x, |stage| &stage.velocity_x, -carrier.integrated.x);
+        self.combine(&mut state.elongation_z, integral, from_z, |stage| &stage.velocity_z, -carrier.integrated.z);
         for i in 0..masses.len() {
             if state.mode[i].in_contact() {
                 let along_x = (state.elongation_x[i], state.velocity_x[i]);
@@ -125,7 +125,7 @@ impl<'a> DenseOutput<'a> {
 
     /// Writes the masses, all of the layer, on parabolas, with velocities on broken lines.
     fn write_parabolas(&self, theta: f64, workspace: &DenseWorkspace, state: &mut State) {
-        let StepSpan { start: s, length: h } = self.span;
+        let TimeSpan { start: s, length: h } = self.span;
         let (from, first, to) = (self.start, &self.stages()[1], self.end());
         let (moved, in_step) = (self.carrier.moved(s, theta * h), self.carrier.moved(s, h));
         // One that stops or breaks loose on the way moves.
@@ -161,7 +161,7 @@ impl<'a> DenseOutput<'a> {
         out: &mut [f64],
         weights: &Weights,
         from: Option<&[f64]>,
-        value: fn(&Rates) -> &[f64],
+        value: fn(&StageValues) -> &[f64],
         shift: f64,
     ) {
         let stages = weights.iter().zip(self.stages()).map(|(&weight, stage)| (weight, value(stage)));
@@ -174,8 +174,8 @@ impl<'a> DenseOutput<'a> {
 
     /// The defect of the dense output in the equations of motion at the fraction `theta`, in the tolerance's norm: the
     /// difference between the accelerations of the interpolant and those that the `forces` in its `state` give, as the
-    /// correction of the velocities, and with them of the positions, that Newton's first iteration of a stage as long as
-    /// the step so far would make. The workspace is that with which [`state_at`](Self::state_at) wrote the state.
+    /// correction of the velocities, and with them of the positions, that Newton's first iteration of a stage as long
+    /// as the step so far would make. The workspace is that with which [`state_at`](Self::state_at) wrote the state.
     pub fn defect(
         &self,
         theta: f64,
@@ -186,13 +186,15 @@ impl<'a> DenseOutput<'a> {
     ) -> f64 {
         let (carrier, h) = (self.carrier.at(self.span.at(theta)), self.span.length);
         workspace.set_accelerations(self, theta, &carrier);
-        let settled = InertialFraction::new(self.model, theta * h);
-        let missed = |of_forces: f64, of_interpolant: f64, velocity: f64, settled: f64| {
-            let gained = settled * theta * h * (of_forces - of_interpolant);
+        // What Newton's first correction would make of a difference of accelerations, over the tolerances.
+        let inertial = inertial_fraction(self.model, theta * h);
+        let missed = |of_forces: f64, of_interpolant: f64, velocity: f64, inertial: f64| {
+            let gained = inertial * theta * h * (of_forces - of_interpolant);
             let moved = theta * h * gained;
             (gained * gained / tolerance.velocity_tolerance_sq(velocity))
                 .max(moved * moved / tolerance.position_tolerance_sq(0.0))
         };
+        // The largest of all masses; a sticking one has no equation.
         let mut largest = 0.0_f64;
         for i in 0..self.masses.len() {
             let (a_x, a_z) = (workspace.of_masses[0][i], workspace.of_masses[1][i]);
@@ -201,12 +203,12 @@ impl<'a> DenseOutput<'a> {
                 Mode::Stick => 0.0,
                 Mode::Free => {
                     let (f_x, f_z) = (forces.on_mass_x[i] / self.model.mass, forces.on_mass_z[i] / self.model.mass);
-                    missed(f_x, a_x, v_x, settled.x).max(missed(f_z, a_z, v_z, settled.z))
+                    missed(f_x, a_x, v_x, inertial.x).max(missed(f_z, a_z, v_z, inertial.z))
                 }
                 mode => {
                     let (v, surface) = (state.velocity_x[i], &state.surface[i]);
                     let contact = forces.contact(self.model, i, v, surface);
-                    missed(contact.acceleration(self.model, mode, v, surface), a_x, v_x, settled.x)
+                    missed(contact.acceleration(self.model, mode, v, surface), a_x, v_x, inertial.x)
                 }
             };
             largest = largest.max(here);
@@ -220,12 +222,11 @@ impl<'a> DenseOutput<'a> {
         let sum = |weights: &Weights, rate: fn(&CarrierPoint) -> f64| -> f64 {
             weights.iter().zip(self.carriers()).map(|(weight, at)| weight * rate(at)).sum()
         };
-        let both = |weights| (sum(weights, |at| at.x.speed), sum(weights, |at| at.z.speed));
-        let rate = both(&workspace.values);
+        let both = |weights| ByAxis { x: sum(weights, |at| at.x.speed), z: sum(weights, |at| at.z.speed) };
         CarrierMotion {
             moved: self.carrier.moved(self.span.start, theta * self.span.length),
             integrated: both(&workspace.integral),
-            missing_rate: (now.x.speed - rate.0, now.z.speed - rate.1),
+            missing_rate: now.rates() - both(&workspace.values),
             now,
         }
     }
@@ -233,25 +234,24 @@ impl<'a> DenseOutput<'a> {
     /// Mass `i` at the fraction of the step for which the weights of `workspace` are set.
     fn mass_at(&self, i: usize, carrier: &CarrierMotion, workspace: &DenseWorkspace) -> MassPoint {
         let start = self.start;
-        let sum = |weights: &Weights, value: fn(&Rates) -> &[f64]| -> f64 {
+        let sum = |weights: &Weights, value: fn(&StageValues) -> &[f64]| -> f64 {
             weights.iter().zip(self.stages()).map(|(weight, stage)| weight * value(stage)[i]).sum()
         };
         let along_x = |weights| sum(weights, |stage| &stage.velocity_x);
-        let x = start.elongation_x[i] + along_x(&workspace.integral) - carrier.integrated.0;
-        let v_x = along_x(&workspace.values) + carrier.missing_rate.0;
+        let x = start.elongation_x[i] + along_x(&workspace.integral) - carrier.integrated.x;
+        let v_x = along_x(&workspace.values) + carrier.missing_rate.x;
         if start.mode[i].in_contact() {
             return self.in_contact(i, (x, v_x), carrier);
         }
         let along_z = |weights| sum(weights, |stage| &stage.velocity_z);
-        MassPoint {
-            elongation: (x, start.elongation_z[i] + along_z(&workspace.integral) - carrier.integrated.1),
-            velocity: (v_x, along_z(&workspace.values) + carrier.missing_rate.1),
-            surface: start.surface[i],
-        }
+        let z = start.elongation_z[i] + along_z(&workspace.integral) - carrier.integrated.z;
+        let velocity = ByAxis { x: v_x, z: along_z(&workspace.values) + carrier.missing_rate.z };
+        MassPoint { links: LinkState { elongation: ByAxis { x, z }, velocity }, surface: start.surface[i] }
     }
 
-    /// The sums of the elongations and of the velocities of all masses at the fraction `theta`, from the `sums` of the step.
-    pub(super) fn summed_motion(&self, theta: f64, sums: &CarrierSums, workspace: &mut DenseWorkspace) -> Motion {
+    /// The sums of the elongations and of the velocities of all masses at the fraction `theta`, from the `sums` of the
+    /// step.
+    pub(super) fn summed_motion(&self, theta: f64, sums: &CarrierSums, workspace: &mut DenseWorkspace) -> LinkState {
         workspace.set_weights(self, theta);
         match self.interpolation().velocities() {
             Velocities::Polynomial => self.summed_polynomials(theta, sums, workspace),
@@ -259,39 +259,42 @@ impl<'a> DenseOutput<'a> {
         }
     }
 
-    fn summed_parabolas(&self, theta: f64, sums: &CarrierSums, workspace: &DenseWorkspace) -> Motion {
-        let (n, StepSpan { start: s, length: h }) = (sums.summed, self.span);
+    fn summed_parabolas(&self, theta: f64, sums: &CarrierSums, workspace: &DenseWorkspace) -> LinkState {
+        let (n, TimeSpan { start: s, length: h }) = (sums.summed, self.span);
         let (moved, in_step) = (self.carrier.moved(s, theta * h), self.carrier.moved(s, h));
         let elongation = |axis: &AxisSums, moved: f64, in_step: f64| {
             let ([start, end], middle) = (axis.elongation, GAMMA * h * axis.velocity[1]);
             start + (parabola(theta, middle, n * in_step + (end - start)) - n * moved)
         };
         let weights = &workspace.values[..self.stages().len()];
-        Motion {
-            elongation: (elongation(&sums.x, moved.x, in_step.x), elongation(&sums.z, moved.z, in_step.z)),
-            velocity: (dot(weights, &sums.x.velocity), dot(weights, &sums.z.velocity)),
+        LinkState {
+            elongation: ByAxis {
+                x: elongation(&sums.x, moved.x, in_step.x),
+                z: elongation(&sums.z, moved.z, in_step.z),
+            },
+            velocity: ByAxis { x: dot(weights, &sums.x.velocity), z: dot(weights, &sums.z.velocity) },
         }
     }
 
-    fn summed_polynomials(&self, theta: f64, sums: &CarrierSums, workspace: &mut DenseWorkspace) -> Motion {
+    fn summed_polynomials(&self, theta: f64, sums: &CarrierSums, workspace: &mut DenseWorkspace) -> LinkState {
         let carrier = self.carrier_at(theta, workspace);
-        // Elongations are integrated as differences from the carrier's motion at the stages. But sticks along x and contacts along
-        // z are where the surface has them, and the carrier moves away from there on its own path.
+        // Elongations are integrated as differences from the carrier's motion at the stages. But sticks along x and
+        // contacts along z are where the surface has them, and the carrier moves away from there on its own path.
         let elongation = |axis: &AxisSums, moving: f64, (integrated, moved): (f64, f64)| {
             let of_masses = axis.elongation[0] + dot(&workspace.integral, &axis.velocity);
             of_masses - moving * integrated - (sums.summed - moving) * moved
         };
         let velocity =
             |axis: &AxisSums, moving: f64, missing: f64| dot(&workspace.values, &axis.velocity) + moving * missing;
-        let mut all = Motion {
-            elongation: (
-                elongation(&sums.x, sums.moving, (carrier.integrated.0, carrier.moved.x)),
-                elongation(&sums.z, sums.free, (carrier.integrated.1, carrier.moved.z)),
-            ),
-            velocity: (
-                velocity(&sums.x, sums.moving, carrier.missing_rate.0),
-                velocity(&sums.z, sums.free, carrier.missing_rate.1),
-            ),
+        let mut all = LinkState {
+            elongation: ByAxis {
+                x: elongation(&sums.x, sums.moving, (carrier.integrated.x, carrier.moved.x)),
+                z: elongation(&sums.z, sums.free, (carrier.integrated.z, carrier.moved.z)),
+            },
+            velocity: ByAxis {
+                x: velocity(&sums.x, sums.moving, carrier.missing_rate.x),
+                z: velocity(&sums.z, sums.free, carrier.missing_rate.z),
+            },
         };
         if sums.has_all() {
             return all;
@@ -299,8 +302,8 @@ impl<'a> DenseOutput<'a> {
         let DenseWorkspace { values, integral, of_masses: [x, v_x], .. } = workspace;
         let (x, v_x, start) = (&mut x[..self.masses.len()], &mut v_x[..self.masses.len()], self.start);
         if start.mode[self.masses.clone()].iter().any(|mode| mode.slips()) {
-            self.combine(x, integral, Some(&start.elongation_x), |stage| &stage.velocity_x, -carrier.integrated.0);
-            self.combine(v_x, values, None, |stage| &stage.velocity_x, carrier.missing_rate.0);
+            self.combine(x, integral, Some(&start.elongation_x), |stage| &stage.velocity_x, -carrier.integrated.x);
+            self.combine(v_x, values, None, |stage| &stage.velocity_x, carrier.missing_rate.x);
         }
         with_widest_vectors(
             #[inline(always)]
@@ -311,7 +314,7 @@ impl<'a> DenseOutput<'a> {
 
     /// Adds the masses in contact, of which those that slip have the elongations `x` (m) and velocities `v_x` (m/s).
     #[inline(always)]
-    fn add_contacts(&self, all: &mut Motion, (x, v_x): (&[f64], &[f64]), carrier: &CarrierMotion) {
+    fn add_contacts(&self, all: &mut LinkState, (x, v_x): (&[f64], &[f64]), carrier: &CarrierMotion) {
         let modes = &self.start.mode[self.masses.clone()];
         let (placement, of_layer) = (Placement::new(self.carrier, &carrier.now), self.masses.start);
         let mut first = 0;
@@ -325,7 +328,7 @@ impl<'a> DenseOutput<'a> {
                 }
             } else {
                 for i in masses.filter(|&i| modes[i].in_contact()) {
-                    all.add(&self.in_contact(of_layer + i, (x[i], v_x[i]), carrier).motion());
+                    all.add(&self.in_contact(of_layer + i, (x[i], v_x[i]), carrier).links);
                 }
             }
         }
@@ -350,7 +353,8 @@ impl<'a> DenseOutput<'a> {
             self.start.surface[i]
         };
         let z = surface.height - self.model.rest_z[i] - placement.w;
-        MassPoint { elongation: (x, z), velocity: (v_x, surface.slope * v_x), surface }
+        let velocity = ByAxis { x: v_x, z: surface.slope * v_x };
+        MassPoint { links: LinkState { elongation: ByAxis { x, z }, velocity }, surface }
     }
 
     /// ẋ of mass `i` at the fraction `theta`, m/s.
@@ -361,27 +365,26 @@ impl<'a> DenseOutput<'a> {
         relative.sum::<f64>() + self.carrier.at(self.span.at(theta)).x.speed
     }
 
-    /// The contact forces of mass `i`, in contact, at the fraction `theta`: the same as in the state there, for this mass
-    /// alone.
+    /// The contact forces of mass `i`, in contact, at the fraction `theta`: the same as in the state there, for this
+    /// mass alone.
     pub fn contact(&self, i: usize, theta: f64, workspace: &mut DenseWorkspace) -> ContactForces {
         workspace.set_weights(self, theta);
         let carrier = self.carrier_at(theta, workspace);
         let here = self.mass_at(i, &carrier, workspace);
-        let rate = (here.velocity.0 - carrier.now.x.speed, here.velocity.1 - carrier.now.z.speed);
-        let to_carrier = LinkPoint { elongation: here.elongation, rate };
+        let to_carrier = LinkState { velocity: here.links.velocity - carrier.now.rates(), ..here.links };
         let mut force_x = -self.link_force(LinkKind::Horizontal, i, &to_carrier, workspace);
         let mut force_z = -self.link_force(LinkKind::Vertical, i, &to_carrier, workspace);
         for (j, link, sign) in [(i.wrapping_sub(1), i.wrapping_sub(1), -1.0), (i + 1, i, 1.0)] {
             if j >= self.model.masses() {
                 continue;
             }
-            let between = LinkPoint::between(&here, &self.mass_at(j, &carrier, workspace), sign);
+            let between = LinkState::between(&here.links, &self.mass_at(j, &carrier, workspace).links, sign);
             force_x += sign * self.link_force(LinkKind::LateralX, link, &between, workspace);
             force_z += sign * self.link_force(LinkKind::LateralZ, link, &between, workspace);
         }
         let of_end = carrier.now.on_end(i, self.model.masses());
         (force_x, force_z) = (force_x + of_end.x, force_z + of_end.z);
-        ContactForces::new(self.model, (force_x, force_z), here.velocity.0, &here.surface)
+        ContactForces::new(self.model, (force_x, force_z), here.links.velocity.x, &here.surface)
     }
 
     /// The forces along x and z of the lateral links between mass `i` and the next at the fraction `theta`, N.
@@ -389,24 +392,24 @@ impl<'a> DenseOutput<'a> {
         workspace.set_weights(self, theta);
         let carrier = self.carrier_at(theta, workspace);
         let (here, there) = (self.mass_at(i, &carrier, workspace), self.mass_at(i + 1, &carrier, workspace));
-        let between = LinkPoint::between(&here, &there, 1.0);
+        let between = LinkState::between(&here.links, &there.links, 1.0);
         [LinkKind::LateralX, LinkKind::LateralZ]
             .map(|kind| if self.model.has_link[kind] { self.link_force(kind, i, &between, workspace) } else { 0.0 })
     }
 
     /// Elongations of the links of mass `i` to the carrier (m) and its velocities (m/s), along x and z, at the fraction
     /// `theta`.
-    pub fn motion(&self, i: usize, theta: f64, workspace: &mut DenseWorkspace) -> [(f64, f64); 2] {
+    pub fn motion(&self, i: usize, theta: f64, workspace: &mut DenseWorkspace) -> [ByAxis<f64>; 2] {
         workspace.set_weights(self, theta);
         let carrier = self.carrier_at(theta, workspace);
-        let MassPoint { elongation, velocity, .. } = self.mass_at(i, &carrier, workspace);
+        let LinkState { elongation, velocity } = self.mass_at(i, &carrier, workspace).links;
         [elongation, velocity]
     }
 
     /// The force of one link at the fraction for which the weights of `workspace` are set, N.
-    fn link_force(&self, kind: LinkKind, link: usize, point: &LinkPoint, workspace: &DenseWorkspace) -> f64 {
-        let of = |(x, z): (f64, f64)| if kind.is_along_x() { x } else { z };
-        let mut force = self.model.links[kind].force(of(point.elongation), of(point.rate));
+    fn link_force(&self, kind: LinkKind, link: usize, links: &LinkState, workspace: &DenseWorkspace) -> f64 {
+        let (e, rate) = (links.elongation[kind.axis()], links.velocity[kind.axis()]);
+        let mut force = self.model.links[kind].force(e, rate);
         force -= self.model.frozen_force(kind, link);
         let mut rows = self.model.rows_of(kind).peekable();
         if rows.peek().is_none() {
@@ -414,7 +417,7 @@ impl<'a> DenseOutput<'a> {
         }
         for row in rows {
             let (start, end) = (self.start.maxwell[row.range.start + link], self.end().maxwell[row.range.start + link]);
-            let [of_start, of_end] = workspace.of_elements(row).ends;
+            let [of_start, of_end] = workspace.element_weights(row).ends;
             force += row.stiffness * (of_start * start + of_end * end);
         }
         let rates = self.stages().iter().map(|stage| stage.elongation_rate[kind][link]);
@@ -427,67 +430,36 @@ struct CarrierMotion {
     now: CarrierPoint,
     /// Its displacement along x and z since the start of the step, m.
     moved: ByAxis<f64>,
-    /// The same as the stages' rates give it, m.
-    integrated: (f64, f64),
+    /// Its displacement along x and z as the stages' rates give it, m.
+    integrated: ByAxis<f64>,
     /// What the stages' rates miss of u̇ and ẇ, m/s.
-    missing_rate: (f64, f64),
+    missing_rate: ByAxis<f64>,
 }
 
-/// A mass at one instant within a step; along x and z.
+/// A mass at one instant within a step, with its links to the carrier.
 struct MassPoint {
-    elongation: (f64, f64),
-    velocity: (f64, f64),
+    links: LinkState,
     surface: SurfacePoint,
 }
 
 impl MassPoint {
     fn write(self, state: &mut State, i: usize) {
-        (state.elongation_x[i], state.elongation_z[i]) = self.elongation;
-        (state.velocity_x[i], state.velocity_z[i]) = self.velocity;
+        let LinkState { elongation, velocity } = self.links;
+        (state.elongation_x[i], state.elongation_z[i]) = (elongation.x, elongation.z);
+        (state.velocity_x[i], state.velocity_z[i]) = (velocity.x, velocity.z);
         state.surface[i] = self.surface;
     }
-
-    fn motion(&self) -> Motion {
-        Motion { elongation: self.elongation, velocity: self.velocity }
-    }
 }
 
-/// The links at one mass, or between two, at one instant within a step; along x and z.
-struct LinkPoint {
-    elongation: (f64, f64),
-    rate: (f64, f64),
-}
-
-impl LinkPoint {
-    /// The links from a mass to its neighbour at the right (`sign` 1) or at the left (-1).
-    fn between(here: &MassPoint, there: &MassPoint, sign: f64) -> Self {
-        let difference = |there: (f64, f64), here: (f64, f64)| (sign * (there.0 - here.0), sign * (there.1 - here.1));
-        Self {
-            elongation: difference(there.elongation, here.elongation),
-            rate: difference(there.velocity, here.velocity),
-        }
-    }
-}
-
-/// How much of a force on a mass becomes velocity in a time β, along x and z: (m/β)/(m/β + βc + d + Σ_j c_j βτ_j/(τ_j + β))
-/// of the links to the carrier and to neighbours at rest. The rest goes into them: motion that is faster settles.
-struct InertialFraction {
-    x: f64,
-    z: f64,
-}
-
-impl InertialFraction {
-    fn new(model: &Model, beta: f64) -> Self {
-        let weight = |kind: LinkKind| {
-            let relaxing = |row: &MaxwellRow| row.stiffness * beta * row.relaxation_time / (row.relaxation_time + beta);
-            model.links[kind].by_velocity(beta) + model.rows_of(kind).map(relaxing).sum::<f64>()
-        };
-        let share = |own: LinkKind, lateral: LinkKind| {
-            let inertia = model.mass / beta;
-            inertia / (inertia + weight(own) + 2.0 * weight(lateral))
-        };
-        Self { x: share(LinkKind::Horizontal, LinkKind::LateralX), z: share(LinkKind::Vertical, LinkKind::LateralZ) }
-    }
+/// How much of a force on a mass becomes velocity in a time β, along x and z: (m/β)/(m/β + βc + d + Σ_j c_j βτ_j/(τ_j +
+/// β)) of the links to the carrier and to neighbours at rest. The rest goes into them: motion that is faster settles.
+fn inertial_fraction(model: &Model, beta: f64) -> ByAxis<f64> {
+    let weight = |kind: LinkKind| {
+        let relaxing = |row: &MaxwellRow| row.stiffness * beta * row.relaxation_time / (row.relaxation_time + beta);
+        model.links[kind].by_velocity(beta) + model.rows_of(kind).map(relaxing).sum::<f64>()
+    };
+    let inertia = model.mass / beta;
+    ByAxis::from_fn(|axis| inertia / (inertia + weight(axis.link()) + 2.0 * weight(axis.lateral())))
 }
 
 /// Workspace of [`DenseOutput`]: the weights of the stages at one fraction of a step.
@@ -533,13 +505,8 @@ impl DenseWorkspace {
         self.at = None;
     }
 
-    /// Bytes that this holds.
-    pub fn bytes(&self) -> usize {
-        self.of_masses.iter().map(|array| array.len() * size_of::<f64>()).sum()
-    }
-
     /// The weights of the elements of one row at the fraction for which the weights are set.
-    pub(super) fn of_elements(&self, row: &MaxwellRow) -> &ElementWeights {
+    pub(super) fn element_weights(&self, row: &MaxwellRow) -> &ElementWeights {
         &self.elements[row.time_index]
     }
 
@@ -592,8 +559,8 @@ impl DenseWorkspace {
         }
     }
 
-    /// Computes the accelerations of the interpolant along x and z (m/s²) at the fraction `theta` of `step`, with the carrier
-    /// there.
+    /// Computes the accelerations of the interpolant along x and z (m/s²) at the fraction `theta` of `step`, with the
+    /// carrier there.
     fn set_accelerations(&mut self, step: &DenseOutput<'_>, theta: f64, carrier: &CarrierPoint) {
         let slope = step.interpolation().slope(theta).map(|weight| weight / step.span.length);
         let missing = |of_carrier: f64, rate: fn(&CarrierPoint) -> f64| {

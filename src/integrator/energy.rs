@@ -14,8 +14,8 @@ use crate::model::{BoundaryPowers, ByLink, ChannelEnergies, LinkKind, MaxwellRow
 /// Σ ė_i ė_j over the links of one kind, m²/s², where they are needed; 0 elsewhere.
 type RateProducts<const N: usize> = [[f64; N]; N];
 
-/// What the energies up to any fraction of a step follow from: the powers at its stages, summed over the layer or a part of
-/// it.
+/// What the energies up to any fraction of a step follow from: the powers at its stages, summed over the layer or a
+/// part of it.
 #[derive(Clone, Debug)]
 pub(super) struct EnergySums {
     /// Whether they are those of the last attempted step.
@@ -29,7 +29,7 @@ pub(super) struct EnergySums {
 }
 
 /// Sums over all elements of one relaxation time, from which the power lost in them at the stages follows.
-struct ElementSums<const N: usize> {
+struct MaxwellSums<const N: usize> {
     /// Σ c a_0²/τ, W.
     square: f64,
     /// Σ c a_0 ė_j/τ, W/s.
@@ -38,8 +38,8 @@ struct ElementSums<const N: usize> {
     rates: RateProducts<N>,
 }
 
-/// The power lost in the elements of one relaxation time that do not follow their links yet: of l = a_0 - τė_0, over all of
-/// them; 0 where the stages resolve it.
+/// The power lost in the elements of one relaxation time that do not follow their links yet: of l = a_0 - τė_0, over
+/// all of them; 0 where the stages resolve it.
 #[derive(Clone, Copy, Debug, Default)]
 struct RelaxingPower {
     /// Σ c l²/τ, W.
@@ -56,7 +56,7 @@ impl EnergySums {
     }
 
     /// A new step is attempted.
-    pub(super) fn forget(&mut self) {
+    pub(super) fn invalidate(&mut self) {
         self.known = false;
     }
 
@@ -86,7 +86,7 @@ impl EnergySums {
         let mut missed = 0.0;
         let times = step.method.maxwell.coefficients().iter().zip(&step.model.relaxation_times).zip(&self.relaxing);
         for ((coefficients, tau), relaxing) in times.filter(|(_, relaxing)| relaxing.square > 0.0) {
-            missed += UnresolvedRelaxation::new(h / tau, coefficients, weights, measure).of(relaxing);
+            missed += UnresolvedRelaxation::new(h / tau, coefficients, weights, measure).power(relaxing);
         }
         ChannelEnergies {
             damper: h * dot(weights, &self.dampers),
@@ -109,7 +109,7 @@ impl EnergySums {
         }
     }
 
-    /// The same for `N` stages: products of so many arrays are summed at once.
+    /// [Collects](Self::collect) the sums at `N` stages: products of so many arrays are summed at once.
     fn collect_stages<const N: usize>(&mut self, step: &DenseOutput<'_>) {
         let (model, h) = (step.model, step.span.length);
         // The dampers' powers are squares of the rates; the elements' also take their products.
@@ -125,7 +125,7 @@ impl EnergySums {
         // The elements by relaxation time, and what the stages do not resolve of them.
         let coefficients = step.method.maxwell.coefficients();
         for (index, (coefficients, relaxing)) in coefficients.iter().zip(&mut self.relaxing).enumerate() {
-            let mut sums = ElementSums::zero();
+            let mut sums = MaxwellSums::zero();
             *relaxing = RelaxingPower::default();
             for row in model.rows.iter().filter(|row| row.time_index == index) {
                 let (kind, first) = (row.kind, row.range.start + step.masses.start);
@@ -146,13 +146,13 @@ fn link_rates<'a, const N: usize>(step: &DenseOutput<'a>, kind: LinkKind) -> [&'
     std::array::from_fn(|i| stages[i].elongation_rate[kind].get(links.clone()).unwrap_or_default())
 }
 
-impl<const N: usize> ElementSums<N> {
+impl<const N: usize> MaxwellSums<N> {
     fn zero() -> Self {
         Self { square: 0.0, mixed: [0.0; N], rates: [[0.0; N]; N] }
     }
 
-    /// Adds the elements of `row` with the elongations `a` (m) at the start of a step, with the `rates` of their links at its
-    /// stages (m/s) and the `products` of these.
+    /// Adds the elements of `row` with the elongations `a` (m) at the start of a step, with the `rates` of their links
+    /// at its stages (m/s) and the `products` of these.
     fn add(&mut self, row: &MaxwellRow, a: &[f64], rates: &[&[f64]; N], products: &RateProducts<N>) {
         let power = row.stiffness / row.relaxation_time;
         let (square, mixed) = square_and_dots(a, *rates);
@@ -174,10 +174,11 @@ impl<const N: usize> ElementSums<N> {
 }
 
 impl RelaxingPower {
-    /// Adds that of the elements of `row` with the elongations `a` (m) and the rates `rate` of their links (m/s) at the start of
-    /// a step through which Σ (ė - ė_0)² comes to `change` (m²/s²).
+    /// Adds that of the elements of `row` with the elongations `a` (m) and the rates `rate` of their links (m/s) at the
+    /// start of a step through which Σ (ė - ė_0)² comes to `change` (m²/s²).
     ///
-    /// Where Σ l² is no larger than τ² times that, the stages resolve it. The power is 0 there, and goes there continuously.
+    /// Where Σ l² is no larger than τ² times that, the stages resolve it. The power is 0 there, and goes there
+    /// continuously.
     fn add(&mut self, row: &MaxwellRow, a: &[f64], rate: &[f64], change: f64) {
         let tau = row.relaxation_time;
         let l = |a: f64, rate: f64| a - tau * rate;
@@ -201,7 +202,7 @@ pub(super) enum Measure {
 
 impl Measure {
     /// That of e^(-zθ).
-    fn of_decay(self, z: f64) -> f64 {
+    fn decay(self, z: f64) -> f64 {
         match self {
             Self::Integral(theta) => -(-z * theta).exp_m1() / z,
             Self::Value(theta) => (-z * theta).exp(),
@@ -209,8 +210,8 @@ impl Measure {
     }
 }
 
-/// The products of one kind of link: of each stage with itself where there are dampers, of all with each other where there
-/// are elements; 0 elsewhere.
+/// The products of one kind of link: of each stage with itself where there are dampers, of all with each other where
+/// there are elements; 0 elsewhere.
 fn rate_products<const N: usize>(model: &Model, rates: &[&[f64]; N], kind: LinkKind) -> RateProducts<N> {
     let mut products = [[0.0; N]; N];
     let all = model.rows_of(kind).next().is_some();
@@ -228,8 +229,8 @@ fn rate_products<const N: usize>(model: &Model, rates: &[&[f64]; N], kind: LinkK
     products
 }
 
-/// The largest Σ (ė_i - ė_0)² of a stage over the links with these rates at the stages, m²/s². It does not use the products,
-/// whose rounding errors exceed the change in a steady motion.
+/// The largest Σ (ė_i - ė_0)² of a stage over the links with these rates at the stages, m²/s². It does not use the
+/// products, whose rounding errors exceed the change in a steady motion.
 fn largest_change(rates: &[&[f64]]) -> f64 {
     let [start, later @ ..] = rates else { return 0.0 };
     let change = |rate: &&[f64]| sum_of_pairs(rate, start, |rate, start| (rate - start) * (rate - start));
@@ -257,22 +258,22 @@ struct UnresolvedRelaxation {
 impl UnresolvedRelaxation {
     fn new(z: f64, coefficients: &ElementCoefficients, weights: &[f64], measure: Measure) -> Self {
         let squares: f64 = weights.iter().zip(coefficients.start).map(|(weight, p)| weight * p * p).sum();
-        let share = (z / RESOLVED - 1.0).min(1.0);
+        let weight = (z / RESOLVED - 1.0).min(1.0);
         Self {
-            square: share * (measure.of_decay(2.0 * z) - squares),
-            mixed: share * (measure.of_decay(z) - dot(weights, &coefficients.start)),
+            square: weight * (measure.decay(2.0 * z) - squares),
+            mixed: weight * (measure.decay(z) - dot(weights, &coefficients.start)),
         }
     }
 
     /// The power, W, in elements that relax with this.
-    fn of(&self, relaxing: &RelaxingPower) -> f64 {
+    fn power(&self, relaxing: &RelaxingPower) -> f64 {
         self.square * relaxing.square + 2.0 * self.mixed * relaxing.mixed
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::method::{RungeKutta, Stages, StepSpan};
+    use super::super::method::{RungeKutta, Stages, TimeSpan};
     use super::super::scheme::Scheme;
     use super::*;
     use crate::model::{Carrier, State};
@@ -314,7 +315,7 @@ mod tests {
         let (masses, carrier, span) = (
             0..5,
             &Carrier::new(0.0, Default::default(), Default::default(), &model.profile),
-            StepSpan { start: 0.0, length: h },
+            TimeSpan { start: 0.0, length: h },
         );
         let step =
             DenseOutput { model: &model, masses, carrier, span, start: &start, method: &method, values: &values };

@@ -2,14 +2,13 @@
 
 use std::hint::select_unpredictable;
 
-use super::largest::Largest;
 use super::maxwell::Maxwell;
-use super::rates::Rates;
+use super::running_maxima::RunningMaxima;
+use super::stage_values::StageValues;
 use super::tableau::Tableau;
 use super::tolerance::{Rod, Tolerance, square};
 use crate::math::{Jet, dot, sum_of, sum_of_pairs, sum_of_triples, weighted_sum, with_widest_vectors};
-use crate::model::Axis;
-use crate::model::{BoundaryPowers, CarrierPoint, LinkKind, Model, State};
+use crate::model::{Axis, BoundaryPowers, ByAxis, CarrierPoint, LinkKind, Model, State};
 
 /// The shortest step over the stiffest period/2π in which energies are resolved. An enormous friction stops a mass in
 /// less, down to below the resolution of time; what it loses there is its kinetic energy.
@@ -17,18 +16,21 @@ const SHORTEST_RESOLVED: f64 = 1e-9;
 
 /// The weight of the error that the method would make of the carrier's displacement under masses in contact.
 ///
-/// Recommended 0.1 to 0.5. It is to keep the steps from passing over motion of the carrier that changes modes, and no error of
-/// the forces: 1 costs a tenth of the steps of a slide with a changing speed, whose forces err far less than the tolerance.
+/// Recommended 0.1 to 0.5. It is to keep the steps from passing over motion of the carrier that changes modes, and no
+/// error of the forces: 1 costs a tenth of the steps of a slide with a changing speed, whose forces err far less than
+/// the tolerance.
 const CARRIER_WEIGHT: f64 = 0.3;
 
 /// Errors of F_x count this many times as much as those of F_z.
 ///
-/// Recommended 2 to 8. The profile holds the masses in contact along z. Along x they swing together where a slide starts, and
-/// the steps through that swing add up their errors: with 1 those of F_x were three to ten times those of F_z.
+/// Recommended 2 to 8. The profile holds the masses in contact along z. Along x they swing together where a slide
+/// starts, and the steps through that swing add up their errors: with 1 those of F_x were three to ten times those of
+/// F_z.
 const WEIGHT_OF_FORCE_X: f64 = 4.0;
 
-/// That weight for `model`. Where friction depends on the speed F_x follows the speeds of creeping masses, which are far below
-/// the tolerance of velocities: there the weight would triple the steps of a creep and make it no more accurate.
+/// That weight for `model`. Where friction depends on the speed F_x follows the speeds of creeping masses, which are
+/// far below the tolerance of velocities: there the weight would triple the steps of a creep and make it no more
+/// accurate.
 fn weight_of_force_x(model: &Model) -> f64 {
     if model.friction.depends_on_speed() { 1.0 } else { WEIGHT_OF_FORCE_X }
 }
@@ -38,7 +40,7 @@ fn weight_of_force_x(model: &Model) -> f64 {
 pub struct ErrorEstimate {
     /// The error estimate over the tolerance.
     pub error: f64,
-    /// The same without the energies.
+    /// The error estimate without the energies, over the tolerance.
     pub motion_error: f64,
     /// The error estimate of the carrier's displacement over the tolerance, taken over the free masses. It counts only
     /// where one of them may touch.
@@ -68,7 +70,7 @@ impl ErrorWorkspace {
 pub(super) struct ErrorTest<'a> {
     pub tableau: &'static Tableau,
     pub maxwell: &'a Maxwell,
-    pub stages: &'a [Rates],
+    pub stages: &'a [StageValues],
     /// The carrier at the stages.
     pub carrier: &'a [CarrierPoint],
     /// The state at the end.
@@ -80,14 +82,14 @@ pub(super) struct ErrorTest<'a> {
     /// The powers through the surface and the carrier at the stages, where energies are computed.
     pub exchange: Option<&'a [BoundaryPowers]>,
     /// What the errors of forces and energies are measured by.
-    pub largest: Largest,
+    pub largest: RunningMaxima,
 }
 
 impl ErrorTest<'_> {
     /// The embedded error estimate of the step, of length `h` (s), in the tolerance's norm.
     ///
-    /// The carrier's displacement is known, not integrated. Yet where masses are in contact the steps must resolve it: the
-    /// events between the stages depend on it. So the error that the method would make of it counts too, by
+    /// The carrier's displacement is known, not integrated. Yet where masses are in contact the steps must resolve it:
+    /// the events between the stages depend on it. So the error that the method would make of it counts too, by
     /// [`CARRIER_WEIGHT`]; where every mass sticks there is no other.
     pub(super) fn run(
         &self,
@@ -96,7 +98,8 @@ impl ErrorTest<'_> {
         tolerance: &Tolerance,
         workspace: &mut ErrorWorkspace,
     ) -> ErrorEstimate {
-        let carrier_error = CarrierError::new(self.carrier, &self.tableau.error, h);
+        // The differences from the embedded method: of the carrier, and of positions and velocities of the masses.
+        let carrier_error = CarrierQuadrature::new(self.carrier, &self.tableau.error, h);
         self.collect(h, &carrier_error, workspace);
         let (end, rates) = (self.end, &self.carrier[self.tableau.last()]);
         let of_positions = |error: &[f64], elongation: &[f64]| {
@@ -105,12 +108,14 @@ impl ErrorTest<'_> {
         let of_velocities = |error: &[f64], velocity: &[f64], carrier_rate: f64| {
             sum_of_pairs(error, velocity, |error, v| error * error / tolerance.velocity_tolerance_sq(v - carrier_rate))
         };
+        // Their squares over the tolerances.
         let (in_contact, free) = self.carrier_squares(&carrier_error, tolerance);
         let mut sum = of_positions(&workspace.x, &end.elongation_x)
             + of_positions(&workspace.z, &end.elongation_z)
             + of_velocities(&workspace.v_x, &end.velocity_x, rates.x.speed)
             + of_velocities(&workspace.v_z, &end.velocity_z, rates.z.speed)
             + square(CARRIER_WEIGHT) * in_contact;
+        // Those of the links: stiff ones as rods, Maxwell elements, and the force on the carrier.
         let mut of_forces = 0.0;
         for kind in LinkKind::ALL {
             let rod = tolerance.rod(kind);
@@ -131,8 +136,10 @@ impl ErrorTest<'_> {
                 of_forces += square(weight) * self.carrier_force_squares(model, kind, tolerance, workspace);
             }
         }
+        // Those of the energies, where steps resolve the stiffest oscillation.
         let resolvable = self.exchange.filter(|_| h * model.stiffest_frequency() > SHORTEST_RESOLVED);
         let of_energies = resolvable.map_or(0.0, |exchange| self.energy_square(model, exchange, h, tolerance));
+        // Means over the masses; bodies, forces and energies stand beside them.
         let mean = |sum: f64| (sum / tolerance.masses as f64).sqrt();
         let of_bodies = if model.has_bodies() { self.body_squares(model, &carrier_error, tolerance) } else { 0.0 };
         let motion_error = mean(sum).hypot(of_bodies.sqrt()).hypot(self.tableau.force_weight * of_forces.sqrt());
@@ -140,28 +147,25 @@ impl ErrorTest<'_> {
         ErrorEstimate { error, motion_error, carrier_error: mean(free) }
     }
 
-    /// The sum of squares of the errors of the bodies' displacements and speeds over their tolerances, relative to the way
-    /// since the start of the piece.
-    fn body_squares(&self, model: &Model, error: &CarrierError, tolerance: &Tolerance) -> f64 {
+    /// The sum of squares of the errors of the bodies' displacements and speeds over their tolerances, relative to the
+    /// way since the start of the segment.
+    fn body_squares(&self, model: &Model, error: &CarrierQuadrature, tolerance: &Tolerance) -> f64 {
         let of = |axis: Axis| {
             let Jet { position: way, speed: rate, .. } = self.carrier[self.tableau.last()][axis];
-            let (position, velocity) = match axis {
-                Axis::X => (error.position.0, error.velocity.0),
-                Axis::Z => (error.position.1, error.velocity.1),
-            };
+            let (position, velocity) = (error.moved[axis], error.gained[axis]);
             let allowed = tolerance.body_velocity[axis] + tolerance.relative * rate.abs();
             position * position / tolerance.position_tolerance_sq(way) + square(velocity / allowed)
         };
         Axis::ALL.into_iter().filter(|&axis| model.bodies[axis].is_some()).map(of).sum()
     }
 
-    /// The square of the error of the energies through the dampers, those to drives included, the surface and the carrier over
-    /// its tolerance.
+    /// The square of the error of the energies through the dampers, those to drives included, the surface and the
+    /// carrier over its tolerance.
     ///
     /// Just after a kink the dampers' power falls within times far shorter than the step, which the motion forgets: the
     /// energies alone show that.
     fn energy_square(&self, model: &Model, exchange: &[BoundaryPowers], h: f64, tolerance: &Tolerance) -> f64 {
-        let damper = |stage: &Rates| -> f64 {
+        let damper = |stage: &StageValues| -> f64 {
             let links = LinkKind::ALL.into_iter().zip(&model.links).filter(|(_, law)| law.damping > 0.0);
             let of = |kind: LinkKind| &stage.elongation_rate[kind][..];
             links.map(|(kind, law)| law.damping * dot(of(kind), of(kind))).sum()
@@ -180,8 +184,8 @@ impl ErrorTest<'_> {
     }
 
     /// The square of the error of F_x or F_z, which the links of `kind` make, over its tolerance: of the sum of their
-    /// errors, and of what the sum would be if these were independent, since some of them cancel by chance. Those of the
-    /// Maxwell elements are in the workspace.
+    /// errors, and of what the sum would be if these were independent, since some of them cancel by chance. Those of
+    /// the Maxwell elements are in the workspace.
     fn carrier_force_squares(
         &self,
         model: &Model,
@@ -190,9 +194,9 @@ impl ErrorTest<'_> {
         workspace: &ErrorWorkspace,
     ) -> f64 {
         let law = &model.links[kind];
-        let (scale_x, scale_z) = self.largest.force_scales(model, tolerance);
+        let scale = self.largest.force_scales(model, tolerance);
         let ErrorWorkspace { x, z, v_x, v_z, force } = workspace;
-        let (position, velocity, scale) = if kind.is_along_x() { (x, v_x, scale_x) } else { (z, v_z, scale_z) };
+        let (position, velocity, scale) = if kind.is_along_x() { (x, v_x, scale.x) } else { (z, v_z, scale.z) };
         let error =
             |force: f64, position: f64, velocity: f64| force + law.stiffness * position + law.damping * velocity;
         let sum = sum_of_triples(force, position, velocity, error);
@@ -200,15 +204,16 @@ impl ErrorTest<'_> {
         (sum * sum + squares) / square(tolerance.relative * scale)
     }
 
-    /// The sums of squares of the error of the carrier's displacement, over the masses in contact and over the free ones.
-    fn carrier_squares(&self, error: &CarrierError, tolerance: &Tolerance) -> (f64, f64) {
-        let (position, end) = (error.position, self.end);
-        if position.0 == 0.0 && position.1 == 0.0 {
+    /// The sums of squares of the error of the carrier's displacement, over the masses in contact and over the free
+    /// ones.
+    fn carrier_squares(&self, error: &CarrierQuadrature, tolerance: &Tolerance) -> (f64, f64) {
+        let (position, end) = (error.moved, self.end);
+        if position.x == 0.0 && position.z == 0.0 {
             return (0.0, 0.0);
         }
         let of_mass = |x, z| {
-            square(position.0) / tolerance.position_tolerance_sq(x)
-                + square(position.1) / tolerance.position_tolerance_sq(z)
+            square(position.x) / tolerance.position_tolerance_sq(x)
+                + square(position.z) / tolerance.position_tolerance_sq(z)
         };
         let all = sum_of_pairs(&end.elongation_x, &end.elongation_z, of_mass);
         if self.contacts.len() == end.mode.len() {
@@ -218,20 +223,20 @@ impl ErrorTest<'_> {
         (in_contact, (all - in_contact).max(0.0))
     }
 
-    /// Collects the errors of positions and velocities relative to the carrier. A mass that sticks through the step has none
-    /// along x, and along z those of a contact follow its slope.
-    fn collect(&self, h: f64, carrier_error: &CarrierError, workspace: &mut ErrorWorkspace) {
-        let CarrierError { position, velocity } = carrier_error;
+    /// Collects the errors of positions and velocities relative to the carrier. A mass that sticks through the step has
+    /// none along x, and along z those of a contact follow its slope.
+    fn collect(&self, h: f64, carrier_error: &CarrierQuadrature, workspace: &mut ErrorWorkspace) {
+        let CarrierQuadrature { moved, gained } = carrier_error;
         let weights = &self.tableau.error;
-        let sum = |errors: &mut [f64], rate: fn(&Rates) -> &[f64], of_carrier: f64| {
+        let sum = |errors: &mut [f64], rate: fn(&StageValues) -> &[f64], of_carrier: f64| {
             let counting = self.stages.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
             weighted_sum(errors, counting.map(|(stage, weight)| (h * weight, rate(stage))));
             errors.iter_mut().for_each(|error| *error -= of_carrier);
         };
-        sum(&mut workspace.x, |stage| &stage.velocity_x, position.0);
-        sum(&mut workspace.z, |stage| &stage.velocity_z, position.1);
-        sum(&mut workspace.v_x, |stage| &stage.acceleration_x, velocity.0);
-        sum(&mut workspace.v_z, |stage| &stage.acceleration_z, velocity.1);
+        sum(&mut workspace.x, |stage| &stage.velocity_x, moved.x);
+        sum(&mut workspace.z, |stage| &stage.velocity_z, moved.z);
+        sum(&mut workspace.v_x, |stage| &stage.acceleration_x, gained.x);
+        sum(&mut workspace.v_z, |stage| &stage.acceleration_z, gained.z);
         for &i in self.sticks.iter().filter(|&&i| self.stages[1].velocity_x[i] == 0.0) {
             (workspace.x[i], workspace.v_x[i]) = (0.0, 0.0);
         }
@@ -260,9 +265,9 @@ impl ErrorTest<'_> {
         }
     }
 
-    /// The sum of squares of the errors `error` (N) of the vertical Maxwell elements' forces where these are far stiffer
-    /// than the link in the long term. On a mass in contact the error counts relative to the elements' force itself, not
-    /// to the elongation, which the surface imposes.
+    /// The sum of squares of the errors `error` (N) of the vertical Maxwell elements' forces where these are far
+    /// stiffer than the link in the long term. On a mass in contact the error counts relative to the elements' force
+    /// itself, not to the elongation, which the surface imposes.
     fn contact_force_squares(&self, model: &Model, per_force: f64, tolerance: &Tolerance, error: &[f64]) -> f64 {
         let kind = LinkKind::Vertical;
         let (a, e, per_elongation) = (&self.end.maxwell, &self.end.elongation_z, tolerance.per_force(kind));
@@ -284,11 +289,7 @@ impl ErrorTest<'_> {
             ((&workspace.z, &workspace.v_z), &end.elongation_z, &end.velocity_z, carrier.z.speed)
         };
         let force = |elongation: &[f64], velocity: &[f64], carrier_rate: f64, i: usize| {
-            if kind.is_lateral() {
-                rod.law.force(elongation[i + 1] - elongation[i], velocity[i + 1] - velocity[i])
-            } else {
-                rod.law.force(elongation[i], velocity[i] - carrier_rate)
-            }
+            rod.law.force(kind.difference(elongation, 0.0, i), kind.difference(velocity, carrier_rate, i))
         };
         let (per_force, relative) = (tolerance.per_force(kind), tolerance.relative + rod.transient(h));
         sum_of(kind.count(e.len()), |i| {
@@ -310,23 +311,24 @@ fn follow_slopes(z: &mut [f64], x: &[f64], end: &State) {
     }
 }
 
-/// The embedded error estimate of the carrier's motion along x and z, as if it were integrated.
-struct CarrierError {
-    /// Of u and w, m.
-    position: (f64, f64),
-    /// Of u̇ and ẇ, m/s.
-    velocity: (f64, f64),
+/// The carrier's motion through a step by the weights of a quadrature of its rates at the stages; by the weights
+/// b_i - b̂_i it is the embedded error estimate of that motion, as if it were integrated.
+pub(super) struct CarrierQuadrature {
+    /// By which u and w change, m.
+    pub moved: ByAxis<f64>,
+    /// By which u̇ and ẇ change, m/s.
+    pub gained: ByAxis<f64>,
 }
 
-impl CarrierError {
-    /// For a step of length `h` (s) with the carrier at its stages and the weights b_i - b̂_i.
-    fn new(carrier: &[CarrierPoint], weights: &[f64], h: f64) -> Self {
-        let (mut position, mut velocity) = ((0.0, 0.0), (0.0, 0.0));
+impl CarrierQuadrature {
+    /// For a step of length `h` (s) with the carrier at its stages.
+    pub(super) fn new(carrier: &[CarrierPoint], weights: &[f64], h: f64) -> Self {
+        let (mut moved, mut gained) = (ByAxis::default(), ByAxis::default());
         for (at, weight) in carrier.iter().zip(weights) {
             let step = h * weight;
-            position = (position.0 + step * at.x.speed, position.1 + step * at.z.speed);
-            velocity = (velocity.0 + step * at.x.acceleration, velocity.1 + step * at.z.acceleration);
+            moved = moved + ByAxis { x: step * at.x.speed, z: step * at.z.speed };
+            gained = gained + ByAxis { x: step * at.x.acceleration, z: step * at.z.acceleration };
         }
-        Self { position, velocity }
+        Self { moved, gained }
     }
 }

@@ -4,15 +4,15 @@
 //! motion is far faster than the step, its stages have settled, and so has any combination of them: nothing is
 //! differentiated, as Hermite's interpolant does with the accelerations at both ends.
 //!
-//! The stages have order 2 each, so w has order q for velocities where it is exact for their elementary weights up to that
-//! order: Σ w_j (1, c, c², Ac², Ac³, AAc²)_j = (1, θ, θ², θ³/3, θ⁴/4, θ⁴/12), and order 3 for what depends on the state
-//! where Σ w_j c_j³ = θ³, too. The first and the last stage and, integrated, the method's own b meet all of these up to the
-//! method's order.
+//! The stages have order 2 each, so w has order q for velocities where it is exact for their elementary weights up to
+//! that order: Σ w_j (1, c, c², Ac², Ac³, AAc²)_j = (1, θ, θ², θ³/3, θ⁴/4, θ⁴/12), and order 3 for what depends on the
+//! state where Σ w_j c_j³ = θ³, too. The first and the last stage and, integrated, the method's own b meet all of these
+//! up to the method's order.
 //!
 //! The seven stages of [`ESDIRK5`](super::ESDIRK5) meet all seven conditions, by one w; so it is the first and the last
-//! stage at the ends, and the position at the end is that of the method. The four of [`ESDIRK3`](super::ESDIRK3) meet the
-//! first three. One direction n is left to them, and w = w_p + φ(θ) n with a parabola φ that makes the ends and the integral
-//! so.
+//! stage at the ends, and the position at the end is that of the method. The four of [`ESDIRK3`](super::ESDIRK3) meet
+//! the first three. One direction n is left to them, and w = w_p + φ(θ) n with a parabola φ that makes the ends and the
+//! integral so.
 //!
 //! The two implicit stages of [`SDIRK2`](super::SDIRK2) give positions as parabolas, the integrals of the straight line
 //! through the velocities there. Velocities themselves, which may have followed a jump in no time, are linear from the
@@ -22,7 +22,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::tableau::{GAMMA, MAX_STAGES, SDIRK2, Tableau, Weights, sdirk2_weights};
 use crate::math::Jet;
-use crate::model::BodyStep;
+use crate::model::BodyInterpolant;
 
 /// Number of powers of θ in the weights: they are of degree 4.
 const POWERS: usize = 5;
@@ -82,8 +82,8 @@ impl Interpolation {
         self.velocities
     }
 
-    /// How far a parabola through the values at three stages that follow each other leaves their range between them, as a share
-    /// of it.
+    /// How far a parabola through the values at three stages that follow each other leaves their range between them, as
+    /// a share of it.
     pub fn overshoot(&self) -> f64 {
         self.overshoot
     }
@@ -134,18 +134,19 @@ impl Interpolation {
         &self.bernstein_integral
     }
 
-    /// The motion of a body through a step of length `h` (s), from its displacement, speed and acceleration at the stages.
-    pub fn body_step(&self, h: f64, at: impl Fn(usize) -> Jet) -> BodyStep {
+    /// The motion of a body through a step of length `h` (s), from its displacement, speed and acceleration at the
+    /// stages.
+    pub fn body_interpolant(&self, h: f64, at: impl Fn(usize) -> Jet) -> BodyInterpolant {
         match self.velocities {
             Velocities::Polynomial => {
-                BodyStep::Polynomial { length: h, speed: self.polynomial(|stage| at(stage).speed) }
+                BodyInterpolant::Polynomial { length: h, speed: self.polynomial(|stage| at(stage).speed) }
             }
             Velocities::BrokenLine => {
                 let [start, first, end] = [0, 1, 2].map(at);
                 let moved = end.position - start.position;
                 let half = parabola(0.5, GAMMA * h * first.speed, moved);
                 let displacement = [4.0 * half - moved, 2.0 * moved - 4.0 * half];
-                BodyStep::TwoStages { length: h, node: GAMMA, displacement, speed: [first.speed, end.speed] }
+                BodyInterpolant::TwoStages { length: h, node: GAMMA, displacement, speed: [first.speed, end.speed] }
             }
         }
     }
@@ -165,8 +166,8 @@ fn broken_line(theta: f64) -> Weights {
     if theta < GAMMA {
         (weights[0], weights[1]) = (1.0 - theta / GAMMA, theta / GAMMA);
     } else {
-        let share = (theta - GAMMA) / (1.0 - GAMMA);
-        (weights[1], weights[2]) = (1.0 - share, share);
+        let fraction = (theta - GAMMA) / (1.0 - GAMMA);
+        (weights[1], weights[2]) = (1.0 - fraction, fraction);
     }
     weights
 }

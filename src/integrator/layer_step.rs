@@ -16,14 +16,15 @@ pub struct LayerStep<'a> {
 
 impl<'a> LayerStep<'a> {
     /// The dense output of these masses, and the workspace for it.
-    pub fn of(&mut self, masses: &Range<usize>) -> (DenseOutput<'a>, &mut DenseWorkspace) {
-        (self.dense.of(masses.clone()), self.workspace)
+    pub fn restricted_to(&mut self, masses: &Range<usize>) -> (DenseOutput<'a>, &mut DenseWorkspace) {
+        (self.dense.restricted_to(masses.clone()), self.workspace)
     }
 }
 
 /// What replaces some of the masses of an interpolated state.
 pub trait Overlay: std::fmt::Debug {
-    /// Writes those masses at the time `s` after the start of the carrier's piece (s) into `state`, of the layer of `model`.
+    /// Writes those masses at the time `s` after the start of the carrier's segment (s) into `state`, of the layer of
+    /// `model`.
     fn write(&mut self, model: &Model, state: &mut State, s: f64);
 }
 

@@ -12,7 +12,7 @@
 //! So the elements are visited once per step, not once per stage, and the cost of a stage does not depend on their
 //! number.
 
-use super::rates::Rates;
+use super::stage_values::StageValues;
 use super::tableau::{MAX_STAGES, Tableau, Weights};
 use crate::math::weighted_sum;
 use crate::model::{ByLink, LinkKind, MaxwellRow, Model};
@@ -95,7 +95,7 @@ impl Maxwell {
 
     /// Writes P_i + h Σ_{j<i} Q_ij ė_j by kind of link: the part of the elements' forces that is known before stage
     /// `i`, N.
-    pub(super) fn known_forces(&self, i: usize, stages: &[Rates], forces: &mut ByLink<Vec<f64>>) {
+    pub(super) fn known_forces(&self, i: usize, stages: &[StageValues], forces: &mut ByLink<Vec<f64>>) {
         for kind in LinkKind::ALL.into_iter().filter(|&kind| self.has_elements(kind)) {
             let sums = &self.kinds[kind];
             let start = std::iter::once((1.0, sums.start_of(i)));
@@ -104,14 +104,14 @@ impl Maxwell {
     }
 
     /// Writes the embedded error estimate of the elements' forces of the links of `kind`, N.
-    pub(super) fn force_error(&self, kind: LinkKind, stages: &[Rates], force: &mut [f64]) {
+    pub(super) fn force_error(&self, kind: LinkKind, stages: &[StageValues], force: &mut [f64]) {
         let sums = &self.kinds[kind];
         let start = std::iter::once((1.0, &sums.error_start[..]));
         weighted_sum(force, start.chain(by_rate(kind, &sums.error_rate, stages)));
     }
 
     /// Writes the elongations at stage `i` of a step from `start` to `a`, m.
-    pub(super) fn at_stage(&self, model: &Model, i: usize, start: &[f64], stages: &[Rates], a: &mut [f64]) {
+    pub(super) fn at_stage(&self, model: &Model, i: usize, start: &[f64], stages: &[StageValues], a: &mut [f64]) {
         for row in &model.rows {
             let coefficients = &self.coefficients[row.time_index];
             let from = std::iter::once((coefficients.start[i], &start[row.range.clone()]));
@@ -136,17 +136,13 @@ impl Maxwell {
         }
         ElementWeights { ends, rates }
     }
-
-    pub(super) fn floats(&self) -> usize {
-        self.kinds.iter().map(|sums| self.tableau.stages * sums.error_start.len()).sum()
-    }
 }
 
 /// The elongation rates of the links of `kind` at the stages, with their weights; stages of weight 0 are left out.
 pub(super) fn by_rate<'a>(
     kind: LinkKind,
     weights: &'a [f64],
-    stages: &'a [Rates],
+    stages: &'a [StageValues],
 ) -> impl Iterator<Item = (f64, &'a [f64])> {
     let stages = weights.iter().zip(stages).filter(|(weight, _)| **weight != 0.0);
     stages.map(move |(&weight, stage)| (weight, &stage.elongation_rate[kind][..]))
@@ -164,7 +160,7 @@ impl ElementCoefficients {
         }
     }
 
-    /// The same for `N` stages: the compiler unrolls the loops.
+    /// [Sets](Self::set) the coefficients for `N` stages: the compiler unrolls the loops.
     fn set_stages<const N: usize>(&mut self, tableau: &Tableau, z: f64, h: f64) {
         let gamma = tableau.gamma();
         let g = 1.0 / (1.0 + gamma * z);

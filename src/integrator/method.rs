@@ -1,28 +1,27 @@
 //! One Runge-Kutta step: the stages of an attempted step, from their history to their error test.
 
-use super::error::{ErrorEstimate, ErrorTest, ErrorWorkspace};
+use super::error::{CarrierQuadrature, ErrorEstimate, ErrorTest, ErrorWorkspace};
 use super::maxwell::Maxwell;
-use super::rates::{LayerState, Rates};
 use super::scheme::{Coefficients, InitialGuess, Scheme};
-use super::sensitivity::{Solved, Tangent};
+use super::sensitivity::{Sensitivity, Solved};
 use super::stage::{BodyHistory, ConvergenceTest, NoConvergence, StagePoint, StageSolver};
+use super::stage_values::{LayerState, StageValues};
 use super::tableau::MAX_STAGES;
 use super::tolerance::Tolerance;
 use crate::math::{Jet, weighted_sum, with_widest_vectors};
-use crate::model::Axis;
-use crate::model::{BoundaryPowers, Carrier, CarrierPoint, Input, Mode, Model, State};
+use crate::model::{Axis, BoundaryPowers, ByAxis, Carrier, CarrierPoint, Input, Mode, Model, State};
 
 /// Where a step lies in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StepSpan {
-    /// Start of the step, s after the start of the carrier's piece.
+pub struct TimeSpan {
+    /// Start of the step, s after the start of the carrier's segment.
     pub start: f64,
     /// Length of the step, s.
     pub length: f64,
 }
 
-impl StepSpan {
-    /// The time at the fraction `theta` of the step, s after the start of the carrier's piece.
+impl TimeSpan {
+    /// The time at the fraction `theta` of the step, s after the start of the carrier's segment.
     pub fn at(&self, theta: f64) -> f64 {
         self.start + theta * self.length
     }
@@ -39,32 +38,32 @@ pub(super) struct RungeKutta {
 /// The values at the stages of the last attempted step. Stage 0 is the start of the step.
 #[derive(Clone, Debug)]
 pub(super) struct Stages {
-    pub rates: Vec<Rates>,
+    pub rates: Vec<StageValues>,
     pub carrier: [CarrierPoint; MAX_STAGES],
     /// The powers through the surface and the carrier; computed if `tracks_energy`.
     pub exchange: [BoundaryPowers; MAX_STAGES],
-    /// The forces of the horizontal and vertical links at the stages between the first and the last; kept where energies of
-    /// parts of the layer may be asked for.
+    /// The forces of the horizontal and vertical links at the stages between the first and the last; kept where
+    /// energies of parts of the layer may be asked for.
     pub link_forces: Vec<[Vec<f64>; 2]>,
     pub solver: StageSolver,
     pub tracks_energy: bool,
     /// The sensitivities to the targets of the inputs; empty if they are not asked for.
-    pub tangents: Vec<Tangent>,
+    pub tangents: Vec<Sensitivity>,
 }
 
-/// The input of an attempted step.
+/// What a step is attempted with.
 #[derive(Clone, Copy)]
-pub(super) struct StepInput<'a> {
+pub(super) struct Attempt<'a> {
     pub model: &'a Model,
     pub start: &'a LayerState,
     pub carrier: &'a Carrier,
-    pub span: StepSpan,
+    pub span: TimeSpan,
     /// β = γh, s.
     pub beta: f64,
 }
 
-/// The most by which the speed of a slip may be guessed to grow where friction depends on it. Where friction falls with the
-/// speed there may be several solutions: the one that the motion reaches first is found from its present speed.
+/// The most by which the speed of a slip may be guessed to grow where friction depends on it. Where friction falls with
+/// the speed there may be several solutions: the one that the motion reaches first is found from its present speed.
 const MAX_GUESSED: f64 = 2.0;
 
 impl RungeKutta {
@@ -78,10 +77,10 @@ impl RungeKutta {
     pub(super) fn attempt(
         &mut self,
         stages: &mut Stages,
-        step: &StepInput<'_>,
+        step: &Attempt<'_>,
         convergence: ConvergenceTest,
     ) -> Result<(), NoConvergence> {
-        let (StepInput { model, start, carrier, span, beta }, tableau) = (*step, self.coefficients.tableau);
+        let (Attempt { model, start, carrier, span, beta }, tableau) = (*step, self.coefficients.tableau);
         let state = &start.state;
         // The first stage is the start of the step.
         stages.rates[0].copy_from(&start.rates);
@@ -112,7 +111,7 @@ impl RungeKutta {
     pub(super) fn test(
         &self,
         stages: &Stages,
-        step: &StepInput<'_>,
+        step: &Attempt<'_>,
         tolerance: &Tolerance,
         workspace: &mut ErrorWorkspace,
     ) -> ErrorEstimate {
@@ -136,19 +135,20 @@ impl Stages {
     /// Values at so many `stages` of the steps of `model`, with sensitivities to these `inputs`.
     pub(super) fn new(model: &Model, stages: usize, tracks_energy: bool, inputs: Vec<Input>) -> Self {
         Self {
-            rates: (0..stages).map(|_| Rates::new(model)).collect(),
+            rates: (0..stages).map(|_| StageValues::new(model)).collect(),
             carrier: [CarrierPoint::default(); MAX_STAGES],
             exchange: [BoundaryPowers::default(); MAX_STAGES],
             link_forces: Vec::new(),
             solver: StageSolver::new(model),
             tracks_energy,
-            tangents: inputs.into_iter().map(|input| Tangent::new(model, input, stages)).collect(),
+            tangents: inputs.into_iter().map(|input| Sensitivity::new(model, input, stages)).collect(),
         }
     }
 
-    /// Prepares stage `i`, at `s` seconds after the start of the carrier's piece, which has moved by `moved` (m) along x
-    /// since the start of the step: the history of the masses' motion with the `weights` of the stages, and its point.
-    fn prepare(&mut self, step: &StepInput<'_>, i: usize, s: f64, moved: f64, weights: &[f64]) -> StagePoint {
+    /// Prepares stage `i`, at `s` seconds after the start of the carrier's segment, which has moved by `moved` (m)
+    /// along x since the start of the step: the history of the masses' motion with the `weights` of the stages, and its
+    /// point.
+    fn prepare(&mut self, step: &Attempt<'_>, i: usize, s: f64, moved: f64, weights: &[f64]) -> StagePoint {
         let (carrier, h) = (step.carrier, step.span.length);
         let mut at = carrier.at(s);
         if carrier.has_bodies() {
@@ -161,12 +161,12 @@ impl Stages {
             carrier: at,
             integrated: self.integrate_carrier(carrier, h, weights, i),
             moved,
-            piece: (carrier.profile_position, carrier.start.z),
+            segment_start: ByAxis { x: carrier.profile_position, z: carrier.start.z },
         }
     }
 
     /// Sets what stage `i` knows of the bodies, and guesses that they move as at the stage before: `at` is the carrier.
-    fn prepare_bodies(&mut self, step: &StepInput<'_>, i: usize, s: f64, weights: &[f64], at: &mut CarrierPoint) {
+    fn prepare_bodies(&mut self, step: &Attempt<'_>, i: usize, s: f64, weights: &[f64], at: &mut CarrierPoint) {
         let (carrier, h) = (step.carrier, step.span.length);
         for axis in Axis::ALL.into_iter().filter(|&axis| carrier.is_body(axis)) {
             let Jet { position: start, speed: start_rate, .. } = self.carrier[0][axis];
@@ -189,7 +189,7 @@ impl Stages {
     fn collect_history(&mut self, state: &State, h: f64, weights: &[f64]) {
         let history = &mut self.solver.history;
         let earlier = &self.rates;
-        let sum = |star: &mut [f64], start: &[f64], rate: fn(&Rates) -> &[f64]| {
+        let sum = |star: &mut [f64], start: &[f64], rate: fn(&StageValues) -> &[f64]| {
             let counting = earlier.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
             let terms = counting.map(|(stage, weight)| (h * weight, rate(stage)));
             weighted_sum(star, std::iter::once((1.0, start)).chain(terms));
@@ -203,39 +203,31 @@ impl Stages {
     /// The displacement of the carrier from the start of the step to stage `i` along x and z, m, by the method's own
     /// quadrature of its rate.
     ///
-    /// So the elongations are integrated as the differences that they are, ė = ẋ - u̇, and the velocities relative to the
-    /// carrier's, with -ü as a load: a carrier that oscillates widely causes no error in a layer that moves with it. The
-    /// starred velocities take up the error of the quadrature of ü for u̇.
-    fn integrate_carrier(&mut self, carrier: &Carrier, h: f64, weights: &[f64], i: usize) -> (f64, f64) {
-        let (mut moved, mut gained) = ((0.0, 0.0), (0.0, 0.0));
-        for (at, weight) in self.carrier[..=i].iter().zip(weights) {
-            let step = h * weight;
-            moved = (moved.0 + step * at.x.speed, moved.1 + step * at.z.speed);
-            gained = (gained.0 + step * at.x.acceleration, gained.1 + step * at.z.acceleration);
-        }
-        let (start, here) = (&self.carrier[0], &self.carrier[i]);
+    /// So the elongations are integrated as the differences that they are, ė = ẋ - u̇, and the velocities relative to
+    /// the carrier's, with -ü as a load: a carrier that oscillates widely causes no error in a layer that moves with
+    /// it. The starred velocities take up the error of the quadrature of ü for u̇.
+    fn integrate_carrier(&mut self, carrier: &Carrier, h: f64, weights: &[f64], i: usize) -> ByAxis<f64> {
+        let CarrierQuadrature { moved, gained } = CarrierQuadrature::new(&self.carrier[..=i], weights, h);
+        let error = self.carrier[i].rates() - self.carrier[0].rates() - gained;
         let history = &mut self.solver.history;
-        let error_x = here.x.speed - start.x.speed - gained.0;
-        let error_z = here.z.speed - start.z.speed - gained.1;
         // On straight paths the quadrature is exact, and so it is of a body, which is integrated.
-        let errors = [(Axis::X, &mut history.velocity_x, error_x), (Axis::Z, &mut history.velocity_z, error_z)];
-        for (axis, star, error) in errors {
-            if error != 0.0 && !carrier.is_body(axis) {
-                star.iter_mut().for_each(|star| *star += error);
+        for (axis, star) in [(Axis::X, &mut history.velocity_x), (Axis::Z, &mut history.velocity_z)] {
+            if error[axis] != 0.0 && !carrier.is_body(axis) {
+                star.iter_mut().for_each(|star| *star += error[axis]);
             }
         }
         moved
     }
 
     /// Sets the velocities from which Newton's iterations of stage `i` start.
-    fn guess(&mut self, step: &StepInput<'_>, i: usize, guess: &InitialGuess) {
+    fn guess(&mut self, step: &Attempt<'_>, i: usize, guess: &InitialGuess) {
         match guess {
             InitialGuess::Extrapolated(weights) => self.guess_extrapolated(step, &weights[i][..i]),
             InitialGuess::Limited => self.guess_limited(step, i),
         }
     }
 
-    fn guess_extrapolated(&mut self, step: &StepInput<'_>, weights: &[f64]) {
+    fn guess_extrapolated(&mut self, step: &Attempt<'_>, weights: &[f64]) {
         let (solver, state) = (&mut self.solver, &step.start.state);
         let earlier = self.rates.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
         solver.guess(state, earlier.map(|(stage, weight)| (step.beta * weight, stage)));
@@ -244,7 +236,7 @@ impl Stages {
         }
     }
 
-    fn guess_limited(&mut self, step: &StepInput<'_>, i: usize) {
+    fn guess_limited(&mut self, step: &Attempt<'_>, i: usize) {
         with_widest_vectors(
             #[inline(always)]
             || self.set_limited_guess(step, i),
@@ -252,7 +244,7 @@ impl Stages {
     }
 
     #[inline(always)]
-    fn set_limited_guess(&mut self, step: &StepInput<'_>, i: usize) {
+    fn set_limited_guess(&mut self, step: &Attempt<'_>, i: usize) {
         let (known, guess, history) = (&self.rates[i - 1], &mut self.solver.state, &self.solver.history);
         let carrier = self.carrier[i].x.speed.abs() + self.carrier[i].z.speed.abs();
         // Slices of one length, so that an index into one of them is one into all.
@@ -270,17 +262,17 @@ impl Stages {
         }
     }
 
-    /// Solves stage `i`, which is prepared, at `s` seconds after the start of the carrier's piece, and computes the powers at
-    /// it.
+    /// Solves stage `i`, which is prepared, at `s` seconds after the start of the carrier's segment, and computes the
+    /// powers at it.
     fn solve(
         &mut self,
-        step: &StepInput<'_>,
+        step: &Attempt<'_>,
         point: &mut StagePoint,
         i: usize,
         s: f64,
         convergence: ConvergenceTest,
     ) -> Result<(), NoConvergence> {
-        let StepInput { model, carrier, .. } = *step;
+        let Attempt { model, carrier, .. } = *step;
         self.solver.solve(model, point, convergence, &mut self.rates[i])?;
         self.carrier[i] = point.carrier;
         if self.tracks_energy {
@@ -292,8 +284,8 @@ impl Stages {
         Ok(())
     }
 
-    /// Keeps the forces of the links at stage `i`, just solved. The next stage writes its own over those that the solver gets in
-    /// exchange.
+    /// Keeps the forces of the links at stage `i`, just solved. The next stage writes its own over those that the
+    /// solver gets in exchange.
     fn keep_link_forces(&mut self, i: usize) {
         if let Some([x, z]) = self.link_forces.get_mut(i - 1) {
             let [vertical, horizontal, ..] = &mut self.solver.forces.link.0;
@@ -302,9 +294,9 @@ impl Stages {
         }
     }
 
-    /// Computes the tangents at stage `i`, just solved, at `s` seconds after the start of the carrier's motion; the stages
-    /// have `weights`.
-    fn vary(&mut self, step: &StepInput<'_>, point: &StagePoint, i: usize, s: f64, weights: &[f64]) {
+    /// Computes the tangents at stage `i`, just solved, at `s` seconds after the start of the carrier's motion; the
+    /// stages have `weights`.
+    fn vary(&mut self, step: &Attempt<'_>, point: &StagePoint, i: usize, s: f64, weights: &[f64]) {
         if self.tangents.is_empty() {
             return;
         }

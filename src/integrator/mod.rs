@@ -1,5 +1,5 @@
-//! The implicit Runge-Kutta methods: attempts and acceptance of single steps of the layer, their error tests, dense outputs,
-//! energies and sensitivities.
+//! The implicit Runge-Kutta methods: attempts and acceptance of single steps of the layer, their error tests, dense
+//! outputs, energies and sensitivities.
 //!
 //! Three schemes share one implementation: [`ESDIRK3`] and [`ESDIRK5`] for event-driven runs, and [`SDIRK2`], of order
 //! 2 with two implicit stages, for time-stepping. They differ in their numbers, and in what becomes of the
@@ -11,16 +11,16 @@ mod dense;
 mod energy;
 mod error;
 mod interpolation;
-mod largest;
 mod layer_step;
 mod maxwell;
 mod method;
-mod motions;
 mod parabolas;
-mod rates;
+mod polynomials;
+mod running_maxima;
 mod scheme;
 mod sensitivity;
 mod stage;
+mod stage_values;
 mod sums;
 mod tableau;
 mod tolerance;
@@ -28,30 +28,32 @@ mod tolerance;
 pub use dense::{DenseOutput, DenseWorkspace};
 pub use error::ErrorEstimate;
 pub use interpolation::Interpolation;
-pub use largest::Largest;
 pub use layer_step::{InterpolatedLayer, LayerStep, Overlay};
-pub use method::StepSpan;
-pub use motions::Motions;
+pub use method::TimeSpan;
 pub use parabolas::Parabolas;
-pub use rates::{LayerState, NO_LIMIT, Rates};
+pub use polynomials::Polynomials;
+pub use running_maxima::RunningMaxima;
 pub use scheme::{ContactModes, Scheme};
 pub use stage::NoConvergence;
+pub use stage_values::{LayerState, NO_LIMIT, StageValues};
 pub use sums::LayerSums;
 pub use tableau::{ContinuousWeights, ESDIRK3, ESDIRK5, MAX_STAGES, SDIRK2, Tableau, Weights};
 pub use tolerance::Tolerance;
 
 use crate::model::{Axis, Tangents};
-use crate::model::{BodyStep, BoundaryPowers, Carrier, CarrierPoint, ChannelEnergies, Forces, Model, State};
+use crate::model::{
+    BodyInterpolant, BoundaryPowers, ByAxis, Carrier, CarrierPoint, ChannelEnergies, Forces, Model, State,
+};
 use error::ErrorWorkspace;
-use method::{RungeKutta, Stages, StepInput};
-use sensitivity::Tangent;
+use method::{Attempt, RungeKutta, Stages};
 use stage::{ConvergenceTest, StageSolver};
 use tableau::{GAMMA, SDIRK2_ESTIMATE};
 
-/// The error tolerance of Newton's iterations in a step of two stages, as a multiple of the one in an event-driven step. Iterations are the cost of such a step, and the error that they leave is known to be smaller than this.
+/// The error tolerance of Newton's iterations in a step of two stages, as a multiple of the one in an event-driven
+/// step. Iterations are the cost of such a step, and the error that they leave is known to be smaller than this.
 const NEWTON_SLACK: f64 = 2.0;
-/// The same where friction depends on the speed. Corrections fall slowly there, and the estimate of the step's error
-/// multiplies what they leave by [`SDIRK2_ESTIMATE`] over γ: the step length would follow it and not the motion.
+/// [`NEWTON_SLACK`] where friction depends on the speed. Corrections fall slowly there, and the estimate of the step's
+/// error multiplies what they leave by [`SDIRK2_ESTIMATE`] over γ: the step length would follow it and not the motion.
 const STEEP_SLACK: f64 = 0.1;
 
 /// Attempts and accepts steps: the values at the stages of the last attempted step, and workspace.
@@ -74,7 +76,7 @@ pub struct OpenEnd<'a> {
     /// The forces in it.
     pub forces: &'a mut Forces,
     /// The rates in it.
-    pub rates: &'a mut Rates,
+    pub rates: &'a mut StageValues,
 }
 
 /// What the steps compute in addition to the state.
@@ -110,8 +112,8 @@ impl Integrator {
     }
 
     /// Evaluates the rates and the powers at the start of a step from the `forces` in its state: needed at the start of
-    /// a run, after an event and at a kink of the carrier's motion. The step starts at the time `s` of the carrier's piece and
-    /// will have some length `h` (s).
+    /// a run, after an event and at a kink of the carrier's motion. The step starts at the time `s` of the carrier's
+    /// segment and will have some length `h` (s).
     pub fn evaluate_start(
         &self,
         model: &Model,
@@ -137,13 +139,13 @@ impl Integrator {
         &mut self,
         modes: ContactModes,
         (model, start, carrier): (&Model, &LayerState, &Carrier),
-        span: StepSpan,
+        span: TimeSpan,
         tolerance: &Tolerance,
     ) -> Result<ErrorEstimate, NoConvergence> {
         self.last = modes;
         let Self { methods, stages, sums, error_workspace, .. } = self;
         let method = &mut methods[modes as usize];
-        let step = StepInput { model, start, carrier, span, beta: method.coefficients.tableau.gamma() * span.length };
+        let step = Attempt { model, start, carrier, span, beta: method.coefficients.tableau.gamma() * span.length };
         let slack = match modes {
             ContactModes::Held => 1.0,
             ContactModes::SetValued if model.friction.depends_on_speed() => STEEP_SLACK,
@@ -178,7 +180,7 @@ impl Integrator {
         let carrier = &self.end_carrier();
         let mut sum = 0.0;
         for i in 0..end.mode.len() {
-            let change = |of: fn(&Rates) -> &[f64]| (SDIRK2_ESTIMATE * h * (of(last)[i] - of(first)[i])).powi(2);
+            let change = |of: fn(&StageValues) -> &[f64]| (SDIRK2_ESTIMATE * h * (of(last)[i] - of(first)[i])).powi(2);
             sum += change(|rates| &rates.velocity_x) / tolerance.position_tolerance_sq(end.elongation_x[i])
                 + change(|rates| &rates.velocity_z) / tolerance.position_tolerance_sq(end.elongation_z[i])
                 + change(|rates| &rates.acceleration_x)
@@ -192,8 +194,8 @@ impl Integrator {
     }
 
     /// The motion of a body along `axis` through the last attempted step, of length `h` (s).
-    pub fn body_step(&self, axis: Axis, h: f64) -> BodyStep {
-        self.method().coefficients.interpolation.body_step(h, |stage| self.stages.carrier[stage][axis])
+    pub fn body_interpolant(&self, axis: Axis, h: f64) -> BodyInterpolant {
+        self.method().coefficients.interpolation.body_interpolant(h, |stage| self.stages.carrier[stage][axis])
     }
 
     /// The carrier at the end of the last attempted step.
@@ -217,13 +219,13 @@ impl Integrator {
     }
 
     /// The rates at the stages of the last attempted step.
-    pub fn stages(&self) -> &[Rates] {
+    pub fn stages(&self) -> &[StageValues] {
         &self.stages.rates[..=self.last_stage()]
     }
 
     /// The end of the last attempted step, of time-stepping, open to changes, and the rates at its first implicit
     /// stage.
-    pub fn end_mut(&mut self) -> (OpenEnd<'_>, &Rates) {
+    pub fn end_mut(&mut self) -> (OpenEnd<'_>, &StageValues) {
         let last_stage = self.last_stage();
         let (earlier, last) = self.stages.rates.split_at_mut(last_stage);
         let StageSolver { state, forces, .. } = &mut self.stages.solver;
@@ -236,17 +238,17 @@ impl Integrator {
         model: &'a Model,
         carrier: &'a Carrier,
         start: &'a State,
-        span: StepSpan,
+        span: TimeSpan,
     ) -> DenseOutput<'a> {
         let masses = 0..model.masses();
         DenseOutput { model, masses, carrier, span, start, method: self.method(), values: &self.stages }
     }
 
-    /// The same, and sums over the layer in that step.
+    /// The dense output of the last attempted step, and the sums over the layer in it.
     fn dense_and_sums<'a>(
         &'a mut self,
         (model, carrier, start): (&'a Model, &'a Carrier, &'a State),
-        span: StepSpan,
+        span: TimeSpan,
     ) -> (DenseOutput<'a>, &'a mut LayerSums) {
         let (masses, method) = (0..model.masses(), &self.methods[self.last as usize]);
         (DenseOutput { model, masses, carrier, span, start, method, values: &self.stages }, &mut self.sums)
@@ -256,10 +258,10 @@ impl Integrator {
     pub fn on_carrier(
         &mut self,
         (model, carrier, start): (&Model, &Carrier, &State),
-        span: StepSpan,
+        span: TimeSpan,
         theta: f64,
         workspace: &mut DenseWorkspace,
-    ) -> (f64, f64) {
+    ) -> ByAxis<f64> {
         let (dense, sums) = self.dense_and_sums((model, carrier, start), span);
         sums.on_carrier(&mut LayerStep { dense, workspace }, model, theta)
     }
@@ -269,7 +271,7 @@ impl Integrator {
     pub fn dissipated_power(
         &mut self,
         (model, carrier, start): (&Model, &Carrier, &State),
-        span: StepSpan,
+        span: TimeSpan,
         theta: f64,
     ) -> f64 {
         let (dense, sums) = self.dense_and_sums((model, carrier, start), span);
@@ -280,7 +282,7 @@ impl Integrator {
     pub fn energies(
         &mut self,
         (model, carrier, start): (&Model, &Carrier, &State),
-        span: StepSpan,
+        span: TimeSpan,
         theta: f64,
     ) -> ChannelEnergies {
         let (dense, sums) = self.dense_and_sums((model, carrier, start), span);
@@ -294,7 +296,7 @@ impl Integrator {
         let end = self.end();
         let kinetic =
             |state: &State, i: usize| 0.5 * model.mass * (state.velocity_x[i].powi(2) + state.velocity_z[i].powi(2));
-        let gain = |stage: &Rates, i: usize| {
+        let gain = |stage: &StageValues, i: usize| {
             model.mass * (stage.acceleration_x[i] * stage.velocity_x[i] + stage.acceleration_z[i] * stage.velocity_z[i])
         };
         let shown = |i: usize| {
@@ -354,20 +356,5 @@ impl Integrator {
             self.stages.link_forces =
                 std::iter::repeat_with(links).take(self.event_driven().tableau().stages - 2).collect();
         }
-    }
-
-    /// Bytes that the stages hold, those of a copy to go back to included.
-    pub fn bytes(&self) -> usize {
-        let rates = &self.stages.rates[0];
-        let masses = rates.velocity_x.len();
-        let links: usize = rates.elongation_rate.iter().map(Vec::len).sum();
-        // With those at the start of the next step, in the state and in the one to go back to.
-        let stages = self.stages.rates.len() + 2;
-        // Per mass: rates and starred values; six blocks and a right side; row shares and neighbour weights; errors; whether
-        // it is free; the speed of its slip.
-        let by_mass = stages * 6 + 4 + (6 * 4 + 2) + (3 + 3) + 5 + 1 + 1;
-        let elements = 2 * self.methods.iter().map(|method| method.maxwell.floats()).sum::<usize>();
-        let tangents: usize = self.stages.tangents.iter().map(Tangent::floats).sum();
-        (by_mass * masses + stages * links + elements + tangents) * size_of::<f64>()
     }
 }

@@ -1,9 +1,9 @@
 //! The motions of single masses through a step of time-stepping (docs/theory.md, section 5).
 
 use super::interpolation::parabola;
-use super::method::StepSpan;
-use super::rates::Rates;
+use super::method::TimeSpan;
 use super::scheme::Scheme;
+use super::stage_values::StageValues;
 use super::tableau::GAMMA;
 use crate::model::{ByAxis, Carrier, Model, State};
 
@@ -16,15 +16,15 @@ pub struct Parabolas<'a> {
     /// The carrier's motion.
     pub carrier: &'a Carrier,
     /// The step.
-    pub span: StepSpan,
+    pub span: TimeSpan,
     /// State at the start.
     pub start: &'a State,
-    /// Rates at the first stage.
-    pub first: &'a Rates,
+    /// The values at the first stage.
+    pub first: &'a StageValues,
     /// State at the end.
     pub end: &'a State,
-    /// Rates at the end.
-    pub last: &'a Rates,
+    /// The values at the end.
+    pub last: &'a StageValues,
     /// u as a position on the profile and w at the start, m.
     carrier_start: (f64, f64),
     /// Displacement of the carrier through the step, m.
@@ -39,11 +39,11 @@ impl<'a> Parabolas<'a> {
     pub fn new(
         model: &'a Model,
         carrier: &'a Carrier,
-        span: StepSpan,
+        span: TimeSpan,
         start: &'a State,
-        first: &'a Rates,
+        first: &'a StageValues,
         end: &'a State,
-        last: &'a Rates,
+        last: &'a StageValues,
     ) -> Self {
         let at = carrier.at(span.start);
         let carrier_start = (carrier.profile_position + at.x.position, carrier.start.z + at.z.position);

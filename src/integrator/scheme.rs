@@ -62,9 +62,9 @@ pub(super) struct Coefficients {
 ///
 /// Recommended 2e-3 to 5e-3: on blocks of 200 and 800 masses and a chain of 1000 the two take about equal times there.
 const THIRD_FROM: f64 = 4e-3;
-/// The same where friction depends on the speed and no carrier is a body. In the longer steps of the scheme of order 5
-/// masses that creep and slip by turns make F_x err by ten tolerances and more, or keep the steps as short as the slips
-/// are. A body swings for long and smoothly: at the lower order its phase is off by tens of tolerances.
+/// [`THIRD_FROM`] where friction depends on the speed and no carrier is a body. In the longer steps of the scheme of
+/// order 5 masses that creep and slip by turns make F_x err by ten tolerances and more, or keep the steps as short as
+/// the slips are. A body swings for long and smoothly: at the lower order its phase is off by tens of tolerances.
 const THIRD_FROM_WITH_CREEP: f64 = 1e-5;
 
 impl Scheme {
@@ -102,8 +102,8 @@ impl Scheme {
 
     pub(super) fn coefficients(self) -> &'static Coefficients {
         static ALL: [LazyLock<Coefficients>; 3] = [
-            LazyLock::new(|| Coefficients::of_stage_order_two(&ESDIRK3)),
-            LazyLock::new(|| Coefficients::of_stage_order_two(&ESDIRK5)),
+            LazyLock::new(|| Coefficients::with_stage_order_two(&ESDIRK3)),
+            LazyLock::new(|| Coefficients::with_stage_order_two(&ESDIRK5)),
             LazyLock::new(|| Coefficients {
                 tableau: &SDIRK2,
                 continuous_weights: ContinuousWeights::sdirk2(),
@@ -116,7 +116,7 @@ impl Scheme {
 }
 
 impl Coefficients {
-    fn of_stage_order_two(tableau: &'static Tableau) -> Self {
+    fn with_stage_order_two(tableau: &'static Tableau) -> Self {
         Self {
             tableau,
             continuous_weights: ContinuousWeights::new(tableau),

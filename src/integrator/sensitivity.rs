@@ -1,13 +1,15 @@
-//! Forward sensitivities of the run to the carrier's targets, along the stages of the steps (docs/theory.md, section 8).
+//! Forward sensitivities of the run to the carrier's targets, along the stages of the steps (docs/theory.md, section
+//! 8).
 //!
-//! Over a motion of the carrier of duration T, let one of its displacements, or of the forces on it, end at û + ε instead
-//! of û. On the way it differs by ε s/T, and its rate by ε/T. All quantities here are derivatives with respect to ε at ε = 0, with
-//! the contact modes held. At a stage they solve the same linear system as Newton's corrections, with another right side.
+//! Over a motion of the carrier of duration T, let one of its displacements, or of the forces on it, end at û + ε
+//! instead of û. On the way it differs by ε s/T, and its rate by ε/T. All quantities here are derivatives with respect
+//! to ε at ε = 0, with the contact modes held. At a stage they solve the same linear system as Newton's corrections,
+//! with another right side.
 
 use nalgebra::Vector2;
 
-use super::rates::Rates;
 use super::stage::{SlippingMass, StagePoint, StageSolver};
+use super::stage_values::StageValues;
 use crate::model::{Axis, Body, ByAxis, Forces, Input, LinkKind, LinkMotion, Mode, Model, State, TangentsOf};
 
 /// The variation of the layer's state: dimensionless for positions, 1/s for velocities. Or its rate of change, each
@@ -25,31 +27,15 @@ struct Variation {
     /// Of the elongations a_j of the Maxwell elements.
     maxwell: Vec<f64>,
     /// Of the displacements and speeds of the bodies along x and z.
-    bodies: ByAxis<[f64; 2]>,
+    bodies: CarrierVariation,
 }
 
-/// The variation of the carrier at one instant.
-#[derive(Clone, Copy, Debug, Default)]
-struct CarrierVariation {
-    u: f64,
-    w: f64,
-    u_rate: f64,
-    w_rate: f64,
-}
-
-impl CarrierVariation {
-    /// The same with a displacement and a speed of a body along an axis.
-    fn set_along(&mut self, axis: Axis, [displacement, rate]: [f64; 2]) {
-        match axis {
-            Axis::X => (self.u, self.u_rate) = (displacement, rate),
-            Axis::Z => (self.w, self.w_rate) = (displacement, rate),
-        }
-    }
-}
+/// The variation of the carrier at one instant: of its displacements and speeds along x and z.
+type CarrierVariation = ByAxis<[f64; 2]>;
 
 /// The derivative of a run with respect to the target of one input.
 #[derive(Clone, Debug)]
-pub(super) struct Tangent {
+pub(super) struct Sensitivity {
     input: Input,
     /// Duration of the carrier's motion, s.
     duration: f64,
@@ -85,13 +71,13 @@ impl Variation {
         LinkMotion {
             elongation: ByAxis { x: &self.x, z: &self.z },
             velocity: ByAxis { x: &self.v_x, z: &self.v_z },
-            carrier_rate: ByAxis { x: carrier.u_rate, z: carrier.w_rate },
+            carrier_rate: carrier.map(|[_, rate]| rate),
             ends: Default::default(),
         }
     }
 }
 
-impl Tangent {
+impl Sensitivity {
     pub(super) fn new(model: &Model, input: Input, stages: usize) -> Self {
         Self {
             input,
@@ -102,12 +88,6 @@ impl Tangent {
             forces: Forces::new(model),
             known: Variation { maxwell: Vec::new(), ..Variation::new(model) },
         }
-    }
-
-    pub(super) fn floats(&self) -> usize {
-        let (masses, maxwell) = (self.start.x.len(), self.start.maxwell.len());
-        // Start, end and stages; forces; the known motion of the links.
-        (2 + self.stages.len()) * (4 * masses + maxwell) + self.forces.bytes() / size_of::<f64>() + 4 * masses
     }
 
     /// Begins a motion of the carrier of `duration` (s). The present state does not depend on its target.
@@ -121,17 +101,13 @@ impl Tangent {
 
     /// The carrier's variation `s` seconds after the start of its motion, with `bodies` the displacements and speeds of
     /// bodies.
-    fn carrier(&self, model: &Model, s: f64, bodies: &ByAxis<[f64; 2]>) -> CarrierVariation {
-        let mut carrier = CarrierVariation::default();
-        for axis in Axis::ALL {
-            let driven = self.input.is_displacement() && self.input.axis() == Some(axis);
-            if model.bodies[axis].is_some() {
-                carrier.set_along(axis, bodies[axis]);
-            } else if driven {
-                carrier.set_along(axis, self.ramp(s));
-            }
-        }
-        carrier
+    fn carrier(&self, model: &Model, s: f64, bodies: &CarrierVariation) -> CarrierVariation {
+        let driven = self.input.axis().filter(|_| self.input.is_displacement());
+        ByAxis::from_fn(|axis| match model.bodies[axis] {
+            Some(_) => bodies[axis],
+            None if driven == Some(axis) => self.ramp(s),
+            None => [0.0; 2],
+        })
     }
 
     /// The variation of the input `s` seconds after the start of the motion, and its rate, 1/s.
@@ -170,8 +146,8 @@ impl Tangent {
         }
     }
 
-    /// Puts the constraints of the contact modes into the variation at the start of a step, `s` seconds after the start of
-    /// the motion, and computes its rates there.
+    /// Puts the constraints of the contact modes into the variation at the start of a step, `s` seconds after the start
+    /// of the motion, and computes its rates there.
     pub(super) fn evaluate_rates(
         &mut self,
         model: &Model,
@@ -181,12 +157,14 @@ impl Tangent {
         s: f64,
     ) {
         let carrier = self.carrier(model, s, &self.start.bodies);
+        // Masses in contact stay on the profile, sticking ones where they are.
         for i in 0..model.masses() {
             if let Some(mass) = Constrained::new(state, i, self.start.x[i], self.start.v_x[i]) {
                 (self.start.z[i], self.start.v_x[i], self.start.v_z[i]) = (mass.z, mass.v_x, mass.v_z);
             }
         }
         self.forces_at_start(model, &carrier);
+        // The rates of the masses.
         for i in 0..model.masses() {
             let on_mass = (self.forces.on_mass_x[i], self.forces.on_mass_z[i]);
             let rates = &mut self.stages[0];
@@ -203,12 +181,14 @@ impl Tangent {
             };
             rates.v_z[i] = on_mass.1 / model.mass;
         }
+        // Of the bodies.
         for axis in Axis::ALL {
             let Some(body) = &model.bodies[axis] else { continue };
             let motion = self.start.bodies[axis];
             let acceleration = (self.forces.on_carrier(axis) + self.on_body(body, axis, s, motion)) / body.mass;
             self.stages[0].bodies[axis] = [motion[1], acceleration];
         }
+        // Of the Maxwell elements.
         for row in &model.rows {
             let start = self.start.maxwell[row.range.clone()].iter().zip(&self.forces.rate[row.kind]);
             for (rate, (a, elongation_rate)) in self.stages[0].maxwell[row.range.clone()].iter_mut().zip(start) {
@@ -232,8 +212,8 @@ impl Tangent {
     fn forces_at_start(&mut self, model: &Model, carrier: &CarrierVariation) {
         let start = &self.start;
         for i in 0..model.masses() {
-            self.known.x[i] = start.x[i] - carrier.u;
-            self.known.z[i] = start.z[i] - carrier.w;
+            self.known.x[i] = start.x[i] - carrier.x[0];
+            self.known.z[i] = start.z[i] - carrier.z[0];
         }
         let motion = LinkMotion { velocity: ByAxis { x: &start.v_x, z: &start.v_z }, ..self.known.links(carrier) };
         for kind in LinkKind::ALL {
@@ -250,9 +230,9 @@ impl Tangent {
         std::mem::swap(&mut self.start, &mut self.end);
         self.stages.swap(0, last);
     }
-    /// Solves stage `i` of a step of length `h` (s) for the tangent: into `end` and the rates of the stage. The `solver`
-    /// has solved the stage itself, which lies `s` seconds after the start of the motion and has these `rates`, and has
-    /// factored its matrix there; `weights` are those of the earlier stages.
+    /// Solves stage `i` of a step of length `h` (s) for the tangent: into `end` and the rates of the stage. The
+    /// `solver` has solved the stage itself, which lies `s` seconds after the start of the motion and has these
+    /// `rates`, and has factored its matrix there; `weights` are those of the earlier stages.
     pub(super) fn solve_stage(&mut self, model: &Model, solver: &mut StageSolver, stage: &Solved<'_>) {
         let &Solved { i, s, h, weights, rates, point } = stage;
         self.collect_history(h, &weights[..i]);
@@ -292,8 +272,8 @@ impl Tangent {
                 Some(mass) => (mass.z, mass.v_z),
                 None => (self.end.z[i], 0.0),
             };
-            known.x[i] = self.end.x[i] - carrier.u;
-            known.z[i] = z - carrier.w;
+            known.x[i] = self.end.x[i] - carrier.x[0];
+            known.z[i] = z - carrier.z[0];
             known.v_z[i] = v_z;
         }
         let motion = known.links(carrier);
@@ -374,7 +354,7 @@ pub(super) struct Solved<'a> {
     pub h: f64,
     /// The row a_ij of the tableau.
     pub weights: &'a [f64],
-    pub rates: &'a Rates,
+    pub rates: &'a StageValues,
     pub point: &'a StagePoint,
 }
 

@@ -35,24 +35,23 @@ impl LayerSums {
     /// Another step is attempted, in which the masses have these powers through the surface and the carrier at the
     /// stages.
     pub(super) fn begin(&mut self, exchange: &[BoundaryPowers; MAX_STAGES]) {
-        self.carrier.forget();
-        self.energy.forget();
+        self.carrier.invalidate();
+        self.energy.invalidate();
         self.exchange = *exchange;
     }
 
     /// The masses are now those of `part` from `first` on, in another `step`.
     pub fn begin_part(&mut self, step: &mut LayerStep<'_>, part: &Model, first: usize) {
         self.masses = first..first + part.masses();
-        self.carrier.forget();
-        self.energy.forget();
+        self.carrier.invalidate();
+        self.energy.invalidate();
         if step.dense.values.tracks_energy {
             self.set_exchange(step, part);
         }
     }
 
     fn set_exchange(&mut self, step: &mut LayerStep<'_>, part: &Model) {
-        let (x, z) = self.on_carrier(step, part, 0.0);
-        let at_start = ByAxis { x, z };
+        let at_start = self.on_carrier(step, part, 0.0);
         let (values, masses) = (step.dense.values, self.masses.clone());
         let [vertical, horizontal, ..] = &step.dense.end_forces().link.0;
         let sum = |links: &[f64]| links.get(masses.clone()).map_or(0.0, |part| part.iter().sum());
@@ -69,13 +68,13 @@ impl LayerSums {
     }
 
     /// F_x and F_z of the masses, of `part`, at the fraction `theta` of `step`, N.
-    pub fn on_carrier(&mut self, step: &mut LayerStep<'_>, part: &Model, theta: f64) -> (f64, f64) {
-        let (dense, workspace) = step.of(&self.masses);
+    pub fn on_carrier(&mut self, step: &mut LayerStep<'_>, part: &Model, theta: f64) -> ByAxis<f64> {
+        let (dense, workspace) = step.restricted_to(&self.masses);
         let (ends, heights) = ((dense.start, dense.end()), dense.method.scheme.contact_heights());
         self.carrier.collect(dense.model, &dense.masses, ends, dense.stages(), heights);
         let motion = dense.summed_motion(theta, &self.carrier, workspace);
         let point = dense.carrier.at(dense.span.at(theta));
-        self.carrier.forces(part, &motion, &point, |row| *workspace.of_elements(row))
+        self.carrier.forces(part, &motion, &point, |row| *workspace.element_weights(row))
     }
 
     /// Energies of the masses through the channels up to the fraction `theta` of `step`, J.
@@ -83,12 +82,17 @@ impl LayerSums {
         let coefficients = step.method.coefficients;
         let weights =
             if theta < 1.0 { &coefficients.continuous_weights.at(theta) } else { coefficients.tableau.weights() };
-        self.energy.energies(&step.of(self.masses.clone()), &self.exchange, weights, Measure::Integral(theta))
+        self.energy.energies(
+            &step.restricted_to(self.masses.clone()),
+            &self.exchange,
+            weights,
+            Measure::Integral(theta),
+        )
     }
 
     /// P_diss of the masses at the fraction `theta` of `step`, by the powers at its stages, W.
     pub fn dissipated_power(&mut self, step: &DenseOutput<'_>, theta: f64) -> f64 {
-        let (weights, step) = (step.interpolation().values(theta), step.of(self.masses.clone()));
+        let (weights, step) = (step.interpolation().values(theta), step.restricted_to(self.masses.clone()));
         let energies = self.energy.energies(&step, &self.exchange, &weights, Measure::Value(theta));
         // Powers that fall steeply through a step have combinations below 0.
         (energies.dissipated() / step.span.length).max(0.0)

@@ -24,10 +24,10 @@ pub struct Tableau {
     pub error: Weights,
     /// Order of the embedded method. That of the method itself is one higher.
     pub embedded_order: i32,
-    /// Weight of the error of F_z in the error test; that of F_x is a multiple of it. It makes the errors of whole runs about the
-    /// relative tolerance and, among such weights, a given error cheap.
+    /// Weight of the error of F_z in the error test; that of F_x is a multiple of it. It makes the errors of whole runs
+    /// about the relative tolerance and, among such weights, a given error cheap.
     pub force_weight: f64,
-    /// The same of the energies.
+    /// Weight of the errors of energies in the error test, as that of F_z.
     pub energy_weight: f64,
 }
 
@@ -138,8 +138,8 @@ impl ContinuousWeights {
     }
 }
 
-/// ESDIRK5(4)7L\[2\]SA2 of C. A. Kennedy and M. H. Carpenter, *Diagonally implicit Runge-Kutta methods for stiff ordinary
-/// differential equations* (Appl. Numer. Math. 146, 2019).
+/// ESDIRK5(4)7L\[2\]SA2 of C. A. Kennedy and M. H. Carpenter, *Diagonally implicit Runge-Kutta methods for stiff
+/// ordinary differential equations* (Appl. Numer. Math. 146, 2019).
 pub const ESDIRK5: Tableau = {
     const GAMMA: f64 = 23.0 / 125.0;
     const B: [f64; 7] = complete([
@@ -250,8 +250,8 @@ pub(super) const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 /// The error of a step of [`SDIRK2`] is estimated as this multiple of h (k_2 - k_1), with k the rates at the implicit
 /// stages. A multiple of γ would be the difference from y_0 + h k_1, which is of order 1.
 ///
-/// Five times that makes the forces of a rough layer err by about half the relative tolerance, as the step length goes with
-/// the square root of this number. A smaller one makes longer steps.
+/// Five times that makes the forces of a rough layer err by about half the relative tolerance, as the step length goes
+/// with the square root of this number. A smaller one makes longer steps.
 pub(super) const SDIRK2_ESTIMATE: f64 = 5.0 * GAMMA;
 
 /// SDIRK2 of R. Alexander (SIAM J. Numer. Anal. 14, 1977): γ = 1 - 1/√2, order 2, L-stable and stiffly accurate. The

@@ -20,8 +20,8 @@ pub struct Tolerance {
     long_term_stiffness: Option<f64>,
     /// Number of masses of the layer, over which their errors are averaged.
     pub(super) masses: usize,
-    /// Absolute tolerance of the speed of a body along x and z, m/s: that of positions times its natural frequency on the
-    /// layer and the drive.
+    /// Absolute tolerance of the speed of a body along x and z, m/s: that of positions times its natural frequency on
+    /// the layer and the drive.
     pub(super) body_velocity: ByAxis<f64>,
 }
 
@@ -94,8 +94,8 @@ impl Tolerance {
         if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }
     }
 
-    /// The same for the vertical Maxwell elements of masses in contact, where their stiffness is far above the
-    /// long-term one; `None` otherwise, and for the other links.
+    /// The factor for the force of the vertical Maxwell elements of masses in contact, where their stiffness is far
+    /// above the long-term one; `None` otherwise, and for the other links.
     pub(super) fn per_contact_force(&self, kind: LinkKind) -> Option<f64> {
         self.long_term_stiffness.filter(|_| kind == LinkKind::Vertical).map(|stiffness| 1.0 / stiffness)
     }

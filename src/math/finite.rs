@@ -6,26 +6,26 @@ use serde::ser::{self, Serialize, Serializer};
 
 /// The first number of `value` that is not finite, and the name of the innermost field that holds it.
 pub fn not_finite(value: &impl Serialize) -> Option<(&'static str, f64)> {
-    value.serialize(&mut Search { field: "value" }).err().and_then(|found| found.0)
+    value.serialize(&mut NonFiniteSearch { field: "value" }).err().and_then(|found| found.0)
 }
 
 /// Serialises to nothing and fails at the first such number.
-struct Search {
+struct NonFiniteSearch {
     field: &'static str,
 }
 
 /// The number found; `None` where a value cannot be serialised.
 #[derive(Debug, thiserror::Error)]
 #[error("{0:?}")]
-struct Found(Option<(&'static str, f64)>);
+struct NonFinite(Option<(&'static str, f64)>);
 
-impl ser::Error for Found {
+impl ser::Error for NonFinite {
     fn custom<T: fmt::Display>(_: T) -> Self {
         Self(None)
     }
 }
 
-type Result<T = ()> = std::result::Result<T, Found>;
+type Result<T = ()> = std::result::Result<T, NonFinite>;
 
 /// Methods for what holds no such number.
 macro_rules! pass {
@@ -39,9 +39,9 @@ macro_rules! enter {
     };
 }
 
-impl Serializer for &mut Search {
+impl Serializer for &mut NonFiniteSearch {
     type Ok = ();
-    type Error = Found;
+    type Error = NonFinite;
 
     pass! {
         serialize_bool(bool); serialize_char(char); serialize_str(&str); serialize_bytes(&[u8]);
@@ -66,7 +66,7 @@ impl Serializer for &mut Search {
     }
 
     fn serialize_f64(self, value: f64) -> Result {
-        if value.is_finite() { Ok(()) } else { Err(Found(Some((self.field, value)))) }
+        if value.is_finite() { Ok(()) } else { Err(NonFinite(Some((self.field, value)))) }
     }
 
     fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result {
@@ -91,9 +91,9 @@ impl Serializer for &mut Search {
 /// Compounds without names of fields: the field's around them stands.
 macro_rules! unnamed {
     ($($compound:ident: $($method:ident),*;)*) => {
-        $(impl ser::$compound for &mut Search {
+        $(impl ser::$compound for &mut NonFiniteSearch {
             type Ok = ();
-            type Error = Found;
+            type Error = NonFinite;
 
             $(fn $method<T: Serialize + ?Sized>(&mut self, value: &T) -> Result {
                 value.serialize(&mut **self)
@@ -116,9 +116,9 @@ unnamed! {
 
 macro_rules! named {
     ($($compound:ident),*) => {
-        $(impl ser::$compound for &mut Search {
+        $(impl ser::$compound for &mut NonFiniteSearch {
             type Ok = ();
-            type Error = Found;
+            type Error = NonFinite;
 
             fn serialize_field<T: Serialize + ?Sized>(&mut self, field: &'static str, value: &T) -> Result {
                 self.field = field;

@@ -16,8 +16,8 @@ pub enum Direction {
 
 /// Z_m = Σ_n z_n e^(∓2πi nm/N), n and m from 0 to N-1, without a factor before the sum.
 ///
-/// L. Bluestein's algorithm (1970): with 2nm = n² + m² - (m-n)² the sum is a convolution with the chirp e^(πi n²/N), and a
-/// cyclic one of length M ≥ 2N - 1, a power of two, once padded. Takes O(N log N) for every N, prime or not.
+/// L. Bluestein's algorithm (1970): with 2nm = n² + m² - (m-n)² the sum is a convolution with the chirp e^(πi n²/N),
+/// and a cyclic one of length M ≥ 2N - 1, a power of two, once padded. Takes O(N log N) for every N, prime or not.
 ///
 /// ```
 /// use asperity::math::{Direction, fourier};

@@ -1,8 +1,8 @@
 //! Numbers that a formula can be evaluated with: plain ones, and ones that carry their derivatives along.
 //!
-//! Code that is generic over [`Number`] gives with [`Dual`] the exact derivatives of what it computes with `f64`, in the
-//! same order of operations: values are the same to the last bit. It compares values alone, so that both take the same
-//! branches.
+//! Code that is generic over [`Number`] gives with [`Dual`] the exact derivatives of what it computes with `f64`, in
+//! the same order of operations: values are the same to the last bit. It compares values alone, so that both take the
+//! same branches.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

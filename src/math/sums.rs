@@ -151,7 +151,8 @@ fn dots_in_a_pass<const N: usize>(pairs: [(&[f64], &[f64]); N]) -> [f64; N] {
     })
 }
 
-/// Σ_i a_i², and Σ_i a_i b_i of several `b` of its length or longer. Faster than [`dots`]: what all pairs share is loaded once.
+/// Σ_i a_i², and Σ_i a_i b_i of several `b` of its length or longer. Faster than [`dots`]: what all pairs share is
+/// loaded once.
 ///
 /// # Panics
 /// Where one is shorter than `a`.

@@ -4,8 +4,8 @@ use nalgebra::{Matrix2, Vector2};
 
 /// Lower_i δ_{i-1} + Diagonal_i δ_i + Upper_i δ_{i+1} = Right_i, i = 0 … n-1, with the workspace to solve it.
 ///
-/// Blocks are eliminated from both ends towards the middle, and back: two chains of operations that do not wait for each
-/// other. All that does not need the right sides is done once, by [`factor`](Self::factor).
+/// Blocks are eliminated from both ends towards the middle, and back: two chains of operations that do not wait for
+/// each other. All that does not need the right sides is done once, by [`factor`](Self::factor).
 #[derive(Clone, Debug, Default)]
 pub struct BlockTridiagonal {
     /// Blocks left of the diagonal; the first is not read.
@@ -63,6 +63,7 @@ impl BlockTridiagonal {
         let (middle, mirrored) = self.halves();
         let last = middle + mirrored;
         let Self { lower, diagonal, upper, inverse, share, back, .. } = self;
+        // Both ends at once, towards the middle: two chains of operations that do not wait for each other.
         let mut first_end = inverse_of(&diagonal[0]);
         let mut second_end = inverse_of(&diagonal[last]);
         for step in 0..middle.max(mirrored) {
@@ -86,6 +87,7 @@ impl BlockTridiagonal {
                 }
             }
         }
+        // The middle row, from which both neighbours are eliminated.
         let mut center = diagonal[middle];
         if middle > 0 {
             center -= times(&share[middle], &upper[middle - 1]);
@@ -131,6 +133,7 @@ impl BlockTridiagonal {
             *carried = *right - times(share, carried);
             *right = times(inverse, carried);
         };
+        // Elimination from both ends towards the middle.
         let (mut first, mut second) = (Vector2::zeros(), Vector2::zeros());
         let mut rows = left.iter_mut().zip(&share[..middle]).zip(&inverse[..middle]);
         let mirror = behind.iter_mut().rev().zip(share[middle + 1..].iter().rev());
@@ -145,6 +148,7 @@ impl BlockTridiagonal {
             eliminate(&mut first, right, share, inverse);
             eliminate(&mut second, mirror_right, mirror_share, mirror_inverse);
         }
+        // The middle row has what it needs; from it the solution goes back to both ends.
         let rest = *center - times(&share[middle], &first) - times(share_behind, &second);
         *center = times(&inverse[middle], &rest);
         let substitute = |found: &mut Vector2<f64>, right: &mut Vector2<f64>, back| {

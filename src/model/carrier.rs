@@ -105,8 +105,8 @@ impl Body {
     }
 }
 
-/// The motion of a body along one axis on a smooth segment: where it stands at the start of a step, how it moves through
-/// the step tried last, and what acts on it from outside.
+/// The motion of a body along one axis on a smooth segment: where it stands at the start of a step, how it moves
+/// through the step tried last, and what acts on it from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct BodyMotion {
     /// Start of the step, s after the start of the segment.
@@ -115,7 +115,7 @@ struct BodyMotion {
     start: Jet,
     /// The step tried last; none between motions.
     #[serde(skip)]
-    step: BodyStep,
+    interpolant: BodyInterpolant,
     /// Displacement of the drive at the start of the segment, m.
     drive: f64,
     /// Load or tangential force at the start of the segment without its constant part, N.
@@ -126,7 +126,7 @@ struct BodyMotion {
 
 /// A body's motion through a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum BodyStep {
+pub enum BodyInterpolant {
     /// No step was tried from here.
     #[default]
     None,
@@ -210,10 +210,10 @@ impl BodyMotion {
     fn at(&self, s: f64) -> Jet {
         let Jet { position, speed: start_speed, .. } = self.start;
         let in_step = |length: f64| ((s - self.s) / length, length);
-        match self.step {
+        match self.interpolant {
             _ if s <= self.s => self.start,
-            BodyStep::None => Jet { position: position + (s - self.s) * start_speed, ..self.start },
-            BodyStep::Polynomial { length, speed } => {
+            BodyInterpolant::None => Jet { position: position + (s - self.s) * start_speed, ..self.start },
+            BodyInterpolant::Polynomial { length, speed } => {
                 let (theta, h) = in_step(length);
                 let sum = |term: fn(usize, f64) -> f64| {
                     (0..speed.len()).rev().fold(0.0, |sum, power| sum * theta + term(power, speed[power]))
@@ -222,7 +222,7 @@ impl BodyMotion {
                 let slope = (1..speed.len()).rev().fold(0.0, |sum, power| sum * theta + power as f64 * speed[power]);
                 Jet { position: position + moved, speed: sum(|_, c| c), acceleration: slope / h }
             }
-            BodyStep::TwoStages { length, node, displacement: [linear, square], speed } => {
+            BodyInterpolant::TwoStages { length, node, displacement: [linear, square], speed } => {
                 let (theta, h) = in_step(length);
                 let moved = theta * (linear + theta * square);
                 let (from, to, fraction, span) = if theta < node {
@@ -257,8 +257,8 @@ pub struct BodyStart {
 }
 
 impl Carrier {
-    /// A segment that starts at `time` (s) from `start`, u and w (m), over `profile`, with the displacement prescribed along
-    /// both axes.
+    /// A segment that starts at `time` (s) from `start`, u and w (m), over `profile`, with the displacement prescribed
+    /// along both axes.
     pub fn new(time: f64, start: ByAxis<f64>, paths: ByAxis<Path>, profile: &Spline) -> Self {
         Self { time, start, profile_position: profile.reduce(start.x), paths, bodies: ByAxis::default(), ends: None }
     }
@@ -270,7 +270,7 @@ impl Carrier {
         self.bodies[axis] = Some(BodyMotion {
             s: 0.0,
             start: Jet { speed: rate, ..Jet::default() },
-            step: BodyStep::None,
+            interpolant: BodyInterpolant::None,
             drive,
             force,
             force_path: Path::default(),
@@ -289,7 +289,7 @@ impl Carrier {
             Some(BodyMotion {
                 s: 0.0,
                 start: Jet { position: 0.0, ..here[axis] },
-                step: BodyStep::None,
+                interpolant: BodyInterpolant::None,
                 drive: body.drive + before.paths[axis].at(s).position,
                 force: force.start.unwrap_or(body.force_at(s)),
                 force_path: force.change,
@@ -298,8 +298,8 @@ impl Carrier {
         Axis::ALL.into_iter().any(|axis| self.jumps_from(&before, s, axis, model))
     }
 
-    /// Whether what acts on a body along `axis` at the start of this segment has jumped from what acted at the time `s` of
-    /// the segment `before`, s.
+    /// Whether what acts on a body along `axis` at the start of this segment has jumped from what acted at the time `s`
+    /// of the segment `before`, s.
     fn jumps_from(&self, before: &Self, s: f64, axis: Axis, model: &Model) -> bool {
         let Some((body, was)) = before.outside(model, axis, s) else { return false };
         let Some((_, is)) = self.outside(model, axis, 0.0) else { return false };
@@ -369,13 +369,14 @@ impl Carrier {
         if self.is_body(Axis::Z) { 0.0 } else { self.paths.z.amplitude.abs() }
     }
 
-    /// The body of `model` along `axis` and what acts on it from outside at the time `s` after the start of the segment, s.
+    /// The body of `model` along `axis` and what acts on it from outside at the time `s` after the start of the
+    /// segment, s.
     pub fn outside<'a>(&self, model: &'a Model, axis: Axis, s: f64) -> Option<(&'a Body, Outside)> {
         self.outside_at(model, axis, s, self.along(axis, s))
     }
 
-    /// What acts from outside on the body of `model` along `axis`, displaced since the start of the segment as `at` says, at
-    /// the time `s` (s).
+    /// What acts from outside on the body of `model` along `axis`, displaced since the start of the segment as `at`
+    /// says, at the time `s` (s).
     pub fn outside_at<'a>(&self, model: &'a Model, axis: Axis, s: f64, at: Jet) -> Option<(&'a Body, Outside)> {
         let (body, motion) = (model.bodies[axis].as_ref()?, self.bodies[axis].as_ref()?);
         let sign = match axis {
@@ -391,19 +392,20 @@ impl Carrier {
         ))
     }
 
-    /// Displacement of the drive of a body along `axis` at the time `s` after the start of the segment, s, m; `None` where
-    /// it is no body.
+    /// Displacement of the drive of a body along `axis` at the time `s` after the start of the segment, s, m; `None`
+    /// where it is no body.
     pub fn drive(&self, axis: Axis, s: f64) -> Option<f64> {
         Some(self.bodies[axis].as_ref()?.drive + self.paths[axis].at(s).position)
     }
 
-    /// The changing part of the load or of the tangential force at the time `s` after the start of the segment, s, N; 0 where
-    /// the axis is no body.
+    /// The changing part of the load or of the tangential force at the time `s` after the start of the segment, s, N; 0
+    /// where the axis is no body.
     pub fn force(&self, axis: Axis, s: f64) -> f64 {
         self.bodies[axis].as_ref().map_or(0.0, |body| body.force_at(s))
     }
 
-    /// Sets the accelerations of the bodies at the time `s` of the segment, where a step starts, from the `forces` there.
+    /// Sets the accelerations of the bodies at the time `s` of the segment, where a step starts, from the `forces`
+    /// there.
     pub fn accelerate(&mut self, model: &Model, s: f64, forces: &Forces) {
         for axis in Axis::ALL {
             let Some((body, outside)) = self.outside(model, axis, s) else { continue };
@@ -415,9 +417,9 @@ impl Carrier {
     }
 
     /// Sets how a body along `axis` moves through the step tried last.
-    pub fn set_step(&mut self, axis: Axis, step: BodyStep) {
+    pub fn set_interpolant(&mut self, axis: Axis, interpolant: BodyInterpolant) {
         if let Some(body) = &mut self.bodies[axis] {
-            body.step = step;
+            body.interpolant = interpolant;
         }
     }
 
@@ -425,7 +427,7 @@ impl Carrier {
     pub fn take_step(&mut self, s: f64, point: &CarrierPoint) {
         for axis in Axis::ALL {
             if let Some(body) = &mut self.bodies[axis] {
-                (body.s, body.start, body.step) = (s, point[axis], BodyStep::None);
+                (body.s, body.start, body.interpolant) = (s, point[axis], BodyInterpolant::None);
             }
         }
     }

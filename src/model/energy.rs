@@ -1,5 +1,5 @@
-//! Powers and energies of the layer. E_in = Δ(T + V) + E_damper + E_maxwell + E_friction + E_impact holds exactly in the
-//! model, so its residual in a run is the run's numerical error.
+//! Powers and energies of the layer. E_in = Δ(T + V) + E_damper + E_maxwell + E_friction + E_impact holds exactly in
+//! the model, so its residual in a run is the run's numerical error.
 
 use serde::{Deserialize, Serialize};
 
@@ -112,8 +112,9 @@ impl BoundaryPowers {
         Self::with_powers(model, power, input(model, forces, carrier))
     }
 
-    /// The powers of a layer, or of a part of one, whose slipping masses have these modes, velocities along x and z (m/s) and
-    /// normal forces (N), and whose links exert the forces `on_carrier` along x and z (N) on a prescribed carrier.
+    /// The powers of a layer, or of a part of one, whose slipping masses have these modes, velocities along x and z
+    /// (m/s) and normal forces (N), and whose links exert the forces `on_carrier` along x and z (N) on a prescribed
+    /// carrier.
     pub fn from_forces(
         model: &Model,
         modes: &[Mode],
@@ -133,7 +134,8 @@ impl BoundaryPowers {
         Self { friction: power.friction(), shear: power.shear(&model.friction), input, carrier: 0.0 }
     }
 
-    /// Adds the powers of what acts on the bodies from outside, at the time `s` after the start of the `carrier`'s segment (s).
+    /// Adds the powers of what acts on the bodies from outside, at the time `s` after the start of the `carrier`'s
+    /// segment (s).
     pub fn add_bodies(&mut self, model: &Model, carrier: &Carrier, s: f64, point: &CarrierPoint) {
         for axis in Axis::ALL {
             if let Some((body, outside)) = carrier.outside_at(model, axis, s, point[axis]) {
@@ -199,13 +201,9 @@ pub fn vertical_spring_energy_at(model: &Model, state: &State, i: usize) -> f64 
 }
 
 fn spring_energy(model: &Model, state: &State, kind: LinkKind) -> f64 {
+    // ζ is counted from rest, so roughness does not stretch the links between the masses.
     let e = state.elongation(kind.axis());
-    if kind.is_lateral() {
-        // ζ is counted from rest, so roughness does not stretch the links between the masses.
-        springs_energy(model, kind, e.windows(2).map(|e| e[1] - e[0]))
-    } else {
-        springs_energy(model, kind, e.iter().copied())
-    }
+    springs_energy(model, kind, (0..kind.count(e.len())).map(|link| kind.difference(e, 0.0, link)))
 }
 
 /// Σ ½ c e², and ½ c_j (e - y_j)² of the part with frozen dashpots.

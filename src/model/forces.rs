@@ -31,8 +31,8 @@ impl LinkLaw {
     }
 }
 
-/// The laws of the links of a scene, and the part of their stiffness that belongs to replaced Maxwell elements whose dashpots
-/// are frozen at the elongation of the start, N/m.
+/// The laws of the links of a scene, and the part of their stiffness that belongs to replaced Maxwell elements whose
+/// dashpots are frozen at the elongation of the start, N/m.
 pub(super) fn link_laws(scene: &Scene, reduction: Option<&Reduction>) -> (ByLink<LinkLaw>, ByLink<f64>) {
     let mut frozen = ByLink::default();
     let mut laws = ByLink::from_fn(|kind| {
@@ -72,7 +72,8 @@ pub struct MaxwellRow {
 }
 
 impl MaxwellRow {
-    /// What is left in the spring of an element of a `way` (m) that its dashpot has `time` (s) to follow: τ/(τ + `time`) of it, m.
+    /// What is left in the spring of an element of a `way` (m) that its dashpot has `time` (s) to follow: τ/(τ +
+    /// `time`) of it, m.
     pub fn left_of(&self, way: f64, time: f64) -> f64 {
         way * self.relaxation_time / (self.relaxation_time + time)
     }
@@ -160,8 +161,8 @@ impl Forces {
         }
     }
 
-    /// Evaluates the forces of all links by these `laws`, with the forces `known` added, and their sums on the masses, but
-    /// not ė. Only links that the scene does not have are without `known` forces (N).
+    /// Evaluates the forces of all links by these `laws`, with the forces `known` added, and their sums on the masses,
+    /// but not ė. Only links that the scene does not have are without `known` forces (N).
     #[inline(always)]
     pub fn evaluate_with(&mut self, laws: &ByLink<LinkLaw>, motion: &LinkMotion<'_>, known: &ByLink<Vec<f64>>) {
         let [vertical, horizontal, lateral_x, lateral_z] = &mut self.link.0;
@@ -187,8 +188,7 @@ impl Forces {
         let k = model.masses();
         let motion = LinkMotion::new(state, carrier);
         for kind in LinkKind::ALL {
-            let links = if kind.is_lateral() { i.saturating_sub(1)..(i + 1).min(k - 1) } else { i..i + 1 };
-            for link in links.filter(|_| model.has_link[kind]) {
+            for link in kind.links_on(i, k).filter(|_| model.has_link[kind]) {
                 self.refresh_link(model, state, &motion, kind, link);
             }
         }
@@ -224,25 +224,15 @@ impl Forces {
 
     fn refresh_link(&mut self, model: &Model, state: &State, motion: &LinkMotion<'_>, kind: LinkKind, link: usize) {
         let (elongation, velocity, carrier_rate) = motion.along(kind);
-        let (e, rate) = if kind.is_lateral() {
-            (elongation[link + 1] - elongation[link], velocity[link + 1] - velocity[link])
-        } else {
-            (elongation[link], velocity[link] - carrier_rate)
-        };
+        let (e, rate) = (kind.difference(elongation, 0.0, link), kind.difference(velocity, carrier_rate, link));
         let elements = model.element_force(kind, |row| state.maxwell[row.range.start + link]);
         self.link[kind][link] = model.links[kind].force(e, rate) + elements - model.frozen_force(kind, link);
     }
 
-    /// F_x or F_z of the layer on the carrier, N. F_z is positive when the layer is compressed (e > 0, the masses are nearer
-    /// to the carrier than at rest).
+    /// F_x or F_z of the layer on the carrier, N. F_z is positive when the layer is compressed (e > 0, the masses are
+    /// nearer to the carrier than at rest).
     pub fn on_carrier(&self, axis: Axis) -> f64 {
         sum(&self.link[axis.link()])
-    }
-
-    /// Bytes that the vectors hold.
-    pub fn bytes(&self) -> usize {
-        let by_link: usize = self.link.iter().chain(&self.rate).map(Vec::len).sum();
-        (by_link + self.on_mass_x.len() + self.on_mass_z.len()) * size_of::<f64>()
     }
 }
 
@@ -439,7 +429,8 @@ mod tests {
         }
     }
 
-    /// Layers of one mass to four, with the forces of the Maxwell elements and of the frozen dashpots as the known ones.
+    /// Layers of one mass to four, with the forces of the Maxwell elements and of the frozen dashpots as the known
+    /// ones.
     #[test]
     fn forces_with_given_laws_are_those_evaluated() {
         let horizontal = SCENE.replace("lateral_x =", "horizontal = { stiffness = 4.0, damping = 0.2 },\n lateral_x =");

@@ -8,15 +8,15 @@
 //! below it (B. Lorenz et al., J. Phys.: Condens. Matter 25, 2013). Its plateau A τ_f(v_c) acts at rest too and is
 //! counted in [`FrictionLaw::shear`]; a contact that slips has the [excess](SlipCurve::excess) over it.
 //!
-//! With roughness below the profile's the shear forces act on the part A_r/A of the area alone, which depends on F_N and on
-//! the speed ([`RealArea`](super::RealArea)): at rest on A_r(F_N, v_c).
+//! With roughness below the profile's the shear forces act on the part A_r/A of the area alone, which depends on F_N
+//! and on the speed ([`RealAreaLaw`](super::RealAreaLaw)): at rest on A_r(F_N, v_c).
 //!
-//! A law is what [`FrictionLaw`] answers: T(0), its derivative by F_N, and the excess in slip with its derivative by the
-//! speed; its tangent for Newton's method, its power, the share of the shear force, and what it takes in an impact.
+//! A law is what [`FrictionLaw`] answers: T(0), its derivative by F_N, and the excess in slip with its derivative by
+//! the speed; its tangent for Newton's method, its power, the share of the shear force, and what it takes in an impact.
 
 use std::f64::consts::LN_10;
 
-use super::{AreaShare, ContactForces, Forces, Mode, Model, RealArea, State};
+use super::{AreaShare, ContactForces, Forces, Mode, Model, RealAreaLaw, State};
 use crate::math::{bracketed_root, dot, sum};
 use crate::scene::{self, Scene};
 
@@ -32,9 +32,9 @@ pub struct FrictionLaw {
     /// Whether the scene has Coulomb's friction and a shear force, so that their parts are told apart.
     has_both: bool,
     /// The excess over the shear force in slip; `None` where it does not depend on the speed.
-    rate_shear: Option<RateShear>,
+    rate_shear: Option<RateShearLaw>,
     /// The part of a contact's area that the shear force acts on; `None`: all of it.
-    real_area: Option<RealArea>,
+    real_area: Option<RealAreaLaw>,
 }
 
 /// A law of friction that is linear in the normal force, or the tangent of another: T(0) = μ F_N + `shear`.
@@ -53,20 +53,20 @@ impl FrictionLaw {
     pub fn new(scene: &Scene) -> Self {
         let coulomb = scene.friction.as_ref().and_then(|friction| friction.coulomb).unwrap_or(0.0);
         let shear = scene.shear_force().unwrap_or(0.0);
-        let rate_shear = scene.rate_shear().and_then(|law| RateShear::new(&law));
+        let rate_shear = scene.rate_shear().and_then(|law| RateShearLaw::new(&law));
         Self {
             present: coulomb > 0.0 || shear > 0.0 || rate_shear.is_some(),
             coulomb,
             shear: shear + rate_shear.map_or(0.0, |rate_shear| rate_shear.plateau()),
             has_both: scene.has_both_frictions(),
             rate_shear,
-            real_area: RealArea::new(scene),
+            real_area: RealAreaLaw::new(scene),
         }
     }
 
     /// Whether it depends on the speed of slip.
     pub fn depends_on_speed(&self) -> bool {
-        self.rate_shear.is_some() || self.real_area.as_ref().is_some_and(RealArea::depends_on_speed)
+        self.rate_shear.is_some() || self.real_area.as_ref().is_some_and(RealAreaLaw::depends_on_speed)
     }
 
     /// Whether it is linear in the normal force.
@@ -91,7 +91,7 @@ impl FrictionLaw {
 
     /// ∂T/∂F_N, 1, under F_N (N) at the `speed` of slip, m/s.
     pub fn by_normal(&self, normal: f64, speed: f64) -> f64 {
-        let strength = |law: &RateShear| law.with_slope(speed.abs()).0;
+        let strength = |law: &RateShearLaw| law.with_slope(speed.abs()).0;
         let force = self.shear + self.rate_shear.as_ref().map_or(0.0, strength);
         self.coulomb + self.real_area.as_ref().map_or(0.0, |area| area.share(normal, speed).by_normal * force)
     }
@@ -115,8 +115,8 @@ impl FrictionLaw {
         LinearFriction { normal, coulomb, shear: self.limit(normal) - coulomb * normal }
     }
 
-    /// The part of a contact's area that touches under F_N (N) at the `speed` (m/s): all of it without roughness below the
-    /// profile's.
+    /// The part of a contact's area that touches under F_N (N) at the `speed` (m/s): all of it without roughness below
+    /// the profile's.
     pub fn area_share(&self, normal: f64, speed: f64) -> AreaShare {
         let whole = AreaShare { value: 1.0, ..AreaShare::default() };
         self.real_area.as_ref().map_or(whole, |area| area.share(normal, speed))
@@ -135,8 +135,8 @@ impl FrictionLaw {
         if has_share { coulomb * (normal * by_normal / limit - 1.0) / limit } else { 0.0 }
     }
 
-    /// v_t (m/s) after an impact with the velocity v_n < 0 (m/s) along the normal: by its impulse J = -m v_n Coulomb's friction
-    /// takes μ J, and shear forces, which are finite, nothing.
+    /// v_t (m/s) after an impact with the velocity v_n < 0 (m/s) along the normal: by its impulse J = -m v_n Coulomb's
+    /// friction takes μ J, and shear forces, which are finite, nothing.
     pub fn after_impact(&self, v_t: f64, v_n: f64) -> f64 {
         (v_t.abs() + self.coulomb * v_n).max(0.0).copysign(v_t)
     }
@@ -144,7 +144,7 @@ impl FrictionLaw {
 
 /// The law A τ_f(v) of one mass in contact: its plateau A τ_f(v_c) and its excess over that.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RateShear {
+pub struct RateShearLaw {
     /// A τ_f0, N.
     largest: f64,
     /// A τ_f(v_c), N.
@@ -165,7 +165,7 @@ const SPEED_ACCURACY: f64 = 1e-3;
 /// Changes up to this share of the speed are taken along the tangent instead of the curve.
 const STRAIGHT: f64 = 0.1;
 
-impl RateShear {
+impl RateShearLaw {
     /// The law of a scene; `None` where it has no force.
     pub fn new(law: &scene::RateShear) -> Option<Self> {
         let largest = law.force.unwrap_or(0.0);
@@ -208,8 +208,8 @@ impl RateShear {
     }
 }
 
-/// The excess of the friction in slip over that at rest, over the speed in the direction of slip, of one contact under a
-/// normal force that is held. It is odd, so that a mass that turns round is braked before its mode changes.
+/// The excess of the friction in slip over that at rest, over the speed in the direction of slip, of one contact under
+/// a normal force that is held. It is odd, so that a mass that turns round is braked before its mode changes.
 #[derive(Clone, Copy, Debug)]
 pub struct SlipCurve<'a> {
     law: &'a FrictionLaw,
@@ -229,7 +229,7 @@ impl SlipCurve<'_> {
 
     /// Bounds of the excess, N.
     fn bounds(&self) -> (f64, f64) {
-        let (least, most) = self.law.rate_shear.as_ref().map_or((0.0, 0.0), RateShear::bounds);
+        let (least, most) = self.law.rate_shear.as_ref().map_or((0.0, 0.0), RateShearLaw::bounds);
         match &self.law.real_area {
             None => (least, most),
             Some(area) => {
@@ -241,7 +241,7 @@ impl SlipCurve<'_> {
 
     /// Speeds that divide the curve into parts in which it bends one way, m/s.
     fn marks(&self) -> [f64; 2] {
-        self.law.rate_shear.as_ref().map_or([self.creep_speed(); 2], RateShear::marks)
+        self.law.rate_shear.as_ref().map_or([self.creep_speed(); 2], RateShearLaw::marks)
     }
 
     /// The excess, N, and its derivative by the speed, N s/m, at the `speed` in the direction of slip, m/s.
@@ -260,8 +260,9 @@ impl SlipCurve<'_> {
         self.with_slope(speed).0
     }
 
-    /// A correction `by` (m/s) of Newton's method at `speed`, taken along the curve and not along its tangent: the speed
-    /// v, m/s, at which `weight` (v - `speed`) and the change of the excess have the value that the tangent predicts.
+    /// A correction `by` (m/s) of Newton's method at `speed`, taken along the curve and not along its tangent: the
+    /// speed v, m/s, at which `weight` (v - `speed`) and the change of the excess have the value that the tangent
+    /// predicts.
     ///
     /// The curve is nearly a logarithm: at creep speeds its tangent is steep and valid over a short range only, and
     /// corrections along it would alternate between both ends of the decades.
@@ -275,8 +276,8 @@ impl SlipCurve<'_> {
         self.balance(speed, here + (weight + slope) * by, weight)
     }
 
-    /// The speed v, m/s, at which `weight` (v - `from`) and the excess add up to `force` (N). Where friction falls faster than
-    /// the weight there may be three: then it is the first one from `from`, as the motion reaches it.
+    /// The speed v, m/s, at which `weight` (v - `from`) and the excess add up to `force` (N). Where friction falls
+    /// faster than the weight there may be three: then it is the first one from `from`, as the motion reaches it.
     pub fn balance(&self, from: f64, force: f64, weight: f64) -> f64 {
         let free = from + force / weight;
         if free < 0.0 {
@@ -298,10 +299,10 @@ impl SlipCurve<'_> {
         speed(bracketed_root(|y| residual(speed(y)), (bracket[0], bracket[1]), SPEED_ACCURACY))
     }
 
-    /// The steepest fall of friction up to the `speed` of slip, m/s, by the real area that shrinks: ∂T/∂v, N s/m, 0 where
-    /// friction does not fall.
+    /// The steepest fall of friction up to the `speed` of slip, m/s, by the real area that shrinks: ∂T/∂v, N s/m, 0
+    /// where friction does not fall.
     pub fn steepest_fall(&self, speed: f64) -> f64 {
-        let falls = self.law.real_area.iter().flat_map(RealArea::speeds).take_while(|&at| at <= speed);
+        let falls = self.law.real_area.iter().flat_map(RealAreaLaw::speeds).take_while(|&at| at <= speed);
         falls.map(|at| self.with_slope(at).1).fold(0.0, f64::min)
     }
 }
@@ -351,7 +352,8 @@ impl FrictionPower {
         power
     }
 
-    /// Under a linear law of friction: of masses with these σ v_t (m/s; 0 of those that do not slip) and normal forces (N).
+    /// Under a linear law of friction: of masses with these σ v_t (m/s; 0 of those that do not slip) and normal forces
+    /// (N).
     pub fn from_linear_law(law: &FrictionLaw, slip_speeds: &[f64], normal: &[f64]) -> Self {
         let coulomb = law.coulomb * dot(slip_speeds, normal);
         let shear = if law.shear > 0.0 { law.shear * sum(slip_speeds) } else { 0.0 };
@@ -402,7 +404,7 @@ mod tests {
     const FORCE: f64 = 3.0e-4;
 
     fn friction(law: &scene::RateShear) -> FrictionLaw {
-        let rate_shear = RateShear::new(law);
+        let rate_shear = RateShearLaw::new(law);
         let shear = rate_shear.map_or(0.0, |law| law.plateau);
         FrictionLaw { present: true, coulomb: 0.0, shear, has_both: false, rate_shear, real_area: None }
     }

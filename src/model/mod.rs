@@ -1,10 +1,10 @@
-//! The mechanical model: the layer, its links, the profile and friction as numbers to compute with (`Model`), the layer's
-//! state (`State`), the carrier's motion (`Carrier`), the forces of the links (`Forces`) and in the contacts
+//! The mechanical model: the layer, its links, the profile and friction as numbers to compute with (`Model`), the
+//! layer's state (`State`), the carrier's motion (`Carrier`), the forces of the links (`Forces`) and in the contacts
 //! (`ContactForces`), and the energies.
 
 mod carrier;
 mod contact;
-mod ends;
+mod end_forces;
 mod energy;
 mod forces;
 mod friction;
@@ -14,13 +14,13 @@ mod scales;
 mod state;
 mod tangents;
 
-pub use carrier::{Body, BodyEnergy, BodyStart, BodyStep, Carrier, CarrierPoint, CarrierPosition, Outside};
+pub use carrier::{Body, BodyEnergy, BodyInterpolant, BodyStart, Carrier, CarrierPoint, CarrierPosition, Outside};
 pub use contact::ContactForces;
-pub use ends::EndForces;
+pub use end_forces::EndForces;
 pub use energy::{BoundaryPowers, ChannelEnergies, Powers, elastic_energy, kinetic_energy, vertical_spring_energy_at};
 pub use forces::{Forces, LinkLaw, LinkMotion, MaxwellRow};
-pub use friction::{FrictionLaw, FrictionPower, LinearFriction, RateShear, SlipCurve};
-pub use real_area::{AreaShare, RealArea};
+pub use friction::{FrictionLaw, FrictionPower, LinearFriction, RateShearLaw, SlipCurve};
+pub use real_area::{AreaShare, RealAreaLaw};
 pub use reduction::{Reduction, Replaced, Replacement};
 pub use state::{Mode, State};
 pub use tangents::{Tangents, TangentsOf};
@@ -84,8 +84,8 @@ pub struct Model {
     pub has_link: ByLink<bool>,
     /// The laws of the links, 0 of absent ones.
     pub links: ByLink<LinkLaw>,
-    /// Part of the stiffness that belongs to replaced Maxwell elements whose dashpots are frozen at the elongation of the start,
-    /// N/m.
+    /// Part of the stiffness that belongs to replaced Maxwell elements whose dashpots are frozen at the elongation of
+    /// the start, N/m.
     pub frozen_stiffness: ByLink<f64>,
     /// The Maxwell elements: one row for each element of each kind of link.
     pub rows: Vec<MaxwellRow>,
@@ -102,8 +102,8 @@ pub struct Model {
     pub friction: FrictionLaw,
     /// How the dashpots start.
     pub initial: Initial,
-    /// Elongations of the vertical links at the start, m: those of the frozen dashpots, see [`frozen_stiffness`](Self::frozen_stiffness). Empty
-    /// where there are none.
+    /// Elongations of the vertical links at the start, m: those of the frozen dashpots, see
+    /// [`frozen_stiffness`](Self::frozen_stiffness). Empty where there are none.
     pub frozen: Vec<f64>,
 }
 
@@ -135,8 +135,8 @@ impl Model {
         }
     }
 
-    /// Takes over what depends on the temperature from `scene`, this model's at another one: relaxation times, viscosity, the
-    /// speeds of the friction law and the modulus of the fine roughness. Stiffnesses stay.
+    /// Takes over what depends on the temperature from `scene`, this model's at another one: relaxation times,
+    /// viscosity, the speeds of the friction law and the modulus of the fine roughness. Stiffnesses stay.
     pub fn set_temperature(&mut self, scene: &Scene) {
         let Self { links, frozen_stiffness, rows, relaxation_times, friction, .. } = Self::new(scene);
         (self.links, self.frozen_stiffness, self.rows) = (links, frozen_stiffness, rows);
@@ -149,8 +149,8 @@ impl Model {
         Self::new(&Scene::parse(text, "test.toml".as_ref()).unwrap_or_else(|error| panic!("{error}")))
     }
 
-    /// Freezes the dashpots that have [frozen springs](Self::frozen_stiffness) at their links' elongations at the start, m:
-    /// `carrier` is u and w there, m. A mass that would lie under the profile is lifted onto it.
+    /// Freezes the dashpots that have [frozen springs](Self::frozen_stiffness) at their links' elongations at the
+    /// start, m: `carrier` is u and w there, m. A mass that would lie under the profile is lifted onto it.
     pub fn freeze_dashpots(&mut self, carrier: ByAxis<f64>) {
         let profile_position = self.profile.reduce(carrier.x);
         for i in 0..self.frozen.len() {
@@ -175,7 +175,7 @@ impl Model {
 
     /// y of the frozen dashpots of one link of a kind that has some, m.
     pub fn frozen_dashpot(&self, kind: LinkKind, link: usize) -> f64 {
-        if kind.is_lateral() { self.frozen[link + 1] - self.frozen[link] } else { self.frozen[link] }
+        kind.difference(&self.frozen, 0.0, link)
     }
 
     /// c_j y_j of the frozen dashpots of one link of a kind, N; 0 where it has none.

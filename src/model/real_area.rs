@@ -18,7 +18,7 @@ const NEARBY: f64 = 1.0e-4;
 
 /// The law of one mass in contact.
 #[derive(Clone, Debug)]
-pub struct RealArea {
+pub struct RealAreaLaw {
     /// A, m².
     area: f64,
     /// v_c, m/s: up to this speed the area is that at rest.
@@ -46,7 +46,7 @@ const PER_DECADE: f64 = 16.0;
 /// The table ends where the modulus has come to its limits: this factor beyond the rates 1/τ of the material.
 const MARGIN: f64 = 1.0e4;
 
-impl RealArea {
+impl RealAreaLaw {
     /// The law of a scene; `None` where the scene has no roughness below its profile.
     pub fn new(scene: &Scene) -> Option<Self> {
         let roughness = scene.fine_roughness().filter(|roughness| roughness.gradient() > 0.0)?;
@@ -127,8 +127,8 @@ impl RealArea {
     }
 }
 
-/// Limits the slopes so that no cubic between two entries falls: to three times the secants beside (F. N. Fritsch and R. E.
-/// Carlson, SIAM J. Numer. Anal. 17, 1980).
+/// Limits the slopes so that no cubic between two entries falls: to three times the secants beside (F. N. Fritsch and
+/// R. E. Carlson, SIAM J. Numer. Anal. 17, 1980).
 fn keep_monotone(x: &[f64], y: &[f64], slopes: &mut [f64]) {
     let secant = |i: usize| (y[i + 1] - y[i]) / (x[i + 1] - x[i]);
     for i in 0..slopes.len().saturating_sub(1) {
@@ -148,7 +148,7 @@ fn log_speeds(low: f64, high: f64) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    fn law(real_area: &str, prony: &str) -> RealArea {
+    fn law(real_area: &str, prony: &str) -> RealAreaLaw {
         let text = format!(
             "name = 'r'\nsurface = {{ kind = 'flat' }}\nfmu = {{ outputs = [] }}
              layer = {{ masses = 2, spacing = 1e-4, foundation = 'half_space', width = 1e-2 }}
@@ -156,7 +156,7 @@ mod tests {
              friction = {{ shear_strength = 1e6, real_area = {real_area} }}"
         );
         let scene = Scene::parse(&text, "real-area.toml".as_ref()).unwrap_or_else(|error| unreachable!("{error}"));
-        RealArea::new(&scene).unwrap_or_else(|| unreachable!("no law"))
+        RealAreaLaw::new(&scene).unwrap_or_else(|| unreachable!("no law"))
     }
 
     const PRONY: &str = "[{ modulus = 5e7, relaxation_time = 1e-5 }, { modulus = 1e6, relaxation_time = 1e-2 }]";
@@ -187,7 +187,8 @@ mod tests {
             let storage = 3e6 + terms.iter().map(|&term| part(term).0).sum::<f64>();
             let loss: f64 = terms.iter().map(|&term| part(term).1).sum();
             let expected = storage.hypot(loss) / 0.75 * 0.8;
-            // The error of a cubic at 16 entries a decade, h⁴/384 times the fourth derivative, which is of the order of one.
+            // The error of a cubic at 16 entries a decade, h⁴/384 times the fourth derivative, which is of the order of
+            // one.
             assert!((law.stress(speed).0 / expected - 1.0).abs() < 5e-6, "{speed}");
         }
     }

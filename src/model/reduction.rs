@@ -1,41 +1,41 @@
 //! Maxwell elements that act like a spring or like a damper on the time scales of a scene, and are replaced by one
 //! (`solver.reduce`).
 //!
-//! **Long relaxation times.** For an element that starts with its dashpot at y(0), let b = e - y(0) and z = y - y(0): ż = (b - z)/τ and
-//! z(0) = 0, so |z(t)| ≤ (1 - e^{-t/τ}) max|b|. Its force c_j (b - z) is that of a spring at rest at y(0), and through
-//! a run of length T the two differ by at most
+//! **Long relaxation times.** For an element that starts with its dashpot at y(0), let b = e - y(0) and z = y - y(0): ż
+//! = (b - z)/τ and z(0) = 0, so |z(t)| ≤ (1 - e^{-t/τ}) max|b|. Its force c_j (b - z) is that of a spring at rest at
+//! y(0), and through a run of length T the two differ by at most
 //!
 //!   c_j (1 - e^{-T/τ}) max|b|     (≈ T/τ of the spring's own force where τ ≫ T)
 //!
 //! whatever the motion, impacts included. In a run longer than T the error may exceed the bound in proportion.
 //!
-//! **Short relaxation times.** Let δ = a - τ ė: δ̇ = -δ/τ - τ ë, so |δ(t)| ≤ |δ(0)| e^{-t/τ} + τ² max|ë|. The element's force c_j a and
-//! that of a damper c_j τ_j differ by c_j δ: in motion up to the frequency ω, where |ë| ≤ ω² |e|, by at most
+//! **Short relaxation times.** Let δ = a - τ ė: δ̇ = -δ/τ - τ ë, so |δ(t)| ≤ |δ(0)| e^{-t/τ} + τ² max|ë|. The element's
+//! force c_j a and that of a damper c_j τ_j differ by c_j δ: in motion up to the frequency ω, where |ë| ≤ ω² |e|, by at
+//! most
 //!
 //!   c_j (ωτ)² max|e|
 //!
-//! A jump of ė, by an impact or a kink of the carrier's motion, excites all frequencies, and no bound of this kind holds
-//! right after it: it adds c_j τ_j |Δė|, which decays as e^{-t/τ} and is an impulse of c_j τ_j² |Δė|. An element that
-//! starts undeformed under a mass lifted onto the profile has the force c_j e, an impulse of c_j τ_j e that no damper
-//! has; so in a layer that starts undeformed no element becomes a damper, nor in one under a body that is free along x, whose
-//! speed is not known. The frequency ω is the largest of: the
-//! carrier's sines, 2πf; the passage along the profile, v q, with the carrier's largest speed v and the profile's
-//! shortest waves, q = max|z_r'''|/max|z_r''| (exact for a sine; at most half a wave between two data points); and the
-//! layer's own.
+//! A jump of ė, by an impact or a kink of the carrier's motion, excites all frequencies, and no bound of this kind
+//! holds right after it: it adds c_j τ_j |Δė|, which decays as e^{-t/τ} and is an impulse of c_j τ_j² |Δė|. An element
+//! that starts undeformed under a mass lifted onto the profile has the force c_j e, an impulse of c_j τ_j e that no
+//! damper has; so in a layer that starts undeformed no element becomes a damper, nor in one under a body that is free
+//! along x, whose speed is not known. The frequency ω is the largest of: the carrier's sines, 2πf; the passage along
+//! the profile, v q, with the carrier's largest speed v and the profile's shortest waves, q = max|z_r'''|/max|z_r''|
+//! (exact for a sine; at most half a wave between two data points); and the layer's own.
 //!
 //! **The layer's own frequency** is the largest ω at which the links balance a mass's inertia, m ω² = |K*(ω)|, with
 //! K* = K*_carrier + 4 K*_lateral: neighbours move against each other, the chain's highest mode. It is not glassy:
 //! elements with much shorter relaxation times have relaxed. The curvature of the profile under load is not counted.
 //!
 //! **Selection.** Link by link, smallest bounds first, as long as their sum is at most `reduce` times the link's
-//! storage stiffness at the run's slowest frequency, K' = c + Σ_j c_j (τ_j/T)²/(1 + (τ_j/T)²). It is below |K*(ω)|
-//! for every ω from 1/T on: the smallest force of the link for a unit of motion. So `reduce` bounds the error of each
+//! storage stiffness at the run's slowest frequency, K' = c + Σ_j c_j (τ_j/T)²/(1 + (τ_j/T)²). It is below |K*(ω)| for
+//! every ω from 1/T on: the smallest force of the link for a unit of motion. So `reduce` bounds the error of each
 //! link's force, for the same motion, as a share of that force. The effect on the layer's motion is not bounded, as for
-//! any other parameter. The glassy stiffness would be a poor reference: that of rubber is a thousand times the stiffness
-//! that the link has in the run.
+//! any other parameter. The glassy stiffness would be a poor reference: that of rubber is a thousand times the
+//! stiffness that the link has in the run.
 //!
-//! Without an `[[excitation]]` neither the run's length nor the carrier's motion is known: then no element counts as long
-//! (T is infinite), and ω is the layer's own.
+//! Without an `[[excitation]]` neither the run's length nor the carrier's motion is known: then no element counts as
+//! long (T is infinite), and ω is the layer's own.
 
 use std::f64::consts::{PI, TAU};
 
@@ -142,7 +142,8 @@ fn carrier_frequency(scene: &Scene) -> f64 {
     paths.map(|path| TAU / path.period()).fold(0.0, f64::max)
 }
 
-/// The highest frequency of the passage of the profile's shortest waves under a mass that moves with the carrier, rad/s.
+/// The highest frequency of the passage of the profile's shortest waves under a mass that moves with the carrier,
+/// rad/s.
 fn passage_frequency(scene: &Scene) -> f64 {
     let speeds =
         scene.excitation.iter().map(|phase| phase.u.rate.abs() + phase.u.amplitude.abs() * TAU / phase.u.period());

@@ -12,8 +12,8 @@ impl Model {
         on_mass(self.glassy)
     }
 
-    /// Stiffness of the links on one mass that are no [rods](Self::is_rod), N/m, with the dashpots at rest: it relates an error of a position to one of the
-    /// forces.
+    /// Stiffness of the links on one mass that are no [rods](Self::is_rod), N/m, with the dashpots at rest: it relates
+    /// an error of a position to one of the forces.
     pub fn mass_stiffness_without_rods(&self) -> f64 {
         let largest = ROD_FREQUENCY * ROD_FREQUENCY * self.reference_stiffness();
         on_mass(self.glassy.map(|stiffness| if stiffness > largest { 0.0 } else { stiffness }))
@@ -30,8 +30,8 @@ impl Model {
                 || damping > ROD_FREQUENCY * (reference * self.mass).sqrt())
     }
 
-    /// Long-term stiffness of the vertical links, or the stiffness of the softest other links where that is larger, N/m;
-    /// `None` unless the vertical Maxwell elements are far stiffer than that. Where they are and have relaxed, a
+    /// Long-term stiffness of the vertical links, or the stiffness of the softest other links where that is larger,
+    /// N/m; `None` unless the vertical Maxwell elements are far stiffer than that. Where they are and have relaxed, a
     /// position within its tolerance does not determine the force that presses a mass on.
     pub fn long_term_stiffness(&self) -> Option<f64> {
         let elements: f64 = self.rows_of(LinkKind::Vertical).map(|row| row.stiffness).sum();
@@ -49,14 +49,14 @@ impl Model {
         on_mass(stiffness)
     }
 
-    /// c + Σ c_j of the links of `kind` as they are in this model, N/m: replaced Maxwell elements count as what they are
-    /// replaced by.
+    /// c + Σ c_j of the links of `kind` as they are in this model, N/m: replaced Maxwell elements count as what they
+    /// are replaced by.
     pub fn instantaneous_stiffness(&self, kind: LinkKind) -> f64 {
         self.links[kind].stiffness + self.rows_of(kind).map(|row| row.stiffness).sum::<f64>()
     }
 
-    /// The stiffness that the others are compared with, N/m: that of the vertical links, whose elongation is prescribed,
-    /// or of the softest others where these are stiffer.
+    /// The stiffness that the others are compared with, N/m: that of the vertical links, whose elongation is
+    /// prescribed, or of the softest others where these are stiffer.
     fn reference_stiffness(&self) -> f64 {
         self.glassy[LinkKind::Vertical].max(self.softest_other_link())
     }
@@ -111,8 +111,9 @@ impl Model {
         (square.sqrt(), damping)
     }
 
-    /// The frequency of the body along `axis` on the glassy springs of the layer and on its drive, rad/s; the rate of its
-    /// dampers, 1/s, where there are no springs, and that of a mass where there are no dampers either; 1 without a body.
+    /// The frequency of the body along `axis` on the glassy springs of the layer and on its drive, rad/s; the rate of
+    /// its dampers, 1/s, where there are no springs, and that of a mass where there are no dampers either; 1 without a
+    /// body.
     pub fn body_frequency(&self, axis: Axis) -> f64 {
         let Some(body) = &self.bodies[axis] else { return 1.0 };
         let (kind, masses) = (axis.link(), self.masses() as f64);
@@ -145,5 +146,6 @@ fn on_mass(ByLink([vertical, horizontal, lateral_x, lateral_z]): ByLink<f64>) ->
 /// lateral links and that of those to the carrier; its dampers are critical or weaker.
 const ROD_FREQUENCY: f64 = 100.0;
 
-/// Iterations for the frequency of the horizontal oscillation: each excludes the elements that have relaxed at the frequency so far.
+/// Iterations for the frequency of the horizontal oscillation: each excludes the elements that have relaxed at the
+/// frequency so far.
 const MAX_ITERATIONS: usize = 30;

@@ -70,8 +70,9 @@ pub struct State {
     pub velocity_x: Vec<f64>,
     /// ż_i, m/s.
     pub velocity_z: Vec<f64>,
-    /// a_j = e - y_j of all Maxwell elements, m, at the indices [`MaxwellRow::range`](super::MaxwellRow::range). The force
-    /// of an element is c_j a_j. da_j/dt = ė - a_j/τ_j keeps all digits also for a short τ_j, where e - y_j would cancel.
+    /// a_j = e - y_j of all Maxwell elements, m, at the indices [`MaxwellRow::range`](super::MaxwellRow::range). The
+    /// force of an element is c_j a_j. da_j/dt = ė - a_j/τ_j keeps all digits also for a short τ_j, where e - y_j would
+    /// cancel.
     pub maxwell: Vec<f64>,
     /// The contact modes.
     pub mode: Vec<Mode>,

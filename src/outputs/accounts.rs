@@ -148,8 +148,8 @@ impl Counters {
         }
     }
 
-    /// The largest of the estimated errors of F_x, F_z and the bodies' displacements, each over its largest value so far; 0
-    /// without an estimate.
+    /// The largest of the estimated errors of F_x, F_z and the bodies' displacements, each over its largest value so
+    /// far; 0 without an estimate.
     pub fn force_error(&self) -> f64 {
         self.forces.iter().chain(&self.ways).map(LargestError::relative).fold(0.0, f64::max)
     }

@@ -129,7 +129,7 @@ pub enum Tangent {
 
 /// The type of a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum OutputType {
     /// A Real, continuous.
     Real,
     /// An Integer, discrete.
@@ -148,7 +148,7 @@ pub struct Variable {
     /// The unit of its values.
     pub unit: Unit,
     /// Real or Integer.
-    pub kind: Kind,
+    pub kind: OutputType,
     /// What it is, in a few words.
     pub description: String,
     row: &'static OutputRow,

@@ -52,14 +52,14 @@ pub struct Snapshot<'a> {
     /// The time, s.
     pub time: f64,
     /// F_x and F_z, N.
-    pub on_carrier: (f64, f64),
+    pub on_carrier: ByAxis<f64>,
     /// P_diss, W, where it is known without the layer.
     pub dissipated_power: Option<f64>,
     /// The layer's state and the forces in it.
     pub layer: LayerView<'a>,
     /// The carrier's rates.
     pub carrier: CarrierPoint,
-    /// The carrier's motion, and the time since the start of its piece, s.
+    /// The carrier's motion, and the time since the start of its segment, s.
     pub motion: (&'a Carrier, f64),
     /// Displacement of the carrier: u and w, m.
     pub displacement: ByAxis<f64>,
@@ -164,7 +164,7 @@ impl<'a> Snapshot<'a> {
     /// The quantities whose error is estimated; E_diss where it is `tracked`.
     pub(crate) fn monitored(&self, tracked: bool) -> Monitored {
         Monitored {
-            forces: [self.on_carrier.0, self.on_carrier.1],
+            forces: [self.on_carrier.x, self.on_carrier.z],
             ways: self.ways(),
             dissipated: tracked.then(|| self.energies.dissipated()),
         }
@@ -195,8 +195,8 @@ impl<'a> Snapshot<'a> {
 
     /// |F_x|/F_z, 0 where F_z ≤ 0; at most the largest number where F_z is next to nothing.
     pub(super) fn friction_coefficient(&self) -> f64 {
-        let normal = self.on_carrier.1;
-        if normal > 0.0 { (self.on_carrier.0.abs() / normal).min(f64::MAX) } else { 0.0 }
+        let normal = self.on_carrier.z;
+        if normal > 0.0 { (self.on_carrier.x.abs() / normal).min(f64::MAX) } else { 0.0 }
     }
 
     /// The number of masses whose mode passes `test`.
@@ -253,7 +253,8 @@ impl<'a> Snapshot<'a> {
         if self.model.friction.present { contact.friction(self.model, mode, v) } else { 0.0 }
     }
 
-    /// The part of the `friction` in a `contact` (N) that is shear force, N: of a sticking mass, as the two limits share it.
+    /// The part of the `friction` in a `contact` (N) that is shear force, N: of a sticking mass, as the two limits
+    /// share it.
     fn shear(&self, mode: Mode, contact: &ContactForces, friction: f64) -> f64 {
         match mode {
             Mode::Stick => self.model.friction.shear_share(contact.normal) * friction,
@@ -343,9 +344,9 @@ impl ContactChange {
 /// The directional derivatives.
 impl Snapshot<'_> {
     /// δF_x = -k (c + Σ c_j) δu of the horizontal links, δF_z likewise of the vertical ones.
-    pub(super) fn force_changes(&self, shift: &CarrierShift) -> (f64, f64) {
+    pub(super) fn force_changes(&self, shift: &CarrierShift) -> ByAxis<f64> {
         let k = self.model.masses() as f64;
-        (-k * shift.on_mass.x, -k * shift.on_mass.z)
+        shift.on_mass.map(|change| -k * change)
     }
 
     /// δR = K δu_d of the drive along `axis`.
@@ -366,11 +367,11 @@ impl Snapshot<'_> {
 
     /// Of |F_x|/F_z; 0 where F_x = 0, the kink of |F_x|.
     pub(super) fn friction_coefficient_change(&self, shift: &CarrierShift) -> f64 {
-        let (x, z) = (self.on_carrier.0, self.on_carrier.1);
+        let ByAxis { x, z } = self.on_carrier;
         if z <= 0.0 || x == 0.0 {
             return 0.0;
         }
-        let (dx, dz) = self.force_changes(shift);
+        let ByAxis { x: dx, z: dz } = self.force_changes(shift);
         (x.signum() * dx - x.abs() * dz / z) / z
     }
 

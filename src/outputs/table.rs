@@ -5,9 +5,9 @@
 //! # Direct dependencies
 //!
 //! Which outputs depend directly on the inputs, with the states frozen? The states are the positions and velocities of
-//! the masses, the dashpots' y_j and the contact modes, all in the inertial frame. The inputs u and w then enter through
-//! the elongations ξ_i - u of the horizontal and ζ_i - w of the vertical links alone; rates of the inputs are no inputs.
-//! So:
+//! the masses, the dashpots' y_j and the contact modes, all in the inertial frame. The inputs u and w then enter
+//! through the elongations ξ_i - u of the horizontal and ζ_i - w of the vertical links alone; rates of the inputs are
+//! no inputs. So:
 //!
 //! - F = c e + d ė + Σ c_j (e - y_j) of a carrier link, and with it F_x or F_z, depends on its input where the link has
 //!   a spring or Maxwell elements. A damper alone gives no dependency: ė is a rate.
@@ -23,7 +23,7 @@
 use std::mem::discriminant;
 
 use super::snapshot::{CarrierShift, ContactChange, Evaluation};
-use super::{Dependencies, Kind, Output, Tangent};
+use super::{Dependencies, Output, OutputType, Tangent};
 use crate::model::Mode;
 use crate::scene::{Axis, CarrierBody, Input, Link, LinkKind, OutputGroup, Scene, Unit};
 
@@ -32,7 +32,7 @@ pub(super) struct OutputRow {
     pub group: OutputGroup,
     /// Of the variable; of a quantity of single masses the part behind `element[i].`.
     pub name: &'static str,
-    pub kind: Kind,
+    pub kind: OutputType,
     pub unit: Unit,
     pub description: &'static str,
     /// Whether a scene has it: a channel of dissipation, say, that the scene cannot have is no variable.
@@ -146,7 +146,7 @@ const fn layer(
     output: Output,
     group: OutputGroup,
     name: &'static str,
-    kind: Kind,
+    kind: OutputType,
     unit: Unit,
     description: &'static str,
     value: fn(&Evaluation<'_, '_>) -> f64,
@@ -159,7 +159,7 @@ const fn layer(
 const fn mass(
     output: fn(usize) -> Output,
     name: &'static str,
-    kind: Kind,
+    kind: OutputType,
     unit: Unit,
     description: &'static str,
     value: fn(&Evaluation<'_, '_>, usize) -> f64,
@@ -169,10 +169,24 @@ const fn mass(
     OutputRow { group, name, kind, unit, description, exists: always, dependencies: none, scope }
 }
 
+/// The row of the derivative of a quantity by an input, both at the end of a communication step: the quantity and its
+/// name in the variable, the input and its name, the unit, the quantity in words, where its value is, and the axis of
+/// the body that has it.
+#[rustfmt::skip]
+macro_rules! tangent {
+    ($tangent:ident, $name:literal, $input:ident, $by:literal, $unit:ident, $words:literal,
+     $part:ident . $field:tt $([$order:literal])? $(, on carrier.$axis:ident)?) => {
+        layer(Output::Tangent(Tangent::$tangent, Input::$input), Tangents, concat!("tangent.d", $name, "_d", $by), Real, $unit,
+            concat!("Derivative of ", $words, " at the end of a communication step with respect to ", $by, " there"),
+            |now| now.at.tangents.by(Input::$input).$part.$field$([$order])?)
+            .only_where(|scene| scene.inputs().contains(&Input::$input) $(&& scene.carrier.$axis.is_some())?)
+    };
+}
+
 /// All outputs, in the order of the result files within their groups.
 #[rustfmt::skip]
 pub(super) static TABLE: [OutputRow; 70] = {
-    use Kind::{Integer, Real};
+    use OutputType::{Integer, Real};
     use OutputGroup::{Carrier, Contact, Dissipation, Energy, Forces, Friction, Solver, Tangent as Tangents};
     use Unit::{
         Joule, Meter, MeterPerNewton, MeterPerNewtonSecond, MeterPerSecond, Newton, NewtonPerMeter, One, PerSecond, Second,
@@ -180,11 +194,11 @@ pub(super) static TABLE: [OutputRow; 70] = {
     };
     [
         layer(Output::ForceX, Forces, "F_x", Real, Newton, "Force of the layer on the carrier along x",
-            |now| now.at.on_carrier.0)
-            .depending(elastic_x, |now, shift| now.at.force_changes(shift).0),
+            |now| now.at.on_carrier.x)
+            .depending(elastic_x, |now, shift| now.at.force_changes(shift).x),
         layer(Output::ForceZ, Forces, "F_z", Real, Newton, "Force of the layer on the carrier along z, positive when compressed",
-            |now| now.at.on_carrier.1)
-            .depending(elastic_z, |now, shift| now.at.force_changes(shift).1),
+            |now| now.at.on_carrier.z)
+            .depending(elastic_z, |now, shift| now.at.force_changes(shift).z),
         layer(Output::CarrierU, Carrier, "carrier.u", Real, Meter, "Displacement of the carrier along x",
             |now| now.at.displacement.x)
             .only_where(|scene| scene.carrier.x.is_some()),
@@ -283,78 +297,30 @@ pub(super) static TABLE: [OutputRow; 70] = {
         layer(Output::EnergyResidual, Energy, "energy.residual", Real, Joule, "Residual of the energy balance: the numerical error of the run",
             |now| now.energy_residual())
             .depending(springs, |now, shift| -(now.at.elastic_energy_change(shift) + now.at.drive_energy_change(shift))),
-        layer(Output::Tangent(Tangent::ForceX, Input::U), Tangents, "tangent.dF_x_du", Real, NewtonPerMeter, "Derivative of F_x at the end of a communication step with respect to u there",
-            |now| now.at.tangents.by(Input::U).force.x)
-            .only_where(|scene| scene.inputs().contains(&Input::U)),
-        layer(Output::Tangent(Tangent::ForceX, Input::W), Tangents, "tangent.dF_x_dw", Real, NewtonPerMeter, "Derivative of F_x at the end of a communication step with respect to w there",
-            |now| now.at.tangents.by(Input::W).force.x)
-            .only_where(|scene| scene.inputs().contains(&Input::W)),
-        layer(Output::Tangent(Tangent::ForceX, Input::Load), Tangents, "tangent.dF_x_dload", Real, One, "Derivative of F_x at the end of a communication step with respect to load there",
-            |now| now.at.tangents.by(Input::Load).force.x)
-            .only_where(|scene| scene.inputs().contains(&Input::Load)),
-        layer(Output::Tangent(Tangent::ForceX, Input::Pull), Tangents, "tangent.dF_x_dpull", Real, One, "Derivative of F_x at the end of a communication step with respect to pull there",
-            |now| now.at.tangents.by(Input::Pull).force.x)
-            .only_where(|scene| scene.inputs().contains(&Input::Pull)),
-        layer(Output::Tangent(Tangent::ForceZ, Input::U), Tangents, "tangent.dF_z_du", Real, NewtonPerMeter, "Derivative of F_z at the end of a communication step with respect to u there",
-            |now| now.at.tangents.by(Input::U).force.z)
-            .only_where(|scene| scene.inputs().contains(&Input::U)),
-        layer(Output::Tangent(Tangent::ForceZ, Input::W), Tangents, "tangent.dF_z_dw", Real, NewtonPerMeter, "Derivative of F_z at the end of a communication step with respect to w there",
-            |now| now.at.tangents.by(Input::W).force.z)
-            .only_where(|scene| scene.inputs().contains(&Input::W)),
-        layer(Output::Tangent(Tangent::ForceZ, Input::Load), Tangents, "tangent.dF_z_dload", Real, One, "Derivative of F_z at the end of a communication step with respect to load there",
-            |now| now.at.tangents.by(Input::Load).force.z)
-            .only_where(|scene| scene.inputs().contains(&Input::Load)),
-        layer(Output::Tangent(Tangent::ForceZ, Input::Pull), Tangents, "tangent.dF_z_dpull", Real, One, "Derivative of F_z at the end of a communication step with respect to pull there",
-            |now| now.at.tangents.by(Input::Pull).force.z)
-            .only_where(|scene| scene.inputs().contains(&Input::Pull)),
-        layer(Output::Tangent(Tangent::U, Input::U), Tangents, "tangent.dcarrier_u_du", Real, One, "Derivative of the carrier's u at the end of a communication step with respect to u there",
-            |now| now.at.tangents.by(Input::U).body.x[0])
-            .only_where(|scene| scene.inputs().contains(&Input::U) && scene.carrier.x.is_some()),
-        layer(Output::Tangent(Tangent::U, Input::W), Tangents, "tangent.dcarrier_u_dw", Real, One, "Derivative of the carrier's u at the end of a communication step with respect to w there",
-            |now| now.at.tangents.by(Input::W).body.x[0])
-            .only_where(|scene| scene.inputs().contains(&Input::W) && scene.carrier.x.is_some()),
-        layer(Output::Tangent(Tangent::U, Input::Load), Tangents, "tangent.dcarrier_u_dload", Real, MeterPerNewton, "Derivative of the carrier's u at the end of a communication step with respect to load there",
-            |now| now.at.tangents.by(Input::Load).body.x[0])
-            .only_where(|scene| scene.inputs().contains(&Input::Load) && scene.carrier.x.is_some()),
-        layer(Output::Tangent(Tangent::U, Input::Pull), Tangents, "tangent.dcarrier_u_dpull", Real, MeterPerNewton, "Derivative of the carrier's u at the end of a communication step with respect to pull there",
-            |now| now.at.tangents.by(Input::Pull).body.x[0])
-            .only_where(|scene| scene.inputs().contains(&Input::Pull) && scene.carrier.x.is_some()),
-        layer(Output::Tangent(Tangent::URate, Input::U), Tangents, "tangent.dcarrier_u_rate_du", Real, PerSecond, "Derivative of the carrier's speed along x at the end of a communication step with respect to u there",
-            |now| now.at.tangents.by(Input::U).body.x[1])
-            .only_where(|scene| scene.inputs().contains(&Input::U) && scene.carrier.x.is_some()),
-        layer(Output::Tangent(Tangent::URate, Input::W), Tangents, "tangent.dcarrier_u_rate_dw", Real, PerSecond, "Derivative of the carrier's speed along x at the end of a communication step with respect to w there",
-            |now| now.at.tangents.by(Input::W).body.x[1])
-            .only_where(|scene| scene.inputs().contains(&Input::W) && scene.carrier.x.is_some()),
-        layer(Output::Tangent(Tangent::URate, Input::Load), Tangents, "tangent.dcarrier_u_rate_dload", Real, MeterPerNewtonSecond, "Derivative of the carrier's speed along x at the end of a communication step with respect to load there",
-            |now| now.at.tangents.by(Input::Load).body.x[1])
-            .only_where(|scene| scene.inputs().contains(&Input::Load) && scene.carrier.x.is_some()),
-        layer(Output::Tangent(Tangent::URate, Input::Pull), Tangents, "tangent.dcarrier_u_rate_dpull", Real, MeterPerNewtonSecond, "Derivative of the carrier's speed along x at the end of a communication step with respect to pull there",
-            |now| now.at.tangents.by(Input::Pull).body.x[1])
-            .only_where(|scene| scene.inputs().contains(&Input::Pull) && scene.carrier.x.is_some()),
-        layer(Output::Tangent(Tangent::W, Input::U), Tangents, "tangent.dcarrier_w_du", Real, One, "Derivative of the carrier's w at the end of a communication step with respect to u there",
-            |now| now.at.tangents.by(Input::U).body.z[0])
-            .only_where(|scene| scene.inputs().contains(&Input::U) && scene.carrier.z.is_some()),
-        layer(Output::Tangent(Tangent::W, Input::W), Tangents, "tangent.dcarrier_w_dw", Real, One, "Derivative of the carrier's w at the end of a communication step with respect to w there",
-            |now| now.at.tangents.by(Input::W).body.z[0])
-            .only_where(|scene| scene.inputs().contains(&Input::W) && scene.carrier.z.is_some()),
-        layer(Output::Tangent(Tangent::W, Input::Load), Tangents, "tangent.dcarrier_w_dload", Real, MeterPerNewton, "Derivative of the carrier's w at the end of a communication step with respect to load there",
-            |now| now.at.tangents.by(Input::Load).body.z[0])
-            .only_where(|scene| scene.inputs().contains(&Input::Load) && scene.carrier.z.is_some()),
-        layer(Output::Tangent(Tangent::W, Input::Pull), Tangents, "tangent.dcarrier_w_dpull", Real, MeterPerNewton, "Derivative of the carrier's w at the end of a communication step with respect to pull there",
-            |now| now.at.tangents.by(Input::Pull).body.z[0])
-            .only_where(|scene| scene.inputs().contains(&Input::Pull) && scene.carrier.z.is_some()),
-        layer(Output::Tangent(Tangent::WRate, Input::U), Tangents, "tangent.dcarrier_w_rate_du", Real, PerSecond, "Derivative of the carrier's speed along z at the end of a communication step with respect to u there",
-            |now| now.at.tangents.by(Input::U).body.z[1])
-            .only_where(|scene| scene.inputs().contains(&Input::U) && scene.carrier.z.is_some()),
-        layer(Output::Tangent(Tangent::WRate, Input::W), Tangents, "tangent.dcarrier_w_rate_dw", Real, PerSecond, "Derivative of the carrier's speed along z at the end of a communication step with respect to w there",
-            |now| now.at.tangents.by(Input::W).body.z[1])
-            .only_where(|scene| scene.inputs().contains(&Input::W) && scene.carrier.z.is_some()),
-        layer(Output::Tangent(Tangent::WRate, Input::Load), Tangents, "tangent.dcarrier_w_rate_dload", Real, MeterPerNewtonSecond, "Derivative of the carrier's speed along z at the end of a communication step with respect to load there",
-            |now| now.at.tangents.by(Input::Load).body.z[1])
-            .only_where(|scene| scene.inputs().contains(&Input::Load) && scene.carrier.z.is_some()),
-        layer(Output::Tangent(Tangent::WRate, Input::Pull), Tangents, "tangent.dcarrier_w_rate_dpull", Real, MeterPerNewtonSecond, "Derivative of the carrier's speed along z at the end of a communication step with respect to pull there",
-            |now| now.at.tangents.by(Input::Pull).body.z[1])
-            .only_where(|scene| scene.inputs().contains(&Input::Pull) && scene.carrier.z.is_some()),
+        tangent!(ForceX, "F_x", U, "u", NewtonPerMeter, "F_x", force.x),
+        tangent!(ForceX, "F_x", W, "w", NewtonPerMeter, "F_x", force.x),
+        tangent!(ForceX, "F_x", Load, "load", One, "F_x", force.x),
+        tangent!(ForceX, "F_x", Pull, "pull", One, "F_x", force.x),
+        tangent!(ForceZ, "F_z", U, "u", NewtonPerMeter, "F_z", force.z),
+        tangent!(ForceZ, "F_z", W, "w", NewtonPerMeter, "F_z", force.z),
+        tangent!(ForceZ, "F_z", Load, "load", One, "F_z", force.z),
+        tangent!(ForceZ, "F_z", Pull, "pull", One, "F_z", force.z),
+        tangent!(U, "carrier_u", U, "u", One, "the carrier's u", body.x[0], on carrier.x),
+        tangent!(U, "carrier_u", W, "w", One, "the carrier's u", body.x[0], on carrier.x),
+        tangent!(U, "carrier_u", Load, "load", MeterPerNewton, "the carrier's u", body.x[0], on carrier.x),
+        tangent!(U, "carrier_u", Pull, "pull", MeterPerNewton, "the carrier's u", body.x[0], on carrier.x),
+        tangent!(URate, "carrier_u_rate", U, "u", PerSecond, "the carrier's speed along x", body.x[1], on carrier.x),
+        tangent!(URate, "carrier_u_rate", W, "w", PerSecond, "the carrier's speed along x", body.x[1], on carrier.x),
+        tangent!(URate, "carrier_u_rate", Load, "load", MeterPerNewtonSecond, "the carrier's speed along x", body.x[1], on carrier.x),
+        tangent!(URate, "carrier_u_rate", Pull, "pull", MeterPerNewtonSecond, "the carrier's speed along x", body.x[1], on carrier.x),
+        tangent!(W, "carrier_w", U, "u", One, "the carrier's w", body.z[0], on carrier.z),
+        tangent!(W, "carrier_w", W, "w", One, "the carrier's w", body.z[0], on carrier.z),
+        tangent!(W, "carrier_w", Load, "load", MeterPerNewton, "the carrier's w", body.z[0], on carrier.z),
+        tangent!(W, "carrier_w", Pull, "pull", MeterPerNewton, "the carrier's w", body.z[0], on carrier.z),
+        tangent!(WRate, "carrier_w_rate", U, "u", PerSecond, "the carrier's speed along z", body.z[1], on carrier.z),
+        tangent!(WRate, "carrier_w_rate", W, "w", PerSecond, "the carrier's speed along z", body.z[1], on carrier.z),
+        tangent!(WRate, "carrier_w_rate", Load, "load", MeterPerNewtonSecond, "the carrier's speed along z", body.z[1], on carrier.z),
+        tangent!(WRate, "carrier_w_rate", Pull, "pull", MeterPerNewtonSecond, "the carrier's speed along z", body.z[1], on carrier.z),
         layer(Output::Steps, Solver, "solver.steps", Integer, One, "Accepted steps since the start",
             |now| as_integer(now.at.counters.steps)),
         layer(Output::Events, Solver, "solver.events", Integer, One, "Mode changes since the start",
@@ -439,8 +405,8 @@ fn dissipated_power(scene: &Scene) -> Dependencies {
     carrier_links(scene, |link| !link.maxwell.is_empty()).or(elastic(scene).only_if(coulomb))
 }
 
-/// The inputs whose links to the carrier pass `test`: u elongates the horizontal ones, w the vertical ones. A body's u and w
-/// are states.
+/// The inputs whose links to the carrier pass `test`: u elongates the horizontal ones, w the vertical ones. A body's u
+/// and w are states.
 fn carrier_links(scene: &Scene, test: fn(&Link) -> bool) -> Dependencies {
     let along =
         |axis: Axis| scene.carrier[axis].as_ref().is_none() && scene.link(axis.link()).as_ref().is_some_and(test);

@@ -1,8 +1,9 @@
-//! A block of elements that a step is done for together: in structure of arrays and, where possible, loops without branches.
+//! A block of elements that a step is done for together: in structure of arrays and, where possible, loops without
+//! branches.
 
 use super::contact_times::{Endpoint, advance_in_segments, half_turn, size};
 use super::face::{Face, TreadColumn};
-use super::motion::{BodyKinematics, BodyMotion, Substep, Substeps, TreadMotion};
+use super::motion::{BodyKinematics, PoseMotion, Substep, Substeps, TreadMotion};
 use crate::element::{ResampledLaw, Segment, SpeedCell, SpringLaw, advance, apply_jump};
 use crate::math::Number;
 
@@ -23,11 +24,11 @@ const MAX_RATIO: f64 = 1.648_721_270_700_128_2;
 
 type Lanes<T> = [T; BLOCK];
 
-/// A step of the whole patch.
+/// The motion of the face and of its tread through a step.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct PatchStep<'a, T> {
+pub(super) struct FaceMotion<'a, T> {
     pub(super) face: &'a Face,
-    pub(super) body: BodyMotion<T>,
+    pub(super) body: PoseMotion<T>,
     pub(super) tread: TreadMotion,
     pub(super) substeps: Substeps,
     /// The speed at which the tread runs, m/s.
@@ -73,7 +74,7 @@ pub(super) struct BeyondTable {
     pub(super) speed: f64,
 }
 
-impl<T> PatchStep<'_, T> {
+impl<T> FaceMotion<'_, T> {
     pub(super) fn elements(&self) -> ElementRange {
         match self.face {
             Face::Points(_) => ElementRange { first: 0, count: self.face.count(), shift: 0 },
@@ -209,7 +210,7 @@ impl<T: Number> BlockContacts<T> {
 
     /// Places the elements from `start` on when `entered` cells of a tread have entered since the start of the step.
     #[inline(always)]
-    fn set_positions(&mut self, step: &PatchStep<'_, T>, start: usize, count: usize, entered: f64) {
+    fn set_positions(&mut self, step: &FaceMotion<'_, T>, start: usize, count: usize, entered: f64) {
         match step.face {
             Face::Points(points) => {
                 let range = start..start + count;
@@ -264,8 +265,8 @@ impl<T: Number> BlockContacts<T> {
         self.approach.iter().fold(f64::NEG_INFINITY, |most, a| if a.value() > most { a.value() } else { most }) <= touch
     }
 
-    /// Looks the law up, in loops over the block one after the other: each then runs in vectors, where one loop over all
-    /// would not.
+    /// Looks the law up, in loops over the block one after the other: each then runs in vectors, where one loop over
+    /// all would not.
     #[inline(always)]
     fn look_up(&mut self, law: &mut ResampledLaw) {
         let range = law.range();
@@ -331,7 +332,8 @@ impl<T: Number> Block<T> {
         }
     }
 
-    /// Makes it the block of the `count` elements from `start` on, as they are counted in the step, with no springs yet.
+    /// Makes it the block of the `count` elements from `start` on, as they are counted in the step, with no springs
+    /// yet.
     pub(super) fn reset(&mut self, start: usize, count: usize) {
         (self.start, self.count) = (start, count);
         let zero = [T::constant(0.0); BLOCK];
@@ -347,7 +349,7 @@ impl<T: Number> Block<T> {
 
     /// Does the step for the block's elements and adds to the sums.
     #[inline(always)]
-    pub(super) fn advance(&mut self, step: &PatchStep<'_, T>, law: &mut ResampledLaw, sums: &mut Sums<T>) {
+    pub(super) fn advance(&mut self, step: &FaceMotion<'_, T>, law: &mut ResampledLaw, sums: &mut Sums<T>) {
         let mut now = step.body.at(0.0);
         // Whether `end` holds the elements at the begin of the substep.
         let mut is_evaluated = false;
@@ -373,7 +375,7 @@ impl<T: Number> Block<T> {
     }
 
     /// Gives the springs, relaxed, the stiffness of their contacts at the start of a step.
-    pub(super) fn initialize(&mut self, step: &PatchStep<'_, T>, law: &mut ResampledLaw, sums: &mut Sums<T>) {
+    pub(super) fn initialize(&mut self, step: &FaceMotion<'_, T>, law: &mut ResampledLaw, sums: &mut Sums<T>) {
         self.evaluate_at(step, law, &step.body.at(0.0), 0.0);
         self.check_table(step, law, 0.0, sums);
         self.stiffness = self.end.stiffness;
@@ -382,7 +384,13 @@ impl<T: Number> Block<T> {
 
     /// Evaluates `end` after a fraction of the step, at which the body is as `now` says.
     #[inline(always)]
-    fn evaluate_at(&mut self, step: &PatchStep<'_, T>, law: &mut ResampledLaw, now: &BodyKinematics<T>, fraction: f64) {
+    fn evaluate_at(
+        &mut self,
+        step: &FaceMotion<'_, T>,
+        law: &mut ResampledLaw,
+        now: &BodyKinematics<T>,
+        fraction: f64,
+    ) {
         let is_tread = matches!(step.face, Face::Tread(_));
         self.end.set_positions(step, self.start, self.count, step.tread.entered_at(fraction));
         self.end.set_motion(now, is_tread.then_some(step.tread_speed));
@@ -394,7 +402,7 @@ impl<T: Number> Block<T> {
     #[inline(always)]
     fn advance_springs(
         &mut self,
-        step: &PatchStep<'_, T>,
+        step: &FaceMotion<'_, T>,
         law: &mut ResampledLaw,
         (now, next): (&BodyKinematics<T>, &BodyKinematics<T>),
         length: f64,
@@ -402,11 +410,13 @@ impl<T: Number> Block<T> {
         if self.begin.is_free && self.end.is_free && self.stiffness.iter().all(|k| k.value() == 0.0) {
             return;
         }
+        // All elements as if their pressures changed in one segment.
         let displacement = self.displacements(step, (now, next), length);
         let Self { force, stiffness, slips, slip, release, begin, end, count, .. } = self;
         apply_jumps(force, stiffness, release, begin);
         let before = *force;
         advance_all(force, slips, (slip, release), (begin, end), &displacement);
+        // Those whose pressure changes by too large a factor once more, in segments.
         for i in 0..*count {
             if needs_segments(begin.pressure[i].value(), end.pressure[i].value()) {
                 let displacement = [displacement[0][i], displacement[1][i]];
@@ -425,7 +435,7 @@ impl<T: Number> Block<T> {
     #[inline(always)]
     fn displacements(
         &self,
-        step: &PatchStep<'_, T>,
+        step: &FaceMotion<'_, T>,
         (now, next): (&BodyKinematics<T>, &BodyKinematics<T>),
         length: f64,
     ) -> [Lanes<T>; 2] {
@@ -453,7 +463,7 @@ impl<T: Number> Block<T> {
 
     /// Records the first element that is beyond the table, after a fraction of the step.
     #[inline(always)]
-    fn check_table(&self, step: &PatchStep<'_, T>, law: &ResampledLaw, fraction: f64, sums: &mut Sums<T>) {
+    fn check_table(&self, step: &FaceMotion<'_, T>, law: &ResampledLaw, fraction: f64, sums: &mut Sums<T>) {
         if self.end.is_free {
             return;
         }
@@ -481,7 +491,7 @@ impl<T: Number> Block<T> {
 
     /// Adds to the wrench on the body and to the losses.
     #[inline(always)]
-    fn add_up(&mut self, step: &PatchStep<'_, T>, sums: &mut Sums<T>) {
+    fn add_up(&mut self, step: &FaceMotion<'_, T>, sums: &mut Sums<T>) {
         let end = &*self.end;
         sums.slip += total(&self.slip);
         sums.release += total(&self.release);
@@ -489,6 +499,7 @@ impl<T: Number> Block<T> {
             self.mode.fill(ElementMode::Free as u8);
             return;
         }
+        // Forces on the body, their moments about the pose's point, and the force along the tread.
         let mut loads = [[T::constant(0.0); BLOCK]; 7];
         for i in 0..BLOCK {
             let (f_x, f_y) = (-self.force[0][i], -self.force[1][i]);
@@ -544,8 +555,8 @@ fn apply_jumps<T: Number>(
     }
 }
 
-/// Takes all springs of a block from `begin` to `end` in one segment each; the losses of those that need segments of their
-/// own are left out.
+/// Takes all springs of a block from `begin` to `end` in one segment each; the losses of those that need segments of
+/// their own are left out.
 #[inline(always)]
 fn advance_all<T: Number>(
     force: &mut [Lanes<T>; 2],

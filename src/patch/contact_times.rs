@@ -113,8 +113,8 @@ pub(super) fn size<T: Number>(v: [T; 2]) -> T {
     (v[0] * v[0] + v[1] * v[1]).sqrt()
 }
 
-/// The tangent of half the angle between two velocities, at most 1: where a motion turns by more than a right angle it passes
-/// near a stop, and which way it points meanwhile is not known.
+/// The tangent of half the angle between two velocities, at most 1: where a motion turns by more than a right angle it
+/// passes near a stop, and which way it points meanwhile is not known.
 #[inline(always)]
 pub(super) fn half_turn<T: Number>(from: [T; 2], to: [T; 2]) -> T {
     let cross = from[0] * to[1] - from[1] * to[0];

@@ -126,8 +126,8 @@ impl Patch {
         self.temperature
     }
 
-    /// The temperature (K) of the law where `kelvin` is given: that of the table's end beyond it. `None` where the table
-    /// has one temperature at most.
+    /// The temperature (K) of the law where `kelvin` is given: that of the table's end beyond it. `None` where the
+    /// table has one temperature at most.
     pub(super) fn held_temperature(&self, kelvin: f64) -> Option<f64> {
         match self.table.grid.temperatures.as_slice() {
             [low, .., high] => Some(kelvin.max(*low).min(*high)),

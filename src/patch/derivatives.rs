@@ -1,13 +1,13 @@
 //! How a run's outputs change at once, its states and modes held: as the body is displaced, or as it moves on.
 //!
-//! The spring of an element that sticks follows the face, and where its stiffness falls, loses its share; one that slips
-//! stays at its limit. The pressure follows the approach, arms turn with the body.
+//! The spring of an element that sticks follows the face, and where its stiffness falls, loses its share; one that
+//! slips stays at its limit. The pressure follows the approach, arms turn with the body.
 
 use super::block::ElementMode;
 use super::contact_times::size;
 use super::definition::ElementSite;
 use super::face::Face;
-use super::motion::{BodyKinematics, BodyMotion};
+use super::motion::{BodyKinematics, PoseMotion};
 use super::run::PatchRun;
 use super::state::Totals;
 use super::variables::{PatchOutput, PatchVariable};
@@ -62,7 +62,8 @@ fn rate(value: f64, slope: f64) -> Rate {
 }
 
 impl PatchRun {
-    /// Writes into `values` how `variables` change as the pose's coordinates change by `direction` (m and rad per unit).
+    /// Writes into `values` how `variables` change as the pose's coordinates change by `direction` (m and rad per
+    /// unit).
     pub fn directional_derivative(&mut self, variables: &[PatchVariable], direction: [f64; 6], values: &mut [f64]) {
         let changes = self.changes(&Displacement { pose: direction, entered: 0.0 });
         for (variable, value) in variables.iter().zip(values) {
@@ -85,10 +86,11 @@ impl PatchRun {
     fn changes(&mut self, shift: &Displacement) -> Changes {
         let (totals, now) = (self.totals, self.totals.instant());
         let start = totals.pose.coordinates();
-        let shifted = BodyMotion { start, change: shift.pose.map(|slope| rate(0.0, slope)), duration: 1.0 }.at(1.0);
+        let shifted = PoseMotion { start, change: shift.pose.map(|slope| rate(0.0, slope)), duration: 1.0 }.at(1.0);
         let (pressure, speed) = (self.law.largest_pressure(), self.law.largest_speed());
         let mut changes = Changes::zero();
         for i in 0..self.patch.count() {
+            // The element's law at the approach as it changes.
             let here = self.element_contact(i, &totals, &now);
             let element = self.moving_element(i, shift, &shifted);
             let approach = -(shifted.height + element.arm[2]);
@@ -97,6 +99,7 @@ impl PatchRun {
             if normal.value <= 0.0 {
                 continue;
             }
+            // Its spring, and what both add to the sums.
             let (limit, stiffness) = (normal * point.friction, point.stiffness * element.area);
             let force = self.force(i, limit, stiffness, element.displacement);
             let (hysteresis, ratio) = self.shares(i, &totals, &now, approach);

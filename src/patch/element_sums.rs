@@ -3,7 +3,7 @@
 use super::contact_times::size;
 use super::definition::ElementSite;
 use super::face::Face;
-use super::motion::{BodyKinematics, BodyMotion};
+use super::motion::{BodyKinematics, PoseMotion};
 use super::run::PatchRun;
 use super::state::{PatchState, RestoreError, Totals};
 use crate::element::{LawPoint, SpeedCell};
@@ -61,7 +61,7 @@ pub(super) struct ElementSums {
 impl Totals {
     /// The body now, moving as at the end of the last step.
     pub(super) fn instant(&self) -> BodyKinematics<f64> {
-        BodyMotion { start: self.pose.coordinates(), change: self.rates, duration: 1.0 }.at(0.0)
+        PoseMotion { start: self.pose.coordinates(), change: self.rates, duration: 1.0 }.at(0.0)
     }
 }
 

@@ -7,7 +7,7 @@ const MAX_TURN: f64 = 0.1;
 
 /// The coordinates of a pose, x, y, z (m), roll, pitch, yaw (rad), as they run straight over a step.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct BodyMotion<T> {
+pub(super) struct PoseMotion<T> {
     /// The coordinates at the start of the step, m and rad.
     pub(super) start: [f64; 6],
     /// What they change by over the step, m and rad.
@@ -31,7 +31,7 @@ pub(super) struct BodyKinematics<T> {
     spin: [T; 3],
 }
 
-impl<T: Number> BodyMotion<T> {
+impl<T: Number> PoseMotion<T> {
     /// The body after a fraction of the step.
     #[inline(always)]
     pub(super) fn at(&self, fraction: f64) -> BodyKinematics<T> {
@@ -240,7 +240,7 @@ mod tests {
     /// Velocities against difference quotients of positions, at large angles.
     #[test]
     fn velocities_are_those_of_the_motion() {
-        let motion = BodyMotion {
+        let motion = PoseMotion {
             start: [0.1, -0.2, 0.3, 0.7, -0.9, 2.0],
             change: [0.4, 0.5, -0.1, 0.6, 0.8, -0.7],
             duration: 0.5,
@@ -264,7 +264,7 @@ mod tests {
     #[test]
     fn targets_move_the_body() {
         let dual = |i| Dual::<6>::variable(0.1, i);
-        let motion = BodyMotion { start: [0.0; 6], change: std::array::from_fn(dual), duration: 2.0 };
+        let motion = PoseMotion { start: [0.0; 6], change: std::array::from_fn(dual), duration: 2.0 };
         let at = motion.at(0.25);
         assert_eq!(at.height.slopes, [0.0, 0.0, 0.25, 0.0, 0.0, 0.0]);
         assert_eq!(at.velocity[1].slopes, [0.0, 0.5, 0.0, 0.0, 0.0, 0.0]);

@@ -1,9 +1,9 @@
 //! A run of a patch: steps over all its elements.
 
-use super::block::{BeyondTable, Block, PatchStep, Sums};
+use super::block::{BeyondTable, Block, FaceMotion, Sums};
 use super::definition::Patch;
 use super::face::Face;
-use super::motion::{BodyMotion, Substeps, TreadMotion};
+use super::motion::{PoseMotion, Substeps, TreadMotion};
 use super::state::{
     MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError, Springs, Totals, check_duration, max_substeps,
 };
@@ -28,7 +28,8 @@ pub struct PatchRun {
     /// Changes of the wrench with the targets of the last step, where they are asked for.
     pub(super) tangents: Option<Box<[[f64; 6]; 6]>>,
     workers: Workers,
-    /// By [`Excess`], whether it has warned of it: no part of a state, so that a step that is repeated does not warn again.
+    /// By [`Excess`], whether it has warned of it: no part of a state, so that a step that is repeated does not warn
+    /// again.
     warned: [bool; 2],
     /// Those not taken yet.
     warnings: Vec<String>,
@@ -118,9 +119,9 @@ impl PatchRun {
         let Totals { time, rates, tread_speed, place, .. } = self.totals;
         let tread = TreadMotion { start: place, travel: 0.0 };
         // The springs are evaluated at the start alone: of the motion only its rates count.
-        let body = BodyMotion { start: self.totals.pose.coordinates(), change: rates, duration: 1.0 };
+        let body = PoseMotion { start: self.totals.pose.coordinates(), change: rates, duration: 1.0 };
         let face = &self.patch.face;
-        let step = PatchStep { face, body, tread, substeps: Substeps::new(tread, 0.0, 1), tread_speed };
+        let step = FaceMotion { face, body, tread, substeps: Substeps::new(tread, 0.0, 1), tread_speed };
         let springs = (&self.springs, &mut self.next);
         let sums = WorkerPool::with_threads(1, &self.law).work(&step, &mut self.law, springs, |block, law, sums| {
             block.initialize(&step, law, sums);
@@ -175,7 +176,7 @@ impl PatchRun {
         // Divide the step.
         let tread_speed = 0.5 * (self.totals.transport_speed + transport_speed);
         let tread = self.tread_motion(tread_speed * duration);
-        let body = BodyMotion { start, change, duration };
+        let body = PoseMotion { start, change, duration };
         let substeps = Substeps::new(tread, body.turn(), self.patch.refine);
         let most = max_substeps(self.patch.count());
         let count = substeps.count(most);
@@ -189,7 +190,7 @@ impl PatchRun {
         let face = &*patch.face;
         let (sums, tangents) = match workers {
             Workers::Plain(pool) => {
-                let step = PatchStep { face, body, tread, substeps, tread_speed };
+                let step = FaceMotion { face, body, tread, substeps, tread_speed };
                 let widest = pulp::Arch::new();
                 let sums = pool.work(&step, law, (springs, next), |block, law, sums| {
                     widest.dispatch(Advance { block, step: &step, law, sums });
@@ -198,8 +199,8 @@ impl PatchRun {
             }
             Workers::Tangent(pool) => {
                 let body =
-                    BodyMotion { start, change: std::array::from_fn(|i| Dual::variable(change[i], i)), duration };
-                let step = PatchStep { face, body, tread, substeps, tread_speed };
+                    PoseMotion { start, change: std::array::from_fn(|i| Dual::variable(change[i], i)), duration };
+                let step = FaceMotion { face, body, tread, substeps, tread_speed };
                 let advance = |block: &mut Block<_>, law: &mut _, sums: &mut _| block.advance(&step, law, sums);
                 let sums = pool.work(&step, law, (springs, next), advance);
                 (sums.values(), Some(sums.wrench.map(|load| load.slopes)))
@@ -243,8 +244,8 @@ impl PatchRun {
         }
     }
 
-    /// Refuses a temperature (K) or an element beyond the table, or warns of the first; `time_at` is the time (s) after a
-    /// fraction of the step.
+    /// Refuses a temperature (K) or an element beyond the table, or warns of the first; `time_at` is the time (s) after
+    /// a fraction of the step.
     fn check_table(
         &mut self,
         kelvin: f64,
@@ -326,7 +327,7 @@ impl PatchRun {
 /// A step of a block, to be done with the widest vectors of the processor; numbers are the same with all.
 struct Advance<'a, 'b> {
     block: &'a mut Block<f64>,
-    step: &'a PatchStep<'b, f64>,
+    step: &'a FaceMotion<'b, f64>,
     law: &'a mut ResampledLaw,
     sums: &'a mut Sums<f64>,
 }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::block::{Block, ElementMode, Sums};
 use super::definition::Patch;
-use super::motion::BodyMotion;
+use super::motion::PoseMotion;
 use crate::math::{Number, not_finite};
 use crate::scene::{SMALLEST, is_possible};
 
@@ -40,7 +40,7 @@ impl Pose {
 
     /// Places of the body's axes (m) from the pose's point in the ground's axes, m.
     pub fn arms(&self, places: impl IntoIterator<Item = [f64; 3]>) -> Vec<[f64; 3]> {
-        let now = BodyMotion { start: self.coordinates(), change: [0.0; 6], duration: 1.0 }.at(0.0);
+        let now = PoseMotion { start: self.coordinates(), change: [0.0; 6], duration: 1.0 }.at(0.0);
         places.into_iter().map(|place| now.turned(place)).collect()
     }
 
@@ -243,8 +243,8 @@ fn take<'a, T>(slice: &mut &'a mut [T], count: usize) -> &'a mut [T] {
     front
 }
 
-/// The lanes of a block of `count` elements from the index `start` on, as far as they are among the `springs`, and their
-/// places there.
+/// The lanes of a block of `count` elements from the index `start` on, as far as they are among the `springs`, and
+/// their places there.
 fn indices(springs: Range<usize>, start: isize, count: usize) -> impl Iterator<Item = (usize, usize)> {
     let start = start - springs.start as isize;
     let skipped = start.min(0).unsigned_abs().min(count);

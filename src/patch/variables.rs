@@ -3,7 +3,7 @@
 use super::definition::Patch;
 use super::element_sums::ElementSums;
 use super::run::PatchRun;
-use crate::outputs::Kind;
+use crate::outputs::OutputType;
 use crate::scene::{PatchGroup, Unit};
 
 /// The quantity behind a variable of a patch.
@@ -63,7 +63,7 @@ pub struct PatchVariable {
     /// The unit of its values.
     pub unit: Unit,
     /// Real or Integer.
-    pub kind: Kind,
+    pub kind: OutputType,
     /// What it is, in a few words.
     pub description: String,
 }
@@ -74,11 +74,11 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl PatchVariable {
     fn real(group: PatchGroup, output: PatchOutput, name: &str, unit: Unit, description: &str) -> Self {
-        Self { output, group, name: name.into(), unit, kind: Kind::Real, description: description.into() }
+        Self { output, group, name: name.into(), unit, kind: OutputType::Real, description: description.into() }
     }
 
     fn count(group: PatchGroup, output: PatchOutput, name: &str, description: &str) -> Self {
-        Self { kind: Kind::Integer, ..Self::real(group, output, name, Unit::One, description) }
+        Self { kind: OutputType::Integer, ..Self::real(group, output, name, Unit::One, description) }
     }
 
     /// Whether it is an output of the FMU; the fields of the elements are local variables.
@@ -103,50 +103,41 @@ impl Patch {
     }
 
     fn variables_of(&self, group: PatchGroup) -> Vec<PatchVariable> {
+        use Unit::{Joule, One, Pascal, SquareMeter, Watt};
         let real = |output, name, unit, description| PatchVariable::real(group, output, name, unit, description);
         let count = |output, name, description| PatchVariable::count(group, output, name, description);
         match group {
             PatchGroup::Forces => self.loads(),
             PatchGroup::Dissipation => vec![
-                real(PatchOutput::Power, "P_diss", Unit::Watt, "Dissipated power, mean over the last step"),
-                real(PatchOutput::Energy, "E_diss", Unit::Joule, "Energy dissipated since the start"),
-                real(PatchOutput::SlipEnergy, "dissipation.E_slip", Unit::Joule, "Energy dissipated by slip"),
+                real(PatchOutput::Power, "P_diss", Watt, "Dissipated power, mean over the last step"),
+                real(PatchOutput::Energy, "E_diss", Joule, "Energy dissipated since the start"),
+                real(PatchOutput::SlipEnergy, "dissipation.E_slip", Joule, "Energy dissipated by slip"),
                 real(
                     PatchOutput::ReleaseEnergy,
                     "dissipation.E_release",
-                    Unit::Joule,
+                    Joule,
                     "Energy lost with contacts that were released",
                 ),
             ],
             PatchGroup::Contact => vec![
                 count(PatchOutput::Count, "contact.count", "Elements that bear"),
                 count(PatchOutput::Sticking, "contact.sticking", "Elements that stick"),
-                real(
-                    PatchOutput::NominalArea,
-                    "contact.nominal_area",
-                    Unit::SquareMeter,
-                    "Area of the elements that bear",
-                ),
+                real(PatchOutput::NominalArea, "contact.nominal_area", SquareMeter, "Area of the elements that bear"),
                 real(
                     PatchOutput::RealArea,
                     "contact.area",
-                    Unit::SquareMeter,
+                    SquareMeter,
                     "Real area of contact by the table's contact ratio",
                 ),
-                real(PatchOutput::Pressure, "contact.pressure", Unit::Pascal, "Largest pressure on an element"),
-                real(
-                    PatchOutput::Beyond,
-                    "contact.beyond",
-                    Unit::One,
-                    "Share of force.z that is borne beyond the table",
-                ),
+                real(PatchOutput::Pressure, "contact.pressure", Pascal, "Largest pressure on an element"),
+                real(PatchOutput::Beyond, "contact.beyond", One, "Share of force.z that is borne beyond the table"),
             ],
             PatchGroup::Friction => vec![
-                real(PatchOutput::Friction, "friction.coefficient", Unit::One, "Tangential force over force.z"),
+                real(PatchOutput::Friction, "friction.coefficient", One, "Tangential force over force.z"),
                 real(
                     PatchOutput::Hysteresis,
                     "friction.hysteresis",
-                    Unit::One,
+                    One,
                     "Share of hysteresis in friction.coefficient",
                 ),
             ],
@@ -154,7 +145,7 @@ impl Patch {
                 vec![real(
                     PatchOutput::ElasticEnergy,
                     "energy.elastic",
-                    Unit::Joule,
+                    Joule,
                     "Energy stored in the springs of the elements",
                 )]
             }

@@ -1,14 +1,14 @@
 //! A step of all blocks, by several threads where the patch is large enough to gain.
 //!
-//! Blocks are dealt out in batches, and what the batches add up to is added in their order: numbers do not depend on who
-//! did what. Threads end with the step, since a master may unload the FMU after it: starting them is all that a step
-//! allocates. Patches that one thread does best start none.
+//! Blocks are dealt out in batches, and what the batches add up to is added in their order: numbers do not depend on
+//! who did what. Threads end with the step, since a master may unload the FMU after it: starting them is all that a
+//! step allocates. Patches that one thread does best start none.
 
 use std::num::NonZero;
 use std::sync::Mutex;
 use std::thread;
 
-use super::block::{BLOCK, Block, ElementRange, PatchStep, Sums};
+use super::block::{BLOCK, Block, ElementRange, FaceMotion, Sums};
 use super::state::{Springs, SpringsMut};
 use crate::element::ResampledLaw;
 use crate::math::Number;
@@ -50,7 +50,8 @@ pub(super) fn threads(work: f64) -> usize {
 }
 
 impl<T: Number + Send + Sync> WorkerPool<T> {
-    /// For steps of so many elements times substeps or more: as many as the processor serves at once and the steps are worth.
+    /// For steps of so many elements times substeps or more: as many as the processor serves at once and the steps are
+    /// worth.
     pub(super) fn new(work: f64, law: &ResampledLaw) -> Self {
         Self::with_threads(threads(work), law)
     }
@@ -68,7 +69,7 @@ impl<T: Number + Send + Sync> WorkerPool<T> {
     /// Does `work` for every block of a step, from the springs in `springs` to those in `next`; returns the sums.
     pub(super) fn work(
         &mut self,
-        step: &PatchStep<'_, T>,
+        step: &FaceMotion<'_, T>,
         law: &mut ResampledLaw,
         (springs, next): (&Springs, &mut Springs),
         work: impl Fn(&mut Block<T>, &mut ResampledLaw, &mut Sums<T>) + Sync,

@@ -1,10 +1,13 @@
 //! `asperity describe`: summarises a scene.
 
-use asperity::model::{Model, RealArea, Reduction, Replaced, Replacement};
+use std::sync::Arc;
+
+use asperity::fmi::FmuModel;
+use asperity::model::{Model, RealAreaLaw, Reduction, Replaced, Replacement};
 use asperity::outputs::variables;
 use asperity::scene::{
     Axis, CarrierBody, CarrierInitial, Extrapolation, Force, Friction, Initial, Input, Layer, Link, LinkKind, Material,
-    OutputGroup, Parameter, Path, Phase, RateShear, Scene, Surface, Value, Wlf,
+    OutputGroup, Parameter, Path, Phase, RateShear, Scene, Surface, Value, Wlf, peak_to_valley,
 };
 use asperity::simulation::{Simulation, SimulationError};
 use serde::Serialize;
@@ -49,9 +52,11 @@ fn json(scene: &Scene) -> Result<String, DescribeError> {
 }
 
 fn text(scene: &Scene) -> Result<String, DescribeError> {
-    let simulation = Simulation::new(scene, &start(scene, 0.0))?;
+    // A scene that no run can start with is refused.
+    Simulation::new(scene, &start(scene, 0.0))?;
     let title = scene.description.as_ref().map_or_else(|| scene.name.clone(), |text| format!("{}: {text}", scene.name));
-    let memory = ("Memory", format!("{} bytes a run", simulation.bytes()));
+    let bytes = FmuModel::memory(&Arc::new(scene.clone()));
+    let memory = ("Memory", format!("at most {} MiB an instance of the FMU", bytes.div_ceil(1 << 20)));
     Ok(lines(&[vec![("Scene", title)], rows(scene), table_lines(scene), vec![memory]].concat()))
 }
 
@@ -200,11 +205,6 @@ fn profile(surface: &Surface) -> String {
     )
 }
 
-fn peak_to_valley(heights: &[f64]) -> f64 {
-    let highest = heights.iter().copied().fold(f64::MIN, f64::max);
-    highest - heights.iter().copied().fold(f64::MAX, f64::min)
-}
-
 fn steepest_slope(surface: &Surface) -> f64 {
     let runs = surface.x().windows(2).map(|x| x[1] - x[0]);
     let rises = surface.z().windows(2).map(|z| (z[1] - z[0]).abs());
@@ -229,7 +229,8 @@ fn friction(scene: &Scene) -> Vec<LabelledLine> {
 
 /// The roughness below the profile's, the part of a contact that touches on it, and the hysteresis that it adds.
 fn real_area_texts(scene: &Scene) -> Vec<String> {
-    let (Some(roughness), Some(law), Some(material)) = (scene.fine_roughness(), RealArea::new(scene), &scene.material)
+    let (Some(roughness), Some(law), Some(material)) =
+        (scene.fine_roughness(), RealAreaLaw::new(scene), &scene.material)
     else {
         return Vec::new();
     };

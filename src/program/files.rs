@@ -81,6 +81,11 @@ pub(crate) fn load(path: &Path, set: &[Setting]) -> Result<Scene, FileError> {
     Ok(scene)
 }
 
+/// Where a table of a `scene` goes that is given no place: beside where the program runs, with this extension.
+pub(crate) fn default_output(scene: &Path, extension: &str) -> PathBuf {
+    PathBuf::from(scene.file_stem().unwrap_or(scene.as_os_str())).with_extension(extension)
+}
+
 /// Reads a scene whose excitation is not used: [`load`] without the warning about it.
 pub(crate) fn load_without_excitation(path: &Path, set: &[Setting]) -> Result<Scene, FileError> {
     let scene = read_scene(path, set)?;
@@ -132,8 +137,8 @@ fn place(path: &Path) -> Option<PathBuf> {
     Some(folder.canonicalize().ok()?.join(path.file_name()?))
 }
 
-/// Refuses outputs that would overwrite one of `taken` or one another, and those that cannot be written: before anything is
-/// computed.
+/// Refuses outputs that would overwrite one of `taken` or one another, and those that cannot be written: before
+/// anything is computed.
 pub(crate) fn check_outputs<'a>(
     outputs: impl IntoIterator<Item = &'a PathBuf>,
     mut taken: Vec<PathBuf>,

@@ -1,4 +1,5 @@
-//! What is left to do where the program is stopped: by Ctrl-C, by a signal to end, or from where nothing else can end it.
+//! What is left to do where the program is stopped: by Ctrl-C, by a signal to end, or from where nothing else can end
+//! it.
 
 use std::fmt::Display;
 use std::fs;
@@ -105,7 +106,7 @@ pub(crate) fn command_line() -> String {
 }
 
 /// The command line without `--force`, which would begin anew what is to be continued.
-pub(crate) fn command_to_continue() -> String {
+fn command_to_continue() -> String {
     command_without(|word| word == "--force")
 }
 

@@ -100,7 +100,7 @@ pub(crate) fn overridden(text: &str, set: &[Setting]) -> Result<Overridden, Over
         return Ok(Overridden { text: text.to_owned(), in_named_files });
     };
     for (key, given) in set {
-        let path = steps(key).ok_or_else(|| OverrideError::NotAPath { key: key.clone() })?;
+        let path = segments(key).ok_or_else(|| OverrideError::NotAPath { key: key.clone() })?;
         let mut place = Place { key, table: document.as_table_mut(), name: String::new() };
         match place.set(&path, value(given)) {
             Ok(()) => (),
@@ -120,13 +120,13 @@ fn value(given: &str) -> Value {
 
 /// A key, and which element of its list, from 0.
 #[derive(Debug)]
-struct Step<'a> {
+struct PathSegment<'a> {
     name: &'a str,
     element: Option<usize>,
 }
 
-/// The steps of a path; `None` where it is none.
-fn steps(path: &str) -> Option<Vec<Step<'_>>> {
+/// The segments of a path; `None` where it is none.
+fn segments(path: &str) -> Option<Vec<PathSegment<'_>>> {
     let is_name = |name: &str| !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-');
     path.split('.')
         .map(|part| {
@@ -134,7 +134,7 @@ fn steps(path: &str) -> Option<Vec<Step<'_>>> {
                 Some((name, rest)) => (name, Some(rest.strip_suffix(']')?.parse::<usize>().ok()?.checked_sub(1)?)),
                 None => (part, None),
             };
-            is_name(name).then_some(Step { name, element })
+            is_name(name).then_some(PathSegment { name, element })
         })
         .collect()
 }
@@ -156,22 +156,22 @@ struct Place<'a> {
 }
 
 impl Place<'_> {
-    fn set(&mut self, path: &[Step<'_>], value: Value) -> Result<(), Obstacle> {
-        let [step, rest @ ..] = path else { return Ok(()) };
-        let (key, name) = (self.key, format!("{}{}", self.name, step.name));
-        if rest.is_empty() && step.element.is_none() {
-            self.table.insert(step.name, value.into());
+    fn set(&mut self, path: &[PathSegment<'_>], value: Value) -> Result<(), Obstacle> {
+        let [segment, rest @ ..] = path else { return Ok(()) };
+        let (key, name) = (self.key, format!("{}{}", self.name, segment.name));
+        if rest.is_empty() && segment.element.is_none() {
+            self.table.insert(segment.name, value.into());
             return Ok(());
         }
-        if step.element.is_none() && !self.table.contains_key(step.name) {
-            self.table.insert(step.name, Table::new().into());
+        if segment.element.is_none() && !self.table.contains_key(segment.name) {
+            self.table.insert(segment.name, Table::new().into());
         }
-        let found = self.table.get_mut(step.name).filter(|item| !item.is_none());
+        let found = self.table.get_mut(segment.name).filter(|item| !item.is_none());
         let nothing_below =
             |found| error(OverrideError::NothingBelow { key: key.to_owned(), name: name.clone(), found });
         let Some(item) = found else { return Err(nothing_below("not")) };
         let kind = kind(item);
-        let Some(element) = step.element else {
+        let Some(element) = segment.element else {
             let Some(table) = item.as_table_like_mut() else { return Err(nothing_below(kind)) };
             return Place { key, table, name: format!("{name}.") }.set(rest, value);
         };

@@ -1,9 +1,9 @@
 //! Persson's theory of contact and friction beside the runs, as an orientation.
 //!
-//! B. N. J. Persson, J. Chem. Phys. 115, 2001, 3840. Waves of the profile are added in the order of their wave numbers q.
-//! Those up to m press with the mean square σ_m² = Σ z_n² <|K M(q_n v cos φ)|²>, so the part P_m = erf(p/(√2 σ_m)) of the
-//! surface is in contact, and μ = (1/p) Σ q_m z_m² K <cos φ Im M(q_m v cos φ)> P_m S_m. S is 1, or ½ + ½P² for contacts
-//! that deform less than the whole surface would.
+//! B. N. J. Persson, J. Chem. Phys. 115, 2001, 3840. Waves of the profile are added in the order of their wave numbers
+//! q. Those up to m press with the mean square σ_m² = Σ z_n² <|K M(q_n v cos φ)|²>, so the part P_m = erf(p/(√2 σ_m))
+//! of the surface is in contact, and μ = (1/p) Σ q_m z_m² K <cos φ Im M(q_m v cos φ)> P_m S_m. S is 1, or ½ + ½P² for
+//! contacts that deform less than the whole surface would.
 
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
@@ -31,8 +31,8 @@ pub(super) enum Dimension {
 const ANGLES: u32 = 32;
 
 impl Theory {
-    /// Area and friction of the waves that the layer of `scene` resolves, sliding at `speed` (m/s) under `pressure` (Pa); `None` in the
-    /// direct form.
+    /// Area and friction of the waves that the layer of `scene` resolves, sliding at `speed` (m/s) under `pressure`
+    /// (Pa); `None` in the direct form.
     pub(super) fn new(scene: &Scene, pressure: f64, speed: f64, dimension: Dimension) -> Option<Self> {
         let material = scene.material.as_ref()?;
         let body = scene.layer.body(material)?;
@@ -40,8 +40,8 @@ impl Theory {
         Some(Self::from_waves(&waves, material, body, pressure, speed, dimension))
     }
 
-    /// The friction that the roughness below the profile's adds by hysteresis, on an isotropic surface; `None` where the
-    /// scene has no such waves.
+    /// The friction that the roughness below the profile's adds by hysteresis, on an isotropic surface; `None` where
+    /// the scene has no such waves.
     pub(super) fn friction_of_fine_waves(scene: &Scene, pressure: f64, speed: f64) -> Option<f64> {
         let (roughness, material) = (scene.fine_roughness()?, scene.material.as_ref()?);
         let body = scene.layer.body(material)?;

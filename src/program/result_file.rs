@@ -5,7 +5,7 @@ use std::fmt::{self, Display, Formatter};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use asperity::outputs::{Kind, Variable};
+use asperity::outputs::{OutputType, Variable};
 use asperity::scene::Input;
 use asperity::scene::text_table::{self, Row};
 
@@ -70,7 +70,7 @@ impl CsvWriter {
 pub(crate) struct ResultWriter {
     file: CsvWriter,
     inputs: Vec<Input>,
-    kinds: Vec<Kind>,
+    kinds: Vec<OutputType>,
 }
 
 impl ResultWriter {
@@ -83,7 +83,7 @@ impl ResultWriter {
     }
 
     pub(crate) fn write(&mut self, carrier: CarrierSample, values: &[f64]) -> Result<(), FileError> {
-        let real = |value: f64| Field { kind: Kind::Real, value };
+        let real = |value: f64| Field { kind: OutputType::Real, value };
         let variables = self.kinds.iter().zip(values).map(|(&kind, &value)| Field { kind, value });
         let inputs = self.inputs.iter().map(|&input| real(carrier.input(input)));
         self.file.write_values(std::iter::once(real(carrier.time)).chain(inputs).chain(variables))
@@ -98,17 +98,17 @@ impl ResultWriter {
 /// A value as files have it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Field {
-    pub(crate) kind: Kind,
+    pub(crate) kind: OutputType,
     pub(crate) value: f64,
 }
 
 impl Display for Field {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self.kind {
-            Kind::Real => file_decimal(self.value).fmt(f),
+            OutputType::Real => file_decimal(self.value).fmt(f),
             // A whole number is written faster as one.
-            Kind::Integer if self.value == self.value as i64 as f64 => (self.value as i64).fmt(f),
-            Kind::Integer => write!(f, "{:.0}", self.value),
+            OutputType::Integer if self.value == self.value as i64 as f64 => (self.value as i64).fmt(f),
+            OutputType::Integer => write!(f, "{:.0}", self.value),
         }
     }
 }
@@ -186,6 +186,6 @@ mod tests {
 
     #[test]
     fn integers_have_no_exponent() {
-        assert_eq!(Field { kind: Kind::Integer, value: 1e7 }.to_string(), "10000000");
+        assert_eq!(Field { kind: OutputType::Integer, value: 1e7 }.to_string(), "10000000");
     }
 }

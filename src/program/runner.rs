@@ -52,7 +52,7 @@ impl CarrierSample {
 /// Number of even intervals that a phase is divided into.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Rows {
-    /// The same number for every phase.
+    /// This number for every phase.
     PerPhase(u32),
     /// The fewest intervals of at most `longest` (s), each divided into `parts`.
     Within { longest: f64, parts: u32 },

@@ -8,7 +8,7 @@ use asperity::simulation::{MethodSwitch, SimulationError};
 use indicatif::ProgressBar;
 
 use super::cli::Simulate;
-use super::figure::{Figure as _, History};
+use super::figure::{Figure as _, TimeHistory};
 use super::files::{FileError, check_outputs, load, named, sources};
 use super::interrupt::fail;
 use super::result_file::ResultWriter;
@@ -47,7 +47,7 @@ pub(crate) fn simulate(command: &Simulate, path: &Path) -> Result<(), SimulateEr
 }
 
 fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<(), SimulateError> {
-    let shown = recorder.history.as_ref().map_or(scene, History::scene);
+    let shown = recorder.history.as_ref().map_or(scene, TimeHistory::scene);
     let mut runner = Runner::new(shown, Rows::PerPhase(command.points), 0.0).map_err(SimulateError::Start)?;
     let result = runner.run(&scene.excitation, |carrier, snapshot| recorder.row(carrier, snapshot));
     print_method_switches(&runner.take_method_switches());
@@ -75,7 +75,7 @@ struct Recorder {
     variables: Vec<Variable>,
     values: Vec<f64>,
     writer: ResultWriter,
-    history: Option<History>,
+    history: Option<TimeHistory>,
     progress: ProgressBar,
     duration: f64,
     time: f64,
@@ -90,7 +90,7 @@ impl Recorder {
             values: vec![0.0; variables.len()],
             writer: ResultWriter::create(&command.output, &scene.inputs(), &variables)?,
             variables,
-            history: command.plot.is_some().then(|| History::new(scene)),
+            history: command.plot.is_some().then(|| TimeHistory::new(scene)),
             progress: bar(PROGRESS_LENGTH as u64),
             duration: scene.duration(),
             time: 0.0,
@@ -113,7 +113,7 @@ impl Recorder {
         }
     }
 
-    fn finish(self) -> Result<Option<History>, FileError> {
+    fn finish(self) -> Result<Option<TimeHistory>, FileError> {
         self.progress.finish_and_clear();
         self.writer.finish()?;
         Ok(self.history)

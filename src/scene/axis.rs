@@ -1,6 +1,6 @@
 //! The axes of the plane that the model lies in.
 
-use std::ops::{Index, IndexMut};
+use std::ops::{Add, Index, IndexMut, Sub};
 
 use serde::{Deserialize, Serialize};
 
@@ -24,6 +24,14 @@ impl Axis {
         match self {
             Self::X => "x",
             Self::Z => "z",
+        }
+    }
+
+    /// The name of the force of the layer on the carrier.
+    pub fn force_name(self) -> &'static str {
+        match self {
+            Self::X => "F_x",
+            Self::Z => "F_z",
         }
     }
 
@@ -81,6 +89,24 @@ impl<T> ByAxis<Option<T>> {
     /// Whether there is one along any axis.
     pub fn any(&self) -> bool {
         self.x.is_some() || self.z.is_some()
+    }
+}
+
+impl<T: Add<Output = T>> Add for ByAxis<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { x: self.x + other.x, z: self.z + other.z }
+    }
+}
+
+impl<T: Sub<Output = T>> Sub for ByAxis<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self { x: self.x - other.x, z: self.z - other.z }
     }
 }
 

@@ -120,8 +120,8 @@ impl Scene {
         Input::ALL.into_iter().filter(acts).collect()
     }
 
-    /// The stiffness Σ_i C with which the masses on the profile bear a body along z at its start, per mass, N/m: that of
-    /// the springs of the vertical links, with the Maxwell elements where dashpots start undeformed.
+    /// The stiffness Σ_i C with which the masses on the profile bear a body along z at its start, per mass, N/m: that
+    /// of the springs of the vertical links, with the Maxwell elements where dashpots start undeformed.
     pub fn bearing_stiffness(&self) -> f64 {
         let Some(link) = self.link(LinkKind::Vertical) else { return 0.0 };
         let elements = link.maxwell.iter().map(|element| element.stiffness).sum::<f64>();
@@ -143,8 +143,8 @@ impl Scene {
     /// The scene at another temperature, K.
     ///
     /// # Errors
-    /// [`ParameterError`] where the temperature is none, or the shift has its pole above it, or a number of the material
-    /// becomes impossible.
+    /// [`ParameterError`] where the temperature is none, or the shift has its pole above it, or a number of the
+    /// material becomes impossible.
     pub fn at_temperature(&self, temperature: f64) -> Result<Self, ParameterError> {
         let mut scene = self.clone();
         let given =

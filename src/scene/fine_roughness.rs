@@ -78,8 +78,8 @@ impl FineRoughness {
 }
 
 impl SelfAffine {
-    /// The bands, even in ln q, of the law from its own cut-off down to the wavelength `cut_off` (m): an isotropic surface
-    /// has the mean square gradient 2 ∫ q² C dq over each.
+    /// The bands, even in ln q, of the law from its own cut-off down to the wavelength `cut_off` (m): an isotropic
+    /// surface has the mean square gradient 2 ∫ q² C dq over each.
     fn continued(&self, cut_off: f64) -> Vec<(Option<f64>, f64)> {
         let (low, high) = (TAU / self.cut_off, TAU / cut_off);
         let edge = |b: usize| low * (high / low).powf(b as f64 / BANDS as f64);
@@ -98,8 +98,8 @@ impl SelfAffine {
 }
 
 impl Material {
-    /// The least and the largest rate 1/τ_j at the layer's temperature, 1/s, that of E_∞/η among them; `None` for a material
-    /// whose modulus is the same at every frequency.
+    /// The least and the largest rate 1/τ_j at the layer's temperature, 1/s, that of E_∞/η among them; `None` for a
+    /// material whose modulus is the same at every frequency.
     pub fn rates(&self) -> Option<(f64, f64)> {
         let shift = self.shift_factor();
         let glassy = self.equilibrium_modulus + self.prony.iter().map(|term| term.modulus).sum::<f64>();

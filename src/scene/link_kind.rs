@@ -1,6 +1,6 @@
 //! The kinds of link between carrier and masses.
 
-use std::ops::{Index, IndexMut};
+use std::ops::{Index, IndexMut, Range};
 use std::slice;
 
 use serde::{Deserialize, Serialize, Serializer};
@@ -62,6 +62,17 @@ impl LinkKind {
     /// How many links of this kind a layer of `masses` ≥ 1 masses has.
     pub fn count(self, masses: usize) -> usize {
         masses - usize::from(self.is_lateral())
+    }
+
+    /// The links of this kind on mass `i` of a layer of `masses`.
+    pub fn links_on(self, i: usize, masses: usize) -> Range<usize> {
+        if self.is_lateral() { i.saturating_sub(1)..(i + 1).min(masses - 1) } else { i..i + 1 }
+    }
+
+    /// The difference between the ends of a link: of `values` of two masses, or of one and the `carrier`.
+    #[inline(always)]
+    pub fn difference(self, values: &[f64], carrier: f64, link: usize) -> f64 {
+        if self.is_lateral() { values[link + 1] - values[link] } else { values[link] - carrier }
     }
 }
 

@@ -145,8 +145,8 @@ impl Layer {
         self.element_area().map(|area| area * self.masses as f64)
     }
 
-    /// What turns a modulus into the stiffness of a link of springs, m: A/H to the carrier, H B/Δx to the neighbour; times
-    /// G/E = 1/(2(1 + ν)) where the link is sheared.
+    /// What turns a modulus into the stiffness of a link of springs, m: A/H to the carrier, H B/Δx to the neighbour;
+    /// times G/E = 1/(2(1 + ν)) where the link is sheared.
     fn spring_size(&self, kind: LinkKind, poisson_ratio: f64) -> Option<f64> {
         let (thickness, width) = (self.thickness?, self.width?);
         let size = if kind.is_lateral() { thickness * width / self.spacing } else { self.spacing * width / thickness };
@@ -212,7 +212,7 @@ impl Scene {
         })
     }
 
-    /// The same scene by the constants of its links; itself where it is given so.
+    /// This scene by the constants of its links; itself where it is given so.
     pub fn direct_form(&self) -> Self {
         let mut scene = self.clone();
         if scene.material.take().is_some() {

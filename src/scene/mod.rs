@@ -55,7 +55,7 @@ pub use profile::{
 };
 pub use regular_file::{read_file, read_text};
 pub use spectrum::{Band, PowerLaw, Spectrum};
-pub use surface::{MeanLine, SelfAffine, Surface};
+pub use surface::{MeanLine, SelfAffine, Surface, peak_to_valley};
 pub use values::{LARGEST, LOOSEST_TOLERANCE, SMALLEST, Unit, is_possible};
 
 /// A whole scene, checked. Serialised, it is every number of it: what the scene does not name is null or empty.
@@ -185,7 +185,8 @@ pub struct Friction {
     pub shear_strength: Option<f64>,
     /// Rate-dependent shear strength.
     pub rate_shear: Option<RateShear>,
-    /// Roughness below the profile's, by which contacts touch on a part of their area alone; in the material form alone.
+    /// Roughness below the profile's, by which contacts touch on a part of their area alone; in the material form
+    /// alone.
     pub real_area: Option<RealArea>,
 }
 
@@ -384,7 +385,7 @@ impl Scene {
     /// The scene's height, m: the peak-to-valley heights of the profile's data points and of the layer's roughness
     /// together, the spacing of the masses where both are flat.
     pub fn height(&self) -> f64 {
-        let height = surface::peak_to_valley(self.surface.z()) + surface::peak_to_valley(&self.layer.roughness);
+        let height = peak_to_valley(self.surface.z()) + peak_to_valley(&self.layer.roughness);
         if height > 0.0 { height } else { self.layer.spacing }
     }
 

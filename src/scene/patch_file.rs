@@ -47,7 +47,7 @@ pub enum FaceShape {
     Flat(Grid),
     /// A grid on a cylinder about the y axis.
     Cylinder {
-        /// m.
+        /// Radius of the cylinder, m.
         radius: f64,
         /// Along the arc and the axis.
         grid: Grid,

@@ -36,9 +36,9 @@ const MAX_POINTS: usize = 1 << 20;
 const BANDS: f64 = 12.0;
 
 impl Spectrum {
-    /// The spectrum of a profile at as many even points as it has intervals. A periodic profile needs no preparation. From
-    /// any other the tilt is removed, and a Hann window is applied and its loss of power (3/8) corrected; the longest
-    /// wavelength is then unreliable.
+    /// The spectrum of a profile at as many even points as it has intervals. A periodic profile needs no preparation.
+    /// From any other the tilt is removed, and a Hann window is applied and its loss of power (3/8) corrected; the
+    /// longest wavelength is then unreliable.
     pub fn new(surface: &Surface) -> Self {
         let x = surface.x();
         let (start, length) = (x[0], x[x.len() - 1] - x[0]);
@@ -50,8 +50,8 @@ impl Spectrum {
         Self::from_heights(heights, length, surface.is_periodic())
     }
 
-    /// The spectrum of the roughness of a layer of this length (m): heights at its masses, m, as of a profile that is not
-    /// periodic.
+    /// The spectrum of the roughness of a layer of this length (m): heights at its masses, m, as of a profile that is
+    /// not periodic.
     pub(super) fn from_roughness(heights: &[f64], length: f64) -> Self {
         let x: Vec<f64> = (0..heights.len()).map(|i| i as f64 * length / heights.len() as f64).collect();
         let line = MeanLine::through(&x, heights);
@@ -156,8 +156,8 @@ struct LawFit {
 }
 
 impl PowerLaw {
-    /// The law that fits the bands best, over as many of them as possible; where `wavelengths` (m) are given, over exactly
-    /// these and without a roll-off. `None` where no part follows a power law.
+    /// The law that fits the bands best, over as many of them as possible; where `wavelengths` (m) are given, over
+    /// exactly these and without a roll-off. `None` where no part follows a power law.
     pub fn fit(bands: &[Band], wavelengths: Option<&RangeInclusive<f64>>) -> Option<Self> {
         let inside = |band: &&Band| wavelengths.is_none_or(|range| range.contains(&(TAU / band.wave_number)));
         let seen = bands.iter().filter(inside).filter(|band| band.density > 0.0);

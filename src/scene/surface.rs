@@ -30,8 +30,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// The profile through the points (x, z), m: at least two, `x` strictly rising. A periodic one is repeated without end,
-    /// and its last height equals the first; any other is continued along its end tangents.
+    /// The profile through the points (x, z), m: at least two, `x` strictly rising. A periodic one is repeated without
+    /// end, and its last height equals the first; any other is continued along its end tangents.
     ///
     /// # Panics
     /// With fewer than two points.
@@ -99,8 +99,8 @@ impl Surface {
         MeanLine::through(&self.x, &self.z)
     }
 
-    /// Without waves that are short against `cut_off` (m), by the Gaussian filter of ISO 16610-21, which halves a wave of that
-    /// length; near the ends of a natural profile over the points that there are.
+    /// Without waves that are short against `cut_off` (m), by the Gaussian filter of ISO 16610-21, which halves a wave
+    /// of that length; near the ends of a natural profile over the points that there are.
     pub fn smoothed(&self, cut_off: f64) -> Self {
         let (x, z) = self.repeated_by(cut_off);
         let width = |i: usize| x[(i + 1).min(x.len() - 1)] - x[i.saturating_sub(1)];
@@ -170,7 +170,7 @@ pub(super) fn remove_tilt(x: &[f64], z: &mut [f64]) {
 }
 
 /// Highest minus lowest, m; 0 for no heights.
-pub(super) fn peak_to_valley(heights: &[f64]) -> f64 {
+pub fn peak_to_valley(heights: &[f64]) -> f64 {
     let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
     (highest - lowest).max(0.0)
@@ -287,7 +287,8 @@ impl SelfAffine {
                 coefficients[m] = Complex::new(amplitude * cosine, amplitude * sine);
                 coefficients[self.points - m] = coefficients[m].conj();
             } else {
-                // With two points a wavelength the phase is not resolved: the amplitude has the mean power of all phases.
+                // With two points a wavelength the phase is not resolved: the amplitude has the mean power of all
+                // phases.
                 coefficients[m] = Complex::from(SQRT_2 * amplitude.copysign(cosine));
             }
         }
@@ -334,9 +335,8 @@ mod tests {
     }
 
     /// Every mode has the power that the spectrum says: 20 modes on the plateau, then as q^(-2.6) to mode 1000, none
-    /// beyond.
-    /// A wave of the cut-off is halved, one of half of it is left with 2^-4, a line stays but near its ends: the filter's
-    /// definition; 64 points a wave are exact to 1e-9 of it.
+    /// beyond. A wave of the cut-off is halved, one of half of it is left with 2^-4, a line stays but near its ends:
+    /// the filter's definition; 64 points a wave are exact to 1e-9 of it.
     #[test]
     fn smoothing_halves_the_wave_of_the_cut_off() {
         let wave = |factor: i64, smoothed: f64| {
@@ -438,8 +438,8 @@ mod tests {
 
     /// The bits of a few heights and of their sum, as they come out on every platform.
     ///
-    /// The values are those of a program of its own in Python, which sums the cosines one by one with 40 digits: this one
-    /// is right to its last digits, and the bits say that the next platform, compiler or change gives the same.
+    /// The values are those of a program of its own in Python, which sums the cosines one by one with 40 digits: this
+    /// one is right to its last digits, and the bits say that the next platform, compiler or change gives the same.
     #[test]
     fn a_seed_gives_the_same_bits_everywhere() {
         let profile = SelfAffine { points: 300, length: 0.03, roll_off: 1e-2, cut_off: 3e-4, ..ROUGH };

@@ -17,8 +17,8 @@ use crate::scene::{Axis, ByAxis};
 /// stages seeing the same and the error estimate nothing.
 const OF_PERIOD: f64 = 0.25;
 
-/// What the steps of a run work on, of the whole layer or of a local region: the model, the settings, the state, and the
-/// workspace that both methods share. Everything but `state` can be made anew from the model and the settings.
+/// What the steps of a run work on, of the whole layer or of a local region: the model, the settings, the state, and
+/// the workspace that both methods share. Everything but `state` can be made anew from the model and the settings.
 #[derive(Clone, Debug)]
 pub(super) struct Context {
     pub model: Arc<Model>,
@@ -77,21 +77,8 @@ impl Context {
         self.state.energies.initial = of_layer + self.state.carrier.energy(model, 0.0).total();
     }
 
-    /// Memory in bytes, without some hundreds that do not grow with the layer: with `copies` of the state beside it.
-    pub(super) fn bytes(&self, copies: usize) -> usize {
-        let layer = &self.state.layer.state;
-        let (masses, maxwell) = (layer.mode.len(), layer.maxwell.len());
-        // The state, the one within a step and the stage's.
-        let states = 3 + copies;
-        let by_mass = 4 * size_of::<f64>() + size_of_val(&layer.surface[0]) + 1;
-        states * (masses * by_mass + maxwell * size_of::<f64>())
-            + self.integrator.bytes()
-            + 2 * self.forces.bytes()
-            + self.dense.bytes()
-    }
-
-    /// Takes over another temperature (K) and the settings for the model there, which is set. The dampers' forces jump, so the
-    /// next motion decides all modes anew.
+    /// Takes over another temperature (K) and the settings for the model there, which is set. The dampers' forces jump,
+    /// so the next motion decides all modes anew.
     pub(super) fn set_temperature(&mut self, temperature: f64, settings: Settings) {
         self.settings = settings;
         (self.state.temperature, self.state.rates_valid) = (temperature, false);
@@ -120,7 +107,8 @@ impl Context {
         }
     }
 
-    /// Computes the bodies' accelerations anew from the forces, of which one from outside has jumped. No force on a mass has.
+    /// Computes the bodies' accelerations anew from the forces, of which one from outside has jumped. No force on a
+    /// mass has.
     fn accelerate_bodies(&mut self) {
         self.evaluate_forces();
         self.state.carrier.accelerate(&self.model, self.state.s, &self.forces);
@@ -131,7 +119,7 @@ impl Context {
         let Self { state, integrator, .. } = self;
         for axis in Axis::ALL {
             if state.carrier.is_body(axis) {
-                state.carrier.set_step(axis, integrator.body_step(axis, h));
+                state.carrier.set_interpolant(axis, integrator.body_interpolant(axis, h));
             }
         }
     }
@@ -188,7 +176,7 @@ impl Context {
     }
 
     /// Ḟ_x and Ḟ_z, N/s, from the left; at the start, from the right.
-    pub(super) fn force_rates(&mut self) -> (f64, f64) {
+    pub(super) fn force_rates(&mut self) -> ByAxis<f64> {
         if !self.state.rates_valid {
             self.accelerate_bodies();
             self.start_from_forces();
@@ -204,7 +192,7 @@ impl Context {
     }
 
     /// F_x and F_z at the fraction `theta` of the step of length `h` (s) tried last, N.
-    pub(super) fn on_carrier_within(&mut self, h: f64, theta: f64) -> (f64, f64) {
+    pub(super) fn on_carrier_within(&mut self, h: f64, theta: f64) -> ByAxis<f64> {
         let Self { model, state, integrator, dense, .. } = self;
         integrator.on_carrier((&**model, &state.carrier, &state.layer.state), state.span(h), theta, dense)
     }
@@ -265,8 +253,8 @@ impl Context {
         self.integrator.dense(&self.model, &state.carrier, &state.layer.state, state.span(h))
     }
 
-    /// The layer at the fraction `theta` of the step of length `h` (s) tried last, with some masses replaced, and the run at
-    /// the step's start.
+    /// The layer at the fraction `theta` of the step of length `h` (s) tried last, with some masses replaced, and the
+    /// run at the step's start.
     pub(super) fn within<'a>(
         &'a mut self,
         (h, theta): (f64, f64),

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::motion::SimulationError;
 use crate::model::Model;
 
-/// The longest event-driven step, as a multiple of the mean time between events: a longer one would be cut, after a search
-/// through all of it.
+/// The longest event-driven step, as a multiple of the mean time between events: a longer one would be cut, after a
+/// search through all of it.
 ///
 /// Recommended 4 to 10: shorter ones end before there is an event, longer ones are less accurate where they are cut.
 const OF_SPACING: f64 = 8.0;
@@ -21,8 +21,8 @@ const AFTER_FAILURE: f64 = 0.25;
 pub(super) const GROWTH: (f64, f64) = (0.2, 5.0);
 /// Length of a step below which a cut is suspected of chattering, divided by the stiffest period over 2π.
 const CHATTERING: f64 = 1e-9;
-/// Number of such steps after which the shortest cut doubles. Simultaneous events of many masses also take many of them,
-/// but modes change at those.
+/// Number of such steps after which the shortest cut doubles. Simultaneous events of many masses also take many of
+/// them, but modes change at those.
 const MAX_CHATTERING: u32 = 100;
 
 /// A good step of length `h` (s) that is to be accepted up to its `fraction`.
@@ -33,7 +33,8 @@ pub(super) struct TrialStep {
 }
 
 impl TrialStep {
-    /// The end of a step from the time `s` of a motion of `duration`, s: exactly that of the motion where it is the last.
+    /// The end of a step from the time `s` of a motion of `duration`, s: exactly that of the motion where it is the
+    /// last.
     pub(super) fn end(&self, s: f64, duration: f64) -> f64 {
         let is_last = self.fraction >= 1.0 && self.h >= duration - s;
         if is_last { duration } else { s + self.fraction * self.h }
@@ -120,8 +121,8 @@ impl Controller {
         self.step_size = self.step_size.min(length);
     }
 
-    /// The length of the next step, s, after a good one of length `h`, by whose error it grows to `grown`. One that was cut
-    /// short to `limit` by the end of the motion or by the events says nothing. It is at most `longest`.
+    /// The length of the next step, s, after a good one of length `h`, by whose error it grows to `grown`. One that was
+    /// cut short to `limit` by the end of the motion or by the events says nothing. It is at most `longest`.
     pub(super) fn propose(&self, (h, grown): (f64, f64), limit: f64, longest: f64) -> f64 {
         let next = if h < limit { grown } else { grown.max(self.step_size) };
         next.min(longest)
@@ -152,10 +153,10 @@ impl Controller {
 
 /// Ends chattering: steps that make no progress because rounding makes events.
 ///
-/// Where a mass is so fast that the rounding of its velocity, divided by the length of a short step, is an inertia force
-/// larger than the tolerance of events, an event is found at the start of each such step but is not due at its end. The
-/// run would cut every step to the resolution of time. After some of these steps in a row, the shortest length that a
-/// step is cut to therefore doubles with each, until a mode changes or no event is found.
+/// Where a mass is so fast that the rounding of its velocity, divided by the length of a short step, is an inertia
+/// force larger than the tolerance of events, an event is found at the start of each such step but is not due at its
+/// end. The run would cut every step to the resolution of time. After some of these steps in a row, the shortest length
+/// that a step is cut to therefore doubles with each, until a mode changes or no event is found.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ChatterGuard {
     /// Steps cut to this length, s, or less are suspected.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::context::Context;
 use super::tests::{WAVE, scene, scene_with_rate_shear, scene_with_real_area};
-use crate::model::Mode;
+use crate::model::{ByAxis, Mode};
 use crate::outputs::{Output, dependencies, variables};
 use crate::scene::{LinkKind, Path, Scene};
 use crate::simulation::{Motion, Simulation, Start};
@@ -125,7 +125,7 @@ fn force_rates_are_those_of_a_difference_quotient() {
             let found = after(0.0).force_rates();
             let h = 2e-9;
             let (now, before, earlier) = (force(0.0), force(h), force(2.0 * h));
-            for (i, found) in [found.0, found.1].into_iter().enumerate() {
+            for (i, found) in [found.x, found.z].into_iter().enumerate() {
                 let quotient = (3.0 * now[i] - 4.0 * before[i] + earlier[i]) / (2.0 * h);
                 assert!((found - quotient).abs() < 1e-4 * quotient.abs() + 1e-2, "{i}: {found} {quotient}");
             }
@@ -140,5 +140,5 @@ fn force_rates_at_the_start_are_those_of_the_starting_velocity() {
                 maxwell = [{ stiffness = 2.0, relaxation_time = 1.0 }] } }\nsurface = { kind = 'flat' }";
     let scene = Scene::parse(text, std::path::Path::new("a.toml")).unwrap();
     let mut simulation = Simulation::new(&scene, &Start { w: -0.1, w_rate: -0.5, ..Start::default() }).unwrap();
-    assert_eq!(simulation.force_rates(), (0.0, 2.0 * (3.0 + 2.0) * 0.5));
+    assert_eq!(simulation.force_rates(), ByAxis { x: 0.0, z: 2.0 * (3.0 + 2.0) * 0.5 });
 }

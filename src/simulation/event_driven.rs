@@ -1,18 +1,18 @@
-//! The event-driven method: the modes are held through a step, and its mode changes are located on the dense output. Where
-//! local regions take them the step goes on; where not it ends at the first.
+//! The event-driven method: the modes are held through a step, and its mode changes are located on the dense output.
+//! Where local regions take them the step goes on; where not it ends at the first.
 
 use super::context::Context;
 use super::controller::{ChatterGuard, GROWTH, TrialStep, WorkLimit};
 use super::motion::SimulationError;
 use super::stepper::{ErrorTest, Stepper};
 use crate::contact::{first_event, is_due, longest_unstable, mode_changes};
-use crate::integrator::{ContactModes, Integrator, Motions, Overlay};
-use crate::model::Model;
+use crate::integrator::{ContactModes, Integrator, Overlay, Polynomials};
+use crate::model::{ByAxis, Model};
 
 /// A new step is this fraction of what the error estimate allows, so that few are rejected.
 const SAFETY: f64 = 0.9;
-/// The largest error over the tolerance with which a step of a wide layer is accepted. New steps aim at 0.6 to 0.7 of the
-/// tolerance: where mode changes make some of them err more, that costs less than to try these again.
+/// The largest error over the tolerance with which a step of a wide layer is accepted. New steps aim at 0.6 to 0.7 of
+/// the tolerance: where mode changes make some of them err more, that costs less than to try these again.
 ///
 /// Recommended 1 to 2. With 3, errors of whole runs grow.
 const MAX_ERROR_IN_WIDE_LAYERS: f64 = 2.0;
@@ -31,8 +31,8 @@ const RESOLVED: f64 = 5.0;
 const AFTER_CUT: f64 = 1.5;
 /// Fraction of a sine's amplitude by which the dense output may be off it with a quarter of the period in a step.
 const UNSEEN: f64 = 2e-2;
-/// Cuts of one step at events after which each further cut leaves at most half of it. By rounding, an event can be found
-/// at the very end of the shortened step again and again.
+/// Cuts of one step at events after which each further cut leaves at most half of it. By rounding, an event can be
+/// found at the very end of the shortened step again and again.
 pub(super) const MAX_CUTS: u32 = 50;
 /// The largest residual of the equations of motion that the dense output may have where a step is cut at an event, as a
 /// velocity gained over the step, against the tolerance.
@@ -40,10 +40,11 @@ pub(super) const MAX_CUTS: u32 = 50;
 /// Recommended 1 to 5: the residual oscillates about 0 through the step, so less of it is left in the velocity; with 5
 /// the errors of whole runs are those of 1, and fewer steps are repeated.
 pub(super) const MAX_DEFECT: f64 = 5.0;
-/// The relative tolerance from which on P_diss within a step comes from the powers at its stages, of order 3 at most, and
-/// not from the layer's state there.
+/// The relative tolerance from which on P_diss within a step comes from the powers at its stages, of order 3 at most,
+/// and not from the layer's state there.
 ///
-/// Recommended 1e-4: down to it P_diss is as accurate by both in the median, and below ten tolerances nearly everywhere.
+/// Recommended 1e-4: down to it P_diss is as accurate by both in the median, and below ten tolerances nearly
+/// everywhere.
 const POWERS_OF_STAGES_FROM: f64 = 1e-4;
 
 /// The event-driven steps of a layer or of a local region.
@@ -108,7 +109,8 @@ impl EventDriven {
         if test == ErrorTest::Solved && attempt.is_some_and(|attempt| attempt.error.is_finite()) {
             return good(f64::MAX);
         }
-        // The error of the layer, or where the carrier moves unseen between the stages and a mass may touch, that of its motion.
+        // The error of the layer, or where the carrier moves unseen between the stages and a mass may touch, that of
+        // its motion.
         let of_layer = attempt.map(|attempt| match test {
             ErrorTest::Motion => attempt.motion_error,
             ErrorTest::Full | ErrorTest::Solved => attempt.error,
@@ -138,8 +140,8 @@ impl EventDriven {
         if self.may_plan || context.settings.is_local { MAX_ERROR_IN_WIDE_LAYERS } else { 1.0 }
     }
 
-    /// Finds the mode changes, if any, of the step of length `h` tried last, for local regions to take. `false` where these
-    /// cannot, since the first comes before the fraction `least` of the step or there are no regions.
+    /// Finds the mode changes, if any, of the step of length `h` tried last, for local regions to take. `false` where
+    /// these cannot, since the first comes before the fraction `least` of the step or there are no regions.
     fn plan(&mut self, context: &mut Context, h: f64, least: f64) -> bool {
         if !self.may_plan {
             return false;
@@ -178,7 +180,8 @@ impl Stepper for EventDriven {
         let shortest_cut = self.chatter.shortest_cut(bounds.shortest, events);
         let (mut cuts, mut proposal) = (0, None);
         loop {
-            // Try it. The step that an event cuts short says how long the next may be; the shorter ones need no error test.
+            // Try it. The step that an event cuts short says how long the next may be; the shorter ones need no error
+            // test.
             work.count(context.state.time(), context.model.masses())?;
             let test = match proposal {
                 Some(_) if context.shorter_is_no_worse() => ErrorTest::Solved,
@@ -223,7 +226,7 @@ impl Stepper for EventDriven {
         is_good
     }
 
-    fn on_carrier(&mut self, context: &mut Context, h: f64, theta: f64) -> (f64, f64) {
+    fn on_carrier(&mut self, context: &mut Context, h: f64, theta: f64) -> ByAxis<f64> {
         context.on_carrier_within(h, theta)
     }
 
@@ -239,7 +242,7 @@ impl Stepper for EventDriven {
 fn may_touch(context: &Context, h: f64) -> bool {
     let dense = context.dense_output(h);
     let reach = context.model.profile.bounds().z_max + UNSEEN * context.state.carrier.amplitude_w();
-    let (motions, modes) = (Motions::new(&dense), &context.state.layer.state.mode);
+    let (motions, modes) = (Polynomials::new(&dense), &context.state.layer.state.mode);
     (0..modes.len()).any(|i| !modes[i].in_contact() && motions.height(i).range().0 <= reach)
 }
 
@@ -255,8 +258,8 @@ fn fraction_before_event(context: &mut Context, h: f64, shortest_cut: f64) -> f6
     first_event(&step, &events, dense).map_or(1.0, |theta| theta.max(shortest_cut / h))
 }
 
-/// Whether the run can go on from the fraction `theta` of the step of length `h` tried last, without local regions: whether
-/// the residual of the equations of motion in the dense output there is small in the tolerance's norm.
+/// Whether the run can go on from the fraction `theta` of the step of length `h` tried last, without local regions:
+/// whether the residual of the equations of motion in the dense output there is small in the tolerance's norm.
 pub(super) fn can_resume(context: &mut Context, h: f64, theta: f64) -> bool {
     if context.integrator.has_tangents() {
         return false;
@@ -267,7 +270,7 @@ pub(super) fn can_resume(context: &mut Context, h: f64, theta: f64) -> bool {
     step.defect(theta, interpolated, forces, dense, &settings.tolerance) <= MAX_DEFECT
 }
 
-/// Accepts the motion of a step, which ends at the time `end` of the carrier's piece, with that of its open local
+/// Accepts the motion of a step, which ends at the time `end` of the carrier's segment, with that of its open local
 /// `regions` in place of its own, and changes the modes if that is due.
 pub(super) fn accept_motion(context: &mut Context, step: &TrialStep, end: f64, regions: Option<&mut dyn Overlay>) {
     context.state.counters.steps += 1;

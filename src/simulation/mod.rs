@@ -1,11 +1,12 @@
 //! A simulation: joins the integrator and the contact laws into a run that follows the carrier's motion.
 //!
-//! - [`Simulation`] is the public face: a `run` and, where the group `solver` asks for its error, a reference run. It shows
-//!   the rows of a motion by a `sampler`.
+//! - [`Simulation`] is the public face: a `run` and, where the group `solver` asks for its error, a reference run. It
+//!   shows the rows of a motion by a `sampler`.
 //! - `run` joins what a run is made of; the comment on its type has the course of a step.
-//! - `context` is what the steps work on: all that changes in a run (`state`), and the workspace that the methods share.
-//! - `stepper` is what the steps of both methods have in common; `event_driven` and `time_stepping` are the two. A `controller`
-//!   chooses their lengths.
+//! - `context` is what the steps work on: all that changes in a run (`state`), and the workspace that the methods
+//!   share.
+//! - `stepper` is what the steps of both methods have in common; `event_driven` and `time_stepping` are the two. A
+//!   `controller` chooses their lengths.
 //! - `local_regions` take the mode changes of an event-driven step in steps of the masses near them alone.
 //! - `reference_run` estimates the run's error.
 
@@ -192,11 +193,6 @@ impl Simulation {
         (carrier.drive(Axis::X, s).unwrap_or(u), carrier.drive(Axis::Z, s).unwrap_or(w))
     }
 
-    /// Memory of the simulation in bytes, without some hundreds that do not grow with the layer.
-    pub fn bytes(&self) -> usize {
-        self.runs().map(Run::bytes).sum()
-    }
-
     /// Follows `motion` to its end.
     ///
     /// # Errors
@@ -211,7 +207,8 @@ impl Simulation {
     /// the motion (s) and the run at that instant. Returns when the force was reached, s after the start of the motion:
     /// 0 if F_z is there already, `None` without a force or if it is not reached within the motion.
     ///
-    /// A snapshot within a step is interpolated: it can be looked at, but neither cloned into a simulation nor advanced.
+    /// A snapshot within a step is interpolated: it can be looked at, but neither cloned into a simulation nor
+    /// advanced.
     ///
     /// ```compile_fail,E0308
     /// # use asperity::simulation::{Motion, Simulation};
@@ -325,14 +322,14 @@ impl Simulation {
     }
 
     /// Ḟ_x and Ḟ_z, N/s, from the left; at the start, from the right.
-    pub fn force_rates(&mut self) -> (f64, f64) {
+    pub fn force_rates(&mut self) -> ByAxis<f64> {
         self.run.context.force_rates()
     }
 
-    /// The first derivative of F_x, F_z or a variable of the carrier's motion, in its unit over s, from the left; at the
-    /// start, from the right. 0 for other outputs.
+    /// The first derivative of F_x, F_z or a variable of the carrier's motion, in its unit over s, from the left; at
+    /// the start, from the right. 0 for other outputs.
     pub fn output_rate(&mut self, output: Output) -> f64 {
-        let (force_x, force_z) = self.run.context.force_rates();
+        let force_rates = self.run.context.force_rates();
         let (carrier, s) = (&self.run.context.state.carrier, self.run.context.state.s);
         let point = carrier.at(s);
         let drive = |axis| {
@@ -340,8 +337,8 @@ impl Simulation {
             carrier.outside(model, axis, s).map_or(0.0, |(body, outside)| outside.drive_force_rate(body))
         };
         match output {
-            Output::ForceX => force_x,
-            Output::ForceZ => force_z,
+            Output::ForceX => force_rates.x,
+            Output::ForceZ => force_rates.z,
             Output::CarrierU => point.x.speed,
             Output::CarrierW => point.z.speed,
             Output::CarrierURate => point.x.acceleration,
@@ -373,8 +370,8 @@ impl Simulation {
         self.run.context.relax_dashpots(means, time)
     }
 
-    /// Moves a carrier that is a body along z down by `way`, m, its speed kept and the masses where they are: the vertical
-    /// springs in contact bear so much more.
+    /// Moves a carrier that is a body along z down by `way`, m, its speed kept and the masses where they are: the
+    /// vertical springs in contact bear so much more.
     ///
     /// The energies since the start no longer balance.
     pub fn lower_carrier(&mut self, way: f64) {

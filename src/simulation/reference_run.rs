@@ -251,7 +251,7 @@ mod tests {
             w: Path { rate: -0.01, ..Path::default() },
             ..Motion::default()
         };
-        let force = 2.0 * simulation.snapshot().on_carrier.1;
+        let force = 2.0 * simulation.snapshot().on_carrier.z;
         let risen = simulation.advance_observed(&press, Some(force), &[1e-5, 2e-5], |_, _| ()).unwrap();
         assert!(risen.is_some_and(|s| s > 0.0 && s < press.duration), "{risen:?}");
         assert!(ends_together(&simulation));

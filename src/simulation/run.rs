@@ -14,7 +14,7 @@ use super::time_stepping::TimeStepping;
 use crate::math::bracketed_root;
 use crate::model::{BodyStart, ByAxis, Model};
 use crate::outputs::{Energies, LayerView, Snapshot};
-use crate::scene::{Axis, Method};
+use crate::scene::Method;
 
 /// Mean number of mode changes per time step above which the run switches to time-stepping: 1.5 times the break-even of
 /// 1/3, so that a few changes are still located.
@@ -26,7 +26,8 @@ const MEMORY: f64 = 8.0;
 
 /// A run of a layer.
 ///
-/// A motion of the carrier ([`Simulation::advance`](super::Simulation::advance)) is a sequence of steps, of either method:
+/// A motion of the carrier ([`Simulation::advance`](super::Simulation::advance)) is a sequence of steps, of either
+/// method:
 ///
 /// ```text
 /// begin(motion)                     decide the modes anew where the carrier's velocity jumps
@@ -45,10 +46,10 @@ const MEMORY: f64 = 8.0;
 ///     show the rows due at its end
 /// ```
 ///
-/// Method *auto* goes from events to time-stepping where mode changes come fast, and back where they are few again. What
-/// decides is the number of mode changes per time step, in the mean over the last [`MEMORY`] of them. An event costs the
-/// event-driven method a step of three or six stages, which is cut there, or of a local region; a time step costs two and
-/// takes any number of changes. So time-stepping is cheaper from a third of a change per step on.
+/// Method *auto* goes from events to time-stepping where mode changes come fast, and back where they are few again.
+/// What decides is the number of mode changes per time step, in the mean over the last [`MEMORY`] of them. An event
+/// costs the event-driven method a step of three or six stages, which is cut there, or of a local region; a time step
+/// costs two and takes any number of changes. So time-stepping is cheaper from a third of a change per step on.
 #[derive(Clone, Debug)]
 pub(super) struct Run {
     pub(super) context: Box<Context>,
@@ -82,11 +83,6 @@ impl Run {
             Self { context, event_driven, time_stepping, local_regions, checkpoint, recorded, method_switches };
         run.keep_link_forces();
         run
-    }
-
-    /// Memory in bytes, without some hundreds that do not grow with the layer.
-    pub(super) fn bytes(&self) -> usize {
-        self.context.bytes(1) + self.local_regions.bytes()
     }
 
     pub(super) fn newton_iterations(&self) -> u64 {
@@ -135,7 +131,7 @@ impl Run {
         self.event_driven.may_plan = allowed && !self.local_regions.is_empty();
     }
 
-    /// Begins a smooth piece of the carrier's motion.
+    /// Begins a smooth segment of the carrier's motion.
     pub(super) fn begin(&mut self, motion: &Motion) {
         self.event_driven.begin();
         self.local_regions.close();
@@ -167,8 +163,8 @@ impl Run {
         stepper.cut_step_at(context, (s, duration), work)
     }
 
-    /// Where F_z reaches the force `until` (N) in `step`, a step that ends there in its place, and whether it does; `None`
-    /// where it ends below.
+    /// Where F_z reaches the force `until` (N) in `step`, a step that ends there in its place, and whether it does;
+    /// `None` where it ends below.
     pub(super) fn cut_at_force(
         &mut self,
         step: &TrialStep,
@@ -176,17 +172,17 @@ impl Run {
         work: &mut WorkLimit,
     ) -> Result<Option<(TrialStep, bool)>, SimulationError> {
         let TrialStep { h, fraction } = *step;
-        let Some(force) = until.filter(|&force| self.on_carrier_within(h, fraction).1 >= force) else {
+        let Some(force) = until.filter(|&force| self.on_carrier_within(h, fraction).z >= force) else {
             return Ok(None);
         };
-        let theta = bracketed_root(|theta| self.on_carrier_within(h, theta).1 - force, (0.0, fraction), 1e-14);
+        let theta = bracketed_root(|theta| self.on_carrier_within(h, theta).z - force, (0.0, fraction), 1e-14);
         let (stepper, context) = self.stepper();
         let cut = stepper.cut_step(context, theta * h, work)?;
         Ok(Some((cut, cut.h == theta * h)))
     }
 
-    /// Lets local regions follow `step`, which ends at the second of two times, up to the first, s. Returns its end: where they
-    /// cannot, it is cut short.
+    /// Lets local regions follow `step`, which ends at the second of two times, up to the first, s. Returns its end:
+    /// where they cannot, it is cut short.
     pub(super) fn advance_regions(
         &mut self,
         step: &mut TrialStep,
@@ -196,7 +192,7 @@ impl Run {
         self.local_regions.advance((&mut self.context, &mut self.event_driven), step, times, work)
     }
 
-    /// Accepts a step, which ends at the time `end` of the piece, and makes the mode changes due there.
+    /// Accepts a step, which ends at the time `end` of the segment, and makes the mode changes due there.
     pub(super) fn take_step(&mut self, step: &TrialStep, end: f64) {
         let Self { context, event_driven, time_stepping, local_regions, .. } = self;
         let auto = context.settings.method == Method::Auto;
@@ -243,14 +239,14 @@ impl Run {
 
     /// Whether F_z has reached the force `until`, N.
     pub(super) fn has_reached(&mut self, until: Option<f64>) -> bool {
-        until.is_some_and(|force| self.snapshot().on_carrier.1 >= force)
+        until.is_some_and(|force| self.snapshot().on_carrier.z >= force)
     }
 
     /// The run as it stands.
     pub(super) fn snapshot(&mut self) -> Snapshot<'_> {
         self.context.evaluate_forces();
         let Context { model, state, forces, .. } = &*self.context;
-        let on_carrier = (forces.on_carrier(Axis::X), forces.on_carrier(Axis::Z));
+        let on_carrier = ByAxis::from_fn(|axis| forces.on_carrier(axis));
         snapshot_of((model, state), state.s, LayerView::at(&state.layer.state, forces), on_carrier)
     }
 
@@ -283,11 +279,10 @@ impl Run {
     }
 
     /// F_x and F_z at the fraction `theta` of the step of length `h` tried last, N.
-    fn on_carrier_within(&mut self, h: f64, theta: f64) -> (f64, f64) {
+    fn on_carrier_within(&mut self, h: f64, theta: f64) -> ByAxis<f64> {
         let (stepper, context) = self.stepper();
-        let (x, z) = stepper.on_carrier(context, h, theta);
-        let of_regions = self.local_regions.forces(&self.context, self.context.state.s + theta * h);
-        (x + of_regions.0, z + of_regions.1)
+        let without_regions = stepper.on_carrier(context, h, theta);
+        without_regions + self.local_regions.forces(&self.context, self.context.state.s + theta * h)
     }
 
     /// P_diss at the fraction `theta` of the step of length `h` tried last, W, where the powers at its stages say it.
@@ -298,21 +293,21 @@ impl Run {
         Some((power + of_regions).max(0.0))
     }
 
-    /// Whether the dense output of `step`, tried last, is good enough to be shown at the time `s` after the start of the
-    /// carrier's piece.
+    /// Whether the dense output of `step`, tried last, is good enough to be shown at the time `s` after the start of
+    /// the carrier's segment.
     pub(super) fn can_show_within(&mut self, step: &TrialStep, s: f64) -> bool {
         let (stepper, context) = self.stepper();
         stepper.can_show(context, step.h, context.state.fraction_at(s, step.h))
     }
 }
 
-/// A run of a model in a state of its own, at the time `s` after the start of the carrier's piece: with the `layer` then, and
-/// the forces F_x and F_z, N.
+/// A run of a model in a state of its own, at the time `s` after the start of the carrier's segment: with the `layer`
+/// then, and the forces F_x and F_z, N.
 fn snapshot_of<'a>(
     (model, state): (&'a Model, &'a RunState),
     s: f64,
     layer: LayerView<'a>,
-    on_carrier: (f64, f64),
+    on_carrier: ByAxis<f64>,
 ) -> Snapshot<'a> {
     Snapshot {
         model,

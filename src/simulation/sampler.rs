@@ -19,7 +19,8 @@ pub(super) struct Sampler<'a, F> {
 }
 
 impl<'a, F: FnMut(f64, &Snapshot<'_>)> Sampler<'a, F> {
-    /// The rows at `times`, shown by `observe`; `run_time` is the processor time before, counted on where it is `measured`.
+    /// The rows at `times`, shown by `observe`; `run_time` is the processor time before, counted on where it is
+    /// `measured`.
     pub(super) fn new(times: &'a [f64], (run_time, measured): (f64, bool), observe: F) -> Self {
         Self { times, clock: measured.then(ThreadTime::now), run_time, observe }
     }
@@ -37,9 +38,9 @@ impl<'a, F: FnMut(f64, &Snapshot<'_>)> Sampler<'a, F> {
         }
     }
 
-    /// Shows the rows that lie within `step` of a motion of `duration`, s. Where its dense output is not good enough, the step
-    /// is shortened to end at the row; where its local regions cannot go on, it is cut there. Returns the end of the step, s
-    /// after the start of the motion, and whether it was shortened.
+    /// Shows the rows that lie within `step` of a motion of `duration`, s. Where its dense output is not good enough,
+    /// the step is shortened to end at the row; where its local regions cannot go on, it is cut there. Returns the end
+    /// of the step, s after the start of the motion, and whether it was shortened.
     pub(super) fn show_within(
         &mut self,
         run: &mut Run,
@@ -68,8 +69,8 @@ impl<'a, F: FnMut(f64, &Snapshot<'_>)> Sampler<'a, F> {
         Ok((end, shortened))
     }
 
-    /// Shows `snapshot`, of the time `s` of the motion, as the next row, compared with the `reference`. Returns the counters
-    /// then.
+    /// Shows `snapshot`, of the time `s` of the motion, as the next row, compared with the `reference`. Returns the
+    /// counters then.
     fn show_next(&mut self, mut snapshot: Snapshot<'_>, reference: Option<&mut ReferenceRun>, s: f64) -> Counters {
         if let Some(reference) = reference {
             reference.compare(s, &mut snapshot);

@@ -32,7 +32,7 @@ impl Settings {
     }
 
     /// The settings of a local region of a layer with these.
-    pub(super) fn of_local_region(&self) -> Self {
+    pub(super) fn for_local_region(&self) -> Self {
         let accounts = Accounts { energy: self.accounts.energy, ..Accounts::default() };
         Self { accounts, method: Method::Event, is_local: true, ..self.clone() }
     }

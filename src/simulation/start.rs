@@ -23,9 +23,9 @@ pub(super) fn body_starts(scene: &Scene, model: &Model, start: &Start) -> ByAxis
     ByAxis { x, z }
 }
 
-/// The displacement w at which the springs of the masses that it lifts, of stiffness `bearing` (N/m) each, and the drive's
-/// bear the load of a carrier at `u` (m), m: Σ C max(0, h_i - w) = N + K (w - w_d), h_i = z_r(X_i + u) - Z_i. The left side
-/// falls with w and the right one does not, so there is one solution, linear between two heights.
+/// The displacement w at which the springs of the masses that it lifts, of stiffness `bearing` (N/m) each, and the
+/// drive's bear the load of a carrier at `u` (m), m: Σ C max(0, h_i - w) = N + K (w - w_d), h_i = z_r(X_i + u) - Z_i.
+/// The left side falls with w and the right one does not, so there is one solution, linear between two heights.
 fn equilibrium_of(model: &Model, bearing: f64, u: f64, start: &BodyStart) -> f64 {
     let Some(body) = &model.bodies[Axis::Z] else { return start.displacement };
     let position = model.profile.reduce(u);

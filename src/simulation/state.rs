@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::controller::Controller;
 use super::motion::{OutOfRange, Start};
 use super::settings::Settings;
-use crate::integrator::{LayerState, Rates, StepSpan};
+use crate::integrator::{LayerState, StageValues, TimeSpan};
 use crate::math::not_finite;
 use crate::model::{BodyStart, Carrier, CarrierPosition, Mode, Model, State, Tangents};
 use crate::outputs::{Counters, Energies};
@@ -13,8 +13,8 @@ use crate::scene::{Axis, ByAxis, Method, ParameterError, Path, is_possible};
 
 /// The first step to try, as a fraction of the stiffest period over 2π; the error test corrects it at once.
 const FIRST_STEP: f64 = 0.1;
-/// The fraction of the distances that a position is summed from by which it may be off: more than rounding adds up to in
-/// any run.
+/// The fraction of the distances that a position is summed from by which it may be off: more than rounding adds up to
+/// in any run.
 const POSITION_ROUNDING: f64 = 1e-6;
 
 /// All that changes in a simulation, but for the processor time and the records of mode changes and method switches.
@@ -38,9 +38,9 @@ impl SimulationState {
 /// All that changes in a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct RunState {
-    /// The smooth piece of motion that the carrier is on.
+    /// The smooth segment of motion that the carrier is on.
     pub carrier: Carrier,
-    /// Time since the start of that piece, s.
+    /// Time since the start of that segment, s.
     pub s: f64,
     /// The layer, with the rates at the start of the next step.
     pub layer: LayerState,
@@ -120,17 +120,17 @@ impl RunState {
         self.displacement_at(self.s)
     }
 
-    /// u and w `s` seconds after the start of the carrier's piece, m.
+    /// u and w `s` seconds after the start of the carrier's segment, m.
     pub(super) fn displacement_at(&self, s: f64) -> ByAxis<f64> {
         self.carrier.displacement(s)
     }
 
     /// A step of length `h` (s) from here.
-    pub(super) fn span(&self, h: f64) -> StepSpan {
-        StepSpan { start: self.s, length: h }
+    pub(super) fn span(&self, h: f64) -> TimeSpan {
+        TimeSpan { start: self.s, length: h }
     }
 
-    /// The fraction of a step of length `h` (s) from here at the time `s` after the start of the carrier's piece.
+    /// The fraction of a step of length `h` (s) from here at the time `s` after the start of the carrier's segment.
     pub(super) fn fraction_at(&self, s: f64, h: f64) -> f64 {
         (s - self.s) / h
     }
@@ -208,8 +208,8 @@ impl RunState {
         self.check_surface(model, settings.tolerance.position)
     }
 
-    /// Checks that the profile under each mass in contact is the one of `model`, within the `tolerance` of positions (m) and
-    /// roundings.
+    /// Checks that the profile under each mass in contact is the one of `model`, within the `tolerance` of positions
+    /// (m) and roundings.
     ///
     /// It cannot be computed afresh to the last bit: its position was summed in another order.
     fn check_surface(&self, model: &Model, tolerance: f64) -> Result<(), RestoreError> {
@@ -256,8 +256,8 @@ fn check_layer(found: &LayerState, expected: &LayerState) -> Result<(), RestoreE
 fn arrays(layer: &LayerState) -> [(&'static str, &[f64]); 15] {
     let State { elongation_x, elongation_z, velocity_x, velocity_z, maxwell, mode: _, surface: _ } = &layer.state;
     let rates = &layer.rates;
-    let Rates { velocity_x: rate_x, velocity_z: rate_z, acceleration_x, acceleration_z, .. } = rates;
-    let Rates { elongation_rate, normal, margin, .. } = rates;
+    let StageValues { velocity_x: rate_x, velocity_z: rate_z, acceleration_x, acceleration_z, .. } = rates;
+    let StageValues { elongation_rate, normal, margin, .. } = rates;
     let [vertical, horizontal, lateral_x, lateral_z] = &elongation_rate.0;
     [
         ("elongations along x", elongation_x),
@@ -341,8 +341,8 @@ mod tests {
         assert_eq!(bits(&scene, &mut second), bits(&scene, &mut first));
     }
 
-    /// What is saved is of the run alone, not of the workspace that it had: the profile under masses that have lifted is
-    /// not.
+    /// What is saved is of the run alone, not of the workspace that it had: the profile under masses that have lifted
+    /// is not.
     #[test]
     fn runs_alike_are_saved_alike() {
         let scene = scene();

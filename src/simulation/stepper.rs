@@ -3,6 +3,7 @@
 use super::context::Context;
 use super::controller::{TrialStep, WorkLimit};
 use super::motion::SimulationError;
+use crate::model::ByAxis;
 use crate::outputs::Energies;
 
 /// The least fraction of the length asked for at which a shorter step is given up.
@@ -32,12 +33,12 @@ pub(super) trait Stepper {
         work: &mut WorkLimit,
     ) -> Result<TrialStep, SimulationError>;
 
-    /// Tries a step of length `h` in place of a longer, good one. Returns whether it is good, too: where it is rejected, the
-    /// controller's step size is a better length.
+    /// Tries a step of length `h` in place of a longer, good one. Returns whether it is good, too: where it is
+    /// rejected, the controller's step size is a better length.
     fn try_shorter(&mut self, context: &mut Context, h: f64, test: ErrorTest) -> bool;
 
     /// F_x and F_z at the fraction `theta` of the step, N.
-    fn on_carrier(&mut self, context: &mut Context, h: f64, theta: f64) -> (f64, f64);
+    fn on_carrier(&mut self, context: &mut Context, h: f64, theta: f64) -> ByAxis<f64>;
 
     /// P_diss at the fraction `theta` of the step, W, where the powers at its stages say it.
     fn dissipated_power(&mut self, context: &mut Context, h: f64, theta: f64) -> Option<f64>;

@@ -54,7 +54,7 @@ pub(super) fn scene() -> Scene {
     Scene::parse(TEXT, FilePath::new("everything.toml")).unwrap()
 }
 
-/// The same with a shear strength that depends on the speed.
+/// The scene with everything, and with a shear strength that depends on the speed.
 pub(super) fn scene_with_rate_shear() -> Scene {
     let law = "shear_force = 5e-5\nrate_shear = { force = 2e-4, reference_speed = 3e-3, sharpness = 0.1 }";
     Scene::parse(&TEXT.replace("shear_force = 5e-5", law), FilePath::new("rate-shear.toml")).unwrap()

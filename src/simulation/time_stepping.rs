@@ -1,5 +1,5 @@
-//! The time-stepping method: steps of two stages, in which contacts stop and break loose; any number of touches and lifts
-//! is corrected at the end of each.
+//! The time-stepping method: steps of two stages, in which contacts stop and break loose; any number of touches and
+//! lifts is corrected at the end of each.
 
 use super::context::Context;
 use super::controller::{GROWTH, TrialStep, WorkLimit};
@@ -7,15 +7,15 @@ use super::motion::SimulationError;
 use super::stepper::{ErrorTest, Stepper};
 use crate::contact::{EndCorrection, FixedModeStep, longest_weakening};
 use crate::integrator::{ContactModes, ErrorEstimate, Parabolas};
-use crate::model::{ChannelEnergies, Model};
+use crate::model::{ByAxis, ChannelEnergies, Model};
 use crate::scene::Axis;
 
 /// A new step is this fraction of what the error allows. Mode changes come unforeseen, so it is less than in smooth
 /// motion.
 const SAFETY: f64 = 0.8;
-/// The most that mode changes not yet corrected may change F_z where a row is shown within a step, as a multiple of
-/// the relative tolerance. That bounds all of them together at the step's end; a row shows what touches change, so its error
-/// is a small part of that.
+/// The most that mode changes not yet corrected may change F_z where a row is shown within a step, as a multiple of the
+/// relative tolerance. That bounds all of them together at the step's end; a row shows what touches change, so its
+/// error is a small part of that.
 const MAX_UNCORRECTED: f64 = 3.0;
 
 /// The time steps of a layer.
@@ -78,7 +78,7 @@ impl TimeStepping {
         let (start, span) = ((&**model, &state.layer, &state.carrier), state.span(h));
         let attempt = integrator.attempt(ContactModes::SetValued, start, span, &settings.tolerance).ok();
         context.trace_bodies(h);
-        let attempt = attempt.map(|attempt| self.with_lateness(context, h, attempt));
+        let attempt = attempt.map(|attempt| self.with_event_time_error(context, h, attempt));
         let error = attempt.map_or(f64::NAN, |attempt| attempt.error);
         if error <= 1.0 || (test == ErrorTest::Solved && error.is_finite()) {
             return attempt;
@@ -89,8 +89,8 @@ impl TimeStepping {
         None
     }
 
-    /// The attempt of length `h` with the error that the lateness of its mode changes adds.
-    fn with_lateness(&mut self, context: &Context, h: f64, attempt: ErrorEstimate) -> ErrorEstimate {
+    /// The attempt of length `h` with the error that the late instants of its mode changes add.
+    fn with_event_time_error(&mut self, context: &Context, h: f64, attempt: ErrorEstimate) -> ErrorEstimate {
         let late = self.end_correction.detect(&parabolas(context, h), &context.settings.tolerance);
         ErrorEstimate { error: attempt.error.hypot(late), ..attempt }
     }
@@ -111,7 +111,8 @@ impl Stepper for TimeStepping {
             let test = if h <= bounds.shortest { ErrorTest::Solved } else { ErrorTest::Full };
             if let Some(attempt) = self.try_step(context, h, test) {
                 let Context { model, state: run, integrator, .. } = context;
-                // The next one resolves the instability of contacts whose friction falls with the speed that they have now.
+                // The next one resolves the instability of contacts whose friction falls with the speed that they have
+                // now.
                 let longest = longest_weakening(model, integrator.end(), integrator.end_forces());
                 let grown = h * growth(attempt.error);
                 run.controller.step_size = run.controller.propose((h, grown), bounds.remaining, longest);
@@ -128,10 +129,9 @@ impl Stepper for TimeStepping {
         self.try_step(context, h, test).is_some()
     }
 
-    fn on_carrier(&mut self, context: &mut Context, h: f64, theta: f64) -> (f64, f64) {
-        let (x, z) = context.on_carrier_within(h, theta);
-        let of_touches = self.end_correction.forces_of_touches(&parabolas(context, h), theta);
-        (x + of_touches.0, z + of_touches.1)
+    fn on_carrier(&mut self, context: &mut Context, h: f64, theta: f64) -> ByAxis<f64> {
+        let without_touches = context.on_carrier_within(h, theta);
+        without_touches + self.end_correction.forces_of_touches(&parabolas(context, h), theta)
     }
 
     fn dissipated_power(&mut self, context: &mut Context, h: f64, theta: f64) -> Option<f64> {

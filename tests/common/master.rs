@@ -128,7 +128,7 @@ pub fn describe(file: &Path) -> (String, VariableTable) {
         Scene::load(file).unwrap().into()
     };
     let variables = definition.variables();
-    (fmi::guid(&Sources::of(file, &*definition).unwrap(), &variables), variables)
+    (fmi::guid(&Sources::new(file, &*definition).unwrap(), &variables), variables)
 }
 
 impl Drop for Folder {
@@ -170,8 +170,8 @@ pub fn callbacks(messages: &Messages) -> fmi2CallbackFunctions {
 
 pub type Receive = unsafe extern "C" fn(*mut c_void, *const c_char, fmi2Status, *const c_char, *const c_char);
 
-/// Callbacks of which `receive` gets the messages; memory functions and stepFinished are NULL, so that a call of them would
-/// crash.
+/// Callbacks of which `receive` gets the messages; memory functions and stepFinished are NULL, so that a call of them
+/// would crash.
 pub fn callbacks_with(receive: Receive, environment: *mut c_void) -> fmi2CallbackFunctions {
     type Logger = unsafe extern "C" fn(*mut c_void, *const c_char, fmi2Status, *const c_char, *const c_char, ...);
     // SAFETY: Rust cannot define a variadic function; one that ignores the variadic part is called in the same way.

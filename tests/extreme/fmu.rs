@@ -40,7 +40,7 @@ impl Drive {
         // The inputs, then the outputs in their order.
         let numbered = |real: bool| {
             let of_kind = move |(_, variable): &(usize, &asperity::outputs::Variable)| {
-                (variable.kind == asperity::outputs::Kind::Real) == real
+                (variable.kind == asperity::outputs::OutputType::Real) == real
             };
             let indices: Vec<usize> = watch.variables.iter().enumerate().filter(of_kind).map(|(i, _)| i).collect();
             (indices.iter().map(|&i| i as u32 + 2).collect(), indices)

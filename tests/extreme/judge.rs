@@ -1,6 +1,7 @@
 //! Judges the runs of a case: method against method, and both against a tight run.
 
-use asperity::robustness::{Accuracy, ForceComponent, KEPT, Perturbation, ScaledQuantity, Verdict};
+use asperity::robustness::{Accuracy, KEPT, Perturbation, ScaledQuantity, Verdict};
+use asperity::scene::Axis;
 
 use crate::catalogue::{Case, number};
 use crate::fmu::by_fmu;
@@ -213,7 +214,7 @@ fn judge_run(case: &Case, way: Way, mut outcome: Outcome, straight: Way, tight: 
 
 /// Whether a motion is sensitive, the catalogue says.
 fn accuracy(case: &Case, outcome: &Outcome, tight: &Outcome) -> Accuracy {
-    let error = outcome.forces().difference(&tight.forces(), &ForceComponent::BOTH);
+    let error = outcome.forces().difference(&tight.forces(), &Axis::ALL);
     if case.sensitive.is_some() { Accuracy::Sensitive { error, moved: error.share } } else { Accuracy::Error(error) }
 }
 
@@ -233,15 +234,15 @@ fn false_alarm(case: &Case, warns: bool, forces: &Estimate) -> Option<Finding> {
 
 /// Of the force with the larger error over its largest value, as `solver.error` means it.
 fn worse_force(outcome: &Outcome, tight: Option<&Outcome>) -> Estimate {
-    let largest = |force: ForceComponent| tight.map_or(0.0, |tight| tight.largest(force.name()));
-    let rounding = ROUNDING * largest(ForceComponent::X).max(largest(ForceComponent::Z));
-    let of = |force: ForceComponent| Estimate {
+    let largest = |force: Axis| tight.map_or(0.0, |tight| tight.largest(force.force_name()));
+    let rounding = ROUNDING * largest(Axis::X).max(largest(Axis::Z));
+    let of = |force: Axis| Estimate {
         name: "solver.error",
-        true_error: tight.map_or(f64::NAN, |tight| relative_error(outcome, tight, force.name(), rounding)),
+        true_error: tight.map_or(f64::NAN, |tight| relative_error(outcome, tight, force.force_name(), rounding)),
         estimate: outcome.last("solver.error"),
         floor: floor(outcome.known, largest(force)),
     };
-    let [x, z] = ForceComponent::BOTH.map(of);
+    let [x, z] = Axis::ALL.map(of);
     if x.true_error > z.true_error { x } else { z }
 }
 
@@ -296,16 +297,16 @@ fn disagreement(case: &Case, event: &Outcome, step: &Outcome) -> Option<String> 
     // The force of every mass is known within the tolerance alone, the absolute one or that of the larger force.
     let larger = event.largest("F_x").max(event.largest("F_z"));
     let known = event.known * event.masses + relative_tolerance(case) * larger;
-    let of = |force: ForceComponent| {
-        let largest = event.largest(force.name()).max(step.largest(force.name()));
-        let difference = largest_difference(step, event, force.name());
+    let of = |force: Axis| {
+        let largest = event.largest(force.force_name()).max(step.largest(force.force_name()));
+        let difference = largest_difference(step, event, force.force_name());
         let allowed = (OF_ESTIMATES * (one + other) + FLOOR) * largest + known;
         (difference > allowed).then(|| {
-            let (name, share) = (force.name(), difference / largest);
+            let (name, share) = (force.force_name(), difference / largest);
             format!("{name} differs by {share:.1e} of {largest:.1e} N, estimates {one:.1e} and {other:.1e}")
         })
     };
-    of(ForceComponent::Z).or_else(|| of(ForceComponent::X))
+    of(Axis::Z).or_else(|| of(Axis::X))
 }
 
 /// The largest difference of a column between two runs.

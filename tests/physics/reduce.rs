@@ -50,8 +50,8 @@ fn reduced(scene: &SceneText, share: f64) -> Scene {
     scene.clone().set("solver.reduce", share).scene()
 }
 
-/// The outputs after each of `parts` even parts of a motion; at the start itself the damper of a replaced element meets the
-/// jump of the speed, which the element does not.
+/// The outputs after each of `parts` even parts of a motion; at the start itself the damper of a replaced element meets
+/// the jump of the speed, which the element does not.
 fn along(scene: &Scene, start: &Start, motion: Motion, parts: u32) -> Table {
     runs::along(scene, start, &[motion], parts).skip(1)
 }
@@ -82,9 +82,6 @@ fn few_of_sixteen_elements_stay() {
     let [before, after] = [&whole, &reduced].map(|scene| Model::new(scene).rows.len());
     assert_eq!(before, 64);
     assert!(after <= 32, "{after} of {before} rows stay");
-    let bytes = [&whole, &reduced].map(|scene| Simulation::new(scene, &SLIDE_START).unwrap().bytes());
-    // Ten of sixteen elements less in each of four states; the rest does not depend on their number.
-    assert!(4 * bytes[1] < 3 * bytes[0], "{bytes:?}");
     // The long ones become springs, the short ones dampers; those on the run's time scales stay.
     for one in Reduction::new(&reduced).unwrap().replaced {
         let tau = one.element.relaxation_time;
@@ -142,8 +139,8 @@ fn the_frequency_is_the_largest_of_three() {
     close(frequency(1e-2, "duration = 1.0, u_rate = -0.5"), TAU * 0.5 / 1e-3, 2e-3);
 }
 
-/// Every mass sticks on a flat profile from the start on, so that the links' motion is the carrier's, and the bound is one
-/// of the force itself. The layer is pressed from the start, so that relaxed dashpots are elongated.
+/// Every mass sticks on a flat profile from the start on, so that the links' motion is the carrier's, and the bound is
+/// one of the force itself. The layer is pressed from the start, so that relaxed dashpots are elongated.
 #[test]
 fn the_force_of_a_known_motion_is_within_the_bound() {
     const DURATION: f64 = 4e-3;

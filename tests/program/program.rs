@@ -255,7 +255,7 @@ fn a_description_summarises_what_is_there_and_what_is_left_out() {
         "Friction    left out",
         "elements     left out",
         "Reduce      left out",
-        "bytes a run",
+        "MiB an instance of the FMU",
     ] {
         assert!(text.contains(part), "{part}: {text}");
     }

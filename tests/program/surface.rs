@@ -191,7 +191,7 @@ fn lines_of_an_areal_measurement_go_into_the_archive_as_text() {
     let mut description = String::new();
     archive.by_name("modelDescription.xml").unwrap().read_to_string(&mut description).unwrap();
     let carried = Definition::from(carried);
-    let sources = Sources::of(&unpacked.join("resources/scene.toml"), &*carried).unwrap();
+    let sources = Sources::new(&unpacked.join("resources/scene.toml"), &*carried).unwrap();
     assert!(description.contains(&guid(&sources, &carried.variables())));
 
     let middle = asperity().arg("surface").arg(folder.join("road.x3p")).output().unwrap();

@@ -1,8 +1,8 @@
-//! The bodies of the carrier as unknowns of a stage (docs/theory.md, section 12): a row and a column for each around the
-//! block tridiagonal system of the masses, eliminated by their Schur complement.
+//! The bodies of the carrier as unknowns of a stage (docs/theory.md, section 12): a row and a column for each around
+//! the block tridiagonal system of the masses, eliminated by their Schur complement.
 //!
-//! The unknowns of free masses are their velocities relative to the body, and their equations are added to its own. So the
-//! forces of the links between them cancel before they are evaluated, however stiff the links: what is left are the
+//! The unknowns of free masses are their velocities relative to the body, and their equations are added to its own. So
+//! the forces of the links between them cancel before they are evaluated, however stiff the links: what is left are the
 //! inertias, and the links of the masses in contact.
 
 use nalgebra::{Matrix2, Vector2};
@@ -41,14 +41,14 @@ struct Side {
     inertia: f64,
 }
 
-/// Contributions of the earlier stages to the motion of a body at a stage, and the start of the piece.
+/// Contributions of the earlier stages to the motion of a body at a stage, and the start of the segment.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::integrator) struct BodyHistory {
     /// Speed u̇*, m/s.
     pub rate: f64,
     /// Displacement since the start of the step, m.
     pub moved: f64,
-    /// Displacement at the start of the step since the start of the piece, m.
+    /// Displacement at the start of the step since the start of the segment, m.
     pub start: f64,
 }
 
@@ -106,8 +106,8 @@ impl Border {
         self.inverse = Matrix2::new(schur.m22 * factor, -schur.m12 * factor, -schur.m21 * factor, schur.m11 * factor);
     }
 
-    /// Completes the solution of the masses' system for the right sides in `masses`: subtracts what the bodies make of it
-    /// and returns the bodies' unknowns.
+    /// Completes the solution of the masses' system for the right sides in `masses`: subtracts what the bodies make of
+    /// it and returns the bodies' unknowns.
     fn complete(&self, masses: &mut [Vector2<f64>]) -> Vector2<f64> {
         let left = |side: &Option<Side>| {
             side.as_ref().map_or(0.0, |side| {
@@ -141,13 +141,15 @@ impl StageSolver {
 
     /// Assembles the row and the column of one body.
     ///
-    /// The unknowns of free masses are relative to it, those of contacts are not. So with δ of the body a free mass feels
-    /// its inertia and the lateral links to contacts, a contact its link to the carrier and the lateral ones to free masses.
+    /// The unknowns of free masses are relative to it, those of contacts are not. So with δ of the body a free mass
+    /// feels its inertia and the lateral links to contacts, a contact its link to the carrier and the lateral ones to
+    /// free masses.
     fn assemble_side(&self, model: &Model, beta: f64, side: &mut Side) {
         let (own, lateral, component) = match side.axis {
             Axis::X => (LinkKind::Horizontal, LinkKind::LateralX, 0),
             Axis::Z => (LinkKind::Vertical, LinkKind::LateralZ, 1),
         };
+        // The body by itself.
         let inertia = model.mass / beta;
         let modes = &self.state.mode;
         side.column.fill(Vector2::zeros());
@@ -155,6 +157,7 @@ impl StageSolver {
         side.inertia = side.body.mass;
         side.diagonal = side.body.mass / beta + beta * side.body.stiffness + side.body.damping;
         for (i, mode) in modes.iter().enumerate() {
+            // Lateral links between a free mass and a contact.
             let beside = [i.checked_sub(1), Some(i + 1)].into_iter().flatten().filter_map(|j| modes.get(j));
             let other = beside.filter(|other| other.in_contact() != mode.in_contact()).count() as f64;
             let across = other * self.weights[lateral];
@@ -165,6 +168,7 @@ impl StageSolver {
                 side.row[i][component] = inertia + across;
                 continue;
             }
+            // A contact: its link to the carrier, and if it slips its equation.
             side.diagonal += self.weights[own];
             if mode.slips() {
                 let (share, climb) = self.slip_border(model, i, beta, side.axis);
@@ -174,8 +178,8 @@ impl StageSolver {
         }
     }
 
-    /// Solves the system for the right sides of the masses and of the bodies, which are set; those of free masses become
-    /// velocities in the inertial frame. Returns the bodies' velocities along x and z.
+    /// Solves the system for the right sides of the masses and of the bodies, which are set; those of free masses
+    /// become velocities in the inertial frame. Returns the bodies' velocities along x and z.
     pub(in crate::integrator) fn solve_bordered(&mut self) -> Vector2<f64> {
         self.system.solve();
         self.complete_border()
@@ -205,9 +209,9 @@ impl StageSolver {
             let position = side.outside.body.position + (displacement - before);
             side.outside.body = Jet { position, speed: rate, acceleration };
             point.carrier[side.axis] = Jet { position: displacement, speed: rate, acceleration };
-            match side.axis {
-                Axis::X => (point.integrated.0, point.moved) = (moved, moved),
-                Axis::Z => point.integrated.1 = moved,
+            point.integrated[side.axis] = moved;
+            if side.axis == Axis::X {
+                point.moved = moved;
             }
         }
     }
@@ -222,8 +226,8 @@ impl StageSolver {
         }
     }
 
-    /// Sets the right side of the body's equation along `axis` to `outside` and what links with these `forces` exert (N), as
-    /// the right sides of the masses are set.
+    /// Sets the right side of the body's equation along `axis` to `outside` and what links with these `forces` exert
+    /// (N), as the right sides of the masses are set.
     pub(in crate::integrator) fn set_border_right(&mut self, axis: Axis, forces: &Forces, outside: f64) {
         let Some(border) = &mut self.border else { return };
         if let Some(side) = &mut border.sides[axis] {
@@ -232,8 +236,8 @@ impl StageSolver {
     }
 }
 
-/// The force of the links on the body along `axis` and the right sides of the free masses, N: what the links between the two
-/// exert cancels.
+/// The force of the links on the body along `axis` and the right sides of the free masses, N: what the links between
+/// the two exert cancels.
 fn with_free_masses(axis: Axis, forces: &Forces, right: &[Vector2<f64>], modes: &[Mode]) -> f64 {
     let links = &forces.link[axis.link()];
     let of_mass = |(i, (right, mode)): (usize, (&Vector2<f64>, &Mode))| {

@@ -1,7 +1,7 @@
 //! One implicit stage (docs/theory.md, sections 1 to 4).
 //!
-//! A stage at t_i with β = γh looks for v_i, and so for e_i = e* + β ė_i and v_i = v* + β v̇_i, where the starred values
-//! hold the contributions of the earlier stages. The Maxwell elements add H + h Q_ii ė_i to a link's force (see
+//! A stage at t_i with β = γh looks for v_i, and so for e_i = e* + β ė_i and v_i = v* + β v̇_i, where the starred
+//! values hold the contributions of the earlier stages. The Maxwell elements add H + h Q_ii ė_i to a link's force (see
 //! `maxwell`), so its force is
 //!
 //!   F = H + c e + D ė,   D = d + h Q_ii.
@@ -19,13 +19,13 @@ use std::ops::Range;
 
 use nalgebra::Vector2;
 
-use super::rates::{NO_LIMIT, Rates};
 use super::scheme::ContactModes;
+use super::stage_values::{NO_LIMIT, StageValues};
 use super::tolerance::{NEWTON_SHARE, Tolerance};
 use crate::math::{BLOCK, BlockTridiagonal, Spline, weighted_sum, with_widest_vectors};
 use crate::model::{
-    ByLink, CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, LinkLaw, LinkMotion, Mode, Model, State,
-    SurfacePoint,
+    ByAxis, ByLink, CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, LinkLaw, LinkMotion, Mode, Model,
+    State, SurfacePoint,
 };
 use newton::{NeighbourWeights, RateFriction, RowShares, largest_of};
 
@@ -38,7 +38,7 @@ pub struct NoConvergence;
 
 /// Contributions of the earlier stages to a stage: the starred values and the known forces of the Maxwell elements.
 #[derive(Clone, Debug)]
-pub(super) struct History {
+pub(super) struct MassHistory {
     /// e*_x, m: as if the carrier stood where it was at the start of the step.
     pub elongation_x: Vec<f64>,
     /// e*_z, m.
@@ -51,7 +51,7 @@ pub(super) struct History {
     pub force: ByLink<Vec<f64>>,
 }
 
-impl History {
+impl MassHistory {
     fn new(model: &Model) -> Self {
         let zero = vec![0.0; model.masses()];
         Self {
@@ -82,22 +82,22 @@ pub(super) struct StagePoint {
     pub beta: f64,
     pub carrier: CarrierPoint,
     /// Displacement of the carrier since the start of the step along x and z by the method's quadrature of its rate, m.
-    pub integrated: (f64, f64),
+    pub integrated: ByAxis<f64>,
     /// Its exact displacement along x, m, by which a sticking mass falls behind.
     pub moved: f64,
-    /// u as a position on the profile and w at the start of the carrier's piece, m.
-    pub piece: (f64, f64),
+    /// u as a position on the profile and w at the start of the carrier's segment, m.
+    pub segment_start: ByAxis<f64>,
 }
 
 impl StagePoint {
     /// u at the stage as a position on the profile, m.
     fn profile_position(&self) -> f64 {
-        self.piece.0 + self.carrier.x.position
+        self.segment_start.x + self.carrier.x.position
     }
 
     /// w at the stage, m.
     fn w(&self) -> f64 {
-        self.piece.1 + self.carrier.z.position
+        self.segment_start.z + self.carrier.z.position
     }
 }
 
@@ -118,8 +118,8 @@ impl ConvergenceTest {
     }
 }
 
-/// Which slipping stages the factors of the Jacobian serve. It changes little through a step, so that those of one stage
-/// nearly always do for the others.
+/// Which slipping stages the factors of the Jacobian serve. It changes little through a step, so that those of one
+/// stage nearly always do for the others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Factors {
     /// None: they are of another step.
@@ -134,7 +134,7 @@ enum Factors {
 #[derive(Clone, Debug)]
 pub(super) struct StageSolver {
     /// To be set before a stage is solved.
-    pub history: History,
+    pub history: MassHistory,
     /// The state at the stage without its Maxwell elements. Its velocities are the initial guess before the solution.
     pub state: State,
     /// The forces at the stage.
@@ -174,19 +174,19 @@ pub(super) struct StageSolver {
 
 /// Iterations after which Newton's method has failed; one or two are usual.
 const MAX_ITERATIONS: usize = 10;
-/// The same where modes change between the iterations, some masses at a time. They may also change to and fro: then a
-/// shorter step decides, in which the momentum of the masses does.
+/// [`MAX_ITERATIONS`] where modes change between the iterations, some masses at a time. They may also change to and
+/// fro: then a shorter step decides, in which the momentum of the masses does.
 const MAX_WITH_CHANGES: usize = 30;
 
-/// With the factors of another stage the error falls by a constant ratio, so that the next correction bounds it only where
-/// that is small.
+/// With the factors of another stage the error falls by a constant ratio, so that the next correction bounds it only
+/// where that is small.
 const HELD_FALL: f64 = 0.25;
 
 impl StageSolver {
     pub(super) fn new(model: &Model) -> Self {
         let k = model.masses();
         Self {
-            history: History::new(model),
+            history: MassHistory::new(model),
             state: State::new(k, model.maxwell_variables()),
             forces: Forces::new(model),
             friction_power: FrictionPower::default(),
@@ -269,9 +269,9 @@ impl StageSolver {
         &self.sticks
     }
 
-    /// Guesses the velocities: of the slipping masses the starred ones and the sum of the accelerations at `earlier` stages, with
-    /// their weights, s; of the others those of `start`.
-    pub(super) fn guess<'a>(&mut self, start: &State, earlier: impl Iterator<Item = (f64, &'a Rates)>) {
+    /// Guesses the velocities: of the slipping masses the starred ones and the sum of the accelerations at `earlier`
+    /// stages, with their weights, s; of the others those of `start`.
+    pub(super) fn guess<'a>(&mut self, start: &State, earlier: impl Iterator<Item = (f64, &'a StageValues)>) {
         let (guess, star) = (&mut self.state, &self.history.velocity_x);
         guess.velocity_z.copy_from_slice(&start.velocity_z);
         if self.slips.is_empty() {
@@ -308,7 +308,7 @@ impl StageSolver {
         model: &Model,
         point: &mut StagePoint,
         test: ConvergenceTest,
-        rates: &mut Rates,
+        rates: &mut StageValues,
     ) -> Result<(), NoConvergence> {
         self.history.subtract_frozen(model);
         self.move_bodies(Vector2::zeros(), point);
@@ -342,11 +342,12 @@ impl StageSolver {
     fn iterate(&mut self, model: &Model, point: &mut StagePoint, test: ConvergenceTest) -> Result<(), NoConvergence> {
         let mut residual = self.residuals(model, point.beta);
         let mut last = f64::INFINITY;
-        let most_iterations = match self.modes {
+        let max_iterations = match self.modes {
             ContactModes::Held => MAX_ITERATIONS,
             ContactModes::SetValued => MAX_WITH_CHANGES,
         };
-        for _ in 0..most_iterations {
+        for _ in 0..max_iterations {
+            // The correction, by the factors of this stage or of another.
             let held = self.factors == Factors::Held;
             if !held {
                 self.factor_slips(model, point.beta);
@@ -360,6 +361,7 @@ impl StageSolver {
             let change = self.correct().max(steep).max(of_bodies.amax());
             self.move_bodies(of_bodies, point);
             self.evaluate(model, point);
+            // The error that is left.
             let left = self.residuals(model, point.beta);
             let next = change * (left / residual);
             let falls = !held || left <= HELD_FALL * residual;
@@ -369,6 +371,7 @@ impl StageSolver {
             if !(change.is_finite() && left.is_finite()) {
                 return Err(NoConvergence);
             }
+            // Other modes are other equations: the iterations begin anew.
             if self.change_modes(model, point) {
                 (last, residual) = (f64::INFINITY, self.residuals(model, point.beta));
                 continue;
@@ -382,8 +385,8 @@ impl StageSolver {
         Err(NoConvergence)
     }
 
-    /// Factors the Jacobian at the velocities of the last residuals. Friction that is not linear changes it too much for
-    /// another stage.
+    /// Factors the Jacobian at the velocities of the last residuals. Friction that is not linear changes it too much
+    /// for another stage.
     fn factor_slips(&mut self, model: &Model, beta: f64) {
         self.assemble_slips(model, beta);
         self.system.factor();
@@ -409,8 +412,8 @@ impl StageSolver {
     fn set_positions(&mut self, model: &Model, point: &StagePoint) {
         let (beta, profile_position, w) = (point.beta, point.profile_position(), point.w());
         let (state, history) = (&mut self.state, &self.history);
-        set_elongations(&mut state.elongation_x, &history.elongation_x, beta, &state.velocity_x, point.integrated.0);
-        set_elongations(&mut state.elongation_z, &history.elongation_z, beta, &state.velocity_z, point.integrated.1);
+        set_elongations(&mut state.elongation_x, &history.elongation_x, beta, &state.velocity_x, point.integrated.x);
+        set_elongations(&mut state.elongation_z, &history.elongation_z, beta, &state.velocity_z, point.integrated.z);
         for &i in &self.sticks {
             state.elongation_x[i] = history.elongation_x[i] - point.moved;
             state.elongation_z[i] = state.surface[i].height - model.rest_z[i] - w;
@@ -445,13 +448,13 @@ impl StageSolver {
     }
 
     /// Writes the rates of the solved stage.
-    fn write_rates(&mut self, model: &Model, point: &StagePoint, rates: &mut Rates) {
+    fn write_rates(&mut self, model: &Model, point: &StagePoint, rates: &mut StageValues) {
         with_widest_vectors(
             #[inline(always)]
             || {
                 self.set_rates(point, rates);
                 if model.friction.is_linear() {
-                    let Rates { acceleration_x, acceleration_z, normal, margin, .. } = rates;
+                    let StageValues { acceleration_x, acceleration_z, normal, margin, .. } = rates;
                     set_contact_motion(acceleration_z, normal, acceleration_x, model, &self.state, &self.forces);
                     set_slips(&mut self.slip_speed, margin, model, &self.state);
                 }
@@ -466,7 +469,7 @@ impl StageSolver {
     }
 
     #[inline(always)]
-    fn set_rates(&self, point: &StagePoint, rates: &mut Rates) {
+    fn set_rates(&self, point: &StagePoint, rates: &mut StageValues) {
         let per_beta = 1.0 / point.beta;
         let (state, history) = (&self.state, &self.history);
         rates.velocity_x.copy_from_slice(&state.velocity_x);
@@ -480,7 +483,7 @@ impl StageSolver {
     }
 
     /// Sets what differs of sticking masses from slipping ones.
-    fn set_stick_rates(&self, model: &Model, rates: &mut Rates) {
+    fn set_stick_rates(&self, model: &Model, rates: &mut StageValues) {
         for &i in &self.sticks {
             let surface = &self.state.surface[i];
             let contact = self.forces.contact(model, i, 0.0, surface);
@@ -490,7 +493,7 @@ impl StageSolver {
     }
 
     /// Sets the rates of the masses in contact, and the power of friction.
-    fn set_contact_rates(&mut self, model: &Model, rates: &mut Rates) {
+    fn set_contact_rates(&mut self, model: &Model, rates: &mut StageValues) {
         let mut friction_power = FrictionPower::default();
         rates.clear_contacts();
         let state = &self.state;
@@ -598,7 +601,8 @@ fn set_contact_motion(
     }
 }
 
-/// Sets the speeds of slip, and the margins of the slipping masses as those of the others, under a linear law of friction.
+/// Sets the speeds of slip, and the margins of the slipping masses as those of the others, under a linear law of
+/// friction.
 #[inline(always)]
 fn set_slips(slip_speed: &mut [f64], margin: &mut [f64], model: &Model, state: &State) {
     // Slices of one length, so that an index into one of them is one into all.

@@ -38,8 +38,8 @@ impl StageSolver {
         self.state.surface[i] = model.surface_at(model.rest_x[i] + (point.profile_position() + elongation));
     }
 
-    /// The mode in which the residual of contact `i` can vanish: a slip goes on in its direction, and a mass at rest may
-    /// need at most T(0) to be held, its momentum m v*/β included.
+    /// The mode in which the residual of contact `i` can vanish: a slip goes on in its direction, and a mass at rest
+    /// may need at most T(0) to be held, its momentum m v*/β included.
     fn mode_by_residual(&self, model: &Model, i: usize, beta: f64) -> Mode {
         let (mode, v) = (self.state.mode[i], self.state.velocity_x[i]);
         if mode.slips() {

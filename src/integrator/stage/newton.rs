@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::{History, StageSolver};
+use super::{MassHistory, StageSolver};
 use crate::math::with_widest_vectors;
 use crate::model::{Axis, ByLink};
 use crate::model::{ContactForces, Forces, LinearFriction, LinkLaw, Mode, Model, State, SurfacePoint};
@@ -20,8 +20,8 @@ impl StageSolver {
         }
     }
 
-    /// [Sets](Self::set_residuals) the residuals and returns the largest as the velocity, m/s, that it makes against the
-    /// inertia alone.
+    /// [Sets](Self::set_residuals) the residuals and returns the largest as the velocity, m/s, that it makes against
+    /// the inertia alone.
     pub(super) fn residuals(&mut self, model: &Model, beta: f64) -> f64 {
         self.set_residuals(model, beta);
         let right = &self.system.right;
@@ -49,8 +49,8 @@ impl StageSolver {
         self.set_border_residuals(beta);
     }
 
-    /// Of mass `i`, which slips: the factor with which a force on it along `axis` enters its equation, and how its elongation
-    /// along that axis follows its ẋ.
+    /// Of mass `i`, which slips: the factor with which a force on it along `axis` enters its equation, and how its
+    /// elongation along that axis follows its ẋ.
     pub(super) fn slip_border(&self, model: &Model, i: usize, beta: f64, axis: Axis) -> (f64, ContactJacobian) {
         let slip = self.slipping_mass(model, i, beta);
         match axis {
@@ -180,7 +180,7 @@ impl StageSolver {
 struct Evaluated<'a> {
     model: &'a Model,
     state: &'a State,
-    history: &'a History,
+    history: &'a MassHistory,
     forces: &'a Forces,
     laws: &'a ByLink<LinkLaw>,
     weights: &'a ByLink<f64>,
@@ -189,8 +189,8 @@ struct Evaluated<'a> {
 }
 
 impl Evaluated<'_> {
-    /// Writes the diagonal blocks, rows and columns of slipping masses that follow one another from mass `start` on, under
-    /// a linear law of friction.
+    /// Writes the diagonal blocks, rows and columns of slipping masses that follow one another from mass `start` on,
+    /// under a linear law of friction.
     // As for `set_linear_residuals`, what it writes are arguments.
     #[inline(always)]
     fn assemble_run(
@@ -213,7 +213,7 @@ impl Evaluated<'_> {
         SlippingMass::from_state(self.model, self.state, self.forces, i, self.acceleration(i))
     }
 
-    /// The same under this law of friction.
+    /// The equation of mass `i`, which slips under this law of friction.
     #[inline(always)]
     fn slipping_mass_under(&self, law: LinearFriction, i: usize) -> SlippingMass {
         let (sigma, surface) = (self.state.mode[i].direction(), &self.state.surface[i]);
@@ -267,7 +267,7 @@ fn set_linear_residuals(
     right: &mut [Vector2<f64>],
     model: &Model,
     state: &State,
-    history: &History,
+    history: &MassHistory,
     forces: &Forces,
     beta: f64,
 ) {
@@ -330,7 +330,8 @@ impl ContactJacobian {
     }
 }
 
-/// The equation of motion of a slipping mass, (6)-(9), at given velocity and acceleration: its residual and derivatives.
+/// The equation of motion of a slipping mass, (6)-(9), at given velocity and acceleration: its residual and
+/// derivatives.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::integrator) struct SlippingMass {
     s: f64,
@@ -356,8 +357,8 @@ pub(in crate::integrator) struct SlippingMass {
 impl SlippingMass {
     /// A mass that slips in `mode` over `surface` with ẋ and ẍ (`motion`), under the links' `forces` (f_x, f_z), N.
     ///
-    /// A friction law that is not linear in F_N is taken along its tangent at F_N: the value and the derivatives there are
-    /// the law's.
+    /// A friction law that is not linear in F_N is taken along its tangent at F_N: the value and the derivatives there
+    /// are the law's.
     #[inline]
     fn new(model: &Model, mode: Mode, surface: &SurfacePoint, motion: (f64, f64), forces: (f64, f64)) -> Self {
         let sigma = mode.direction();
@@ -520,8 +521,8 @@ impl RowShares {
     }
 }
 
-/// The rate-dependent friction σ q A τ_f(v) of a slipping mass at v = σ q ẋ. Its value at the creep speed belongs to the
-/// equation of [`SlippingMass`] already.
+/// The rate-dependent friction σ q A τ_f(v) of a slipping mass at v = σ q ẋ. Its value at the creep speed belongs to
+/// the equation of [`SlippingMass`] already.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct RateFriction {
     /// A τ_f(v) - A τ_f(v_c), N, and its derivative, N s/m.

@@ -9,7 +9,8 @@ pub const BLOCK: usize = 16;
 
 impl Spline {
     /// Writes z, z', z'' and z''' at each of up to [`BLOCK`] places `x` (m) to as many `values`: those of
-    /// [`evaluate`](Self::evaluate), to the last bit. For use with [vector instructions](crate::math::with_widest_vectors).
+    /// [`evaluate`](Self::evaluate), to the last bit. For use with [vector
+    /// instructions](crate::math::with_widest_vectors).
     #[inline(always)]
     pub fn evaluate_block<P>(&self, x: &[f64], values: &mut [P])
     where

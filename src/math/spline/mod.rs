@@ -19,7 +19,7 @@ pub use block::BLOCK;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline {
     pieces: Vec<Piece>,
-    grid: Grid,
+    grid: IntervalGrid,
     ends: Ends,
     /// The bounds between the data points.
     inside: Bounds,
@@ -79,7 +79,7 @@ impl Spline {
     }
 
     fn assemble(pieces: Vec<Piece>, ends: Ends) -> Self {
-        let grid = Grid::new(&pieces);
+        let grid = IntervalGrid::new(&pieces);
         let inside = Bounds::over(&pieces);
         Self { pieces, grid, ends, inside }
     }
@@ -213,7 +213,7 @@ fn pieces(x: &[f64], z: &[f64], curvatures: &[f64]) -> Vec<Piece> {
 /// Finds the interval of an x without a search: a grid of equal cells over the data points, as many as there are
 /// intervals.
 #[derive(Clone, Debug, PartialEq)]
-struct Grid {
+struct IntervalGrid {
     first: f64,
     last: f64,
     cells_per_meter: f64,
@@ -223,7 +223,7 @@ struct Grid {
     starts_before: Vec<u32>,
 }
 
-impl Grid {
+impl IntervalGrid {
     fn new(pieces: &[Piece]) -> Self {
         let (first, last) = (pieces[0].start, pieces[pieces.len() - 1].end);
         let cells_per_meter = pieces.len() as f64 / (last - first);
@@ -339,8 +339,8 @@ impl Spline {
     }
 
     /// The highest z over all of the intervals that the range from `x_low` to `x_high` (m) meets: nearly free, and no
-    /// lower than that of the [`local_bounds`](Self::local_bounds). The highest of all where the range spans many intervals
-    /// or the end of a period.
+    /// lower than that of the [`local_bounds`](Self::local_bounds). The highest of all where the range spans many
+    /// intervals or the end of a period.
     pub fn top_near(&self, x_low: f64, x_high: f64) -> f64 {
         let low = self.reduce(x_low);
         let high = low + (x_high - x_low);
@@ -522,8 +522,8 @@ fn solve_tridiagonal<const N: usize>(rows: impl ExactSizeIterator<Item = Equatio
     solution
 }
 
-/// The curvatures from the `n` ≥ 3 equations of a periodic spline; the first row's `lower` and the last row's `upper` wrap
-/// around the matrix.
+/// The curvatures from the `n` ≥ 3 equations of a periodic spline; the first row's `lower` and the last row's `upper`
+/// wrap around the matrix.
 ///
 /// Sherman and Morrison: the cyclic matrix is a tridiagonal one plus the dyad (γ, 0, …, α)ᵀ (1, 0, …, β/γ).
 fn solve_cyclic(n: usize, row: impl Fn(usize) -> Equation<1>) -> Vec<f64> {

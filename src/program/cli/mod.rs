@@ -34,7 +34,8 @@ pub(crate) enum Command {
     Plot(Plot),
     /// Summarises a scene: what it contains, what it leaves out, and the constants derived from it.
     Describe(Describe),
-    /// Packs a scene, or a point-contact element or a contact patch from a sweep table, as an FMI 2.0 co-simulation FMU.
+    /// Packs a scene, or a point-contact element or a contact patch from a sweep table, as an FMI 2.0 co-simulation
+    /// FMU.
     Pack(Pack),
     /// Fits Prony terms to measured moduli of a compound (DMA data).
     Fit(Fit),
@@ -80,8 +81,9 @@ pub(crate) struct Simulate {
 // Not a doc comment: that would be the description of the commands that have it.
 #[derive(Debug, Args)]
 pub(crate) struct Set {
-    /// Overrides a key of the scene or patch file: solver.relative_tolerance=1e-9, layer.vertical.maxwell[1].stiffness=0,
-    /// friction.coulomb=0.5, surface="{ kind = 'flat' }". What the file does not have is added. May be repeated.
+    /// Overrides a key of the scene or patch file: solver.relative_tolerance=1e-9,
+    /// layer.vertical.maxwell[1].stiffness=0, friction.coulomb=0.5, surface="{ kind = 'flat' }". What the file does not
+    /// have is added. May be repeated.
     #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
     set: Vec<Setting>,
 }
@@ -147,8 +149,8 @@ pub(crate) struct Describe {
     /// entries are null or empty.
     #[arg(long)]
     pub(crate) json: bool,
-    /// Plots the stiffness of the links over that of the material's surface, over wavelength, as SVG or PNG according to
-    /// the file name.
+    /// Plots the stiffness of the links over that of the material's surface, over wavelength, as SVG or PNG according
+    /// to the file name.
     #[arg(long, value_name = "OUT.svg", value_parser = picture())]
     pub(crate) plot: Option<PathBuf>,
 }
@@ -238,8 +240,8 @@ pub(crate) struct Material {
     /// The scene file.
     #[arg(value_name = "SCENE.toml")]
     pub(crate) scene: PathBuf,
-    /// A file to write: a table as CSV, or a plot as SVG or PNG, according to its name; - for a table on standard output.
-    /// May be repeated. Default: a plot SCENE-material.svg.
+    /// A file to write: a table as CSV, or a plot as SVG or PNG, according to its name; - for a table on standard
+    /// output. May be repeated. Default: a plot SCENE-material.svg.
     #[arg(short, long, value_name = "OUT", value_parser = picture_or_table())]
     pub(crate) output: Vec<PathBuf>,
     /// The range of the angular frequency in rad/s, or of the frequency if Hz is appended. Default: derived from the
@@ -294,20 +296,20 @@ pub(crate) struct Surface {
     /// Plots the profile and its spectrum, as SVG or PNG according to the file name.
     #[arg(short, long, value_name = "OUT.svg", value_parser = picture())]
     pub(crate) output: Option<PathBuf>,
-    /// Smooths the profile: a Gaussian filter (ISO 16610-21) that halves waves of this length in m and takes away shorter
-    /// ones.
+    /// Smooths the profile: a Gaussian filter (ISO 16610-21) that halves waves of this length in m and takes away
+    /// shorter ones.
     #[arg(long, value_name = "WAVELENGTH", value_parser = positive)]
     pub(crate) smooth: Option<f64>,
-    /// Makes the profile periodic: its mirror image follows it, after smoothing. Heights and slopes stay; the period is twice
-    /// the length.
+    /// Makes the profile periodic: its mirror image follows it, after smoothing. Heights and slopes stay; the period is
+    /// twice the length.
     #[arg(long, conflicts_with_all = ["taper", "periodic"])]
     pub(crate) mirror: bool,
-    /// Makes the profile periodic without the kinks of a mirror image: over a tenth of the length its end goes over into its
-    /// beginning, by a cosine, after smoothing. The period is nine tenths of the length.
+    /// Makes the profile periodic without the kinks of a mirror image: over a tenth of the length its end goes over
+    /// into its beginning, by a cosine, after smoothing. The period is nine tenths of the length.
     #[arg(long, conflicts_with = "periodic")]
     pub(crate) taper: bool,
-    /// Writes the profile as read, and smoothed or made periodic, as two columns in m that a scene can use; - for standard
-    /// output.
+    /// Writes the profile as read, and smoothed or made periodic, as two columns in m that a scene can use; - for
+    /// standard output.
     #[arg(long, value_name = "OUT.csv")]
     pub(crate) write: Option<PathBuf>,
     /// Prints one JSON object in SI units, including the bands of the spectrum.
@@ -320,7 +322,8 @@ pub(crate) struct Surface {
     pub(crate) reading: Reading,
 }
 
-// How a profile is read: the keys of a surface of kind "file". Not a doc comment: that would be the description of the command.
+// How a profile is read: the keys of a surface of kind "file". Not a doc comment: that would be the description of the
+// command.
 #[derive(Debug, PartialEq, Default, Args)]
 pub(crate) struct Reading {
     /// Unit of x and z: m, mm, um, nm, cm, Å, in, mil or ft. Default: the unit named in the file, otherwise m.
@@ -394,8 +397,8 @@ pub(crate) struct Sweep {
     /// Temperatures in K: a..b/n for n evenly spaced values. Default: the scene's temperature.
     #[arg(long, value_name = "VALUES", value_parser = Values::in_value)]
     pub(crate) temperatures: Option<Values>,
-    /// The table to write, - for standard output; an existing table of the same sweep is continued. Default: the scene's
-    /// file name with .sweep.csv.
+    /// The table to write, - for standard output; an existing table of the same sweep is continued. Default: the
+    /// scene's file name with .sweep.csv.
     #[arg(short, long, value_name = "TABLE.csv")]
     pub(crate) output: Option<PathBuf>,
     /// The plot to write, as SVG or PNG according to the file name. Default: the table's name with .svg.
@@ -415,8 +418,8 @@ pub(crate) struct Sweep {
     #[arg(long, value_name = "TABLE.csv", num_args = 1.., group = "input", requires = "output")]
     #[arg(conflicts_with_all = OF_A_SCENE)]
     pub(crate) merge: Vec<PathBuf>,
-    /// The table of an asperity converge of the scene: what it found goes into the header. Default: the scene's file name
-    /// with .converge.csv, if there is such a file.
+    /// The table of an asperity converge of the scene: what it found goes into the header. Default: the scene's file
+    /// name with .converge.csv, if there is such a file.
     #[arg(long, value_name = "STUDY.csv")]
     pub(crate) converged: Option<PathBuf>,
     /// Replaces an existing table instead of continuing it.
@@ -437,8 +440,8 @@ pub(crate) struct Converge {
     /// Sliding speed in m/s.
     #[arg(long, value_name = "SPEED", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) speed: f64,
-    /// Admissible change of friction and area, as a share of them, with the spacing halved, the length doubled or another
-    /// seed.
+    /// Admissible change of friction and area, as a share of them, with the spacing halved, the length doubled or
+    /// another seed.
     #[arg(long, value_name = "SHARE", default_value_t = 0.05, value_parser = share)]
     pub(crate) error: f64,
     /// Number of seeds of a self-affine surface or roughness, the scene's own included. Default: 4.
@@ -447,8 +450,8 @@ pub(crate) struct Converge {
     /// Most masses that the halved spacing may come to; with twice the length there are twice as many.
     #[arg(long, value_name = "N", default_value_t = 4096, value_parser = count)]
     pub(crate) most_masses: u32,
-    /// The table to write, - for standard output; an existing table of the same study is continued. Default: the scene's
-    /// file name with .converge.csv.
+    /// The table to write, - for standard output; an existing table of the same study is continued. Default: the
+    /// scene's file name with .converge.csv.
     #[arg(short, long, value_name = "TABLE.csv")]
     pub(crate) output: Option<PathBuf>,
     /// The plot to write, as SVG or PNG according to the file name. Default: the table's name with .svg.

@@ -20,13 +20,13 @@ use rayon::prelude::*;
 use super::cli::Converge;
 use super::draft::TablePlace;
 use super::figure::Figure as _;
-use super::files::{FileError, check_outputs, picture_beside, print_beside, sources};
+use super::files::{FileError, check_outputs, default_output, picture_beside, print_beside, sources};
 use super::interrupt::Farewell;
-use super::sweep::{Bounds, ProfileEnds, check_profile, relevant, steady_sliding, table_fingerprint};
+use super::sweep::{ProfileEnds, StopBounds, check_profile, relevant, steady_sliding, table_fingerprint};
 use super::terminal::{self, warn};
 use crate::program::persson::{Dimension, Theory};
 use plan::{Next, Plan};
-use table::{Header, Measured, Run, Table};
+use table::{Measured, RunRow, StudyHeader, Table};
 use variants::{Template, Variant};
 use verdict::{Pair, Study, Verdict};
 
@@ -81,7 +81,7 @@ pub(crate) fn converge(command: &Converge) -> Result<ExitCode, ConvergeError> {
     if let Some(warning) = scene.hard_pressure("--pressure", command.pressure) {
         warn(&warning);
     }
-    let output = command.output.clone().unwrap_or_else(|| default_output(&command.scene));
+    let output = command.output.clone().unwrap_or_else(|| default_output(&command.scene, "converge.csv"));
     let picture = picture_beside(&output, command.plot.as_ref());
     check_outputs([&output].into_iter().chain(&picture), sources(&command.scene, &scene))?;
     check_profile(&scene)?;
@@ -90,9 +90,9 @@ pub(crate) fn converge(command: &Converge) -> Result<ExitCode, ConvergeError> {
     let (study, mut runs) = Work { command, template: &template, plan, table: &table, output: &output }.finish(runs)?;
     runs.sort_by_key(|run| run.variant.place());
     let verdict = Verdict::new(&study, command.error);
-    let rows: Vec<(&Run, Option<Pair>)> = runs.iter().map(|run| (run, change(run, &runs))).collect();
+    let rows: Vec<(&RunRow, Option<Pair>)> = runs.iter().map(|run| (run, change(run, &runs))).collect();
     table.finish(&summary::sentence(&verdict, command.error), &rows)?;
-    let ladder: Vec<&Run> = runs.iter().filter(|run| run.variant.is_of_ladder()).take(study.ladder.len()).collect();
+    let ladder: Vec<&RunRow> = runs.iter().filter(|run| run.variant.is_of_ladder()).take(study.ladder.len()).collect();
     let judgement = summary::judgement(&ladder, &verdict, command.error, plan.seeds);
     print_beside([&output], &format!("{}\n{judgement}", summary::table(&rows)))?;
     drop(table);
@@ -103,36 +103,31 @@ pub(crate) fn converge(command: &Converge) -> Result<ExitCode, ConvergeError> {
     Ok(if verdict.is_converged() { ExitCode::SUCCESS } else { ExitCode::from(OPEN) })
 }
 
-fn default_output(scene: &Path) -> PathBuf {
-    let stem = scene.file_stem().unwrap_or(scene.as_os_str());
-    PathBuf::from(stem).with_extension("converge.csv")
-}
-
 /// Seeds where none are asked for.
 const SEEDS: u32 = 4;
 
 fn plan(command: &Converge, template: &Template) -> Result<Plan, ConvergeError> {
     let (masses, most) = (template.masses(), u64::from(command.most_masses));
-    let most_halvings = (most / masses).checked_ilog2().unwrap_or_default();
-    if most_halvings == 0 {
+    let max_halvings = (most / masses).checked_ilog2().unwrap_or_default();
+    if max_halvings == 0 {
         return Err(ConvergeError::FewMasses { masses, least: 2 * masses });
     }
     if command.seeds.is_some() && !template.has_seed() {
         return Err(ConvergeError::NoSeed);
     }
     let seeds = template.has_seed().then_some(command.seeds.unwrap_or(SEEDS));
-    Ok(Plan { error: command.error, most_halvings, seeds })
+    Ok(Plan { error: command.error, max_halvings, seeds })
 }
 
-fn header(command: &Converge, scene: &Scene) -> Result<Header, ConvergeError> {
+fn header(command: &Converge, scene: &Scene) -> Result<StudyHeader, ConvergeError> {
     let Converge { pressure, speed, error, distance, .. } = *command;
     let settings = format!("converge {pressure:?} {speed:?} {error:?} {distance:?}");
     let fingerprint = table_fingerprint(&relevant(scene.clone()), &settings)?;
-    Ok(Header { scene: scene.name.clone(), fingerprint, pressure, speed, error })
+    Ok(StudyHeader { scene: scene.name.clone(), fingerprint, pressure, speed, error })
 }
 
 /// The change of a run's values from those of the run that it is compared with.
-fn change(run: &Run, runs: &[Run]) -> Option<Pair> {
+fn change(run: &RunRow, runs: &[RunRow]) -> Option<Pair> {
     let reference = run.variant.reference()?;
     let before = runs.iter().find(|run| run.variant == reference)?;
     Some(run.mean()?.change_from(&before.mean()?))
@@ -150,7 +145,7 @@ struct Work<'a> {
 
 impl Work<'_> {
     /// Makes what is missing beside `runs`; those that do not depend on each other on all cores.
-    fn finish(&self, mut runs: Vec<Run>) -> Result<(Study, Vec<Run>), FileError> {
+    fn finish(&self, mut runs: Vec<RunRow>) -> Result<(Study, Vec<RunRow>), FileError> {
         let bar = terminal::bar(0);
         bar.enable_steady_tick(Duration::from_secs(1));
         let done = bar.clone();
@@ -160,7 +155,7 @@ impl Work<'_> {
             format!("{runs} runs are done")
         });
         loop {
-            let outcome = |variant| runs.iter().find(|run| run.variant == variant).map(Run::mean);
+            let outcome = |variant| runs.iter().find(|run| run.variant == variant).map(RunRow::mean);
             let missing = match self.plan.next(outcome) {
                 Next::Done(study) => {
                     bar.finish_and_clear();
@@ -169,7 +164,7 @@ impl Work<'_> {
                 Next::Runs(missing) => missing,
             };
             self.show(&bar, runs.len(), &missing);
-            let made: Result<Vec<Run>, FileError> =
+            let made: Result<Vec<RunRow>, FileError> =
                 missing.par_iter().with_max_len(1).map(|&variant| self.make(variant, &bar)).collect();
             runs.extend(made?);
         }
@@ -183,7 +178,7 @@ impl Work<'_> {
         bar.set_message(format!("now with {} masses", masses.collect::<Vec<_>>().join(", ")));
     }
 
-    fn make(&self, variant: Variant, bar: &ProgressBar) -> Result<Run, FileError> {
+    fn make(&self, variant: Variant, bar: &ProgressBar) -> Result<RunRow, FileError> {
         let scene = self.template.scene(variant)?;
         let clock = ThreadTime::now();
         let outcome = self.measure(&scene);
@@ -193,7 +188,7 @@ impl Work<'_> {
             .map(|dimension| Theory::new(&scene, pressure, speed, dimension).unwrap_or_default());
         let fit_rms = scene.quality(LinkKind::Vertical).map_or(0.0, |quality| quality.rms);
         let dimensions = self.template.dimensions(variant);
-        let run = Run { variant, dimensions, fit_rms, outcome, theories, run_time };
+        let run = RunRow { variant, dimensions, fit_rms, outcome, theories, run_time };
         self.table.add(&run)?;
         bar.inc(1);
         Ok(run)
@@ -204,7 +199,7 @@ impl Work<'_> {
         let Converge { pressure, speed, error, distance, .. } = *self.command;
         let area = scene.layer.area().ok_or("the layer has no width")?;
         let point = OperatingPoint { speed, load: pressure, temperature: None };
-        let bounds = Bounds { error: RUN_ERROR * error, distance };
+        let bounds = StopBounds { error: RUN_ERROR * error, distance };
         let sliding = steady_sliding(scene, &point, Load::Pressure { area }, bounds)?;
         Ok(Measured {
             mean: Pair { friction: sliding.friction(), area: sliding.contact_ratio },

@@ -10,7 +10,7 @@ pub(super) struct Plan {
     /// Change of friction and of area from one halving to the next that is small enough.
     pub(super) error: f64,
     /// Most halvings, at least one.
-    pub(super) most_halvings: u32,
+    pub(super) max_halvings: u32,
     /// Number of seeds, the scene's own included; `None` where it has none.
     pub(super) seeds: Option<u32>,
 }
@@ -59,7 +59,7 @@ impl Plan {
         while let Some(Some(pair)) = outcome(Variant::halved(ladder.len() as u32)) {
             let settled = ladder.last().is_some_and(|before| pair.change_from(before).is_within(self.error));
             ladder.push(pair);
-            if settled || ladder.len() as u32 > self.most_halvings {
+            if settled || ladder.len() as u32 > self.max_halvings {
                 return (ladder, true);
             }
         }
@@ -101,16 +101,16 @@ mod tests {
         unreachable!("the plan has an end")
     }
 
-    const PLAN: Plan = Plan { error: 0.05, most_halvings: 6, seeds: Some(3) };
+    const PLAN: Plan = Plan { error: 0.05, max_halvings: 6, seeds: Some(3) };
 
     /// 0.1 (1 + 0.4 2^-i): the fourth halving changes by less than 5 %.
-    fn of_first_order(variant: Variant) -> Outcome {
+    fn first_order(variant: Variant) -> Outcome {
         Some(Pair { friction: 0.5, area: 0.1 * (1.0 + 0.4 * 0.5_f64.powi(variant.halvings as i32)) })
     }
 
     #[test]
     fn the_spacing_is_halved_until_little_changes_then_length_and_seeds_follow() {
-        let (rounds, study) = made(PLAN, of_first_order);
+        let (rounds, study) = made(PLAN, first_order);
         let doubled = Variant { doubled: true, ..Variant::halved(3) };
         let seeds = [1, 2].map(|seed_shift| Variant { seed_shift, ..Variant::halved(3) });
         assert_eq!(rounds[0], [Variant::halved(0), Variant::halved(1)]);
@@ -120,8 +120,8 @@ mod tests {
     }
 
     #[test]
-    fn most_masses_end_the_halvings() {
-        let (rounds, study) = made(Plan { most_halvings: 1, seeds: None, ..PLAN }, of_first_order);
+    fn max_masses_end_the_halvings() {
+        let (rounds, study) = made(Plan { max_halvings: 1, seeds: None, ..PLAN }, first_order);
         assert_eq!(
             rounds,
             [vec![Variant::halved(0), Variant::halved(1)], vec![Variant { doubled: true, ..Variant::halved(1) }]]
@@ -132,7 +132,7 @@ mod tests {
     #[test]
     fn a_run_that_is_not_steady_ends_the_halvings() {
         let unsteady_from =
-            |first: u32| move |variant: Variant| of_first_order(variant).filter(|_| variant.halvings < first);
+            |first: u32| move |variant: Variant| first_order(variant).filter(|_| variant.halvings < first);
         let (rounds, study) = made(PLAN, unsteady_from(2));
         assert_eq!((rounds.len(), study.ladder.len()), (3, 2));
         assert!(study.length.is_some());
@@ -143,7 +143,7 @@ mod tests {
     #[test]
     fn runs_that_are_there_are_not_made_again() {
         let there = [Variant::halved(0), Variant::halved(2), Variant { doubled: true, ..Variant::halved(3) }];
-        let outcome = |variant| there.contains(&variant).then(|| of_first_order(variant));
+        let outcome = |variant| there.contains(&variant).then(|| first_order(variant));
         assert_eq!(PLAN.next(outcome), Next::Runs(vec![Variant::halved(1)]));
     }
 }

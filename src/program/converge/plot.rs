@@ -1,6 +1,6 @@
 //! The picture of a study: friction and area over the spacing.
 
-use super::table::Run;
+use super::table::RunRow;
 use super::verdict::Pair;
 use crate::program::figure::{Curve, Panel, Stacked, Stroke};
 use crate::program::persson::Theory;
@@ -18,11 +18,11 @@ const AREAS: [TheoryCurve; 2] =
     [("Persson, ridges", 0, |theory| theory.area), ("Persson, isotropic", 1, |theory| theory.area)];
 
 /// The runs of the study `title`, those with another length or seed as circles.
-pub(super) fn picture(title: &str, runs: &[Run]) -> Stacked {
+pub(super) fn picture(title: &str, runs: &[RunRow]) -> Stacked {
     let panel = |title: &str, value: fn(&Pair) -> f64, parts: Vec<Curve>, theories: &[TheoryCurve]| {
         let mut curves = measured(runs, value).to_vec();
         curves.extend(parts);
-        curves.extend(theories.iter().map(|theory| of_theory(runs, *theory)));
+        curves.extend(theories.iter().map(|theory| theory_curve(runs, *theory)));
         curves.retain(|curve| !curve.points.is_empty());
         Panel { title: title.into(), curves }
     };
@@ -33,9 +33,9 @@ pub(super) fn picture(title: &str, runs: &[Run]) -> Stacked {
     Stacked { title: title.to_owned(), x_title: "spacing in m".into(), panels }
 }
 
-fn measured(runs: &[Run], value: fn(&Pair) -> f64) -> [Curve; 3] {
-    let curve = |name: &str, look: usize, stroke: Stroke, has: fn(&Run) -> bool| {
-        let point = |run: &Run| Some((run.dimensions.spacing, value(&run.mean()?)));
+fn measured(runs: &[RunRow], value: fn(&Pair) -> f64) -> [Curve; 3] {
+    let curve = |name: &str, look: usize, stroke: Stroke, has: fn(&RunRow) -> bool| {
+        let point = |run: &RunRow| Some((run.dimensions.spacing, value(&run.mean()?)));
         let points = runs.iter().filter(|run| has(run)).filter_map(point).collect();
         Curve { name: name.into(), look, stroke, points }
     };
@@ -47,10 +47,10 @@ fn measured(runs: &[Run], value: fn(&Pair) -> f64) -> [Curve; 3] {
 }
 
 /// The part of the friction that the theory is of; no points where that is all of it.
-fn hysteresis(runs: &[Run]) -> Curve {
+fn hysteresis(runs: &[RunRow]) -> Curve {
     /// Share of the friction coefficient below which two curves look like one.
     const SEEN: f64 = 0.01;
-    let of = |run: &Run| {
+    let of = |run: &RunRow| {
         let measured = run.outcome.as_ref().ok()?;
         Some((run.dimensions.spacing, measured.hysteresis, measured.mean.friction))
     };
@@ -60,7 +60,7 @@ fn hysteresis(runs: &[Run]) -> Curve {
     Curve { name: "its hysteresis".into(), look: 3, stroke: Stroke::Line, points }
 }
 
-fn of_theory(runs: &[Run], (name, surface, value): TheoryCurve) -> Curve {
+fn theory_curve(runs: &[RunRow], (name, surface, value): TheoryCurve) -> Curve {
     let ladder = runs.iter().filter(|run| run.variant.is_of_ladder());
     let points = ladder.map(|run| (run.dimensions.spacing, value(&run.theories[surface]))).collect();
     let stroke = if name == "reduced" { Stroke::Dotted } else { Stroke::Dashed };

@@ -1,7 +1,7 @@
 //! A study as text: a row for each run, what is left open, and what will do.
 
-use super::table::Run;
-use super::verdict::{Largest, Open, Pair, Source, Verdict};
+use super::table::RunRow;
+use super::verdict::{LargestOpen, Open, Pair, Source, Verdict};
 use crate::program::persson::Theory;
 use crate::program::terminal::{LabelledLine, decimal, labelled, lines, rounded};
 
@@ -21,7 +21,7 @@ const TITLES: [&str; 12] = [
 ];
 
 /// The runs, each with the change of its values from the one that it is compared with.
-pub(super) type Rows<'a> = [(&'a Run, Option<Pair>)];
+pub(super) type Rows<'a> = [(&'a RunRow, Option<Pair>)];
 
 /// The rows as a table with a line for each.
 pub(super) fn table(rows: &Rows<'_>) -> String {
@@ -39,7 +39,7 @@ pub(super) fn table(rows: &Rows<'_>) -> String {
     cells.iter().map(line).collect()
 }
 
-fn fields(run: &Run, change: Option<Pair>) -> Vec<String> {
+fn fields(run: &RunRow, change: Option<Pair>) -> Vec<String> {
     let dimensions = &run.dimensions;
     let mut fields = vec![
         dimensions.masses.to_string(),
@@ -77,7 +77,7 @@ fn percent(share: f64) -> String {
 
 /// Persson's theory, what each source leaves open, the coarsest spacing, and the verdict. `ladder` holds the runs with
 /// the scene's length and seed.
-pub(super) fn judgement(ladder: &[&Run], verdict: &Verdict, error: f64, seeds: Option<u32>) -> String {
+pub(super) fn judgement(ladder: &[&RunRow], verdict: &Verdict, error: f64, seeds: Option<u32>) -> String {
     let mut all: Vec<LabelledLine> = Vec::new();
     all.extend(ladder.last().and_then(|run| hysteresis(run)).map(|line| ("Hysteresis", line)));
     all.extend(labelled("Persson", ladder.last().iter().flat_map(|run| theories(&run.theories))));
@@ -88,7 +88,7 @@ pub(super) fn judgement(ladder: &[&Run], verdict: &Verdict, error: f64, seeds: O
 }
 
 /// The part of a run's friction that Persson's theory is of.
-fn hysteresis(run: &Run) -> Option<String> {
+fn hysteresis(run: &RunRow) -> Option<String> {
     let measured = run.outcome.as_ref().ok()?;
     let (part, whole) = (number(measured.hysteresis), number(measured.mean.friction));
     Some(format!("{part} of the friction of {whole} at the finest spacing: the part that Persson's theory is of"))
@@ -113,7 +113,7 @@ fn open_line(open: &Open, seeds: Option<u32>) -> String {
     format!("{name:<9}friction {}, area {}: {of}", percent(shares.friction), percent(shares.area))
 }
 
-fn coarsest(ladder: &[&Run], verdict: &Verdict, error: f64) -> [String; 2] {
+fn coarsest(ladder: &[&RunRow], verdict: &Verdict, error: f64) -> [String; 2] {
     let line = |name: &str, halvings: Option<usize>| {
         let Some(run) = halvings.and_then(|halvings| ladder.get(halvings)) else {
             return format!("{name:<9}none of these spacings is within {}", percent(error));
@@ -134,12 +134,14 @@ fn coarsest(ladder: &[&Run], verdict: &Verdict, error: f64) -> [String; 2] {
 pub(super) fn sentence(verdict: &Verdict, error: f64) -> String {
     let start = if verdict.is_converged() { "converged" } else { "not converged" };
     match verdict.largest() {
-        Some(Largest { source, share: Some((quantity, share)) }) => {
+        Some(LargestOpen { source, share: Some((quantity, share)) }) => {
             let against = if share <= error { "within" } else { "more than" };
             let (name, share, error) = (source.name(), percent(share), percent(error));
             format!("{start}: {name} leaves most open, {share} of the {quantity}, {against} {error}")
         }
-        Some(Largest { source, share: None }) => format!("{start}: what {} leaves open is not known", source.name()),
+        Some(LargestOpen { source, share: None }) => {
+            format!("{start}: what {} leaves open is not known", source.name())
+        }
         None => start.to_owned(),
     }
 }

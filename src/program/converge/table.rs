@@ -56,7 +56,7 @@ pub(super) struct Measured {
 
 /// A run that was made.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Run {
+pub(super) struct RunRow {
     pub(super) variant: Variant,
     pub(super) dimensions: Dimensions,
     /// Root mean square of r - 1, 1: how far the links miss the surface that they stand for.
@@ -69,7 +69,7 @@ pub(super) struct Run {
     pub(super) run_time: f64,
 }
 
-impl Run {
+impl RunRow {
     /// Friction and area; `None` of a run that did not become steady.
     pub(super) fn mean(&self) -> Option<Pair> {
         self.outcome.as_ref().ok().map(|measured| measured.mean)
@@ -137,19 +137,19 @@ impl Run {
 
 /// What a table says before its rows.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Header {
+pub(super) struct StudyHeader {
     /// The name of the scene.
     pub(super) scene: String,
     /// What tells this study from others.
     pub(super) fingerprint: String,
-    /// Pa
+    /// The mean pressure of the runs, Pa.
     pub(super) pressure: f64,
-    /// m/s
+    /// The speed of the runs, m/s.
     pub(super) speed: f64,
     pub(super) error: f64,
 }
 
-impl Header {
+impl StudyHeader {
     /// The lines of the header, the names of the columns included; once there is one, the verdict.
     fn text(&self, verdict: Option<&str>) -> String {
         let mut lines = vec![
@@ -170,14 +170,14 @@ impl Header {
 #[derive(Debug)]
 pub(super) struct Table {
     path: PathBuf,
-    header: Header,
+    header: StudyHeader,
     file: LineFile,
     _lock: TableLock,
 }
 
 impl Table {
     /// Begins a table or, unless it is to be replaced, continues the one that is there. Returns the runs that it has.
-    pub(super) fn open(path: &Path, header: Header, force: bool) -> Result<(Self, Vec<Run>), ConvergeError> {
+    pub(super) fn open(path: &Path, header: StudyHeader, force: bool) -> Result<(Self, Vec<RunRow>), ConvergeError> {
         let lock = TableLock::take(path)?;
         let runs = if force { Vec::new() } else { runs_done(path, &header)? };
         let rows = runs.iter().map(|run| run.line(None));
@@ -186,12 +186,12 @@ impl Table {
     }
 
     /// Adds a row; it is in the file when this returns.
-    pub(super) fn add(&self, run: &Run) -> Result<(), FileError> {
+    pub(super) fn add(&self, run: &RunRow) -> Result<(), FileError> {
         self.file.add(&run.line(None))
     }
 
     /// Writes the whole table with the changes of the values, which rows that were added do not have.
-    pub(super) fn finish(&self, verdict: &str, rows: &[(&Run, Option<Pair>)]) -> Result<(), FileError> {
+    pub(super) fn finish(&self, verdict: &str, rows: &[(&RunRow, Option<Pair>)]) -> Result<(), FileError> {
         let rows: String = rows.iter().map(|(run, change)| run.line(*change)).collect();
         write(&self.path, self.header.text(Some(verdict)) + &rows)
     }
@@ -199,7 +199,7 @@ impl Table {
 
 /// The runs of the table at `path`, without the corrupt rows, which are named; none where there is no file, or only the
 /// beginning of a header.
-fn runs_done(path: &Path, header: &Header) -> Result<Vec<Run>, ConvergeError> {
+fn runs_done(path: &Path, header: &StudyHeader) -> Result<Vec<RunRow>, ConvergeError> {
     let text = match read_file(path) {
         Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
@@ -219,9 +219,9 @@ fn runs_done(path: &Path, header: &Header) -> Result<Vec<Run>, ConvergeError> {
     if !whole.lines().any(|line| line == key) {
         return Err(ConvergeError::OtherStudy { path: path.to_owned() });
     }
-    let mut runs: Vec<Run> = Vec::new();
+    let mut runs: Vec<RunRow> = Vec::new();
     for row in rows {
-        match Run::from_fields(&row.fields).filter(|run| runs.iter().all(|other| other.variant != run.variant)) {
+        match RunRow::from_fields(&row.fields).filter(|run| runs.iter().all(|other| other.variant != run.variant)) {
             Some(run) => runs.push(run),
             None => warn(&format!("{}:{}: not a row of this study; the run is made again", path.display(), row.line)),
         }
@@ -233,11 +233,11 @@ fn runs_done(path: &Path, header: &Header) -> Result<Vec<Run>, ConvergeError> {
 mod tests {
     use super::*;
 
-    fn run(outcome: Result<Measured, String>) -> Run {
+    fn run(outcome: Result<Measured, String>) -> RunRow {
         let theory = |area: f64| Theory { area, friction: 0.1 / 3.0, friction_reduced: 1e-7 };
         let dimensions = Dimensions { masses: 64, spacing: 1e-4 / 3.0, seed: Some(u64::MAX) };
         let variant = Variant { halvings: 3, doubled: true, seed_shift: 2 };
-        Run { variant, dimensions, fit_rms: 0.25, outcome, theories: [theory(0.1), theory(0.2)], run_time: 12.5 }
+        RunRow { variant, dimensions, fit_rms: 0.25, outcome, theories: [theory(0.1), theory(0.2)], run_time: 12.5 }
     }
 
     #[test]
@@ -247,13 +247,13 @@ mod tests {
         let steady = run(Ok(Measured { mean, error, hysteresis: 0.1 }));
         let failed = run(Err("not steady after 0.5 m, at all: \"never\"".into()));
         let seedless = Dimensions { seed: None, ..steady.dimensions };
-        for run in [steady.clone(), failed, Run { dimensions: seedless, ..steady }] {
+        for run in [steady.clone(), failed, RunRow { dimensions: seedless, ..steady }] {
             for change in [None, Some(pair(-0.5, 0.25))] {
                 let line = run.line(change);
                 let row = text_table::rows(&line, Some(',')).next().unwrap();
-                assert_eq!((row.fields.len(), Run::from_fields(&row.fields)), (COLUMNS.len(), Some(run.clone())));
+                assert_eq!((row.fields.len(), RunRow::from_fields(&row.fields)), (COLUMNS.len(), Some(run.clone())));
             }
         }
-        assert_eq!(Run::from_fields(&["64"; COLUMNS.len() - 1]), None);
+        assert_eq!(RunRow::from_fields(&["64"; COLUMNS.len() - 1]), None);
     }
 }

@@ -70,18 +70,18 @@ impl Dimensions {
 #[derive(Clone, Debug, PartialEq)]
 struct Number {
     span: Range<usize>,
-    value: Value,
+    value: NumberValue,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Value {
+enum NumberValue {
     Whole(u64),
     Real(f64),
 }
 
 /// The numbers of a self-affine surface that change.
 #[derive(Clone, Debug, PartialEq)]
-struct SelfAffine {
+struct SelfAffineNumbers {
     length: Number,
     points: Number,
     seed: Number,
@@ -97,7 +97,7 @@ pub(super) struct Template {
     masses: Number,
     spacing: Number,
     /// The surface, then the roughness of the layer.
-    self_affine: Vec<SelfAffine>,
+    self_affine: Vec<SelfAffineNumbers>,
     /// The dimensions of the scene itself.
     own: Dimensions,
 }
@@ -124,7 +124,8 @@ impl Template {
         if surfaces[1].is_some_and(|roughness| roughness.contains_key("z") && !roughness.contains_key("x")) {
             return Err(ConvergeError::HeightsAtMasses { path: path.to_owned() });
         }
-        let self_affine: Vec<SelfAffine> = surfaces.into_iter().flatten().filter_map(SelfAffine::new).collect();
+        let self_affine: Vec<SelfAffineNumbers> =
+            surfaces.into_iter().flatten().filter_map(SelfAffineNumbers::new).collect();
         let (masses, spacing) = (number(layer, "masses"), number(layer, "spacing"));
         let (masses, spacing) = masses.zip(spacing).ok_or_else(unclear)?;
         let seed = self_affine.first().map(|surface| surface.seed.value.whole());
@@ -161,11 +162,11 @@ impl Template {
     fn text_of(&self, variant: Variant) -> String {
         let Dimensions { masses, spacing, .. } = self.dimensions(variant);
         let factor = 1_u32 << u32::from(variant.doubled);
-        let mut changes = vec![(&self.masses, Value::Whole(masses)), (&self.spacing, Value::Real(spacing))];
-        for SelfAffine { length, points, seed } in &self.self_affine {
-            changes.push((length, Value::Real(f64::from(factor) * length.value.real())));
-            changes.push((points, Value::Whole(u64::from(factor) * points.value.whole())));
-            changes.push((seed, Value::Whole(shifted(seed.value.whole(), variant.seed_shift))));
+        let mut changes = vec![(&self.masses, NumberValue::Whole(masses)), (&self.spacing, NumberValue::Real(spacing))];
+        for SelfAffineNumbers { length, points, seed } in &self.self_affine {
+            changes.push((length, NumberValue::Real(f64::from(factor) * length.value.real())));
+            changes.push((points, NumberValue::Whole(u64::from(factor) * points.value.whole())));
+            changes.push((seed, NumberValue::Whole(shifted(seed.value.whole(), variant.seed_shift))));
         }
         changes.retain(|(number, value)| number.value != *value);
         // From the end, so that those before stay where they are.
@@ -181,7 +182,7 @@ fn shifted(seed: u64, shift: u32) -> u64 {
     seed.wrapping_add(u64::from(shift)) & i64::MAX.unsigned_abs()
 }
 
-impl SelfAffine {
+impl SelfAffineNumbers {
     /// That of a table of a surface; `None` for every other kind.
     fn new(surface: &DeTable<'_>) -> Option<Self> {
         if surface.get("kind")?.get_ref().as_str() != Some("self_affine") {
@@ -202,16 +203,16 @@ fn table<'a>(table: &'a DeTable<'a>, key: &str) -> Option<&'a DeTable<'a>> {
 fn number(table: &DeTable<'_>, key: &str) -> Option<Number> {
     let entry: &Spanned<DeValue<'_>> = table.get(key)?;
     let value = match entry.get_ref() {
-        DeValue::Float(float) => Value::Real(float.as_str().parse().ok()?),
+        DeValue::Float(float) => NumberValue::Real(float.as_str().parse().ok()?),
         other => {
             let whole = other.as_integer()?;
-            Value::Whole(u64::from_str_radix(whole.as_str(), whole.radix()).ok()?)
+            NumberValue::Whole(u64::from_str_radix(whole.as_str(), whole.radix()).ok()?)
         }
     };
     Some(Number { span: entry.span(), value })
 }
 
-impl Value {
+impl NumberValue {
     fn whole(self) -> u64 {
         match self {
             Self::Whole(number) => number,

@@ -89,15 +89,15 @@ pub(super) struct Open {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Verdict {
     pub(super) open: Vec<Open>,
-    /// How often the spacing of the scene is halved for friction to be within the error, and for area; `None`: more often
-    /// than was tried.
+    /// How often the spacing of the scene is halved for friction to be within the error, and for area; `None`: more
+    /// often than was tried.
     pub(super) coarsest: [Option<usize>; 2],
     error: f64,
 }
 
 /// The largest share that is left open.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Largest {
+pub(super) struct LargestOpen {
     pub(super) source: Source,
     /// The quantity and its share; `None`: not known.
     pub(super) share: Option<(&'static str, f64)>,
@@ -123,15 +123,15 @@ impl Verdict {
     }
 
     /// The source that leaves most open; one that is not known before all others.
-    pub(super) fn largest(&self) -> Option<Largest> {
+    pub(super) fn largest(&self) -> Option<LargestOpen> {
         let of = |open: &Open| {
             let share = open.shares.map(|shares| {
                 let [friction, area] = shares.named();
                 if friction.1 > area.1 { friction } else { area }
             });
-            Largest { source: open.source, share }
+            LargestOpen { source: open.source, share }
         };
-        let size = |largest: &Largest| largest.share.map_or(f64::INFINITY, |(_, share)| share);
+        let size = |largest: &LargestOpen| largest.share.map_or(f64::INFINITY, |(_, share)| share);
         self.open.iter().map(of).max_by(|a, b| size(a).total_cmp(&size(b)))
     }
 }
@@ -159,8 +159,8 @@ fn chance(own: Option<&Pair>, others: &[Option<Pair>]) -> Option<Pair> {
     Some(Pair { friction: friction.1, area: area.1 }.over(&mean))
 }
 
-/// The first run of the ladder from which on all are within `error` of the limit. That is as far beyond the finest run as
-/// this one is from the one before: the area is of first order in the spacing.
+/// The first run of the ladder from which on all are within `error` of the limit. That is as far beyond the finest run
+/// as this one is from the one before: the area is of first order in the spacing.
 fn coarsest_within(ladder: &[Pair], error: f64, value: fn(&Pair) -> f64) -> Option<usize> {
     let (last, left) = (ladder.last()?, value(&last_change(ladder)?));
     let is_off = |pair: &Pair| value(&(last.change_from(pair).abs())) + left > error;
@@ -231,12 +231,12 @@ mod tests {
         let one = study(&[(0.5, 0.1)], (0.5, 0.1));
         let verdict = Verdict::new(&one, 0.5);
         assert!(!verdict.is_converged());
-        assert_eq!(verdict.largest(), Some(Largest { source: Source::Spacing, share: None }));
+        assert_eq!(verdict.largest(), Some(LargestOpen { source: Source::Spacing, share: None }));
         assert_eq!(verdict.coarsest, [None, None]);
         let seeds = Some(vec![None]);
         let verdict = Verdict::new(&Study { seeds, ..study(&[(0.5, 0.1), (0.5, 0.1)], (0.5, 0.1)) }, 0.5);
         assert!(!verdict.is_converged());
-        assert_eq!(verdict.largest(), Some(Largest { source: Source::Chance, share: None }));
+        assert_eq!(verdict.largest(), Some(LargestOpen { source: Source::Chance, share: None }));
     }
 
     /// Shares of a friction coefficient near 0 are those of a small one: its sign is scatter.

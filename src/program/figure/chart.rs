@@ -145,7 +145,7 @@ fn draw_markers<B: Backend>(
 ) -> DrawResult {
     let (left, top) = canvas.get_base_pixel();
     let places = points.iter().map(|point| context.backend_coord(point));
-    places.into_iter().try_for_each(|(x, y)| draw_marker(canvas, (x - left, y - top), look, false))
+    places.into_iter().try_for_each(|(x, y)| draw_marker(canvas, (x - left, y - top), look, MarkerFill::Full))
 }
 
 /// A line through many circles is seen behind them.
@@ -164,10 +164,25 @@ impl Stroke {
     }
 }
 
+/// How a marker is filled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum MarkerFill {
+    Full,
+    Hollow,
+}
+
 /// Draws a disc, a square, a triangle or a diamond, or its outline: lines are told apart without their colours.
-pub(super) fn draw_marker<B: Backend>(canvas: &Canvas<B>, (x, y): (i32, i32), look: usize, hollow: bool) -> DrawResult {
+pub(super) fn draw_marker<B: Backend>(
+    canvas: &Canvas<B>,
+    (x, y): (i32, i32),
+    look: usize,
+    fill: MarkerFill,
+) -> DrawResult {
     let (r, edge) = (MARKER, colour(look).stroke_width(LINE_WIDTH));
-    let inside = if hollow { WHITE } else { colour(look) };
+    let inside = match fill {
+        MarkerFill::Full => colour(look),
+        MarkerFill::Hollow => WHITE,
+    };
     let corners: &[(i32, i32)] = match look % 4 {
         0 => {
             canvas.draw(&Circle::new((x, y), r, inside.filled()))?;
@@ -283,7 +298,7 @@ impl Symbol {
                 let gap = if dashed { 2 * MARKER } else { 0 };
                 line(left, centre - gap, colour(look))?;
                 line(centre + gap, right, colour(look))?;
-                draw_marker(canvas, (centre, middle), look, false)?;
+                draw_marker(canvas, (centre, middle), look, MarkerFill::Full)?;
             }
             Self::Area(shade) => {
                 let half = (TEXT_SIZE / 2) as i32;

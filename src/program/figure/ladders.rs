@@ -5,7 +5,7 @@ use plotters::coord::ranged1d::Ranged as _;
 use plotters::prelude::*;
 
 use super::axis::{Axis, is_loggable};
-use super::chart::{Context, Legend, MARKER, Stroke, Symbol, context, draw_axes, draw_line, draw_marker};
+use super::chart::{Context, Legend, MARKER, MarkerFill, Stroke, Symbol, context, draw_axes, draw_line, draw_marker};
 use super::{Backend, Canvas, DrawResult, FINE, Figure, INK, colour, text_style, text_width};
 
 /// Width and height of a panel, pixels.
@@ -158,7 +158,8 @@ impl Ladder {
         }
         let rungs = self.drawn().zip(self.points(canvas, context));
         rungs.into_iter().try_for_each(|(rung, point)| {
-            draw_marker(canvas, point, self.look, floor.is_some_and(|floor| rung.y < floor))
+            let is_hollow = floor.is_some_and(|floor| rung.y < floor);
+            draw_marker(canvas, point, self.look, if is_hollow { MarkerFill::Hollow } else { MarkerFill::Full })
         })
     }
 

@@ -1,7 +1,7 @@
 //! Maps of a patch's face: one moment, and a strip of others, coloured by pressure, with arrows for the traction.
 //!
-//! Both axes of a face have the same scale, unless one side is more than [`SLENDER`] times as long as the other. All maps
-//! of a figure have the same colours and the same scale of arrows.
+//! Both axes of a face have the same scale, unless one side is more than [`SLENDER`] times as long as the other. All
+//! maps of a figure have the same colours and the same scale of arrows.
 
 use asperity::patch::FaceLayout;
 use plotters::coord::ranged1d::{Ranged as _, ValueFormatter as _};

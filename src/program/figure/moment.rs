@@ -1,5 +1,5 @@
-//! A moment over the face of a patch: what its elements bear, gathered into as many tiles and arrows as can be told apart,
-//! so that a picture of a million elements is no larger than one of some thousand.
+//! A moment over the face of a patch: what its elements bear, gathered into as many tiles and arrows as can be told
+//! apart, so that a picture of a million elements is no larger than one of some thousand.
 
 use asperity::patch::{FaceElement, FaceLayout, PatchRun};
 
@@ -23,7 +23,7 @@ pub(super) struct Tile {
     pub(super) high: [f64; 2],
     /// The middle of their area, m.
     pub(super) place: [f64; 2],
-    /// m².
+    /// The sum of their areas, m².
     pub(super) area: f64,
     /// Their mean, Pa.
     pub(super) pressure: f64,
@@ -35,7 +35,7 @@ pub(super) struct Tile {
 /// What a face bears at a moment.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Moment {
-    /// s.
+    /// The time, s.
     pub(super) time: f64,
     /// Of the force on the body, N.
     pub(super) force: f64,
@@ -71,11 +71,11 @@ impl Moment {
 #[derive(Clone, Copy, Debug)]
 struct Bins {
     count: usize,
-    kind: Kind,
+    shape: BinShape,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Kind {
+enum BinShape {
     /// Columns and rows of a grid with so many rows: so many of each together.
     Cells { rows: usize, together: [usize; 2] },
     /// Points in a rectangle, by the corner and the edges of the first one (m) and the number of them along the second
@@ -103,21 +103,21 @@ impl Bins {
 
     fn cells(plan: &FaceLayout, rows: usize, together: [usize; 2]) -> Self {
         let count = (plan.count / rows).div_ceil(together[0]) * rows.div_ceil(together[1]);
-        Self { count, kind: Kind::Cells { rows, together } }
+        Self { count, shape: BinShape::Cells { rows, together } }
     }
 
     fn rectangles(plan: &FaceLayout, edges: [f64; 2]) -> Self {
         let number = |axis: usize| ((plan.extents[axis].1 - plan.extents[axis].0) / edges[axis]) as usize + 1;
         let (along, across) = (number(0), number(1));
         let corner = plan.extents.map(|(low, _)| low);
-        Self { count: along * across, kind: Kind::Rectangles { corner, edges, across } }
+        Self { count: along * across, shape: BinShape::Rectangles { corner, edges, across } }
     }
 
     /// The tiles of those with elements in them; a rectangle is drawn whole.
     fn tiles(&self, gathered: &[Gathered]) -> Vec<Tile> {
         let drawn = |(index, gathered): (usize, &Gathered)| {
             let tile = gathered.tile()?;
-            let Kind::Rectangles { corner, edges, across } = self.kind else { return Some(tile) };
+            let BinShape::Rectangles { corner, edges, across } = self.shape else { return Some(tile) };
             let index = [index / across, index % across];
             let end = |more: usize| [0, 1].map(|axis| corner[axis] + edges[axis] * (index[axis] + more) as f64);
             Some(Tile { low: end(0), high: end(1), ..tile })
@@ -126,11 +126,11 @@ impl Bins {
     }
 
     fn index(&self, i: usize, element: &FaceElement) -> usize {
-        match self.kind {
-            Kind::Cells { rows, together: [along, across] } => {
+        match self.shape {
+            BinShape::Cells { rows, together: [along, across] } => {
                 (i / rows / along) * rows.div_ceil(across) + i % rows / across
             }
-            Kind::Rectangles { corner, edges, across } => {
+            BinShape::Rectangles { corner, edges, across } => {
                 let [x, y] = [0, 1].map(|axis| ((element.place[axis] - corner[axis]) / edges[axis]) as usize);
                 x * across + y
             }

@@ -140,7 +140,7 @@ impl LinearPanel {
 
 /// A run over time: forces, the speed of a carrier that is a body, contacts and energy lost, collected row by row.
 #[derive(Debug)]
-pub(crate) struct History {
+pub(crate) struct TimeHistory {
     scene: Scene,
     variables: Vec<Variable>,
     times: Vec<f64>,
@@ -162,7 +162,7 @@ const RUN_PANELS: [RunPanel; 4] = [
     }),
 ];
 
-impl History {
+impl TimeHistory {
     pub(crate) fn new(scene: &Scene) -> Self {
         let shows = |group: &OutputGroup| {
             matches!(group, OutputGroup::Forces | OutputGroup::Contact | OutputGroup::Dissipation)
@@ -220,7 +220,7 @@ pub(super) fn over_time<'a>(
     Chart { title: String::new(), x, y, curves }
 }
 
-impl Figure for History {
+impl Figure for TimeHistory {
     fn size(&self) -> (u32, u32) {
         (1000, 360 * self.panels().count() as u32)
     }
@@ -243,7 +243,7 @@ pub(crate) struct ProfilePicture {
     pub(crate) heights: Vec<(f64, f64)>,
     /// Wave numbers (rad/m) and densities (m³).
     pub(crate) spectrum: Vec<(f64, f64)>,
-    /// The same of the fitted power law; empty for none.
+    /// Wave numbers (rad/m) and densities (m³) of the fitted power law; empty for none.
     pub(crate) law: Vec<(f64, f64)>,
 }
 

@@ -1,4 +1,5 @@
-//! The figure of a contact patch: its wrench over time, and its face at the moment of the largest force and at some others.
+//! The figure of a contact patch: its wrench over time, and its face at the moment of the largest force and at some
+//! others.
 
 use asperity::patch::{Patch, PatchOutput, PatchRun, PatchVariable};
 

@@ -59,7 +59,7 @@ impl Figure for Charts {
 
 /// The columns of one unit, with the points of each file.
 #[derive(Debug)]
-struct Panel<'a> {
+struct UnitPanel<'a> {
     unit: String,
     columns: Vec<&'a str>,
     curves: Vec<Curve>,
@@ -73,12 +73,12 @@ pub(crate) fn plot_files(command: &Plot) -> Result<(), PlotError> {
     check_outputs([&command.output], command.files.clone())?;
     let files = command.files.iter().map(|path| Selection::read(path, command)).collect::<Result<Vec<_>, _>>()?;
     let x_unit = files[0].unit(&command.x)?;
-    let mut panels: Vec<Panel<'_>> = Vec::new();
+    let mut panels: Vec<UnitPanel<'_>> = Vec::new();
     for column in &command.y {
         let unit = files[0].unit(column)?;
         match panels.iter_mut().find(|panel| panel.unit == unit) {
             Some(panel) => panel.columns.push(column),
-            None => panels.push(Panel { unit, columns: vec![column], curves: Vec::new() }),
+            None => panels.push(UnitPanel { unit, columns: vec![column], curves: Vec::new() }),
         }
     }
     for panel in &mut panels {
@@ -198,10 +198,10 @@ fn curve_name(command: &Plot, index: usize, path: &Path, column: &str, columns: 
     }
 }
 
-fn charts(command: &Plot, x_unit: &str, panels: Vec<Panel<'_>>) -> Vec<Chart> {
+fn charts(command: &Plot, x_unit: &str, panels: Vec<UnitPanel<'_>>) -> Vec<Chart> {
     let x = panels.iter().flat_map(|panel| &panel.curves).flat_map(|curve| &curve.points).map(|point| point.0);
     let x = axis(command, PlotAxis::X, &command.x, x_unit, x);
-    let chart = |panel: Panel<'_>| {
+    let chart = |panel: UnitPanel<'_>| {
         let quantity = format!("{}{}", if command.negate { "-" } else { "" }, panel.columns.join(", "));
         let y = panel.curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
         let y = axis(command, PlotAxis::Y, &quantity, &panel.unit, y);

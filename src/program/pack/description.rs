@@ -246,7 +246,7 @@ mod tests {
         let path = root.join("scenes/tread-block/tread-block.toml");
         let model = Definition::from(Scene::load(&path).unwrap());
         let variables = model.variables();
-        let guid = guid(&Sources::of(&path, &*model).unwrap(), &variables);
+        let guid = guid(&Sources::new(&path, &*model).unwrap(), &variables);
         let written = String::from_utf8(write(&*model, &variables, &guid).unwrap()).unwrap();
         let golden = root.join("modelDescription/modelDescription.xml");
         if std::env::var_os("BLESS").is_some() {

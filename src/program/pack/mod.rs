@@ -120,7 +120,7 @@ fn archive_path(file: &Path) -> Result<String, PackError> {
 fn documents(definition: &Definition, path: &Path, summary: &[LabelledLine]) -> Result<Vec<ArchiveEntry>, PackError> {
     let document = |document, source| PackError::Document { document, source };
     let variables = definition.variables();
-    let guid = guid(&Sources::of(path, &**definition).map_err(FileError::io("read", path))?, &variables);
+    let guid = guid(&Sources::new(path, &**definition).map_err(FileError::io("read", path))?, &variables);
     let description = description::write(&**definition, &variables, &guid);
     let description = description.map_err(|error| document("modelDescription.xml", error))?;
     let index = documentation::write(definition, &variables, summary);

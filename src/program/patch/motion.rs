@@ -38,12 +38,12 @@ pub(crate) struct MotionFile {
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MotionRow {
-    /// s.
+    /// The time of the row, s.
     pub(crate) time: f64,
     pose: [f64; 6],
-    /// m/s; 0 without a tread.
+    /// The speed at which the tread runs, m/s; 0 without one.
     transport_speed: f64,
-    /// K.
+    /// Temperature of the face, K.
     temperature: f64,
 }
 

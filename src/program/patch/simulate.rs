@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::outputs::Kind;
+use asperity::outputs::OutputType;
 use asperity::patch::{MotionError, Patch, PatchRun, PatchVariable};
 
 use super::motion::MotionFile;
@@ -33,7 +33,7 @@ pub(crate) fn simulate(command: &Simulate, patch_file: &Path, motion_file: &Path
     taken.push(motion_file.to_owned());
     check_outputs([&command.output].into_iter().chain(&command.plot), taken)?;
     let motion = MotionFile::read(motion_file, &patch)?;
-    let mut recorder = Recorder::new(&patch, &motion, command)?;
+    let mut recorder = PatchRecorder::new(&patch, &motion, command)?;
     let mut run = PatchRun::new(&patch, &motion.start()).map_err(PatchSimulateError::Start)?;
     recorder.row(&mut run, motion.values(&motion.rows()[0]))?;
     let mut result = Ok(());
@@ -53,14 +53,14 @@ pub(crate) fn simulate(command: &Simulate, patch_file: &Path, motion_file: &Path
 }
 
 /// Writes the rows of a run to the file and keeps them for the plot.
-struct Recorder {
+struct PatchRecorder {
     variables: Vec<PatchVariable>,
     values: Vec<f64>,
     writer: CsvWriter,
     history: Option<PatchHistory>,
 }
 
-impl Recorder {
+impl PatchRecorder {
     fn new(patch: &Patch, motion: &MotionFile, command: &Simulate) -> Result<Self, FileError> {
         let variables = patch.variables();
         let names = motion.names().into_iter().chain(variables.iter().map(|variable| variable.name.as_str()));
@@ -78,7 +78,7 @@ impl Recorder {
         run.evaluate(&self.variables, &mut self.values);
         let variables = self.variables.iter().zip(&self.values);
         let variables = variables.map(|(variable, &value)| Field { kind: variable.kind, value });
-        let motion = motion.into_iter().map(|value| Field { kind: Kind::Real, value });
+        let motion = motion.into_iter().map(|value| Field { kind: OutputType::Real, value });
         self.writer.write_values(motion.chain(variables))?;
         if let Some(history) = &mut self.history {
             history.add(run);

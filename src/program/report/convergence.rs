@@ -141,8 +141,8 @@ impl ToleranceLadder<'_> {
         Ok(RunFigures { estimate: Some(run.estimate), ..run.figures(errors) })
     }
 
-    /// Times the runs of `rows` again without their estimates, in rounds: what disturbs the machine for a while does not
-    /// meet all timings of one run.
+    /// Times the runs of `rows` again without their estimates, in rounds: what disturbs the machine for a while does
+    /// not meet all timings of one run.
     pub(super) fn time(&self, reference: &Reference, rows: &mut [ToleranceRow]) {
         let mut runs: Vec<TimedRun<'_>> =
             rows.iter_mut().filter_map(|row| TimedRun::new(row, &reference.scene, self.repeat)).collect();
@@ -209,14 +209,14 @@ pub(super) struct CommunicationRow {
 /// The communication steps of a master, at the scene's own tolerance and method. What a user of the FMU meets: its
 /// carrier follows the excitation by values, with or without rates.
 #[derive(Debug)]
-pub(super) struct CommunicationSteps<'a> {
+pub(super) struct CommunicationLadder<'a> {
     reference: &'a Reference,
     /// The longest step, s.
     longest: f64,
     progress: &'a Progress,
 }
 
-impl<'a> CommunicationSteps<'a> {
+impl<'a> CommunicationLadder<'a> {
     /// The longest communication step is about this part of the excitation.
     const LONGEST: f64 = 1.0 / 64.0;
     /// Each step is half of the one before.

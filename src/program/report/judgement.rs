@@ -61,24 +61,25 @@ impl Judgement {
         reference: &Reference,
         rows: &'a [ToleranceRow],
     ) -> impl Iterator<Item = Self> + use<'a> {
-        let (floor, sensitive) = (of_forces(&reference.own).unwrap_or_default(), reference.comparison.is_of_means());
+        let (floor, sensitive) = (force_error(&reference.own).unwrap_or_default(), reference.comparison.is_of_means());
         rows.iter().filter(|row| row.timed == Timed::RunAlone).filter_map(move |row| {
             let figures = row.result.as_ref().ok()?;
-            let error = of_forces(&figures.errors)?;
+            let error = force_error(&figures.errors)?;
             let judgement = Self::new(error, figures.estimate?, floor, row.tolerance, sensitive);
             Some(Self { method: row.method.clone(), ..judgement })
         })
     }
 
-    /// Judgements of the perturbed runs that came to their ends, by a method of this name. Their tight runs are taken to be as
-    /// accurate as their tolerances.
+    /// Judgements of the perturbed runs that came to their ends, by a method of this name. Their tight runs are taken
+    /// to be as accurate as their tolerances.
     pub(super) fn from_perturbations(robustness: &Robustness, method: &str) -> impl Iterator<Item = Self> {
         let tolerance = robustness.tolerance;
         let perturbed = robustness.trials().filter(|(perturbation, _)| **perturbation != Perturbation::default());
         perturbed.filter_map(move |(&perturbation, trial)| {
-            let error = of_forces(trial.errors()?)?;
-            let sensitive = trial.accuracy()?.moved().is_some();
-            let judgement = Self::new(error, trial.estimate()?, tolerance / TIGHTER, tolerance, sensitive);
+            let ended = trial.ended()?;
+            let error = force_error(ended.errors.as_ref()?)?;
+            let sensitive = ended.accuracy.moved().is_some();
+            let judgement = Self::new(error, ended.estimate, tolerance / TIGHTER, tolerance, sensitive);
             Some(Self { perturbation: Some(perturbation), method: method.into(), ..judgement })
         })
     }
@@ -104,7 +105,7 @@ impl Judgement {
 }
 
 /// The larger of the errors of F_x and F_z.
-fn of_forces(errors: &Errors) -> Option<f64> {
+fn force_error(errors: &Errors) -> Option<f64> {
     errors[..2].iter().copied().flatten().reduce(f64::max)
 }
 

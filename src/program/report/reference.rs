@@ -22,7 +22,7 @@ pub(super) struct Reference {
     pub(super) measured: CompletedRun,
     /// Its own error; errors below it are not significant.
     pub(super) own: Errors,
-    pub(super) sensitivity: Sensitivity,
+    pub(super) sensitivity: StartSensitivity,
     pub(super) comparison: Comparison,
     /// The scene with its motion fixed: phases that a force ends take the time that they took once.
     pub(super) scene: Scene,
@@ -30,7 +30,7 @@ pub(super) struct Reference {
 
 /// What a start moved by [`DISPLACEMENT`] changes, row by row.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Sensitivity {
+pub(super) struct StartSensitivity {
     pub(super) differences: Errors,
     /// The difference above which the runs have diverged.
     pub(super) limit: f64,
@@ -44,7 +44,7 @@ pub(super) enum Comparison {
     Means(Rows),
 }
 
-impl Sensitivity {
+impl StartSensitivity {
     fn diverged(&self) -> bool {
         self.differences[..2].iter().flatten().any(|&difference| difference > self.limit)
     }
@@ -89,7 +89,7 @@ impl Reference {
         let (tolerance, measured) = run;
         let moved = search.run(tolerance, rows, DISPLACEMENT, UNLIMITED)?;
         let differences = moved.trace.largest(&measured.trace);
-        let sensitivity = Sensitivity { differences, limit: divergence(&scene) };
+        let sensitivity = StartSensitivity { differences, limit: divergence(&scene) };
         let comparison = Comparison::Pointwise(rows);
         let unknown = [Some(f64::INFINITY); QUANTITIES.len()];
         let own = check.as_ref().map_or(unknown, |(_, check)| comparison.errors(&check.trace, &measured.trace));

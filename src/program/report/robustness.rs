@@ -61,50 +61,37 @@ pub(super) struct Trial {
 
 #[derive(Clone, Debug, PartialEq)]
 enum TrialOutcome {
-    Ended {
-        counts: Counts,
-        /// Each takes a step at least.
-        communication_steps: u64,
-        accuracy: Accuracy,
-        /// Against the tight run, if there is one.
-        errors: Option<Errors>,
-        estimate: Estimate,
-    },
+    Ended(Box<EndedTrial>),
     Failed(RunFailure),
     NotTried,
+}
+
+/// A perturbed run that came to its end.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct EndedTrial {
+    pub(super) counts: Counts,
+    /// Each takes a step at least.
+    communication_steps: u64,
+    pub(super) accuracy: Accuracy,
+    /// Each over the largest value of its quantity, against the tight run, if there is one.
+    pub(super) errors: Option<Errors>,
+    /// What the run says of its own error.
+    pub(super) estimate: Estimate,
 }
 
 impl Trial {
     const NOT_TRIED: Self = Self { outcome: TrialOutcome::NotTried, cost: 0.0 };
 
-    pub(super) fn accuracy(&self) -> Option<&Accuracy> {
+    /// `None` where it did not come to its end.
+    pub(super) fn ended(&self) -> Option<&EndedTrial> {
         match &self.outcome {
-            TrialOutcome::Ended { accuracy, .. } => Some(accuracy),
-            _ => None,
-        }
-    }
-
-    /// Each over the largest value of its quantity, against the tight run.
-    pub(super) fn errors(&self) -> Option<&Errors> {
-        match &self.outcome {
-            TrialOutcome::Ended { errors, .. } => errors.as_ref(),
-            _ => None,
-        }
-    }
-
-    /// What the run says of its own error.
-    pub(super) fn estimate(&self) -> Option<Estimate> {
-        match self.outcome {
-            TrialOutcome::Ended { estimate, .. } => Some(estimate),
+            TrialOutcome::Ended(ended) => Some(ended),
             _ => None,
         }
     }
 
     pub(super) fn counts(&self) -> Option<&Counts> {
-        match &self.outcome {
-            TrialOutcome::Ended { counts, .. } => Some(counts),
-            _ => None,
-        }
+        self.ended().map(|ended| &ended.counts)
     }
 }
 
@@ -147,7 +134,7 @@ impl Robustness {
 
     pub(super) fn verdict(&self, trial: &Trial) -> Verdict {
         match &trial.outcome {
-            TrialOutcome::Ended { accuracy, .. } => accuracy.verdict(self.tolerance),
+            TrialOutcome::Ended(ended) => ended.accuracy.verdict(self.tolerance),
             TrialOutcome::Failed(failure) => failure.into(),
             TrialOutcome::NotTried => Verdict::NotTried,
         }
@@ -156,22 +143,22 @@ impl Robustness {
     /// The steps of a run, rejected ones included, over those of the scene as it is and one for each communication
     /// step.
     pub(super) fn times_the_steps(&self, trial: &Trial) -> Option<f64> {
-        let TrialOutcome::Ended { counts, communication_steps, .. } = &trial.outcome else { return None };
-        let due = self.unperturbed().counts()?.work() + communication_steps;
-        Some(counts.work() as f64 / due as f64)
+        let ended = trial.ended()?;
+        let due = self.unperturbed().counts()?.work() + ended.communication_steps;
+        Some(ended.counts.work() as f64 / due as f64)
     }
 
     /// The outcome of a run in words.
     pub(super) fn reason(&self, trial: &Trial) -> String {
         match &trial.outcome {
-            TrialOutcome::Ended { accuracy: Accuracy::Error(error), .. } => self.error(error),
-            TrialOutcome::Ended { accuracy: Accuracy::Sensitive { error, moved }, .. } => {
-                let error = self.error(error);
-                format!("sensitive: {error}, but a start moved by {DISPLACEMENT:e} m changes {moved:.1e}")
-            }
-            TrialOutcome::Ended { accuracy: Accuracy::Unknown(reason), .. } => {
-                format!("no tight run to compare with: {reason}")
-            }
+            TrialOutcome::Ended(ended) => match &ended.accuracy {
+                Accuracy::Error(error) => self.error(error),
+                Accuracy::Sensitive { error, moved } => {
+                    let error = self.error(error);
+                    format!("sensitive: {error}, but a start moved by {DISPLACEMENT:e} m changes {moved:.1e}")
+                }
+                Accuracy::Unknown(reason) => format!("no tight run to compare with: {reason}"),
+            },
             TrialOutcome::Failed(RunFailure::Stopped(reason)) => reason.clone(),
             TrialOutcome::Failed(RunFailure::OverBudget { time }) => {
                 format!("more than {} steps, used up at t = {time:.3e} s", self.budget)
@@ -183,7 +170,7 @@ impl Robustness {
     fn error(&self, error: &Difference) -> String {
         let Difference { share, of, time } = error;
         let times = two_digits(share / self.tolerance);
-        format!("error {share:.1e} of {} at t = {time:.3e} s, {times} times the tolerance", of.name())
+        format!("error {share:.1e} of {} at t = {time:.3e} s, {times} times the tolerance", of.force_name())
     }
 
     /// The powers of ten, every so many.
@@ -333,13 +320,8 @@ impl PerturbedRunner<'_> {
             Err(failure) => TrialOutcome::Failed(failure),
             Ok(run) => {
                 let (accuracy, errors) = accuracy(scene, &run, Budget(self.patience.saturating_mul(budget)), along);
-                TrialOutcome::Ended {
-                    counts: run.counts,
-                    communication_steps,
-                    accuracy,
-                    errors,
-                    estimate: run.estimate,
-                }
+                let (counts, estimate) = (run.counts, run.estimate);
+                TrialOutcome::Ended(Box::new(EndedTrial { counts, communication_steps, accuracy, errors, estimate }))
             }
         }
     }

@@ -127,7 +127,8 @@ pub(super) fn with_durations(scene: &Scene, durations: &[f64]) -> Scene {
     Scene { excitation: fixed.collect(), ..scene.clone() }
 }
 
-/// Runs `scene` along its excitation from the carrier at `u` (m); `tick` gets the fraction of the excitation that is done.
+/// Runs `scene` along its excitation from the carrier at `u` (m); `tick` gets the fraction of the excitation that is
+/// done.
 pub(super) fn follow(
     scene: &Scene,
     rows: Rows,
@@ -175,8 +176,8 @@ impl MasterInputs {
     }
 }
 
-/// Drives `scene` as a master drives the FMU, from the carrier at `u` (m). `points` are the communication points of each
-/// phase that is run, s after it begins.
+/// Drives `scene` as a master drives the FMU, from the carrier at `u` (m). `points` are the communication points of
+/// each phase that is run, s after it begins.
 pub(super) fn drive(
     scene: &Scene,
     given: MasterInputs,
@@ -185,9 +186,9 @@ pub(super) fn drive(
     budget: Budget,
     tick: &dyn Fn(f64),
 ) -> Result<CompletedRun, RunFailure> {
-    let failed = |error: StepError| match error {
-        StepError::Run(error) => budget.failure(scene, &error),
-        StepError::Input(error) => RunFailure::Stopped(error.to_string()),
+    let failed = |error: DriveError| match error {
+        DriveError::Run(error) => budget.failure(scene, &error),
+        DriveError::Input(error) => RunFailure::Stopped(error.to_string()),
     };
     let limited = budget.limit(scene);
     let duration = scene.duration();
@@ -210,7 +211,7 @@ pub(super) fn drive(
 
 #[derive(Debug, thiserror::Error)]
 #[error(transparent)]
-enum StepError {
+enum DriveError {
     Input(#[from] InputOutOfRange),
     Run(#[from] SimulationError),
 }
@@ -245,7 +246,7 @@ impl<'a> Master<'a> {
     }
 
     /// Does the communication step between two times (s) of the `motion` that began at `start`.
-    fn step(&mut self, motion: &Motion, start: CarrierSample, from: f64, to: f64) -> Result<(), StepError> {
+    fn step(&mut self, motion: &Motion, start: CarrierSample, from: f64, to: f64) -> Result<(), DriveError> {
         // A force jumps at the start of a phase.
         let at_start = if from == 0.0 { start.after(motion, 0.0) } else { self.carrier };
         for input in Input::MECHANICAL {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::scene::Scene;
 
-use super::convergence::{CommunicationRow, CommunicationSteps, ToleranceLadder, ToleranceRow};
+use super::convergence::{CommunicationLadder, CommunicationRow, ToleranceLadder, ToleranceRow};
 use super::folder::{COMMUNICATION, ERRORS, INDEX, JUDGEMENTS, ReportFolder, STRESS};
 use super::judgement::Judgement;
 use super::reference::Reference;
@@ -89,7 +89,7 @@ impl SceneResults {
         let tolerances = &command.tolerances.0;
         let ladder = ToleranceLadder { tolerances, points: command.points, repeat: command.repeat };
         let tightest = tolerances.last().copied().unwrap_or_default();
-        let by_steps = CommunicationSteps::weight(tightest / 10.0, scene.solver.relative_tolerance);
+        let by_steps = CommunicationLadder::weight(tightest / 10.0, scene.solver.relative_tolerance);
         let progress = Progress::new(Reference::weight(tightest) + ladder.weight() + by_steps);
         let reference = Reference::find(&scene, tolerances, command.points, &progress)
             .map_err(|failure| ReportError::Reference { scene: path.to_owned(), failure })?;
@@ -98,7 +98,7 @@ impl SceneResults {
             return Err(ReportError::NoRun { scene: path.to_owned(), why });
         }
         let mut rows = ladder.run(&reference, &progress);
-        let communication = CommunicationSteps::new(&reference, &progress).run();
+        let communication = CommunicationLadder::new(&reference, &progress).run();
         drop(progress);
         ladder.time(&reference, &mut rows);
         let robustness = (command.stress > 0)

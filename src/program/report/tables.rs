@@ -15,8 +15,8 @@ use crate::program::files::FileError;
 use crate::program::result_file::{CsvFile, CsvWriter, ResultFileError};
 use crate::program::terminal::real;
 
-/// The columns of errors and run times: errors over the largest value, processor time in s. Tables of other programs have these
-/// columns.
+/// The columns of errors and run times: errors over the largest value, processor time in s. Tables of other programs
+/// have these columns.
 const MEASURED: [&str; 10] = [
     "scene",
     "program",
@@ -111,7 +111,7 @@ pub(super) fn write_robustness(path: &Path, scene: &str, robustness: &Robustness
         let mut fields = vec![scene.to_owned()];
         fields.extend(factors(*perturbation));
         fields.extend([robustness.verdict(trial).name().to_owned(), robustness.reason(trial)]);
-        let (accuracy, counts) = (trial.accuracy(), trial.counts());
+        let (accuracy, counts) = (trial.ended().map(|ended| &ended.accuracy), trial.counts());
         let error = accuracy.and_then(|accuracy| Some(accuracy.error()?.share));
         let moved = accuracy.and_then(|accuracy| accuracy.moved());
         fields.extend([error, moved, counts.map(|counts| counts.residual)].map(optional));

@@ -1,5 +1,5 @@
-//! What runs are compared by: the forces on the carrier, the energy lost and the motion of a carrier that is a body, row by
-//! row.
+//! What runs are compared by: the forces on the carrier, the energy lost and the motion of a carrier that is a body,
+//! row by row.
 
 use asperity::robustness::{ForceHistory, larger};
 
@@ -11,8 +11,8 @@ const COUNT: usize = 5;
 /// How many of them every scene may have: the others are those of a carrier that is a body.
 pub(super) const OF_ALL_SCENES: usize = 3;
 
-/// The errors of F_x, F_z and E_diss, and of u and w of bodies, over the largest value of each, of u and w from the start;
-/// `None` for a quantity that a scene does not have.
+/// The errors of F_x, F_z and E_diss, and of u and w of bodies, over the largest value of each, of u and w from the
+/// start; `None` for a quantity that a scene does not have.
 pub(super) type Errors = [Option<f64>; COUNT];
 
 /// The values of the [`QUANTITIES`] in a row.
@@ -158,10 +158,10 @@ mod tests {
 
     /// Two phases, of 4 and of 2 intervals.
     fn trace(values: [f64; 7]) -> Trace {
-        of(values.map(|value| [value, 2.0 * value, 0.0, 0.0, 0.0]).into(), &[4, 2])
+        from_rows(values.map(|value| [value, 2.0 * value, 0.0, 0.0, 0.0]).into(), &[4, 2])
     }
 
-    fn of(rows: Vec<TraceRow>, intervals: &[usize]) -> Trace {
+    fn from_rows(rows: Vec<TraceRow>, intervals: &[usize]) -> Trace {
         Trace { times: (0..rows.len()).map(|i| i as f64).collect(), rows, intervals: intervals.to_vec() }
     }
 
@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn rounding_is_no_force() {
         let rows = vec![[1e-13, 1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0, 0.0]];
-        let trace = of(rows, &[1]);
+        let trace = from_rows(rows, &[1]);
         assert_eq!(trace.largest(&trace), [None, Some(0.0), None, None, None]);
     }
 
@@ -187,7 +187,7 @@ mod tests {
     fn means_do_not_depend_on_how_fine_the_rows_are() {
         let line = |count: usize| {
             let rows = (0..=count).map(|i| [i as f64 / count as f64; COUNT]).collect();
-            of(rows, &[count])
+            from_rows(rows, &[count])
         };
         let means = line(3).window_means();
         assert_eq!(means.len(), WINDOWS as usize);
@@ -202,7 +202,10 @@ mod tests {
     #[test]
     fn a_difference_that_comes_and_goes_within_a_window_is_none_of_the_means() {
         let wave = |sign: f64| {
-            of((0..=80).map(|i| [1.0 + sign * f64::from([0, 1, 0, -1][i % 4]), 1.0, 1.0, 1.0, 1.0]).collect(), &[80])
+            from_rows(
+                (0..=80).map(|i| [1.0 + sign * f64::from([0, 1, 0, -1][i % 4]), 1.0, 1.0, 1.0, 1.0]).collect(),
+                &[80],
+            )
         };
         assert_eq!(wave(1.0).means(&wave(-1.0)), [Some(0.0); COUNT]);
         assert_eq!(wave(1.0).largest(&wave(-1.0))[0], Some(1.0));

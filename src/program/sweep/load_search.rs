@@ -7,10 +7,10 @@
 //!
 //!   F_z = a - s w + κ B
 //!
-//! with s the layer's stiffness in steady motion. κ is the part of B that F_z loses as the dashpots come to rest: 1 where
-//! all masses stay in contact, less where they come and go. Three runs would give the three numbers; so that two do,
-//! and scatter does no harm, they are those of least squares over all runs and over what is known beforehand. The load
-//! is met at B = 0.
+//! with s the layer's stiffness in steady motion. κ is the part of B that F_z loses as the dashpots come to rest: 1
+//! where all masses stay in contact, less where they come and go. Three runs would give the three numbers; so that two
+//! do, and scatter does no harm, they are those of least squares over all runs and over what is known beforehand. The
+//! load is met at B = 0.
 
 use asperity::model::{LinkKind, Model};
 use asperity::scene::Scene;

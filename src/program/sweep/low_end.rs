@@ -4,8 +4,8 @@ use asperity::element::{LowEnd, Table};
 
 use crate::program::terminal::rounded;
 
-/// How far the law reaches below the least load at the least and at the largest speed, the farthest of all temperatures,
-/// and how much of a load may lie there.
+/// How far the law reaches below the least load at the least and at the largest speed, the farthest of all
+/// temperatures, and how much of a load may lie there.
 pub(super) fn low_end(table: &Table) -> String {
     let (grid, unit) = (&table.grid, table.load.unit());
     let (slow, fast) = (grid.speeds[0], grid.speeds[grid.speeds.len() - 1]);

@@ -19,12 +19,14 @@ use rayon::prelude::*;
 
 use super::cli::Sweep;
 use super::draft::TablePlace;
-use super::files::{FileError, check_outputs, load_without_excitation, named, picture_beside, print_beside, sources};
+use super::files::{
+    FileError, check_outputs, default_output, load_without_excitation, named, picture_beside, print_beside, sources,
+};
 use super::interrupt::Farewell;
 use super::terminal::{self, lines, warn};
 use load_search::{heights, rest_separation};
-pub(crate) use point::{Bounds, SMALL as SMALL_FRICTION, SteadySliding};
 use point::{MIN_BLOCKS, PointResult};
+pub(crate) use point::{SMALL as SMALL_FRICTION, SteadySliding, StopBounds};
 use slide::Blocks;
 pub(crate) use table_file::fingerprint as table_fingerprint;
 use table_file::{SweepTable, TableFile, TableFileError};
@@ -67,9 +69,9 @@ pub(crate) enum SweepError {
      periodic, as `asperity surface --mirror --write` does, or --taper, and give periodic = true in [surface]"
 )]
 pub(crate) struct ProfileEnds {
-    /// m
+    /// How far the profile reaches from where the layer starts, m.
     longest: f64,
-    /// m
+    /// The shortest way of a point, m.
     needed: f64,
 }
 
@@ -111,7 +113,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
         warn(&warning);
     }
     let grid = SweepGrid { speeds: speeds.0.clone(), loads, temperatures: temperatures(command, &scene)? };
-    let output = command.output.clone().unwrap_or_else(|| default_output(path));
+    let output = command.output.clone().unwrap_or_else(|| default_output(path, "sweep.csv"));
     let picture = picture(command, &output);
     let study = convergence::file(command.converged.as_ref(), path);
     let taken = sources(path, &scene).into_iter().chain(study.clone()).collect();
@@ -159,7 +161,7 @@ fn run(command: &Sweep, scene: &Scene, header: &TableHeader, file: &TableFile, o
     bar.reset_eta();
     bar.set_message(format!("of {} points", points.len()));
     bar.enable_steady_tick(std::time::Duration::from_secs(1));
-    let bounds = Bounds { error: command.error, distance: command.distance };
+    let bounds = StopBounds { error: command.error, distance: command.distance };
     let done = bar.clone();
     let _farewell = Farewell::new(output, move || {
         let (points, all) = (done.position(), done.length().unwrap_or_default());
@@ -191,11 +193,6 @@ fn finish(output: &PathBuf, picture: Option<&Path>, table: &SweepTable) -> Resul
     }
     let (failed, total) = (table.rows.iter().filter(|stored| !stored.row.is_steady()).count(), table.rows.len());
     if failed == 0 { Ok(()) } else { Err(SweepError::NotSteady { failed, total, path: output.to_owned() }) }
-}
-
-fn default_output(scene: &Path) -> PathBuf {
-    let stem = scene.file_stem().unwrap_or(scene.as_os_str());
-    PathBuf::from(stem).with_extension("sweep.csv")
 }
 
 fn loads(command: &Sweep, scene: &Scene) -> Result<(Load, Vec<f64>), SweepError> {
@@ -284,7 +281,7 @@ pub(crate) fn steady_sliding(
     scene: &Scene,
     point: &OperatingPoint,
     load: Load,
-    bounds: Bounds,
+    bounds: StopBounds,
 ) -> Result<SteadySliding, String> {
     let scene = scene_at(&relevant(scene.clone()), point);
     steady(point::sliding(&scene, point.speed, load.force(point.load), bounds))
@@ -296,7 +293,7 @@ pub(crate) fn steady_sliding_at(
     point: &OperatingPoint,
     w: f64,
     load: Load,
-    bounds: Bounds,
+    bounds: StopBounds,
 ) -> Result<SteadySliding, String> {
     let scene = scene_at(&relevant(scene.clone()), point);
     steady(point::sliding_at(&scene, point.speed, w, load.force(point.load), bounds))

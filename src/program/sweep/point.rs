@@ -1,15 +1,15 @@
 //! One point of a sweep: pressed to its load, slid until its means are steady, averaged.
 //!
-//! A point starts relaxed and at full speed, at the w at which the layer's vertical springs alone would bear the load. It
-//! is then searched block by block: after each block, w moves by the [`LoadSearch`], and the dashpots along z move to
-//! where the block's means say that they will be ([`Simulation::relax_dashpots`]), as a compound has elements that would
-//! take minutes. Once a block bears the load and its dashpots nothing, w is held and nothing is changed any more: these
-//! blocks are the window, judged as in [`steady`](super::steady). Where the mean of F_z differs from the load, w moves
-//! again, and a new window begins.
+//! A point starts relaxed and at full speed, at the w at which the layer's vertical springs alone would bear the load.
+//! It is then searched block by block: after each block, w moves by the [`LoadSearch`], and the dashpots along z move
+//! to where the block's means say that they will be ([`Simulation::relax_dashpots`]), as a compound has elements that
+//! would take minutes. Once a block bears the load and its dashpots nothing, w is held and nothing is changed any more:
+//! these blocks are the window, judged as in [`steady`](super::steady). Where the mean of F_z differs from the load, w
+//! moves again, and a new window begins.
 //!
-//! Where the carrier is a body along z, its load is constant in place of w: it starts at equilibrium, nothing is searched, and
-//! after each block the dashpots move as before and the carrier with them. A window counts once the carrier's inertia bears
-//! next to nothing of the load in its mean.
+//! Where the carrier is a body along z, its load is constant in place of w: it starts at equilibrium, nothing is
+//! searched, and after each block the dashpots move as before and the carrier with them. A window counts once the
+//! carrier's inertia bears next to nothing of the load in its mean.
 //!
 //! A point is independent of the others, so a table is the same in whatever order and on however many machines it is
 //! computed.
@@ -23,7 +23,7 @@ use asperity::simulation::SimulationError;
 
 use super::load_search::LoadSearch;
 use super::slide::{BlockMeans, Blocks, Slide, tangential_stiffness};
-use super::steady::{FEWEST, Window, window};
+use super::steady::{MIN_WINDOW, Window, window};
 
 /// The mean of F_z over the window is the load within this share of it.
 const LOAD: f64 = 1e-3;
@@ -38,7 +38,7 @@ const SEARCHES: usize = 12;
 const RAMP: f64 = 0.125;
 const CALM: f64 = 0.125;
 /// Blocks of the shortest slide on which means can be judged: pressed, then averaged.
-pub(super) const MIN_BLOCKS: f64 = RAMP + CALM + FEWEST as f64;
+pub(super) const MIN_BLOCKS: f64 = RAMP + CALM + MIN_WINDOW as f64;
 /// A window of so many blocks whose load has a trend is abandoned: the dashpots are not yet at rest.
 const ABANDONED: usize = 6;
 /// The relative error of a friction coefficient smaller than this is taken relative to this.
@@ -48,7 +48,7 @@ const BLOCKS: f64 = 100.0;
 
 /// When a point ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Bounds {
+pub(crate) struct StopBounds {
     /// Standard error of the friction coefficient over its mean.
     pub(crate) error: f64,
     /// Longest distance, m; `None`: [`BLOCKS`] blocks.
@@ -63,14 +63,15 @@ pub(crate) struct SteadySliding {
     /// Mean F_z, N.
     pub(crate) force_z: f64,
     /// Friction coefficient and its parts, 1.
-    friction: Friction,
+    friction: FrictionParts,
     /// Standard error of the friction coefficient, 1.
     pub(crate) friction_error: f64,
     /// Masses in contact over all masses, 1.
     pub(crate) contact_ratio: f64,
     /// Standard error of that, 1.
     pub(crate) contact_error: f64,
-    /// Power lost in dampers, Maxwell elements, friction and impacts, W; `None` for a channel that the scene cannot have.
+    /// Power lost in dampers, Maxwell elements, friction and impacts, W; `None` for a channel that the scene cannot
+    /// have.
     channels: [Option<f64>; 4],
     /// Number of displacements w that were tried.
     runs: u32,
@@ -102,7 +103,7 @@ impl SteadySliding {
 
 /// The friction coefficient and its parts, 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Friction {
+struct FrictionParts {
     whole: f64,
     hysteresis: f64,
     adhesion: f64,
@@ -115,7 +116,7 @@ pub(super) struct PointResult {
     pub(super) status: String,
     /// `None` where a run failed or there was no room for a window.
     pub(super) sliding: Option<SteadySliding>,
-    /// N/m.
+    /// Stiffness of all springs along x, N/m.
     tangential_stiffness: Option<f64>,
 }
 
@@ -124,8 +125,8 @@ impl PointResult {
         Self { status, sliding: None, tangential_stiffness: None }
     }
 
-    /// The result with the tangential stiffness found, N/m. A force that falls as motion starts is none: the masses at rest
-    /// do not hold what the load asks of them, and an element could not use the point.
+    /// The result with the tangential stiffness found, N/m. A force that falls as motion starts is none: the masses at
+    /// rest do not hold what the load asks of them, and an element could not use the point.
     fn with_stiffness(self, found: Option<f64>) -> Self {
         match found {
             Some(falling) if falling <= 0.0 && self.status == STEADY => {
@@ -200,7 +201,7 @@ struct Search<'a> {
 }
 
 /// Steady sliding of the layer of `scene` at `speed` (m/s) under the force `load` (N).
-pub(super) fn sliding(scene: &Scene, speed: f64, load: f64, bounds: Bounds) -> PointResult {
+pub(super) fn sliding(scene: &Scene, speed: f64, load: f64, bounds: StopBounds) -> PointResult {
     let loaded = under_load(scene, load);
     let scene = &loaded;
     let load = LoadSearch::estimated(load, scene, &Model::new(scene));
@@ -208,15 +209,16 @@ pub(super) fn sliding(scene: &Scene, speed: f64, load: f64, bounds: Bounds) -> P
     search(scene, speed, bounds, load, held)
 }
 
-/// Steady sliding of the layer of `scene` at `speed` (m/s) with the carrier held at `w` (m), where F_z is near `load` (N).
-pub(super) fn sliding_at(scene: &Scene, speed: f64, w: f64, load: f64, bounds: Bounds) -> PointResult {
+/// Steady sliding of the layer of `scene` at `speed` (m/s) with the carrier held at `w` (m), where F_z is near `load`
+/// (N).
+pub(super) fn sliding_at(scene: &Scene, speed: f64, w: f64, load: f64, bounds: StopBounds) -> PointResult {
     let scene = &Scene { carrier: CarrierBodies::default(), ..scene.clone() };
     let mut load = LoadSearch::estimated(load, scene, &Model::new(scene));
     load.w = w;
     search(scene, speed, bounds, load, Held::Given)
 }
 
-fn search(scene: &Scene, speed: f64, bounds: Bounds, load: LoadSearch, held: Held) -> PointResult {
+fn search(scene: &Scene, speed: f64, bounds: StopBounds, load: LoadSearch, held: Held) -> PointResult {
     let search = Search::new(scene, Blocks::new(scene, speed), bounds, load, held);
     search.and_then(Search::finish).unwrap_or_else(|error| PointResult::failed(error.to_string()))
 }
@@ -231,7 +233,7 @@ fn under_load(scene: &Scene, load: f64) -> Scene {
 }
 
 /// Steady sliding, and the tangential stiffness at its start, w held.
-pub(super) fn find(scene: &Scene, speed: f64, load: f64, bounds: Bounds) -> PointResult {
+pub(super) fn find(scene: &Scene, speed: f64, load: f64, bounds: StopBounds) -> PointResult {
     let result = sliding(scene, speed, load, bounds);
     if result.sliding.is_none() {
         return result;
@@ -261,7 +263,7 @@ impl<'a> Search<'a> {
     fn new(
         scene: &'a Scene,
         blocks: Blocks,
-        bounds: Bounds,
+        bounds: StopBounds,
         load: LoadSearch,
         held: Held,
     ) -> Result<Self, SimulationError> {
@@ -291,7 +293,7 @@ impl<'a> Search<'a> {
             let Some(average) = self.average(first.take())? else {
                 let Blocks { length, .. } = self.blocks;
                 let status =
-                    format!("not steady: no room for {FEWEST} blocks of {length} m within {} m", self.distance);
+                    format!("not steady: no room for {MIN_WINDOW} blocks of {length} m within {} m", self.distance);
                 return Ok(PointResult::failed(status));
             };
             let pressed = average.steady && self.deviation(&average.means).abs() <= LOAD;
@@ -328,7 +330,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// How far F_z is from the load in the mean, as a share of it: where that is held, what the carrier's inertia bears.
+    /// How far F_z is from the load in the mean, as a share of it: where that is held, what the carrier's inertia
+    /// bears.
     fn deviation(&self, means: &BlockMeans) -> f64 {
         match self.held {
             Held::Load(mass) => mass * means.acceleration / self.load.target,
@@ -337,8 +340,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Changes w where F_z was `force`, of which the Maxwell elements bore `maxwell` (N), or lets a carrier under its load, or
-    /// a layer at its w, come to rest. On a profile that ends, a new slide begins where no room is left.
+    /// Changes w where F_z was `force`, of which the Maxwell elements bore `maxwell` (N), or lets a carrier under its
+    /// load, or a layer at its w, come to rest. On a profile that ends, a new slide begins where no room is left.
     fn correct(&mut self, force: f64, maxwell: f64) -> Result<(), SimulationError> {
         let searched = self.held == Held::Searched;
         let change = if searched { self.load.change(force, maxwell) } else { 0.0 };
@@ -365,20 +368,20 @@ impl<'a> Search<'a> {
     /// there is no room for a window.
     fn average(&mut self, first: Option<BlockMeans>) -> Result<Option<Average>, SimulationError> {
         let mut blocks: Vec<BlockMeans> = first.into_iter().collect();
-        if !self.slide.has_room(FEWEST as f64) {
+        if !self.slide.has_room(MIN_WINDOW as f64) {
             blocks.clear();
             self.restart()?;
         }
         while self.has_room(1.0) && self.slide.has_room(1.0) {
             blocks.push(self.slide.block()?);
-            if blocks.len() >= FEWEST {
+            if blocks.len() >= MIN_WINDOW {
                 let average = self.judge(&blocks);
                 if average.steady || (blocks.len().is_multiple_of(ABANDONED) && average.drifts) {
                     return Ok(Some(average));
                 }
             }
         }
-        Ok((blocks.len() >= FEWEST).then(|| self.judge(&blocks)))
+        Ok((blocks.len() >= MIN_WINDOW).then(|| self.judge(&blocks)))
     }
 
     fn judge(&self, blocks: &[BlockMeans]) -> Average {
@@ -398,7 +401,7 @@ impl<'a> Search<'a> {
         let sliding = SteadySliding {
             w: if matches!(self.held, Held::Load(_)) { means.w } else { self.load.w },
             force_z: means.load,
-            friction: Friction::new(means),
+            friction: FrictionParts::new(means),
             friction_error: average.friction.error,
             contact_ratio: means.contact,
             contact_error: average.contact.error,
@@ -426,7 +429,7 @@ impl<'a> Search<'a> {
     }
 }
 
-impl Friction {
+impl FrictionParts {
     /// The whole is the carrier's work, which is exact; the parts are sampled and miss the impulses of impacts, so what
     /// they lack is divided in proportion to them.
     fn new(means: &BlockMeans) -> Self {
@@ -456,13 +459,13 @@ mod tests {
     #[test]
     fn parts_add_up() {
         let of = |drag, hysteresis, adhesion| {
-            Friction::new(&BlockMeans { drag, load: 2.0, hysteresis, adhesion, ..BlockMeans::default() })
+            FrictionParts::new(&BlockMeans { drag, load: 2.0, hysteresis, adhesion, ..BlockMeans::default() })
         };
-        assert_eq!(of(1.0, 0.0, 0.98), Friction { whole: 0.5, hysteresis: 0.0, adhesion: 0.5 });
-        assert_eq!(of(1.0, 0.98, 0.0), Friction { whole: 0.5, hysteresis: 0.5, adhesion: 0.0 });
-        let Friction { whole, hysteresis, adhesion } = of(1.0, 0.6, 0.2);
+        assert_eq!(of(1.0, 0.0, 0.98), FrictionParts { whole: 0.5, hysteresis: 0.0, adhesion: 0.5 });
+        assert_eq!(of(1.0, 0.98, 0.0), FrictionParts { whole: 0.5, hysteresis: 0.5, adhesion: 0.0 });
+        let FrictionParts { whole, hysteresis, adhesion } = of(1.0, 0.6, 0.2);
         assert!((hysteresis + adhesion - whole).abs() < 1e-15 && (hysteresis / adhesion - 3.0).abs() < 1e-12);
         // Nothing sampled: all that there is are slopes.
-        assert_eq!(of(0.0, 0.0, 0.0), Friction::default());
+        assert_eq!(of(0.0, 0.0, 0.0), FrictionParts::default());
     }
 }

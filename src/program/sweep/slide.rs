@@ -38,7 +38,8 @@ pub(super) struct BlockMeans {
     pub(super) drag: f64,
     /// F_z, N.
     pub(super) load: f64,
-    /// Tangential force by hysteresis: the tangential part of the normal contact forces on the slopes, against the motion, N.
+    /// Tangential force by hysteresis: the tangential part of the normal contact forces on the slopes, against the
+    /// motion, N.
     pub(super) hysteresis: f64,
     /// Tangential force by adhesion: the tangential part of the friction forces in the contacts, against the motion, N.
     pub(super) adhesion: f64,
@@ -211,8 +212,8 @@ impl Slide {
         self.simulation.relax_dashpots(&self.elongations, self.blocks.length / self.blocks.speed)
     }
 
-    /// The same under a carrier whose load is held: it moves to where springs of this `stiffness` (N/m) bear that force in
-    /// their place.
+    /// [Relaxes](Self::relax) the dashpots under a carrier whose load is held: it moves to where springs of this
+    /// `stiffness` (N/m) bear that force in their place.
     pub(super) fn relax_under_load(&mut self, stiffness: f64) -> f64 {
         let borne = self.relax();
         if stiffness > 0.0 {

@@ -1,7 +1,8 @@
 //! When the means of a run are steady: judged by its blocks.
 //!
 //! The run is divided into blocks of equal length, of which only the means of a quantity are used. The latter half of
-//! the blocks, at least [`FEWEST`], is the window; those before are left to the transient. The window is steady where
+//! the blocks, at least [`MIN_WINDOW`], is the window; those before are left to the transient. The window is steady
+//! where
 //!
 //! - the standard error of its mean is at most the tolerance. Successive blocks may be correlated, which would make a
 //!   mean seem better known than it is. So s/√n is multiplied by √((1+r)/(1-r)), r being the correlation of a block
@@ -11,10 +12,10 @@
 //!   the tolerance, or no more than twice what scatter alone would make of it.
 //!
 //! On a periodic profile a block is a whole number of periods: in steady motion the means of all blocks are then the
-//! same, and [`FEWEST`] blocks are enough.
+//! same, and [`MIN_WINDOW`] blocks are enough.
 
 /// The fewest blocks of a window.
-pub(super) const FEWEST: usize = 3;
+pub(super) const MIN_WINDOW: usize = 3;
 /// The fewest blocks, joined ones, whose scatter or correlation is used.
 const MIN_JOINED: usize = 8;
 /// The largest correlation of a block with the next that is used.
@@ -34,7 +35,7 @@ pub(super) struct Window {
 
 /// The first block of the window of `count` blocks.
 pub(super) fn window(count: usize) -> usize {
-    count - count.div_ceil(2).max(FEWEST).min(count)
+    count - count.div_ceil(2).max(MIN_WINDOW).min(count)
 }
 
 impl Window {
@@ -175,7 +176,7 @@ mod tests {
     /// Whole periods of steady motion: all alike, and known at once.
     #[test]
     fn equal_blocks_are_steady() {
-        let window = Window::new(&[0.3; FEWEST]);
+        let window = Window::new(&[0.3; MIN_WINDOW]);
         assert_eq!((window.mean, window.error, window.is_steady(1e-12)), (0.3, 0.0, true));
     }
 }

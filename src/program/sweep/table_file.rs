@@ -106,8 +106,8 @@ impl SweepTable {
         write(path, self.text())
     }
 
-    /// Merges the tables at `paths` with the one of the same sweep at `output`, unless that is to be replaced, and writes the
-    /// result there.
+    /// Merges the tables at `paths` with the one of the same sweep at `output`, unless that is to be replaced, and
+    /// writes the result there.
     pub(super) fn merge(paths: &[PathBuf], output: &Path, replace: bool) -> Result<Self, TableFileError> {
         let _lock = TableLock::take(output)?;
         let mut tables: Vec<Self> = paths.iter().map(|path| Self::read(path)).collect::<Result<_, _>>()?;
@@ -216,8 +216,8 @@ fn rows_done(path: &Path, header: &TableHeader) -> Result<Vec<StoredRow>, TableF
     }
 }
 
-/// Whether a text is the beginning of a header, cut off before the rows; a line on the low end may stand in it before the
-/// names of the columns.
+/// Whether a text is the beginning of a header, cut off before the rows; a line on the low end may stand in it before
+/// the names of the columns.
 fn is_begun(text: &str, header: &str) -> bool {
     let names = header.trim_end().rfind('\n').map_or(0, |end| end + 1);
     let after = text.strip_prefix(&header[..names]);

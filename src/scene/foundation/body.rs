@@ -29,8 +29,8 @@ impl Body {
         self.stiffness(wave_number, tangential_numerator)
     }
 
-    /// q/(2S), where S = `numerator`/(2κ cosh 2a + 4a² + 1 + κ²), κ = 3 - 4ν, a = qH, is the layer's compliance over that
-    /// of the half-plane; above and below the line times e^(-2a), which does not overflow.
+    /// q/(2S), where S = `numerator`/(2κ cosh 2a + 4a² + 1 + κ²), κ = 3 - 4ν, a = qH, is the layer's compliance over
+    /// that of the half-plane; above and below the line times e^(-2a), which does not overflow.
     fn stiffness(self, wave_number: f64, numerator: fn(f64, f64) -> f64) -> f64 {
         let Self::Bonded { thickness, poisson_ratio } = self else { return 0.5 * wave_number };
         let (a, kappa) = (wave_number * thickness, 3.0 - 4.0 * poisson_ratio);

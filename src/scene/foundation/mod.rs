@@ -106,7 +106,8 @@ impl Waves {
 }
 
 impl Layer {
-    /// The body that the links stand for: springs are held against a layer of their thickness. `None` in the direct form.
+    /// The body that the links stand for: springs are held against a layer of their thickness. `None` in the direct
+    /// form.
     pub fn body(&self, material: &Material) -> Option<Body> {
         match self.foundation? {
             FoundationKind::HalfSpace => Some(Body::HalfPlane),

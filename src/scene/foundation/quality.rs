@@ -24,7 +24,7 @@ pub struct Quality {
 impl Quality {
     /// How the `stiffness` of the links lies to that of the `body` along the direction of `kind`.
     fn new(waves: &Waves, stiffness: Stiffness, body: Body, kind: LinkKind) -> Option<Self> {
-        let ratio = |q: f64| stiffness.of_wave(waves, q) / body.stiffness_along(kind, q);
+        let ratio = |q: f64| stiffness.at_wave_number(waves, q) / body.stiffness_along(kind, q);
         let carrying = waves.carrying();
         let (first, last) = (carrying.first()?.wave_number, carrying.last()?.wave_number);
         let at = |part: f64| first * (last / first).powf(part);
@@ -60,7 +60,7 @@ impl Scene {
 
 impl Stiffness {
     /// α + βD², 1/m.
-    fn of_wave(&self, waves: &Waves, wave_number: f64) -> f64 {
+    fn at_wave_number(&self, waves: &Waves, wave_number: f64) -> f64 {
         self.alpha + self.beta * waves.difference_square(wave_number)
     }
 }

@@ -66,8 +66,8 @@ impl Scene {
         })
     }
 
-    /// The warning where `pressure` (Pa), called `name` where it was asked for, is outside the range in which the links stand
-    /// for the rubber's surface; none for springs.
+    /// The warning where `pressure` (Pa), called `name` where it was asked for, is outside the range in which the links
+    /// stand for the rubber's surface; none for springs.
     pub fn hard_pressure(&self, name: &str, pressure: f64) -> Option<String> {
         self.foundation.as_ref()?;
         let modulus = self.material.as_ref()?.plane_modulus(self.material.as_ref()?.equilibrium_modulus);

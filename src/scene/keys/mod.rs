@@ -165,7 +165,7 @@ const MATERIAL: &[Key] = &[
     table("wlf", WLF),
 ];
 
-pub(super) const PRONY_TERM: &[Key] = &[
+const PRONY_TERM: &[Key] = &[
     number("modulus", NOT_NEGATIVE, Unit::Pascal, "Modulus"),
     number("relaxation_time", POSITIVE, Unit::Second, "Relaxation time"),
 ];
@@ -418,7 +418,8 @@ pub(super) fn at(path: &str) -> Option<&'static Key> {
     found
 }
 
-/// The paths of other keys of a scene and of a patch that look like `given`, or end with it; elements of lists as `[1]`.
+/// The paths of other keys of a scene and of a patch that look like `given`, or end with it; elements of lists as
+/// `[1]`.
 pub fn similar_keys(given: &str) -> Vec<String> {
     let faces = ShapeKind::WORDS.iter().flat_map(|(_, kind)| paths("patch.", kind.keys()));
     let all = paths("", ROOT).into_iter().chain(paths("", PATCH_ROOT)).chain(faces);

@@ -31,8 +31,8 @@ impl Scene {
         Self::parse(&text, path)
     }
 
-    /// Reads a scene from `text` as if it were the content of `file`; the files that it names are looked for in the same
-    /// folder.
+    /// Reads a scene from `text` as if it were the content of `file`; the files that it names are looked for in the
+    /// same folder.
     ///
     /// # Errors
     /// As for [`load`](Self::load).

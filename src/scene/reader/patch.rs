@@ -33,8 +33,8 @@ impl PatchFile {
         Self::parse(&text, path)
     }
 
-    /// Reads a patch from `text` as if it were the content of `file`; the files that it names are looked for in the same
-    /// folder.
+    /// Reads a patch from `text` as if it were the content of `file`; the files that it names are looked for in the
+    /// same folder.
     ///
     /// # Errors
     /// As for [`load`](Self::load).

@@ -39,7 +39,8 @@ impl Model {
 }
 
 impl State {
-    /// Writes this state into the part of `whole` from mass `first` on; `models` are those of this state and of `whole`.
+    /// Writes this state into the part of `whole` from mass `first` on; `models` are those of this state and of
+    /// `whole`.
     pub fn write_part(&self, models: (&Model, &Model), whole: &mut Self, first: usize) {
         let masses = first..first + self.mode.len();
         whole.elongation_x[masses.clone()].copy_from_slice(&self.elongation_x);

@@ -1,13 +1,14 @@
-//! Local regions: steps of the masses near a mode change alone, within a step of the whole layer (multirate time stepping).
+//! Local regions: steps of the masses near a mode change alone, within a step of the whole layer (multirate time
+//! stepping).
 //!
-//! A mode change is felt by the masses near it alone: the carrier holds every mass, so the effect of a change falls by a
-//! constant ratio from mass to mass. So the step of the whole layer is not cut there. The masses near it form a
-//! [`LocalRegion`], which goes on from the change in steps of its own, under the forces that the whole layer's step has in the
-//! links to the others. What these others then miss is far below the tolerance; where it is not, a wider region takes the
-//! place of the first (docs/theory.md, section 13).
+//! A mode change is felt by the masses near it alone: the carrier holds every mass, so the effect of a change falls by
+//! a constant ratio from mass to mass. So the step of the whole layer is not cut there. The masses near it form a
+//! [`LocalRegion`], which goes on from the change in steps of its own, under the forces that the whole layer's step has
+//! in the links to the others. What these others then miss is far below the tolerance; where it is not, a wider region
+//! takes the place of the first (docs/theory.md, section 13).
 //!
-//! All regions of a step move on together, in the order of time: so a wider one can be opened, or the step cut short, at any
-//! time. At the end of the step their masses take the places of those in it.
+//! All regions of a step move on together, in the order of time: so a wider one can be opened, or the step cut short,
+//! at any time. At the end of the step their masses take the places of those in it.
 
 mod layer_part;
 mod region;
@@ -22,13 +23,14 @@ use super::event_driven::{EventDriven, MAX_CUTS, MAX_DEFECT, accept_motion, can_
 use super::motion::{ModeChange, SimulationError};
 use super::settings::Settings;
 use super::stepper::Stepper;
-use crate::integrator::{DenseWorkspace, LayerStep, Overlay, Scheme, StepSpan};
-use crate::model::{LinkKind, Model, State};
+use crate::integrator::{DenseWorkspace, LayerStep, Overlay, Scheme, TimeSpan};
+use crate::model::{ByAxis, LinkKind, Model, State};
 use crate::outputs::Energies;
 use crate::scene::Method;
 use region::LocalRegion;
 
-/// How far off a mass is by the end of a step that knows nothing of its mode change, as a fraction of the scene's height.
+/// How far off a mass is by the end of a step that knows nothing of its mode change, as a fraction of the scene's
+/// height.
 ///
 /// Recommended 0.03 to 1. More makes regions wider than need be, less has them widened more often.
 const DISTURBANCE: f64 = 0.3;
@@ -36,14 +38,16 @@ const DISTURBANCE: f64 = 0.3;
 const MIN_REGIONS: usize = 4;
 /// Regions may hold at most the layer's masses divided by this: beyond that it is better to cut the step.
 const OF_MASSES: usize = 2;
-/// The most regions of the least width, of twice this width half as many, and so on: more are seldom open at once, and each
-/// takes memory.
+/// The most regions of the least width, of twice this width half as many, and so on: more are seldom open at once, and
+/// each takes memory.
 const MAX_REGIONS: usize = 16;
 /// There are regions of the two least widths where so many of them would have room.
 const ROOM: [usize; 2] = [2, 2];
-/// The same of wider ones: the steps of the few widest cost about as much as to cut that of the layer, and they take memory.
+/// There are wider ones where so many have room: the steps of the few widest cost about as much as to cut that of the
+/// layer, and they take memory.
 const ROOM_FOR_WIDE: usize = 4;
-/// The force by which the links at a region's ends may be off, as a fraction of the error allowed in the force of one mass.
+/// The force by which the links at a region's ends may be off, as a fraction of the error allowed in the force of one
+/// mass.
 ///
 /// Recommended 0.1 to 1.
 const MISMATCH: f64 = 0.5;
@@ -56,20 +60,20 @@ pub(super) struct LocalRegions {
     /// Number of masses to each side of one that changes its mode that feel it.
     reach: usize,
     /// The most masses that open regions may have.
-    most_masses: usize,
+    max_masses: usize,
     /// Number of mode changes in regions so far in this step.
     counted: u64,
     /// What regions that others have absorbed have gained beyond the whole layer's step.
     gained: Energies,
     /// The step of the whole layer that they follow.
-    span: StepSpan,
+    span: TimeSpan,
     /// Workspace for that step.
     workspace: DenseWorkspace,
-    /// The same for each of its stages.
+    /// Workspace for each of its stages.
     nodes: Vec<DenseWorkspace>,
 }
 
-/// Why and when, s after the start of the carrier's piece, a step has to end.
+/// Why and when, s after the start of the carrier's segment, a step has to end.
 #[derive(Clone, Copy, Debug)]
 enum Cut {
     /// Too many masses feel the mode changes.
@@ -79,16 +83,16 @@ enum Cut {
 }
 
 impl LocalRegions {
-    /// The regions for a layer of `model`. There are none where they would not be much smaller than the layer, under a carrier
-    /// that is a body, through which every mass feels every other, and where tangents are asked for, which regions do not
-    /// have.
+    /// The regions for a layer of `model`. There are none where they would not be much smaller than the layer, under a
+    /// carrier that is a body, through which every mass feels every other, and where tangents are asked for, which
+    /// regions do not have.
     pub(super) fn new(model: &Model, settings: &Settings) -> Self {
         let Settings { method, tolerance, accounts, .. } = settings;
         let have_none = *method == Method::Step || accounts.tangents || model.has_bodies();
         let reach = if have_none { None } else { reach(model, tolerance.relative) };
         let least = reach.map(|reach| 2 * reach + 1).filter(|width| MIN_REGIONS * width <= model.masses());
-        let most_masses = model.masses() / OF_MASSES;
-        let levels = least.into_iter().flat_map(|least| levels(least, most_masses));
+        let max_masses = model.masses() / OF_MASSES;
+        let levels = least.into_iter().flat_map(|least| levels(least, max_masses));
         let regions: Vec<_> = levels
             // Each has a model of its own: one that they share would be copied when they first open.
             .flat_map(|(width, count)| (0..count).map(move |_| LocalRegion::new(model, width, settings)))
@@ -99,10 +103,10 @@ impl LocalRegions {
             workspace: workspace(model, regions.is_empty()),
             regions,
             reach: reach.unwrap_or(0),
-            most_masses,
+            max_masses,
             counted: 0,
             gained: Energies::default(),
-            span: StepSpan { start: 0.0, length: 0.0 },
+            span: TimeSpan { start: 0.0, length: 0.0 },
             nodes: vec![DenseWorkspace::for_single_masses(model); stages],
         }
     }
@@ -116,11 +120,6 @@ impl LocalRegions {
         self.regions.iter_mut().for_each(|region| region.set_temperature(model, settings));
         self.workspace = workspace(model, self.is_empty());
         self.nodes.fill(DenseWorkspace::for_single_masses(model));
-    }
-
-    /// Memory in bytes, without what each region takes whatever its masses: some thousand.
-    pub(super) fn bytes(&self) -> usize {
-        self.regions.iter().map(LocalRegion::bytes).sum::<usize>() + self.workspace.bytes()
     }
 
     pub(super) fn newton_iterations(&self) -> u64 {
@@ -164,8 +163,8 @@ impl LocalRegions {
         self.close();
     }
 
-    /// Lets the regions of `step`, which `stepper` has tried and which ends at `end`, follow it up to the time `s`; both s after
-    /// the start of the carrier's piece. Where they cannot, it is cut short. Returns its end.
+    /// Lets the regions of `step`, which `stepper` has tried and which ends at `end`, follow it up to the time `s`;
+    /// both s after the start of the carrier's segment. Where they cannot, it is cut short. Returns its end.
     pub(super) fn advance(
         &mut self,
         (context, stepper): (&mut Context, &mut EventDriven),
@@ -241,8 +240,8 @@ impl LocalRegions {
         changed.start.saturating_sub(self.reach)..(changed.end + self.reach).min(masses)
     }
 
-    /// Opens a region over `masses`, and over those of open regions among them, at the time `s` of the step of `context`, which
-    /// has its `end`. Says how the step has to be cut where that cannot be.
+    /// Opens a region over `masses`, and over those of open regions among them, at the time `s` of the step of
+    /// `context`, which has its `end`. Says how the step has to be cut where that cannot be.
     fn open_over(
         &mut self,
         masses: Range<usize>,
@@ -257,7 +256,7 @@ impl LocalRegions {
         let is_absorbed =
             |region: &LocalRegion| range.start <= region.masses().start && region.masses().end <= range.end;
         let kept: usize = self.open().filter(|region| !is_absorbed(region)).map(LocalRegion::len).sum();
-        if kept + range.len() > self.most_masses {
+        if kept + range.len() > self.max_masses {
             return Ok(Some(Cut::Crowded(s)));
         }
         // It starts from the layer's step. One that absorbs others does not go on from that alone.
@@ -277,8 +276,8 @@ impl LocalRegions {
         Ok(None)
     }
 
-    /// A region that is not open and can have `masses`, of `k`, and with them those of all open regions that it overlaps; and
-    /// the masses that it has then.
+    /// A region that is not open and can have `masses`, of `k`, and with them those of all open regions that it
+    /// overlaps; and the masses that it has then.
     fn fitting(&self, masses: Range<usize>, k: usize) -> Option<(usize, Range<usize>)> {
         let mut range = masses;
         loop {
@@ -296,8 +295,8 @@ impl LocalRegions {
         }
     }
 
-    /// Accepts the step that a region has tried, and lets it try the next one: wider where its ends are off. Returns where the
-    /// step of the whole layer, which has its `end`, has to be cut if that cannot be.
+    /// Accepts the step that a region has tried, and lets it try the next one: wider where its ends are off. Returns
+    /// where the step of the whole layer, which has its `end`, has to be cut if that cannot be.
     fn accept_in(
         &mut self,
         index: usize,
@@ -354,13 +353,14 @@ impl LocalRegions {
     }
 
     /// F_x and F_z of the regions at the time `s` beyond those in the whole layer's step, N.
-    pub(super) fn forces(&mut self, context: &Context, s: f64) -> (f64, f64) {
+    pub(super) fn forces(&mut self, context: &Context, s: f64) -> ByAxis<f64> {
         let (open, mut step) = self.open_in_step(context);
         let forces = open.map(|region| region.forces(&mut step, s));
-        forces.fold((0.0, 0.0), |sum, force| (sum.0 + force.0, sum.1 + force.1))
+        forces.fold(ByAxis::default(), |sum, force| sum + force)
     }
 
-    /// P_diss of the regions at the time `s` beyond that in the whole layer's step, W, where the powers at the stages say it.
+    /// P_diss of the regions at the time `s` beyond that in the whole layer's step, W, where the powers at the stages
+    /// say it.
     pub(super) fn dissipated_power(&mut self, context: &Context, s: f64) -> f64 {
         let (open, step) = self.open_in_step(context);
         open.fold(0.0, |sum, region| sum + region.dissipated_power(&step.dense, s))
@@ -379,26 +379,26 @@ fn workspace(model: &Model, is_empty: bool) -> DenseWorkspace {
 }
 
 /// The step of `context` over `span` that was tried last.
-fn whole_layer<'a>(context: &'a Context, span: StepSpan, workspace: &'a mut DenseWorkspace) -> LayerStep<'a> {
+fn whole_layer<'a>(context: &'a Context, span: TimeSpan, workspace: &'a mut DenseWorkspace) -> LayerStep<'a> {
     let Context { model, state, integrator, .. } = context;
     LayerStep { dense: integrator.dense(model, &state.carrier, &state.layer.state, span), workspace }
 }
 
 /// The widths of regions, from the `least` one on, and the number of regions of each: all of one width have at most
-/// `most_masses`, and there is [`ROOM`] for some.
-fn levels(least: usize, most_masses: usize) -> impl Iterator<Item = (usize, usize)> {
+/// `max_masses`, and there is [`ROOM`] for some.
+fn levels(least: usize, max_masses: usize) -> impl Iterator<Item = (usize, usize)> {
     let wider = |&(width, most): &(usize, usize)| Some((2 * width, (most / 2).max(1)));
     std::iter::successors(Some((least, MAX_REGIONS)), wider)
         .zip(ROOM.into_iter().chain(std::iter::repeat(ROOM_FOR_WIDE)))
-        .take_while(move |((width, _), room)| room * width <= most_masses)
-        .map(move |((width, most), _)| (width, most.min(most_masses / width)))
+        .take_while(move |((width, _), room)| room * width <= max_masses)
+        .map(move |((width, most), _)| (width, most.min(max_masses / width)))
 }
 
-/// The number of masses over which the effect of a mode change falls below the tolerance; `None` where it does not within the
-/// layer of `model`.
+/// The number of masses over which the effect of a mode change falls below the tolerance; `None` where it does not
+/// within the layer of `model`.
 ///
-/// A chain of links of stiffness c_l between masses on links of stiffness c to the carrier bends by the ratio r from mass to
-/// mass, r + 1/r = 2 + c/c_l.
+/// A chain of links of stiffness c_l between masses on links of stiffness c to the carrier bends by the ratio r from
+/// mass to mass, r + 1/r = 2 + c/c_l.
 fn reach(model: &Model, relative: f64) -> Option<usize> {
     let ratio = |own: LinkKind, lateral: LinkKind| {
         let of = |own: f64, lateral: f64| {

@@ -13,8 +13,8 @@ use crate::simulation::motion::{SimulationError, Start};
 use crate::simulation::settings::Settings;
 use crate::simulation::stepper::Stepper;
 
-/// Some masses in a row within a step of the whole layer, twice: in event-driven steps of their own from a mode change on, and
-/// as that step, which knows nothing of the change, has them.
+/// Some masses in a row within a step of the whole layer, twice: in event-driven steps of their own from a mode change
+/// on, and as that step, which knows nothing of the change, has them.
 #[derive(Clone, Debug)]
 pub(super) struct LocalRegion {
     /// These masses alone, under the forces that the whole layer's step has in the links to the others.
@@ -24,7 +24,8 @@ pub(super) struct LocalRegion {
     pub(super) open: bool,
     /// The step that it has tried.
     trial: TrialStep,
-    /// The end of that, s after the start of the carrier's piece; infinite where it has tried none from where it stands.
+    /// The end of that, s after the start of the carrier's segment; infinite where it has tried none from where it
+    /// stands.
     pub(super) trial_end: f64,
     /// Its masses in the whole layer's step.
     whole: LayerSums,
@@ -39,7 +40,7 @@ impl LocalRegion {
         Self {
             whole: LayerSums::new(&part, 0),
             stepper: EventDriven::new(&part, false),
-            context: Context::new(Arc::new(part), settings.of_local_region(), &Start::default(), &ByAxis::default()),
+            context: Context::new(Arc::new(part), settings.for_local_region(), &Start::default(), &ByAxis::default()),
             open: false,
             trial: TrialStep { h: 0.0, fraction: 1.0 },
             trial_end: 0.0,
@@ -54,13 +55,8 @@ impl LocalRegion {
             return;
         }
         Arc::make_mut(&mut self.context.model).set_temperature_of(model);
-        self.context.settings = settings.of_local_region();
+        self.context.settings = settings.for_local_region();
         self.context.dense.invalidate();
-    }
-
-    /// Memory in bytes that grows with its masses.
-    pub(super) fn bytes(&self) -> usize {
-        self.context.bytes(0)
     }
 
     /// Number of its masses.
@@ -73,13 +69,13 @@ impl LocalRegion {
         self.whole.masses.clone()
     }
 
-    /// The time that it has reached, s after the start of the carrier's piece.
+    /// The time that it has reached, s after the start of the carrier's segment.
     pub(super) fn reached(&self) -> f64 {
         self.context.state.s
     }
 
-    /// Opens it over the masses from `first` on at the time `s` of the `step` that the layer of `context` has tried, as they
-    /// are there. `nodes` has a workspace for each stage of the step.
+    /// Opens it over the masses from `first` on at the time `s` of the `step` that the layer of `context` has tried, as
+    /// they are there. `nodes` has a workspace for each stage of the step.
     pub(super) fn open_at(
         &mut self,
         context: &Context,
@@ -95,7 +91,7 @@ impl LocalRegion {
         // Its masses as they are in the layer's step.
         let (state, of_layer) = (&mut self.context.state, &context.state);
         let theta = step.dense.theta(s);
-        let (dense, weights) = step.of(&self.whole.masses);
+        let (dense, weights) = step.restricted_to(&self.whole.masses);
         dense.state_at(theta, weights, &mut state.layer.state);
         state.layer.largest = of_layer.layer.largest;
         state.s = s;
@@ -116,7 +112,7 @@ impl LocalRegion {
     /// What the links to the other masses exert on both ends through `step`.
     fn end_forces(&self, step: &mut LayerStep<'_>, nodes: &mut [DenseWorkspace]) -> EndForces {
         let (masses, span) = (self.masses(), step.dense.span);
-        let (dense, _) = step.of(&masses);
+        let (dense, _) = step.restricted_to(&masses);
         let mut coefficients = [ByAxis::<[f64; 5]>::default(); 2];
         let (before, after) = (masses.start.checked_sub(1), masses.end - 1);
         let links =
@@ -132,18 +128,18 @@ impl LocalRegion {
         EndForces { span: (span.start, span.length), coefficients }
     }
 
-    /// Whether the whole layer's `step` resolves the motion of its masses where it was opened: whether the defect of the dense
-    /// output there is at most `largest` in the tolerance's norm.
+    /// Whether the whole layer's `step` resolves the motion of its masses where it was opened: whether the defect of
+    /// the dense output there is at most `largest` in the tolerance's norm.
     pub(super) fn is_resolved(&mut self, step: &mut LayerStep<'_>, largest: f64) -> bool {
         self.context.evaluate_forces();
         let Context { state, forces, settings, .. } = &*self.context;
         let theta = step.dense.theta(state.s);
-        let (dense, weights) = step.of(&self.whole.masses);
+        let (dense, weights) = step.restricted_to(&self.whole.masses);
         dense.defect(theta, &state.layer.state, forces, weights, &settings.tolerance) <= largest
     }
 
-    /// Takes over the masses of `other`, all of which it has, at the time `s` of the whole layer's `step`, and closes it.
-    /// Returns the energies in it beyond those of that step, J.
+    /// Takes over the masses of `other`, all of which it has, at the time `s` of the whole layer's `step`, and closes
+    /// it. Returns the energies in it beyond those of that step, J.
     pub(super) fn absorb(&mut self, other: &mut Self, (step, s): (&DenseOutput<'_>, f64)) -> Energies {
         let Context { model, state, .. } = &mut *self.context;
         other.write_state((model, self.whole.masses.start), &mut state.layer.state, s);
@@ -199,16 +195,16 @@ impl LocalRegion {
         self.ends(masses).any(|end| (end.saturating_sub(near)..(end + near + 1).min(self.len())).any(changed))
     }
 
-    /// The largest force, N, by which its masses, as its own steps have them, load a link to others beyond that of the whole layer's
-    /// `step`.
+    /// The largest force, N, by which its masses, as its own steps have them, load a link to others beyond that of the
+    /// whole layer's `step`.
     pub(super) fn mismatch(&self, step: &mut LayerStep<'_>) -> f64 {
         let (theta, ends) = (step.dense.theta(self.reached()), self.ends(step.dense.model.masses()));
         let Context { model, state, .. } = &*self.context;
         let masses = self.masses();
-        let (dense, weights) = step.of(&masses);
+        let (dense, weights) = step.restricted_to(&masses);
         let layer = &state.layer.state;
         ends.fold(0.0, |largest: f64, end| {
-            let [(x, z), (v_x, v_z)] = dense.motion(masses.start + end, theta, weights);
+            let [ByAxis { x, z }, ByAxis { x: v_x, z: v_z }] = dense.motion(masses.start + end, theta, weights);
             let force = |kind: LinkKind, off: f64, rate_off: f64| {
                 model.glassy[kind] * off.abs() + model.links[kind].damping * rate_off.abs()
             };
@@ -231,8 +227,8 @@ impl LocalRegion {
         energies
     }
 
-    /// P_diss of its masses at the time `s`, less that in the whole layer's `step`, W, where the powers at the stages say it;
-    /// 0 elsewhere.
+    /// P_diss of its masses at the time `s`, less that in the whole layer's `step`, W, where the powers at the stages
+    /// say it; 0 elsewhere.
     pub(super) fn dissipated_power(&mut self, step: &DenseOutput<'_>, s: f64) -> f64 {
         let h = self.trial.h;
         let mine = self.theta(s).and_then(|theta| self.stepper.dissipated_power(&mut self.context, h, theta));
@@ -240,14 +236,14 @@ impl LocalRegion {
     }
 
     /// F_x and F_z of its masses at the time `s`, less those in the whole layer's `step`, N.
-    pub(super) fn forces(&mut self, step: &mut LayerStep<'_>, s: f64) -> (f64, f64) {
+    pub(super) fn forces(&mut self, step: &mut LayerStep<'_>, s: f64) -> ByAxis<f64> {
         let theta = self.theta(s).unwrap_or(0.0);
         let mine = self.stepper.on_carrier(&mut self.context, self.trial.h, theta);
-        let theirs = self.whole.on_carrier(step, &self.context.model, step.dense.theta(s));
-        (mine.0 - theirs.0, mine.1 - theirs.1)
+        mine - self.whole.on_carrier(step, &self.context.model, step.dense.theta(s))
     }
 
-    /// Writes its masses at the time `s` into `state`, that of the layer of `model`, or of a part of it from mass `first` on.
+    /// Writes its masses at the time `s` into `state`, that of the layer of `model`, or of a part of it from mass
+    /// `first` on.
     pub(super) fn write_state(&mut self, (model, first): (&Model, usize), state: &mut State, s: f64) {
         let theta = self.theta(s);
         if let Some(theta) = theta {

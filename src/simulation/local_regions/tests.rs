@@ -48,12 +48,12 @@ struct Rows {
 }
 
 impl Rows {
-    fn of(scene: &Scene, rows: u32, until_force: Option<f64>) -> Self {
+    fn new(scene: &Scene, rows: u32, until_force: Option<f64>) -> Self {
         let mut simulation = Simulation::new(scene, &Start::default()).unwrap();
         simulation.record_mode_changes(true);
         let times: Vec<f64> = (0..rows).map(|i| f64::from(i) * SWING.duration / f64::from(rows)).collect();
         let mut forces = Vec::new();
-        let observe = |_: f64, now: &Snapshot<'_>| forces.push([now.on_carrier.0, now.on_carrier.1]);
+        let observe = |_: f64, now: &Snapshot<'_>| forces.push([now.on_carrier.x, now.on_carrier.z]);
         simulation.advance_observed(&SWING, until_force, &times, observe).unwrap();
         let changes = simulation.take_mode_changes();
         Self { forces, end: variables_of(scene, &mut simulation), changes, simulation }
@@ -67,7 +67,7 @@ impl Rows {
 #[test]
 fn a_run_with_regions_is_one_that_is_cut_at_every_change() {
     let scene = scene("'forces', 'dissipation', 'energy', 'solver'");
-    let (with, without) = (Rows::of(&scene, 300, None), Rows::of(&scene, 300, Some(NEVER)));
+    let (with, without) = (Rows::new(&scene, 300, None), Rows::new(&scene, 300, Some(NEVER)));
     for axis in [0, 1] {
         let largest = without.forces.iter().map(|row| row[axis].abs()).fold(0.0, f64::max);
         let off = with.forces.iter().zip(&without.forces).map(|(a, b)| (a[axis] - b[axis]).abs()).fold(0.0, f64::max);
@@ -94,7 +94,7 @@ fn every_mode_change_in_a_region_is_recorded_once() {
         simulation.run.context.state.layer.state.mode.iter().map(|mode| mode.number()).collect()
     };
     let mut modes = of(&Simulation::new(&scene, &Start::default()).unwrap());
-    let run = Rows::of(&scene, 100, None);
+    let run = Rows::new(&scene, 100, None);
     assert_eq!(run.changes.len() as f64, run.value("solver.events"));
     let mut last = 0.0;
     for change in &run.changes {
@@ -107,7 +107,7 @@ fn every_mode_change_in_a_region_is_recorded_once() {
 #[test]
 fn rows_do_not_change_a_run_with_regions() {
     let scene = scene("'forces', 'energy', 'elements'");
-    let (rare, many) = (Rows::of(&scene, 1, None), Rows::of(&scene, 777, None));
+    let (rare, many) = (Rows::new(&scene, 1, None), Rows::new(&scene, 777, None));
     assert_eq!(rare.end, many.end);
     assert_eq!(rare.changes, many.changes);
 }
@@ -115,7 +115,7 @@ fn rows_do_not_change_a_run_with_regions() {
 #[test]
 fn a_restored_run_with_regions_goes_on_bit_for_bit() {
     let scene = scene("'forces', 'energy', 'solver', 'elements'");
-    let mut run = Rows::of(&scene, 10, None).simulation;
+    let mut run = Rows::new(&scene, 10, None).simulation;
     let mut restored = Simulation::restore(&scene, &run.state()).unwrap();
     for simulation in [&mut run, &mut restored] {
         simulation.advance(&SWING).unwrap();

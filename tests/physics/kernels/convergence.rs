@@ -239,8 +239,8 @@ fn a_slipping_mass_converges_with_order_five() {
     for (layer, errors) in slipping_errors([4, 8, 16, 32], 1e-14, SEVEN_STAGES) {
         for part in 0..3 {
             let last = last_order(&errors.map(|error| error[part]));
-            // With a shear strength errors of positions pass through 0 on their way: over all three halvings they fall as
-            // they should.
+            // With a shear strength errors of positions pass through 0 on their way: over all three halvings they fall
+            // as they should.
             let (order, highest) = if layer.rate_shear.is_some() {
                 (last.max((errors[0][part] / errors[3][part]).log2() / 3.0), 6.4)
             } else {

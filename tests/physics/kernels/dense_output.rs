@@ -1,7 +1,7 @@
 //! The dense output of the method of seven stages, against exact solutions.
 
-use asperity::integrator::{DenseWorkspace, LayerStep, LayerSums, Motions, StepSpan};
-use asperity::model::{Forces, State};
+use asperity::integrator::{DenseWorkspace, LayerStep, LayerSums, Polynomials, TimeSpan};
+use asperity::model::{ByAxis, Forces, State};
 use nalgebra::Vector2;
 
 use crate::common::random::Random;
@@ -51,7 +51,8 @@ fn the_inside_of_a_free_step_of_four_stages_has_its_order() {
 }
 
 /// The same for a slipping mass, against steps so short that their error does not count: its height follows the profile
-/// at its position, its z velocity the slope there. What depends on the motion, as its Maxwell elements do, misses O(h⁵).
+/// at its position, its z velocity the slope there. What depends on the motion, as its Maxwell elements do, misses
+/// O(h⁵).
 #[test]
 fn the_inside_of_a_slipping_step_has_its_order() {
     let layer = slider();
@@ -138,8 +139,8 @@ fn one_contact_within_a_step_is_that_of_the_whole_state() {
     }
 }
 
-/// F_x and F_z by sums are those of the whole state within the step: F_x for all methods, F_z where masses in contact are put
-/// on the profile one by one.
+/// F_x and F_z by sums are those of the whole state within the step: F_x for all methods, F_z where masses in contact
+/// are put on the profile one by one.
 #[test]
 fn forces_on_the_carrier_by_sums_are_those_of_the_whole_state() {
     let mut random = Random::new(8);
@@ -153,15 +154,15 @@ fn forces_on_the_carrier_by_sums_are_those_of_the_whole_state() {
         for theta in [0.0, random.between(0.0, 1.0), 1.0] {
             let [found, expected] = stepper.on_carrier(1e-3, theta);
             // Sums of some hundred forces up to 1e3 N in another order.
-            let along_z = if case % 3 == 0 || theta == 0.0 { (found.1 - expected.1).abs() } else { 0.0 };
-            let error = (found.0 - expected.0).abs().max(along_z);
+            let along_z = if case % 3 == 0 || theta == 0.0 { (found.z - expected.z).abs() } else { 0.0 };
+            let error = (found.x - expected.x).abs().max(along_z);
             assert!(error < 1e-10, "case {case}, {theta}: {found:?} {expected:?}");
         }
     }
 }
 
-/// In four and in two stages F_z by sums has the masses in contact not on the profile, but where ż at the stages has brought them: it
-/// misses that of the whole state by the order of velocities within the step.
+/// In four and in two stages F_z by sums has the masses in contact not on the profile, but where ż at the stages has
+/// brought them: it misses that of the whole state by the order of velocities within the step.
 #[test]
 fn the_interpolated_heights_of_contacts_have_the_order_of_the_method() {
     let layer = slider();
@@ -174,7 +175,7 @@ fn the_interpolated_heights_of_contacts_have_the_order_of_the_method() {
             stepper.attempt(h);
             let missed = |theta: f64| {
                 let [by_sums, of_state] = stepper.on_carrier(h, theta);
-                (by_sums.1 - of_state.1).abs()
+                (by_sums.z - of_state.z).abs()
             };
             THETAS.map(missed).into_iter().fold(0.0, f64::max)
         });
@@ -198,7 +199,7 @@ fn parts_of_a_step_make_the_whole() {
         stepper.attempt(h);
         let (state, on_carrier) = (stepper.within(h, theta), stepper.on_carrier(h, theta)[0]);
         let Stepper { model, carrier, start, integrator, .. } = &mut stepper;
-        let (start, span) = (&start.state, StepSpan { start: 0.0, length: h });
+        let (start, span) = (&start.state, TimeSpan { start: 0.0, length: h });
         let energies = integrator.energies((model, carrier, start), span, theta);
         let power = integrator.dissipated_power((model, carrier, start), span, 1.0);
 
@@ -213,10 +214,10 @@ fn parts_of_a_step_make_the_whole() {
             let mut of_part = LayerSums::new(&part, 0);
             of_part.begin_part(&mut step, &part, masses.start);
             let mut state = State::new(part.masses(), part.maxwell_variables());
-            let (dense, workspace) = step.of(&masses);
+            let (dense, workspace) = step.restricted_to(&masses);
             dense.state_at(theta, workspace, &mut state);
             state.write_part((&part, model), &mut joined, masses.start);
-            let (f_x, f_z) = of_part.on_carrier(&mut step, &part, theta);
+            let ByAxis { x: f_x, z: f_z } = of_part.on_carrier(&mut step, &part, theta);
             let e = of_part.energies(&step.dense, theta);
             let values = [f_x, f_z, e.damper, e.maxwell, e.friction, e.shear, e.input];
             sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
@@ -224,12 +225,13 @@ fn parts_of_a_step_make_the_whole() {
         }
         assert_eq!(joined, state, "case {case}");
         let e = energies;
-        let whole = [on_carrier.0, on_carrier.1, e.damper, e.maxwell, e.friction, e.shear, e.input];
+        let whole = [on_carrier.x, on_carrier.z, e.damper, e.maxwell, e.friction, e.shear, e.input];
         for (i, (sum, whole)) in sums.into_iter().zip(whole).enumerate() {
             // Sums of some hundred forces up to 1e3 N, and of their powers over 1e-3 s, in another order.
             assert!((sum - whole).abs() < 1e-10, "case {case}, {i}: {sum} {whole}");
         }
-        // Friction in a direction against the modes, as random states have it, may make a power below 0, which is cut off.
+        // Friction in a direction against the modes, as random states have it, may make a power below 0, which is cut
+        // off.
         if power > 0.0 && powers.iter().all(|power| *power > 0.0) {
             let sum: f64 = powers.iter().sum();
             assert!((sum - power).abs() < 1e-10 * power, "case {case}: {sum} {power}");
@@ -248,7 +250,7 @@ fn motions_are_those_of_the_state_within_the_step() {
     let h = 1e-3;
     stepper.attempt(h);
     let (dense, rest) = (stepper.dense(h), (&stepper.model.rest_x, &stepper.model.rest_z));
-    let motions = Motions::new(&dense);
+    let motions = Polynomials::new(&dense);
     for theta in THETAS {
         let (within, at) = (stepper.within(h, theta), stepper.carrier.at(theta * h));
         for i in 0..within.mode.len() {
@@ -258,7 +260,7 @@ fn motions_are_those_of_the_state_within_the_step() {
             // Some roundings of positions of the size of 1 m.
             assert!((found.0 - x).abs() < 1e-14 && (found.1 - z).abs() < 1e-14, "{theta}, mass {i}: {found:?} {x} {z}");
             let (low, high) = motions.position_bounds(i);
-            assert!(low <= x && x <= high && motions.least_height(i) <= z, "{theta}, mass {i}: {low} {high} {x} {z}");
+            assert!(low <= x && x <= high && motions.min_height(i) <= z, "{theta}, mass {i}: {low} {high} {x} {z}");
         }
     }
 }

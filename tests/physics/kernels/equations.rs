@@ -1,6 +1,6 @@
 //! The structured code against the dense equations of motion, and a solved stage against the explicit rates.
 
-use asperity::integrator::{MAX_STAGES, NO_LIMIT, Rates};
+use asperity::integrator::{MAX_STAGES, NO_LIMIT, StageValues};
 use asperity::math::Jet;
 use asperity::model::{CarrierPoint, Forces, LinkKind, Mode, Model, State};
 use asperity::scene::{Path, RateShear};
@@ -86,7 +86,7 @@ fn difference(
     matrices: &Matrices,
     model: &Model,
     state: &State,
-    rates: &Rates,
+    rates: &StageValues,
     (position, rate): CarrierMotion,
 ) -> f64 {
     let k = matrices.masses;
@@ -121,8 +121,8 @@ fn random_motion(random: &mut Random) -> CarrierMotion {
     )
 }
 
-/// For random layers of 1 to 5 masses in random modes, `Forces` and `Rates` give the accelerations, ė, normal forces
-/// and margins of the dense equations (10)-(15).
+/// For random layers of 1 to 5 masses in random modes, `Forces` and `StageValues` give the accelerations, ė, normal
+/// forces and margins of the dense equations (10)-(15).
 #[test]
 fn rates_agree_with_the_dense_matrices() {
     let mut random = Random::new(1);
@@ -134,7 +134,7 @@ fn rates_agree_with_the_dense_matrices() {
         let state = random_state(&mut random, &model, &motion.0);
         let moving = |speed| Jet { speed, ..Jet::default() };
         let carrier = CarrierPoint { x: moving(motion.1.x), z: moving(motion.1.y), ..CarrierPoint::default() };
-        let (mut forces, mut rates) = (Forces::new(&model), Rates::new(&model));
+        let (mut forces, mut rates) = (Forces::new(&model), StageValues::new(&model));
         forces.evaluate(&model, &state, &carrier);
         rates.evaluate(&model, &state, &forces, 1e-12);
         state.mode.iter().for_each(|&mode| modes[(mode.number() + 1) as usize] += 1);

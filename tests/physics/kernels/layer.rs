@@ -1,10 +1,10 @@
 //! Shared by the tests: layers given in a few words, fixed steps, random numbers.
 
 use asperity::integrator::{
-    ContactModes, DenseOutput, DenseWorkspace, ErrorEstimate, Integrator, LayerState, Scheme, StepSpan, Tolerance,
+    ContactModes, DenseOutput, DenseWorkspace, ErrorEstimate, Integrator, LayerState, Scheme, TimeSpan, Tolerance,
     Tracked,
 };
-use asperity::model::{Axis, ByAxis, Carrier, Forces, LinkKind, Model, State};
+use asperity::model::{ByAxis, Carrier, Forces, LinkKind, Model, State};
 use asperity::scene::{Path, RateShear, Scene};
 
 use crate::common::scenes::{Law, SceneText};
@@ -138,7 +138,7 @@ impl Stepper {
     /// Attempts a step without accepting it.
     pub fn attempt(&mut self, h: f64) -> ErrorEstimate {
         let start = (&self.model, &self.start, &self.carrier);
-        let span = StepSpan { start: self.s, length: h };
+        let span = TimeSpan { start: self.s, length: h };
         self.integrator.attempt(self.modes, start, span, &self.tolerance).unwrap()
     }
 
@@ -157,7 +157,7 @@ impl Stepper {
 
     /// The dense output of the last attempted step, of length `h`.
     pub fn dense(&self, h: f64) -> DenseOutput<'_> {
-        self.integrator.dense(&self.model, &self.carrier, &self.start.state, StepSpan { start: self.s, length: h })
+        self.integrator.dense(&self.model, &self.carrier, &self.start.state, TimeSpan { start: self.s, length: h })
     }
 
     /// The state at the fraction `theta` of the last attempted step, of length `h`.
@@ -167,16 +167,17 @@ impl Stepper {
         state
     }
 
-    /// F_x and F_z at the fraction `theta` of the last attempted step, of length `h`: from sums, and from its state there.
-    pub fn on_carrier(&mut self, h: f64, theta: f64) -> [(f64, f64); 2] {
+    /// F_x and F_z at the fraction `theta` of the last attempted step, of length `h`: from sums, and from its state
+    /// there.
+    pub fn on_carrier(&mut self, h: f64, theta: f64) -> [ByAxis<f64>; 2] {
         let state = self.within(h, theta);
-        let span = StepSpan { start: self.s, length: h };
+        let span = TimeSpan { start: self.s, length: h };
         let mut forces = Forces::new(&self.model);
         forces.evaluate(&self.model, &state, &self.carrier.at(span.at(theta)));
         let Self { model, carrier, start, integrator, .. } = self;
         let mut workspace = DenseWorkspace::new(model);
         let summed = integrator.on_carrier((model, carrier, &start.state), span, theta, &mut workspace);
-        [summed, (forces.on_carrier(Axis::X), forces.on_carrier(Axis::Z))]
+        [summed, ByAxis::from_fn(|axis| forces.on_carrier(axis))]
     }
 }
 

@@ -55,8 +55,9 @@ fn a_dip_into_a_smooth_crest_is_found() {
     assert!(step > 0.2, "{step}");
 }
 
-/// A mass that grazes a crest by a third or a hundredth of the position tolerance hits it at a fine relative tolerance and
-/// passes it at a coarse one: touches are looked for to all of that tolerance from 1e-3 on, to a thousandth of it at 1e-6.
+/// A mass that grazes a crest by a third or a hundredth of the position tolerance hits it at a fine relative tolerance
+/// and passes it at a coarse one: touches are looked for to all of that tolerance from 1e-3 on, to a thousandth of it
+/// at 1e-6.
 #[test]
 fn fine_tolerances_see_shallower_dips() {
     let surface = points(&[0.0, 1.0, 2.0], &[0.0, 0.01, 0.0], false);
@@ -69,8 +70,9 @@ fn fine_tolerances_see_shallower_dips() {
     assert_eq!(["1e-3", "1e-4", "1e-6"].map(|relative| hits(0.03 * NANOMETRE, relative)), [false, false, true]);
 }
 
-/// A mass that rattles over waves at a tolerance of 1e-12, with a dip of which no touch may be looked for below the roundings of
-/// its gap: it would touch and lift by these without end. Steps shorten with the fifth root of the tolerance, by 2.5.
+/// A mass that rattles over waves at a tolerance of 1e-12, with a dip of which no touch may be looked for below the
+/// roundings of its gap: it would touch and lift by these without end. Steps shorten with the fifth root of the
+/// tolerance, by 2.5.
 #[test]
 fn no_dip_is_so_shallow_that_roundings_make_it() {
     let steps = |relative: &str| {
@@ -104,8 +106,8 @@ fn thrown(clearance: f64) -> Layer {
     Layer { clearance, links, solver, ..Layer::default() }
 }
 
-/// Throws the mass at 0.1 m/s down and follows it for 3 s, near its lowest position, π/2 s, in steps of 2e-5 s: the energy
-/// lost in impacts, the lowest height seen, the number of steps, the mode changes.
+/// Throws the mass at 0.1 m/s down and follows it for 3 s, near its lowest position, π/2 s, in steps of 2e-5 s: the
+/// energy lost in impacts, the lowest height seen, the number of steps, the mode changes.
 fn throw(scene: &Scene) -> (f64, f64, f64, usize) {
     let start = Start { w_rate: -0.1, ..Start::default() };
     let mut simulation = Simulation::new(scene, &start).unwrap();

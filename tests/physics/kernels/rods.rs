@@ -72,7 +72,8 @@ fn contacts_between_strong_dampers_slip_as_one() {
     for (method, most_steps) in [("event", 500.0), ("step", 20_000.0)] {
         let shown = run(&scene(&[("layer.lateral_x.damping", "3e4"), ("solver.method", method)])).unwrap();
         assert!(is_tied(&shown), "{method}: {shown:?}");
-        // A limit of a force is passed by the tolerance of positions, 1e-11 m, times the stiffness that is felt, 4000 N/m.
+        // A limit of a force is passed by the tolerance of positions, 1e-11 m, times the stiffness that is felt, 4000
+        // N/m.
         assert!(shown.least_normal > -1e-7, "{method}: {shown:?}");
         // Ten tolerances of the 1e-5 J put in.
         assert!(shown.residual.abs() < 1e-10, "{method}: {shown:?}");
@@ -89,8 +90,8 @@ fn contacts_between_stiff_springs_slip_as_one() {
     assert!(shown.residual.abs() < 1e-10, "{shown:?}");
 }
 
-/// A contact is never held beyond its limit by a force within the tolerance of positions times a rod's stiffness: such a
-/// run ends right or says that it can't.
+/// A contact is never held beyond its limit by a force within the tolerance of positions times a rod's stiffness: such
+/// a run ends right or says that it can't.
 #[test]
 fn contacts_between_the_stiffest_springs_slip_or_the_run_stops() {
     let rods = scene(&[("layer.lateral_x.stiffness", "5e14"), ("solver.max_steps", "5000")]);

@@ -158,8 +158,8 @@ fn link_text(name: &str, link: Option<&Link>) -> String {
     format!("{name} = {{ stiffness = {:?}{damping}{maxwell} }}\n", link.stiffness)
 }
 
-/// Sixteen elements a link, those of a measured compound, with and without those that act like springs and dampers on the
-/// scene's time scales.
+/// Sixteen elements a link, those of a measured compound, with and without those that act like springs and dampers on
+/// the scene's time scales.
 pub fn reduced(masses: usize) -> Pair {
     const MODULI: [f64; 16] =
         [1538.0, 888.0, 824.0, 495.0, 201.0, 76.3, 31.9, 14.8, 8.12, 4.65, 3.16, 2.26, 1.67, 1.42, 0.969, 1.26];

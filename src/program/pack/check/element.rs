@@ -1,5 +1,5 @@
-//! `asperity pack --table TABLE.csv --check SCENE.toml`: the element against the layer that was swept, in steady sliding
-//! between the points of the table and along a motion to and fro.
+//! `asperity pack --table TABLE.csv --check SCENE.toml`: the element against the layer that was swept, in steady
+//! sliding between the points of the table and along a motion to and fro.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ use crate::program::figure::{Figure as _, Ladder, LadderPanel, Ladders, Rung, St
 use crate::program::files::FileError;
 use crate::program::result_file::{CsvWriter, ResultWriter};
 use crate::program::runner::CarrierSample;
-use crate::program::sweep::{Bounds, SteadySliding, steady_sliding};
+use crate::program::sweep::{SteadySliding, StopBounds, steady_sliding};
 use crate::program::terminal::{self, LabelledLine, labelled, real};
 
 /// What is compared in steady sliding.
@@ -60,7 +60,7 @@ fn check_points(contact: &PointContact, scene: &Scene, count: usize) -> Vec<Poin
     let points = selected(&centres(&table.grid), count);
     let bar = terminal::bar(points.len() as u64);
     let check = |&point: &OperatingPoint| {
-        let layer = steady_sliding(scene, &point, table.load, Bounds { error: ERROR, distance: None });
+        let layer = steady_sliding(scene, &point, table.load, StopBounds { error: ERROR, distance: None });
         let element = layer.as_ref().ok().map(|layer| element_sliding(contact, &point, layer.w));
         bar.inc(1);
         PointCheck { point, layer, element }

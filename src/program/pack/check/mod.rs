@@ -1,5 +1,5 @@
-//! `asperity pack --check SCENE.toml`: an element or a patch against the layer that was swept, in steady sliding and along
-//! a motion to and fro.
+//! `asperity pack --check SCENE.toml`: an element or a patch against the layer that was swept, in steady sliding and
+//! along a motion to and fro.
 
 mod drag;
 mod element;

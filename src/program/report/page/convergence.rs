@@ -6,7 +6,7 @@ use asperity::robustness::DISPLACEMENT;
 use asperity::scene::{Extrapolation, Scene};
 use quick_xml::escape::escape;
 
-use super::{NOTHING, begin_group, count, errors, head, method, number, per_cent, reason, seconds, short};
+use super::{NOTHING, count, errors, grouped, head, method, number, per_cent, reason, seconds, short};
 use crate::program::cli::Report;
 use crate::program::figure::{Ladder, LadderPanel, Ladders, Rung, Stroke};
 use crate::program::html::{Cell, fill, table};
@@ -39,7 +39,7 @@ pub(in crate::program::report) fn tolerances(
         ("patience", PATIENCE.to_string()),
         ("choices", choices(rows)?),
         ("table", runs(reference, rows)?),
-        ("reference", of_reference(reference)),
+        ("reference", reference_text(reference)),
         ("sensitivity", sensitivity(reference)),
     ];
     Ok(fill(TOLERANCES, &fields))
@@ -157,18 +157,16 @@ fn runs(reference: &Reference, rows: &[ToleranceRow]) -> io::Result<String> {
     let figures = [&error_names("error of F_x", reference)[..], &TOLERANCE_FIGURES].concat();
     let own = ToleranceRow::from_reference(reference);
     let rows: Vec<&ToleranceRow> = rows.iter().chain([&own]).collect();
-    let cells = rows.iter().enumerate().map(|(i, row)| {
+    let cells = |row: &&ToleranceRow| {
         let mut cells = vec![row.name().into(), number(format!("{:e}", row.tolerance))];
         match &row.result {
             Ok(figures) => cells.extend(figure_cells(figures, reference)),
             Err(why) => cells.push(reason(why, figures.len())),
         }
-        if i > 0 && row.name() != rows[i - 1].name() {
-            begin_group(&mut cells);
-        }
         cells
-    });
-    table(&head(&["method"], &[&["tolerance"], &figures[..]].concat()), &cells.collect::<Vec<_>>())
+    };
+    let names = head(&["method"], &[&["tolerance"], &figures[..]].concat());
+    table(&names, &grouped(&rows, |row| row.name(), cells))
 }
 
 fn figure_cells(figures: &RunFigures, reference: &Reference) -> Vec<Cell> {
@@ -178,7 +176,7 @@ fn figure_cells(figures: &RunFigures, reference: &Reference) -> Vec<Cell> {
     cells.chain([short(figures.residual)]).collect()
 }
 
-fn of_reference(reference: &Reference) -> String {
+fn reference_text(reference: &Reference) -> String {
     let reduced = if reference.scene.solver.reduce > 0.0 { ", with all Maxwell elements" } else { "" };
     let run =
         format!("A run by the method <code>event</code> at the relative tolerance {:e}{reduced}.", reference.tolerance);
@@ -256,17 +254,8 @@ pub(in crate::program::report) fn communication(
 }
 
 fn communication_table(reference: &Reference, rows: &[CommunicationRow]) -> io::Result<String> {
-    let cells = rows.iter().enumerate().map(|(i, row)| {
-        let mut cells = communication_cells(row, reference);
-        if i > 0 && row.given != rows[i - 1].given {
-            begin_group(&mut cells);
-        }
-        cells
-    });
-    table(
-        &head(&["a master gives"], &[&["step in s"], &communication_figures(reference)[..]].concat()),
-        &cells.collect::<Vec<_>>(),
-    )
+    let names = head(&["a master gives"], &[&["step in s"], &communication_figures(reference)[..]].concat());
+    table(&names, &grouped(rows, |row| row.given, |row| communication_cells(row, reference)))
 }
 
 fn communication_cells(row: &CommunicationRow, reference: &Reference) -> Vec<Cell> {

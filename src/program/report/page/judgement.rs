@@ -5,7 +5,7 @@ use std::io;
 use asperity::robustness::{KEPT, TIGHTER};
 
 use super::robustness::factors;
-use super::{NOTHING, begin_group, head, number, short, three_digits};
+use super::{NOTHING, grouped, head, number, short, three_digits};
 use crate::program::figure::{Ladder, LadderPanel, Ladders, Rung, Stroke};
 use crate::program::html::{Cell, fill, table};
 use crate::program::report::judgement::{Judgement, Ratios, Standing, median};
@@ -33,12 +33,12 @@ pub(in crate::program::report) fn judgements(scenes: &[SceneJudgements<'_>], pic
         ("summary", summary(scenes)?),
         ("runs", runs),
         ("kept", KEPT.to_string()),
-        ("perturbed", if perturbed { of_perturbed() } else { String::new() }),
+        ("perturbed", if perturbed { perturbed_text() } else { String::new() }),
     ];
     Ok(fill(TEMPLATE, &fields))
 }
 
-fn of_perturbed() -> String {
+fn perturbed_text() -> String {
     format!(
         " Scaled runs are those of the section on robustness, at the scene's own tolerance, against runs at a tolerance {TIGHTER} times lower."
     )
@@ -76,21 +76,14 @@ fn summary(scenes: &[SceneJudgements<'_>]) -> io::Result<String> {
         all.push(groups("all", scenes.iter().flat_map(|(_, runs)| runs.iter())));
     }
     all.extend(scenes.iter().map(|(scene, runs)| groups(scene, runs.iter())));
-    let cells = all.iter().enumerate().flat_map(|(i, groups)| {
-        groups.iter().enumerate().map(move |(j, group)| {
-            let mut cells = group_cells(group);
-            if i > 0 && j == 0 {
-                begin_group(&mut cells);
-            }
-            cells
-        })
-    });
+    let lines: Vec<(usize, &Group<'_>)> =
+        all.iter().enumerate().flat_map(|(i, groups)| groups.iter().map(move |group| (i, group))).collect();
     let mut names = head(&["scene", "runs"], &["that count", "left out"]);
     for ratio in ["error over tolerance", "estimate over error"] {
         names.extend(head(&[], &[&format!("{ratio}: median"), "within ten times", "worst"]));
         names.extend(head(&["of"], &[]));
     }
-    table(&names, &cells.collect::<Vec<_>>())
+    table(&names, &grouped(&lines, |(scene, _)| *scene, |(_, group)| group_cells(group)))
 }
 
 fn group_cells(group: &Group<'_>) -> Vec<Cell> {
@@ -114,16 +107,9 @@ fn ratio_cells(ratios: Option<Ratios<'_>>) -> [Cell; 4] {
 /// Every run of the scene as it is.
 fn all_runs(runs: &[Judgement]) -> io::Result<String> {
     let runs: Vec<&Judgement> = runs.iter().filter(|run| run.perturbation.is_none()).collect();
-    let cells = runs.iter().enumerate().map(|(i, run)| {
-        let mut cells = run_cells(run);
-        if i > 0 && run.method != runs[i - 1].method {
-            begin_group(&mut cells);
-        }
-        cells
-    });
     let figures = ["tolerance", "error", "over the tolerance", "estimate", "over the error"];
     let names: Vec<Cell> = [head(&["method"], &figures), head(&["warns", "left out"], &[])].concat();
-    table(&names, &cells.collect::<Vec<_>>())
+    table(&names, &grouped(&runs, |run| run.method.as_str(), |run| run_cells(run)))
 }
 
 fn run_cells(run: &Judgement) -> Vec<Cell> {

@@ -69,9 +69,18 @@ fn number(text: impl Into<String>) -> Cell {
     Cell { class: "number".into(), ..Cell::from(text) }
 }
 
-/// Marks a row as the first of a group.
-fn begin_group(cells: &mut [Cell]) {
-    cells.iter_mut().for_each(|cell| cell.class.push_str(" group"));
+/// The cells of rows; those of the same `group` follow one another.
+fn grouped<T, G: PartialEq>(rows: &[T], group: impl Fn(&T) -> G, cells: impl Fn(&T) -> Vec<Cell>) -> Vec<Vec<Cell>> {
+    let groups = rows.chunk_by(|a, b| group(a) == group(b)).enumerate();
+    let rows = groups.flat_map(|(i, rows)| rows.iter().enumerate().map(move |(j, row)| (i > 0 && j == 0, row)));
+    let mark = |(begins, row): (bool, &T)| {
+        let mut cells = cells(row);
+        if begins {
+            cells.iter_mut().for_each(|cell| cell.class.push_str(" group"));
+        }
+        cells
+    };
+    rows.map(mark).collect()
 }
 
 /// A number with two digits, or nothing.

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use asperity::robustness::{Accuracy, KEPT, NOTABLE, Perturbation, ScaledQuantity, TIGHTER, Verdict, WRONG};
+use asperity::robustness::{KEPT, NOTABLE, Perturbation, ScaledQuantity, TIGHTER, Verdict, WRONG};
 use asperity::scene::Scene;
 use quick_xml::escape::escape;
 
@@ -121,7 +121,7 @@ fn figures(robustness: &Robustness, trial: &Trial) -> String {
         Verdict::OverBudget => format!("> {BUDGET} ×"),
         Verdict::NotTried => String::new(),
         _ => {
-            let error = trial.accuracy().and_then(Accuracy::error);
+            let error = trial.ended().and_then(|ended| ended.accuracy.error());
             let error = error.map_or_else(|| "?".into(), |error| format!("{:.0e}", error.share));
             let times = robustness.times_the_steps(trial).map_or_else(String::new, |times| {
                 if times < 1.0 { format!("{times:.2} ×") } else { format!("{times:.1} ×") }

@@ -1,5 +1,5 @@
-//! The patch beside one of twice as many elements along and across, in the poses and along the motions of the check; with a
-//! tread also rolling, where cells enter and leave.
+//! The patch beside one of twice as many elements along and across, in the poses and along the motions of the check;
+//! with a tread also rolling, where cells enter and leave.
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
-//! `asperity pack --patch PATCH.toml --check SCENE.toml`: elements of a tilted patch, each beside its layer, dragged along
-//! x at speeds of the table and to and fro; and the patch beside one of twice as many elements along and across.
+//! `asperity pack --patch PATCH.toml --check SCENE.toml`: elements of a tilted patch, each beside its layer, dragged
+//! along x at speeds of the table and to and fro; and the patch beside one of twice as many elements along and across.
 
 mod doubled;
 mod elements;

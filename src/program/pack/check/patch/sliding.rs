@@ -15,7 +15,7 @@ use crate::program::figure::{Ladder, LadderPanel, Ladders, Rung, Stroke};
 use crate::program::files::FileError;
 use crate::program::pack::check::{ERROR, SLIDING_DISTANCE};
 use crate::program::result_file::CsvWriter;
-use crate::program::sweep::{Bounds, steady_sliding_at};
+use crate::program::sweep::{StopBounds, steady_sliding_at};
 use crate::program::terminal::{self, real};
 
 /// What is compared of an element: along and across the plane.
@@ -187,6 +187,6 @@ fn layer_force(
     let (load, share) = (patch.table().load, tilted.element.area / patch.nominal_area());
     let at = OperatingPoint { load: load.at_force(force_z / share), ..point(patch, speed) };
     let w = tilted.separation - patch.table().rest_separation;
-    let found = steady_sliding_at(scene, &at, w, load, Bounds { error: ERROR, distance: None })?;
+    let found = steady_sliding_at(scene, &at, w, load, StopBounds { error: ERROR, distance: None })?;
     Ok([-share * found.drag(), 0.0, share * found.force_z])
 }

@@ -33,7 +33,8 @@ pub(super) struct TiltedFace {
 }
 
 impl TiltedFace {
-    /// The face of `patch` over the pressures that its table has at speed number `speed`, with `count` elements or fewer.
+    /// The face of `patch` over the pressures that its table has at speed number `speed`, with `count` elements or
+    /// fewer.
     pub(super) fn new(patch: &Patch, speed: usize, count: usize) -> Self {
         let table = patch.table();
         let separations = separations(table, speed, patch.temperature());
@@ -61,7 +62,8 @@ impl TiltedFace {
     }
 }
 
-/// The separations (m) of the largest and of the least pressure at a speed, at the temperature of the table next to `kelvin`.
+/// The separations (m) of the largest and of the least pressure at a speed, at the temperature of the table next to
+/// `kelvin`.
 fn separations(table: &Table, speed: usize, kelvin: f64) -> [f64; 2] {
     let off = |&i: &usize| (table.grid.temperatures[i] - kelvin).abs();
     let all = 0..table.grid.temperatures.len();
@@ -69,8 +71,8 @@ fn separations(table: &Table, speed: usize, kelvin: f64) -> [f64; 2] {
     [table.grid.loads.len() - 1, 0].map(|load| table.value(Quantity::Separation, Node { temperature, load, speed }))
 }
 
-/// The pose in which `places` of the face (m) stand from `closest` to `farthest` (m) above the ground, or farther where the
-/// face is not flat. It leans to the side too, so that elements beside each other differ.
+/// The pose in which `places` of the face (m) stand from `closest` to `farthest` (m) above the ground, or farther where
+/// the face is not flat. It leans to the side too, so that elements beside each other differ.
 fn pose(places: &[[f64; 3]], [closest, farthest]: [f64; 2]) -> Pose {
     let [along, across] = [0, 1].map(|axis| spread(places, axis));
     let wanted = farthest - closest;

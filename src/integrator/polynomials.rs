@@ -1,14 +1,14 @@
 //! The motions of masses through an event-driven step as polynomials.
 
 use super::dense::DenseOutput;
-use super::rates::Rates;
+use super::stage_values::StageValues;
 use super::tableau::MAX_STAGES;
 use crate::math::Quintic;
 use crate::model::Axis;
 
 /// The motions of the masses by the [`DenseOutput`] of one step.
 #[derive(Clone, Debug)]
-pub struct Motions<'a> {
+pub struct Polynomials<'a> {
     step: &'a DenseOutput<'a>,
     /// By stage: the Bernstein coefficients of a position by the rate there, s.
     weights: [[f64; 6]; MAX_STAGES],
@@ -16,13 +16,13 @@ pub struct Motions<'a> {
     reach: f64,
     /// The carrier's position on the profile, less its displacement since the start by the stages' rates, m.
     x: Quintic,
-    /// The same of its height.
+    /// The carrier's height, less its displacement since the start by the stages' rates, m.
     z: Quintic,
     /// The least and the largest x, and the least z, m.
     bounds: (f64, f64, f64),
 }
 
-impl<'a> Motions<'a> {
+impl<'a> Polynomials<'a> {
     /// The motions through `step`.
     pub fn new(step: &'a DenseOutput<'a>) -> Self {
         let weights =
@@ -52,13 +52,13 @@ impl<'a> Motions<'a> {
     }
 
     /// A bound of the least height of mass `i` above the profile's datum, m, by its speeds at the stages.
-    pub fn least_height(&self, i: usize) -> f64 {
+    pub fn min_height(&self, i: usize) -> f64 {
         let start = self.step.model.rest_z[i] + self.step.start.elongation_z[i];
         self.bounds.2 + start - self.distance(|stage| stage.velocity_z[i])
     }
 
     #[inline]
-    fn distance(&self, rate: impl Fn(&Rates) -> f64) -> f64 {
+    fn distance(&self, rate: impl Fn(&StageValues) -> f64) -> f64 {
         let speeds = self.step.stages().iter().map(|stage| rate(stage).abs());
         self.reach * speeds.fold(0.0, |most, speed| if speed > most { speed } else { most })
     }
@@ -76,7 +76,7 @@ impl<'a> Motions<'a> {
     }
 
     #[inline]
-    fn motion(&self, carrier: &Quintic, start: f64, rate: impl Fn(&Rates) -> f64) -> Quintic {
+    fn motion(&self, carrier: &Quintic, start: f64, rate: impl Fn(&StageValues) -> f64) -> Quintic {
         carrier.plus(start, self.step.stages().iter().map(rate).zip(&self.weights))
     }
 }

@@ -1,11 +1,11 @@
-//! Rates of change at one stage, and the start of a step that goes with them.
+//! The values at one stage, and the start of a step that goes with them.
 
 use serde::{Deserialize, Serialize};
 
-use super::largest::Largest;
+use super::running_maxima::RunningMaxima;
 use crate::model::{
-    BoundaryPowers, ByLink, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, SlipCurve, State,
-    SurfacePoint,
+    BoundaryPowers, ByAxis, ByLink, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, SlipCurve,
+    State, SurfacePoint,
 };
 
 /// The share of an explicit acceleration that friction may take away within the step without the implicit one in its
@@ -19,7 +19,7 @@ pub const NO_LIMIT: f64 = f64::MAX;
 /// Velocities, accelerations and contact forces at one stage, which later stages, the error estimate and the search for
 /// events use.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Rates {
+pub struct StageValues {
     /// ẋ_i, m/s.
     pub velocity_x: Vec<f64>,
     /// ż_i, m/s.
@@ -37,7 +37,7 @@ pub struct Rates {
     pub margin: Vec<f64>,
 }
 
-impl Rates {
+impl StageValues {
     /// Zero rates for the masses and links of `model`.
     pub fn new(model: &Model) -> Self {
         let zeros = || vec![0.0; model.masses()];
@@ -76,8 +76,8 @@ impl Rates {
         }
     }
 
-    /// Computes the rates that the forces give in `state`: the explicit first stage of a step whose implicit stages have
-    /// β = `beta` (s).
+    /// Computes the rates that the forces give in `state`: the explicit first stage of a step whose implicit stages
+    /// have β = `beta` (s).
     pub fn evaluate(&mut self, model: &Model, state: &State, forces: &Forces, beta: f64) {
         self.clear_contacts();
         for i in 0..model.masses() {
@@ -93,9 +93,9 @@ impl Rates {
         }
     }
 
-    /// Replaces the acceleration of slipping mass `i` by the mean one of an implicit step of `beta` (s) with the other forces
-    /// held, where the two differ much: friction is then so steep over the speed that its value at the start says nothing
-    /// of the step.
+    /// Replaces the acceleration of slipping mass `i` by the mean one of an implicit step of `beta` (s) with the other
+    /// forces held, where the two differ much: friction is then so steep over the speed that its value at the start
+    /// says nothing of the step.
     fn soften(&mut self, model: &Model, law: &SlipCurve<'_>, state: &State, i: usize, beta: f64) {
         let (v, surface) = (state.velocity_x[i], &state.surface[i]);
         let per_velocity = state.mode[i].direction() * surface.slope.hypot(1.0);
@@ -140,10 +140,9 @@ impl Rates {
                 (&state.velocity_z, carrier.z.speed)
             };
             let rate = &mut self.elongation_rate[kind];
-            for link in if kind.is_lateral() { i.saturating_sub(1)..i + 1 } else { i..i + 1 } {
+            for link in kind.links_on(i, velocity.len()) {
                 if let Some(rate) = rate.get_mut(link) {
-                    *rate = if kind.is_lateral() { velocity[link + 1] } else { velocity[link] };
-                    *rate -= if kind.is_lateral() { velocity[link] } else { carrier_rate };
+                    *rate = kind.difference(velocity, carrier_rate, link);
                 }
             }
         }
@@ -171,7 +170,7 @@ impl Rates {
 
     /// Ḟ_x and Ḟ_z of the layer on the carrier, N/s, for the Maxwell elongations `maxwell` (m):
     /// Ḟ = Σ c ė + d ë + Σ_j c_j (ė - a_j/τ_j) over the links to the carrier.
-    pub fn on_carrier(&self, model: &Model, maxwell: &[f64], carrier: &CarrierPoint) -> (f64, f64) {
+    pub fn on_carrier(&self, model: &Model, maxwell: &[f64], carrier: &CarrierPoint) -> ByAxis<f64> {
         let of = |kind: LinkKind, acceleration: &[f64], rate_change: f64| {
             let law = &model.links[kind];
             let rate: f64 = self.elongation_rate[kind].iter().sum();
@@ -181,10 +180,10 @@ impl Rates {
             let elements = model.element_force(kind, relaxing);
             law.stiffness * rate + damper + elements
         };
-        (
-            of(LinkKind::Horizontal, &self.acceleration_x, carrier.x.acceleration),
-            of(LinkKind::Vertical, &self.acceleration_z, carrier.z.acceleration),
-        )
+        ByAxis {
+            x: of(LinkKind::Horizontal, &self.acceleration_x, carrier.x.acceleration),
+            z: of(LinkKind::Vertical, &self.acceleration_z, carrier.z.acceleration),
+        }
     }
 }
 
@@ -194,18 +193,23 @@ pub struct LayerState {
     /// The state.
     pub state: State,
     /// The rates there.
-    pub rates: Rates,
+    pub rates: StageValues,
     /// The powers through the surface and the carrier there, W; 0 where energies are not computed.
     pub exchange: BoundaryPowers,
     /// The largest forces and energies so far.
-    pub largest: Largest,
+    pub largest: RunningMaxima,
 }
 
 impl LayerState {
     /// A layer of `model` at rest and free.
     pub fn new(model: &Model) -> Self {
         let state = State::new(model.masses(), model.maxwell_variables());
-        Self { state, rates: Rates::new(model), exchange: BoundaryPowers::default(), largest: Largest::default() }
+        Self {
+            state,
+            rates: StageValues::new(model),
+            exchange: BoundaryPowers::default(),
+            largest: RunningMaxima::default(),
+        }
     }
 
     /// Copies `other`, of the same model, without allocating.
