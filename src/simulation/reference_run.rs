@@ -286,7 +286,7 @@ mod tests {
         let expected = Inaccuracy::Divergence { error: 1.0, tolerance: 1e-4, mode_changes };
         assert_eq!(simulation.inaccuracy(), Some(expected));
         simulation.reference_run.as_mut().unwrap().run.context.state.counters.events -= 1;
-        assert_eq!(simulation.inaccuracy(), None);
+        assert_eq!(simulation.inaccuracy(), Some(Inaccuracy::Forces { error: 1.0 }));
     }
 
     #[test]
