@@ -190,6 +190,22 @@ fn a_force_that_is_not_reached_is_a_warning() {
     assert_eq!(Table::read(&folder.join("out.csv")).column("time").len(), 101);
 }
 
+/// A layer without dampers that is pressed onto the profile, let go and swings freely: what it loses is the error of the run,
+/// hundreds of relative tolerances with large steps and some with small ones.
+#[test]
+fn a_run_whose_energy_balance_is_open_is_warned_of() {
+    let folder = scratch("program-energy");
+    let scene = folder.join("scene.toml");
+    let layer = SceneText::new(2, 1e-4, 1e-6).set("layer.clearance", 1e-5).vertical(2e3).horizontal(1e3).coulomb(0.3);
+    let presses = ["duration = 1e-4, w_rate = -0.5", "duration = 1e-4, w_rate = 0.5", "duration = 0.3"];
+    let text = presses.iter().fold(layer, |scene, phase| scene.phase(phase)).outputs(&["forces", "energy"]);
+    for (method, tolerance, is_open) in [("event", 1e-4, true), ("step", 1e-5, false)] {
+        fs::write(&scene, text.clone().method(method).relative(tolerance).text()).unwrap();
+        let said = warnings(&scene, &folder);
+        assert_eq!(said.contains("the energy balance is off by"), is_open, "{method}: {said}");
+    }
+}
+
 #[test]
 fn a_scene_without_excitation_gives_the_start_and_a_warning() {
     let folder = scratch("program-no-excitation");
