@@ -28,7 +28,7 @@ def main():
     path, length, points, *others, seed = sys.argv[1:]
     x, z = rough_profile(float(length), int(points), *map(float, others), int(seed))
     with open(path, "w") as file:
-        file.write("x,z\n")
+        file.write("x [m],z [m]\n")
         file.writelines(f"{a:.12g},{b:.6g}\n" for a, b in zip(x, z))
 
 
