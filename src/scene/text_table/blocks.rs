@@ -353,8 +353,44 @@ fn without_sign(line: &str) -> &str {
     line.trim_start_matches(['#', '%', '!', '/', ' '])
 }
 
+/// How many plain decimals a line has with a `letter` between them, if it has nothing else: digits, with or without a sign
+/// `-`, a point and an exponent. Nearly all lines of a long table are such ones, and are told at a glance.
+fn plain_decimals(line: &str, letter: char) -> Option<usize> {
+    let bytes = line.as_bytes();
+    let digits = |from: usize| bytes[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
+    let has = |at: usize, signs: &[u8]| bytes.get(at).is_some_and(|byte| signs.contains(byte));
+    let (mut at, mut count) = (0, 0);
+    loop {
+        at += usize::from(has(at, b"-"));
+        let whole = digits(at);
+        at += whole;
+        if has(at, b".") {
+            at += 1 + digits(at + 1);
+        }
+        if has(at, b"eE") {
+            let exponent = at + 1 + usize::from(has(at + 1, b"+-"));
+            at = exponent + digits(exponent);
+            if at == exponent {
+                return None;
+            }
+        }
+        count += 1;
+        match bytes.get(at) {
+            _ if whole == 0 => return None,
+            None => return Some(count),
+            Some(&byte) if char::from(byte) == letter => at += 1,
+            Some(_) => return None,
+        }
+    }
+}
+
 /// What a line is; one that can belong to the open block is tried with that block's separator first.
 fn kind(line: &str, open: Option<&Block<'_>>) -> Kind {
+    if let Some(&Block { separator: Separator::Letter(letter), columns, .. }) = open
+        && plain_decimals(line, letter) == Some(columns)
+    {
+        return Kind::Data { separator: Separator::Letter(letter), columns, gaps: false };
+    }
     let bare = line.trim();
     if bare.is_empty() {
         return Kind::Blank;
@@ -462,6 +498,16 @@ mod tests {
     fn found(text: &str) -> Vec<Found> {
         let blocks = Block::all(text, true);
         blocks.iter().map(|block| (block.columns, block.first, block.last, block.above.len())).collect()
+    }
+
+    #[test]
+    fn plain_decimals_are_told_at_a_glance() {
+        for (line, count) in [("0,-1.5", 2), ("1.", 1), ("1e-05,-6.04E+3,7", 3)] {
+            assert_eq!(plain_decimals(line, ','), Some(count), "{line}");
+        }
+        for line in ["", ",", "1,", "1,,2", "1e,2", "+1", "1.2.3", "nan", ".5", "-", "1;2", "1, 2", "1 "] {
+            assert_eq!(plain_decimals(line, ','), None, "{line}");
+        }
     }
 
     #[test]

@@ -14,8 +14,11 @@ const INCREMENT: f64 = 0.01;
 
 pub(super) fn is_crg(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(1 << 16)];
-    let has = |mark: &[u8]| head.windows(mark.len()).any(|window| window.eq_ignore_ascii_case(mark));
-    has(b"$ROAD_CRG") || has(b"$KD_Definition")
+    let marks: [&[u8]; 2] = [b"$ROAD_CRG", b"$KD_Definition"];
+    let begins =
+        |at: usize, mark: &[u8]| head[at..].get(..mark.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(mark));
+    let sections = head.iter().enumerate().filter(|(_, byte)| **byte == b'$').map(|(at, _)| at);
+    sections.into_iter().any(|at| marks.iter().any(|mark| begins(at, mark)))
 }
 
 /// How numbers are written: `LRFI`, `LDFI` as text of 10 or 20 letters, `KRBI`, `KDBI` binary, big endian; L begins
