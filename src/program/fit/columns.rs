@@ -48,32 +48,23 @@ impl Quantity {
 pub(super) const EXPECTED: &str = "columns by their names with units: f [Hz] or omega [rad/s]; E' [MPa] and E'' [MPa] \
      or tan delta, or G' and G'', or |E*| and delta [°]; temperature [°C] if it varies; or time [s] and E(t) [MPa]";
 
-const fn quantity(
-    quantity: Quantity,
-    dimension: Dimension,
-    key_words: &'static [&'static str],
-    other_words: &'static [&'static str],
-) -> Words<Quantity> {
-    Words { quantity, dimension, key_words, other_words }
-}
-
 /// One word may name several quantities; the first is meant where no unit tells.
 const VOCABULARY: [Words<Quantity>; 18] = {
     use Dimension::{Angle, Frequency as Rate, Number, Pressure, Temperature as Kelvin, Time as Seconds};
     [
-        quantity(
+        Words::new(
             Quantity::Frequency,
             Rate,
             &["f", "freq", "frequency", "frequenz", "frequencies", "prüffrequenz", "messfrequenz"],
             &["oscillation", "test", "reduced", "at", "a", "T", "shifted", "excitation", "f", "mean"],
         ),
-        quantity(
+        Words::new(
             Quantity::AngularFrequency,
             Rate,
             &["omega", "ω", "angular", "ang", "circular", "kreisfrequenz", "w"],
             &["f", "freq", "frequency", "reduced", "at", "a", "T", "shifted", "oscillation", "omega", "ω"],
         ),
-        quantity(
+        Words::new(
             Quantity::Storage,
             Pressure,
             &["e'", "storage", "speichermodul", "stor", "estor"],
@@ -82,61 +73,61 @@ const VOCABULARY: [Words<Quantity>; 18] = {
                 "measured",
             ],
         ),
-        quantity(
+        Words::new(
             Quantity::Loss,
             Pressure,
             &["e''", "loss", "verlustmodul", "eloss"],
             &["e''", "e", "modulus", "moduli", "mod", "dynamic", "dyn", "tensile", "young's", "imaginary", "measured"],
         ),
-        quantity(
+        Words::new(
             Quantity::ShearStorage,
             Pressure,
             &["g'", "storage", "speichermodul", "stor", "gstor"],
             &["g'", "g", "shear", "modulus", "moduli", "mod", "dynamic", "dyn", "elastic", "schub", "measured"],
         ),
-        quantity(
+        Words::new(
             Quantity::ShearLoss,
             Pressure,
             &["g''", "loss", "verlustmodul", "gloss"],
             &["g''", "g", "shear", "modulus", "moduli", "mod", "dynamic", "dyn", "viscous", "schub", "measured"],
         ),
-        quantity(
+        Words::new(
             Quantity::Complex,
             Pressure,
             &["estar", "complex", "komplexer"],
             &["e", "estar", "modulus", "modul", "tensile", "abs", "magnitude", "young's", "dynamic"],
         ),
-        quantity(
+        Words::new(
             Quantity::ShearComplex,
             Pressure,
             &["gstar", "complex"],
             &["g", "gstar", "shear", "modulus", "abs", "magnitude", "dynamic"],
         ),
-        quantity(
+        Words::new(
             Quantity::LossTangent,
             Number,
             &["tan", "tandelta", "tanδ", "tand", "factor", "tangent", "verlustfaktor"],
             &["delta", "δ", "d", "loss", "damping", "factor"],
         ),
-        quantity(
+        Words::new(
             Quantity::Phase,
             Angle,
             &["delta", "δ", "phase", "phasenwinkel"],
             &["angle", "lag", "delta", "δ", "shift"],
         ),
-        quantity(
+        Words::new(
             Quantity::ShiftFactor,
             Number,
             &["at", "a", "shift"],
             &["T", "factor", "factors", "horizontal", "at", "a"],
         ),
-        quantity(
+        Words::new(
             Quantity::Time,
             Seconds,
             &["t", "time", "zeit"],
             &["step", "run", "test", "elapsed", "relaxation", "total"],
         ),
-        quantity(
+        Words::new(
             Quantity::Temperature,
             Kelvin,
             &["T", "temp", "temperature", "temperatur", "t"],
@@ -153,26 +144,26 @@ const VOCABULARY: [Words<Quantity>; 18] = {
                 "measured",
             ],
         ),
-        quantity(
+        Words::new(
             Quantity::SetTemperature,
             Kelvin,
             &["temp", "temperature", "temperatur", "T"],
             &["set", "setpoint", "point", "nominal", "furnace", "oven", "chamber", "target", "soll", "program"],
         ),
-        quantity(Quantity::Set, Number, &["set"], &["no", "number", "id"]),
-        quantity(
+        Words::new(Quantity::Set, Number, &["set"], &["no", "number", "id"]),
+        Words::new(
             Quantity::Relaxation,
             Pressure,
             &["e", "relax", "relaxation", "erelax"],
             &["e", "t", "modulus", "relaxation", "tensile", "young's", "stress"],
         ),
-        quantity(
+        Words::new(
             Quantity::ShearRelaxation,
             Pressure,
             &["g", "relax", "relaxation", "grelax"],
             &["g", "t", "modulus", "relaxation", "shear"],
         ),
-        quantity(Quantity::ShearRelaxation, Pressure, &["g(t)"], &[]),
+        Words::new(Quantity::ShearRelaxation, Pressure, &["g(t)"], &[]),
     ]
 };
 

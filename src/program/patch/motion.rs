@@ -11,21 +11,17 @@ const TIME: &str = "time";
 const TRANSPORT: &str = "transport.speed";
 const TEMPERATURE: &str = "temperature";
 
-const fn column(name: &'static str, dimension: Dimension, words: &'static [&'static str]) -> Words<&'static str> {
-    Words { quantity: name, dimension, key_words: words, other_words: words }
-}
-
 /// The names of columns; a unit may stand behind them.
 const COLUMNS: [Words<&str>; 9] = [
-    column(TIME, Dimension::Time, &["time"]),
-    column("x", Dimension::Length, &["x"]),
-    column("y", Dimension::Length, &["y"]),
-    column("z", Dimension::Length, &["z"]),
-    column("roll", Dimension::Angle, &["roll"]),
-    column("pitch", Dimension::Angle, &["pitch"]),
-    column("yaw", Dimension::Angle, &["yaw"]),
-    column(TRANSPORT, Dimension::Speed, &["transport", "speed"]),
-    column(TEMPERATURE, Dimension::Temperature, &["temperature"]),
+    Words::new(TIME, Dimension::Time, &["time"], &["time"]),
+    Words::new("x", Dimension::Length, &["x"], &["x"]),
+    Words::new("y", Dimension::Length, &["y"], &["y"]),
+    Words::new("z", Dimension::Length, &["z"], &["z"]),
+    Words::new("roll", Dimension::Angle, &["roll"], &["roll"]),
+    Words::new("pitch", Dimension::Angle, &["pitch"], &["pitch"]),
+    Words::new("yaw", Dimension::Angle, &["yaw"], &["yaw"]),
+    Words::new(TRANSPORT, Dimension::Speed, &["transport", "speed"], &["transport", "speed"]),
+    Words::new(TEMPERATURE, Dimension::Temperature, &["temperature"], &["temperature"]),
 ];
 
 /// A motion, row by row.

@@ -23,7 +23,7 @@ pub(super) enum Axis {
 }
 
 const fn axis(axis: Axis, key_words: &'static [&'static str], other_words: &'static [&'static str]) -> Words<Axis> {
-    Words { quantity: axis, dimension: Dimension::Length, key_words, other_words }
+    Words::new(axis, Dimension::Length, key_words, other_words)
 }
 
 pub(super) const VOCABULARY: [Words<Axis>; 3] = [

@@ -19,47 +19,38 @@ enum Quantity {
     Bulk,
 }
 
-const fn quantity(
-    quantity: Quantity,
-    dimension: Dimension,
-    key_words: &'static [&'static str],
-    other_words: &'static [&'static str],
-) -> Words<Quantity> {
-    Words { quantity, dimension, key_words, other_words }
-}
-
 const VOCABULARY: [Words<Quantity>; 6] = [
-    quantity(
+    Words::new(
         Quantity::Time,
         Dimension::Time,
         &["relaxation", "tau", "τ", "time", "t", "zeit", "relaxationszeit", "tau1", "taui", "tau_i", "τi"],
         &["relaxation", "time", "times", "rel", "i", "j", "k", "n", "relative", "constant"],
     ),
-    quantity(
+    Words::new(
         Quantity::Relative,
         Dimension::Number,
         &["relative", "rel", "normalised", "normalized", "g", "gi", "gp", "alpha", "α", "alphai", "e0", "g0"],
         &["modulus", "moduli", "mod", "shear", "i", "j", "k", "n", "p", "prony", "ratio", "coefficient", "g", "e"],
     ),
-    quantity(
+    Words::new(
         Quantity::Bulk,
         Dimension::Number,
         &["k", "ki", "kp", "bulk"],
         &["i", "j", "n", "p", "prony", "ratio", "modulus", "relative", "rel", "k"],
     ),
-    quantity(
+    Words::new(
         Quantity::ShearModulus,
         Dimension::Pressure,
         &["shear", "g", "gi", "gj", "gk"],
         &["modulus", "moduli", "i", "j", "k", "n", "shear", "maxwell", "relaxation"],
     ),
-    quantity(
+    Words::new(
         Quantity::Modulus,
         Dimension::Pressure,
         &["modulus", "moduli", "e", "ei", "ej", "ek", "stiffness", "modul", "strength"],
         &["i", "j", "k", "n", "young's", "young", "youngs", "tensile", "maxwell", "relaxation", "spring", "e"],
     ),
-    quantity(Quantity::Modulus, Dimension::Pressure, &["e1", "e_i"], &[]),
+    Words::new(Quantity::Modulus, Dimension::Pressure, &["e1", "e_i"], &[]),
 ];
 
 const EXPECTED: &str = "a relaxation time and a modulus: relaxation_time [s], modulus [Pa]; tau_i, E_i, G_i, or \

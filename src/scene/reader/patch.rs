@@ -13,15 +13,11 @@ use crate::scene::{FmuOptions, SceneError, read_file, read_text};
 
 /// The columns of a file of points.
 const COLUMNS: [Words<usize>; 4] = [
-    column(0, Dimension::Length, &["x"]),
-    column(1, Dimension::Length, &["y"]),
-    column(2, Dimension::Length, &["z"]),
-    column(3, Dimension::Area, &["area"]),
+    Words::new(0, Dimension::Length, &["x"], &[]),
+    Words::new(1, Dimension::Length, &["y"], &[]),
+    Words::new(2, Dimension::Length, &["z"], &[]),
+    Words::new(3, Dimension::Area, &["area"], &[]),
 ];
-
-const fn column(place: usize, dimension: Dimension, name: &'static [&'static str]) -> Words<usize> {
-    Words { quantity: place, dimension, key_words: name, other_words: &[] }
-}
 
 impl PatchFile {
     /// Reads the patch file at `path` and the file of points that it names; the table is not read.

@@ -18,6 +18,18 @@ pub struct Words<Q: 'static> {
     pub other_words: &'static [&'static str],
 }
 
+impl<Q: Copy> Words<Q> {
+    /// The words of a quantity: one of the `key_words` must be in a name, the `other_words` may be.
+    pub const fn new(
+        quantity: Q,
+        dimension: Dimension,
+        key_words: &'static [&'static str],
+        other_words: &'static [&'static str],
+    ) -> Self {
+        Self { quantity, dimension, key_words, other_words }
+    }
+}
+
 /// A heading whose quantity is known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heading<Q> {
