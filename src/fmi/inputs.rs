@@ -35,8 +35,8 @@ struct Past {
 
 /// Whether values come from a source that samples on another grid than that of the communication points.
 ///
-/// Their rate between two points then changes forth and back, singly or with alternating signs. Where a motion goes faster or
-/// slower, its rate changes with one sign over several steps; where it starts or stops, once.
+/// Their rate between two points then changes forth and back, singly or with alternating signs. Where a motion goes
+/// faster or slower, its rate changes with one sign over several steps; where it starts or stops, once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Sampling {
     /// The last rate between communication points, per second.
@@ -150,8 +150,8 @@ impl Inputs {
         Ok(self.0[slot].rate.unwrap_or((target - self.value(slot)) / step.h))
     }
 
-    /// Whether a run can have reached these inputs: the values of past steps are finite. Values and rates of the next step
-    /// may be anything.
+    /// Whether a run can have reached these inputs: the values of past steps are finite. Values and rates of the next
+    /// step may be anything.
     pub(super) fn is_valid(&self) -> bool {
         self.0.iter().all(Signal::is_valid)
     }
@@ -184,9 +184,9 @@ impl Signal {
         self.past = [Some(Past { value: self.value, step: h }), self.past[0]];
     }
 
-    /// The rate that the master gave, if û = `current` equals its value but for rounding. It is then used as it is: if it
-    /// were computed from the difference to the target, that rounding over h would be a kink at every communication point
-    /// of a steady motion.
+    /// The rate that the master gave, if û = `current` equals its value but for rounding. It is then used as it is: if
+    /// it were computed from the difference to the target, that rounding over h would be a kink at every communication
+    /// point of a steady motion.
     fn given_rate(&self, current: f64) -> Option<f64> {
         let same = (current - self.value).abs() <= ROUNDING * current.abs().max(self.value.abs());
         self.rate.filter(|_| same)
@@ -260,8 +260,8 @@ mod tests {
         assert_eq!(rate(&inputs, Extrapolation::Hold), -1.0);
     }
 
-    /// Steps of 25 µs, a source every 10, 40 or 62.5 µs: a steady motion of 2 m/s is off by what it goes in the age of a value, and by
-    /// a step at a mean rate over two that is a multiple of the source's.
+    /// Steps of 25 µs, a source every 10, 40 or 62.5 µs: a steady motion of 2 m/s is off by what it goes in the age of
+    /// a value, and by a step at a mean rate over two that is a multiple of the source's.
     #[test]
     fn values_of_another_grid_are_followed_by_their_mean_rate() {
         let (h, speed) = (25.0, 2.0);
@@ -280,7 +280,8 @@ mod tests {
         }
     }
 
-    /// Motions on an even grid are no such pattern: sines from eight points a period on, ramps, steps that begin and end.
+    /// Motions on an even grid are no such pattern: sines from eight points a period on, ramps, steps that begin and
+    /// end.
     #[test]
     fn motions_on_an_even_grid_are_extrapolated_as_they_are() {
         let sine = |points: f64, phase: f64| move |k: f64| (std::f64::consts::TAU * k / points + phase).sin();

@@ -29,6 +29,8 @@ pub(super) struct Instance {
     /// Values looked up by a call that is under way.
     pub(super) found: Vec<Value>,
     fmu_states: FmuStates,
+    /// What an FMU state takes, bytes: reckoned once, since parameters change neither masses nor elements.
+    state_memory: usize,
     log: Log,
     guid: String,
     /// The parameters before any was set.
@@ -56,6 +58,7 @@ impl Instance {
     fn from_definition(definition: Definition, variables: VariableTable, guid: String, logging: bool) -> Self {
         let mut log = Log::new(logging);
         log.extend(definition.warnings().iter().map(|text| Message::from_status(Status::Warning, text.clone())));
+        let state_memory = definition.state_memory();
         let original = Arc::new(Parameters::new(definition));
         Self {
             state: InstanceState::new(Arc::clone(&original), &variables),
@@ -66,6 +69,7 @@ impl Instance {
             warned_of_sampling: false,
             found: Vec::new(),
             fmu_states: FmuStates::default(),
+            state_memory,
             log,
             guid,
             original,
@@ -189,7 +193,7 @@ impl Instance {
 
     /// fmi2GetFMUstate: takes and returns the state's handle, 0 for a new one.
     pub(super) fn get_state(&mut self, handle: usize) -> Result<usize, Error> {
-        memory::check("an FMU state", self.state.parameters.definition().state_memory())?;
+        memory::check("an FMU state", self.state_memory)?;
         if handle == 0 {
             return Ok(self.fmu_states.keep_new(self.state.save()));
         }
@@ -225,7 +229,7 @@ impl Instance {
     pub(super) fn deserialise_state(&mut self, bytes: &[u8]) -> Result<usize, Error> {
         let definition = self.state.parameters.definition();
         // A run tells whether the state is one.
-        memory::check("an FMU state", definition.memory().saturating_add(definition.state_memory()))?;
+        memory::check("an FMU state", definition.memory().saturating_add(self.state_memory))?;
         let state = fmu_states::read(bytes, &self.guid, &self.original, &self.variables)?;
         Ok(self.fmu_states.keep_new(state))
     }
@@ -258,7 +262,8 @@ impl Instance {
         warning.into_iter().for_each(|text| self.warn(text));
     }
 
-    /// The name of an input whose source samples on another grid than that of the communication points. A temperature is held.
+    /// The name of an input whose source samples on another grid than that of the communication points. A temperature
+    /// is held.
     fn uneven_input(&self) -> Option<&str> {
         // Inputs come first in the table.
         let inputs = self.variables.entries().map_while(|(_, variable)| match variable.role {

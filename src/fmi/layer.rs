@@ -1,5 +1,5 @@
-//! The layer of a scene as an FMU's model. Between communication points û is continuous and runs straight to a target; a
-//! force runs straight, too, and may jump at a point; a temperature is held.
+//! The layer of a scene as an FMU's model. Between communication points û is continuous and runs straight to a target;
+//! a force runs straight, too, and may jump at a point; a temperature is held.
 
 use std::path::{Path as FilePath, PathBuf};
 use std::sync::Arc;
@@ -165,8 +165,8 @@ pub fn layer_start(scene: &Scene, inputs: &Inputs, time: f64) -> Start {
     }
 }
 
-/// The motion over a communication step: straight from û and ŵ (m), where they are, to their targets. Forces start from the
-/// values given.
+/// The motion over a communication step: straight from û and ŵ (m), where they are, to their targets. Forces start from
+/// the values given.
 ///
 /// # Errors
 /// [`InputOutOfRange`].
@@ -192,16 +192,16 @@ pub fn layer_motion(
     })
 }
 
-/// The largest displacement, m, whose rounding is below a thousandth of the profile's finest step and of the spacing of the
-/// masses. Farther away slopes and contacts are those of rounding, and steps have no end.
+/// The largest displacement, m, whose rounding is below a thousandth of the profile's finest step and of the spacing of
+/// the masses. Farther away slopes and contacts are those of rounding, and steps have no end.
 fn farthest(scene: &Scene) -> f64 {
     const SHARE: f64 = 1e-3;
     let steps = scene.surface.x().windows(2).map(|pair| pair[1] - pair[0]);
     SHARE * steps.fold(scene.layer.spacing, f64::min) / f64::EPSILON
 }
 
-/// The work of a communication step where no `solver.max_steps` is given, steps times masses of the run and of the reference run
-/// each: some seconds. The step that a master needs takes a hundredth of it; one that diverges would wait for minutes.
+/// The work of a communication step where no `solver.max_steps` is given: steps times masses, of the run and of the
+/// reference run each. It takes some seconds at most; a master that diverges would wait for minutes otherwise.
 const MAX_MASS_STEPS: u64 = 500_000;
 
 /// A run of the layer.

@@ -75,8 +75,8 @@ impl InstanceState {
         result
     }
 
-    /// A step of `h` (s) from `point` (s). A call with an invalid point or size changes nothing, not even the life cycle;
-    /// a step that fails changes only the life cycle.
+    /// A step of `h` (s) from `point` (s). A call with an invalid point or size changes nothing, not even the life
+    /// cycle; a step that fails changes only the life cycle.
     pub(super) fn step(&mut self, point: f64, h: f64) -> Result<(), Error> {
         let result = match self.clock.step(point, h)? {
             Some(clock) => self.advance(clock, h),
@@ -131,8 +131,8 @@ impl InstanceState {
         }
     }
 
-    /// Continues from `state`. What a run has done that is no part of it, such as the processor time, continues from its
-    /// current value.
+    /// Continues from `state`. What a run has done that is no part of it, such as the processor time, continues from
+    /// its current value.
     pub(super) fn restore(&mut self, state: &FmuState) -> Result<(), Error> {
         let same = Arc::ptr_eq(&self.parameters, &state.parameters);
         match (&state.run, &mut self.run) {
@@ -186,7 +186,8 @@ impl OutputCache {
 /// Differences of times below this share of the larger of time and step size are rounding.
 const ROUNDING: f64 = 1e-10;
 
-/// So are those below this share of the step size, and those by which a clock in single precision is off, up to a larger one.
+/// So are those below this share of the step size, and those by which a clock in single precision is off, up to a
+/// larger one.
 const PART_OF_STEP: f64 = 1e-6;
 const MAX_PART_OF_STEP: f64 = 1e-3;
 
@@ -222,8 +223,8 @@ impl Clock {
         is_possible(self.time) && self.stop.is_none_or(is_possible)
     }
 
-    /// The clock after a step of `h` (s) from the communication point `point` (s); `None` where the step is too short to
-    /// change the time.
+    /// The clock after a step of `h` (s) from the communication point `point` (s); `None` where the step is too short
+    /// to change the time.
     ///
     /// # Errors
     /// [`Error::StepSize`], [`Error::OtherPoint`] or [`Error::BeyondStop`], beyond differences by rounding;

@@ -187,9 +187,9 @@ pub(crate) struct Pack {
 
 #[derive(Debug, Args)]
 pub(crate) struct Fit {
-    /// The measured moduli, as text or a workbook (xlsx, xls, ods): columns, by their names and units, of frequency, E' and
-    /// E'' or tan delta (or G', G''; or |E*| and delta), and temperature if it varies; or of time and E(t). Other columns
-    /// are left out.
+    /// The measured moduli, as text or a workbook (xlsx, xls, ods): columns, by their names and units, of frequency, E'
+    /// and E'' or tan delta (or G', G''; or |E*| and delta), and temperature if it varies; or of time and E(t). Other
+    /// columns are left out.
     #[arg(value_name = "DMA.csv")]
     pub(crate) data: PathBuf,
     /// The file of Prony terms to write, in the format that a scene reads; - for standard output.
@@ -198,8 +198,8 @@ pub(crate) struct Fit {
     /// The admissible error of the fit: the root mean square of the relative errors of E' and E'' at all points.
     #[arg(long, value_name = "E", default_value_t = 0.02, value_parser = fit_error)]
     pub(crate) error: f64,
-    /// Constants of the Williams-Landel-Ferry equation, which shifts rows at other temperatures to TREF: C1 (1), C2 (K),
-    /// TREF (K). Default: shift factors are found where the curves overlap, and constants for them.
+    /// Constants of the Williams-Landel-Ferry equation, which shifts rows at other temperatures to TREF: C1 (1), C2
+    /// (K), TREF (K). Default: shift factors are found where the curves overlap, and constants for them.
     #[arg(long, value_name = "C1,C2,TREF", value_parser = WlfConstants::parse)]
     pub(crate) wlf: Option<WlfConstants>,
     /// Also fits a Kelvin-Voigt viscosity in parallel to the terms.
@@ -289,8 +289,8 @@ pub(crate) struct Report {
 
 #[derive(Debug, Args)]
 pub(crate) struct Surface {
-    /// The profile: text with columns x and z; an areal file, X3P, SDF, SUR, PLU, OpenCRG, ERD or text of Gwyddion; or a
-    /// scene, whose surface is analysed.
+    /// The profile: text with columns x and z; an areal file, X3P, SDF, SUR, PLU, OpenCRG, ERD or text of Gwyddion; or
+    /// a scene, whose surface is analysed.
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
     /// Plots the profile and its spectrum, as SVG or PNG according to the file name.
@@ -347,8 +347,8 @@ pub(crate) struct Reading {
     /// The columns of x and z, by their names or numbers, as in x,z; one alone holds heights. Default: by their names.
     #[arg(long, value_name = "X,Z", value_delimiter = ',', num_args = 1..=2)]
     pub(crate) columns: Vec<String>,
-    /// The distance of points of a file without x, in m, and of the lines of a matrix of heights; a unit may follow, as in
-    /// 0.05mm.
+    /// The distance of points of a file without x, in m, and of the lines of a matrix of heights; a unit may follow, as
+    /// in 0.05mm.
     #[arg(long, value_name = "DX[,DY]", value_delimiter = ',', num_args = 1..=2, value_parser = length)]
     pub(crate) spacing: Vec<f64>,
     /// The line of an areal measurement, counted from 1. Default: the middle one.

@@ -7,8 +7,8 @@ use asperity::scene::Surface;
 /// Share of the length over which the end of a tapered profile goes over into its beginning.
 const TAPER: f64 = 0.1;
 
-/// The profile followed by its mirror image, without the point that both have: its heights are those of before, and where it
-/// turns, its slope changes its sign.
+/// The profile followed by its mirror image, without the point that both have: its heights are those of before, and
+/// where it turns, its slope changes its sign.
 pub(super) fn mirrored(surface: &Surface) -> Surface {
     let (x, z) = (surface.x(), surface.z());
     let end = x[x.len() - 1];
@@ -18,8 +18,8 @@ pub(super) fn mirrored(surface: &Surface) -> Surface {
     Surface::new(mirrored_x, mirrored_z, true)
 }
 
-/// The profile without the last tenth of its length, which goes over into the first tenth by a cosine: at x = 0 it goes on from
-/// where the period ends, with the same slope.
+/// The profile without the last tenth of its length, which goes over into the first tenth by a cosine: at x = 0 it goes
+/// on from where the period ends, with the same slope.
 pub(super) fn tapered(surface: &Surface) -> Surface {
     let (x, z, spline) = (surface.x(), surface.z(), surface.spline());
     let length = x[x.len() - 1] - x[0];
@@ -67,7 +67,8 @@ mod tests {
         assert!((x[x.len() - 1] / 0.9e-3 - 1.0).abs() < 1e-9 && z[0] == z[z.len() - 1]);
         assert!((z[0] - profile.z()[900]).abs() < 1e-15);
         assert!((101..900).all(|i| z[i] == profile.z()[i]));
-        // Of the waves 0.09, of the ramp 0.005; a ramp of 4.5 µm back over 0.1 mm by a cosine adds at most π/2 of 0.045.
+        // Of the waves 0.09, of the ramp 0.005; a ramp of 4.5 µm back over 0.1 mm by a cosine adds at most π/2 of
+        // 0.045.
         let steepest = periodic.spline().bounds().slope_max_abs;
         assert!(steepest < 0.095 + 0.5 * PI * 0.045 * 1.5, "{steepest}");
         // The second difference over the seam is like that of the waves, 1 µm (0.09)².

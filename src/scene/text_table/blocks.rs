@@ -353,8 +353,8 @@ fn without_sign(line: &str) -> &str {
     line.trim_start_matches(['#', '%', '!', '/', ' '])
 }
 
-/// How many plain decimals a line has with a `letter` between them, if it has nothing else: digits, with or without a sign
-/// `-`, a point and an exponent. Nearly all lines of a long table are such ones, and are told at a glance.
+/// How many plain decimals a line has with a `letter` between them, if it has nothing else: digits, with or without a
+/// sign `-`, a point and an exponent. Nearly all lines of a long table are such ones, and are told at a glance.
 fn plain_decimals(line: &str, letter: char) -> Option<usize> {
     let bytes = line.as_bytes();
     let digits = |from: usize| bytes[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
