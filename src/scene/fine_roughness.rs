@@ -1,136 +1,196 @@
-//! The roughness below the resolution of the profile, as bands of waves.
+//! The roughness below the resolution of the profile, as bands of waves (`surface.fine`).
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
-use super::{Material, RealArea, Scene, SelfAffine};
+use serde::Serialize;
 
-/// Bands of waves that the profile lacks.
-#[derive(Clone, Debug, PartialEq)]
+use super::{Material, Scene, SelfAffine, Surface, complex_stiffness};
+
+/// The waves that the profile lacks, and how contacts rub on them; in the material form alone.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FineRoughness {
-    /// Wave number (rad/m) and mean square gradient (1) of each; without a wave number where the modulus is given.
-    bands: Vec<(Option<f64>, f64)>,
-    /// M_c at every speed, Pa; `None`: the material's at the frequency of each wave.
-    modulus: Option<f64>,
+    /// Which waves there are.
+    pub waves: FineWaves,
+    /// v_c, m/s at the reference temperature: slower slip rubs as this does. `None` follows `friction.rate_shear` where there
+    /// is one.
+    pub creep_speed: Option<f64>,
+    /// Whether the waves rub by hysteresis; without, they only leave a part of the area in contact.
+    pub hysteresis: bool,
+    /// s, 1: by what the moduli are less in the bands, where rubber is strained by tens of per cent.
+    pub softening: f64,
 }
 
-/// Bands of a law that goes on.
-const BANDS: usize = 32;
+/// Which waves the profile lacks.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub enum FineWaves {
+    /// An isotropic self-affine surface.
+    SelfAffine {
+        /// H, 1.
+        hurst: f64,
+        /// Root mean square gradient of all its waves, 1.
+        rms_slope: f64,
+        /// Their longest wavelength, m.
+        longest: f64,
+        /// Their shortest, m.
+        shortest: f64,
+    },
+    /// The profile's own law, which goes on below its cut-off.
+    Continued {
+        /// The shortest wavelength, m.
+        shortest: f64,
+    },
+    /// Contacts that flatten by a modulus that is given, the same at every speed.
+    Modulus {
+        /// Root mean square gradient, 1.
+        rms_slope: f64,
+        /// M_c, Pa.
+        modulus: f64,
+    },
+}
+
+/// Waves of about one length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FineBand {
+    /// q_b, rad/m: the middle in ln q.
+    pub wave_number: f64,
+    /// h'_b², 1: the mean square of the gradient.
+    pub gradient_square: f64,
+}
+
+/// What the rubber answers a wave that it slides over, as means over the directions of waves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BandModuli {
+    /// M_b² = ⟨|M(q v cos φ)|²⟩, Pa².
+    pub square: f64,
+    /// L_b = ⟨cos φ Im M(q v cos φ)⟩, Pa.
+    pub loss: f64,
+}
+
+/// Bands of a decade of wavelengths.
+const PER_DECADE: f64 = 8.0;
+/// Part of a band by which a number of bands may be off a whole number.
+const ROUNDING: f64 = 1e-9;
+/// Directions φ between 0 and π/2 at whose middles the waves of an isotropic surface are taken.
+const DIRECTIONS: u32 = 32;
+/// v_c where nothing gives it, m/s.
+const CREEP_SPEED: f64 = 1e-6;
 
 impl Scene {
-    /// The roughness that the friction law adds to the profile, if it does.
-    pub fn fine_roughness(&self) -> Option<FineRoughness> {
-        let RealArea { rms_slope, wavelength, modulus, cut_off_wavelength } = self.friction.as_ref()?.real_area?;
-        let bands = match (rms_slope, cut_off_wavelength) {
-            (Some(slope), _) => vec![(wavelength.map(|length| TAU / length), slope * slope)],
-            (None, Some(cut_off)) => self.surface.self_affine()?.continued(cut_off),
-            (None, None) => return None,
-        };
-        Some(FineRoughness { bands, modulus })
+    /// The bands of waves that the profile lacks; none without them, or where their modulus is given.
+    pub fn fine_bands(&self) -> Vec<FineBand> {
+        match self.fine.as_ref().map(|fine| fine.waves) {
+            Some(FineWaves::SelfAffine { hurst, rms_slope, longest, shortest }) => {
+                self_affine_bands(hurst, rms_slope, longest, shortest)
+            }
+            Some(FineWaves::Continued { shortest }) => {
+                self.surface.self_affine().map_or(Vec::new(), |law| law.continued(shortest))
+            }
+            Some(FineWaves::Modulus { .. }) | None => Vec::new(),
+        }
     }
-}
 
-impl RealArea {
-    /// What it is, in a few words.
-    pub fn describe(&self) -> String {
-        let Self { rms_slope, wavelength, modulus, cut_off_wavelength } = self;
-        let part = |name: &str, value: &Option<f64>, unit: &str| value.map(|value| format!("{name} {value:?}{unit}"));
-        let parts = [
-            part("rms_slope", rms_slope, ""),
-            part("wavelength", wavelength, " m"),
-            part("modulus", modulus, " Pa"),
-            part("cut_off_wavelength", cut_off_wavelength, " m"),
-        ];
-        parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+    /// v_c, m/s at the reference temperature: slip on the roughness below the profile is no slower.
+    pub fn fine_creep_speed(&self) -> f64 {
+        let of_shear = self.friction.as_ref().and_then(|friction| friction.rate_shear).map(|law| law.creep_speed());
+        self.fine.as_ref().and_then(|fine| fine.creep_speed).or(of_shear).unwrap_or(CREEP_SPEED)
     }
 }
 
 impl FineRoughness {
-    /// h'_s, 1: the root mean square gradient.
-    pub fn gradient(&self) -> f64 {
-        self.bands.iter().map(|band| band.1).sum::<f64>().sqrt()
-    }
-
-    /// The least and the largest wave number, rad/m; `None` where the modulus is given.
-    pub fn wave_numbers(&self) -> Option<(f64, f64)> {
-        if self.modulus.is_some() {
-            return None;
-        }
-        let of = |band: Option<&(Option<f64>, f64)>| band.and_then(|band| band.0);
-        Some((of(self.bands.first())?, of(self.bands.last())?))
-    }
-
-    /// M_c h'_s at a speed (m/s), Pa: √(Σ |M(qv)|² h'²) over the bands.
-    pub fn stress(&self, material: &Material, speed: f64) -> f64 {
-        let modulus = |wave_number: &Option<f64>| match (self.modulus, wave_number) {
-            (Some(modulus), _) => modulus,
-            (None, q) => {
-                let (storage, loss) = material.complex_modulus(q.unwrap_or(0.0) * speed);
-                material.plane_modulus(storage.hypot(loss))
+    /// Whether its numbers go together, and with the profile.
+    ///
+    /// # Errors
+    /// What is expected.
+    pub(super) fn check(&self, surface: &Surface) -> Result<(), String> {
+        match (self.waves, surface.self_affine()) {
+            (FineWaves::SelfAffine { longest, shortest, .. }, _) if longest <= shortest => {
+                Err(format!("longest > {shortest} m, the shortest"))
             }
-        };
-        self.bands.iter().map(|(q, square)| modulus(q).powi(2) * square).sum::<f64>().sqrt()
-    }
-
-    /// The bands: wave number (rad/m) and mean square gradient (1).
-    pub fn bands(&self) -> impl Iterator<Item = (f64, f64)> {
-        self.bands.iter().filter_map(|&(q, square)| Some((q?, square)))
+            (FineWaves::Continued { .. }, None) => {
+                Err("shortest alone with a self_affine surface, whose law it continues".into())
+            }
+            (FineWaves::Continued { shortest }, Some(law)) if shortest >= law.cut_off => {
+                Err(format!("shortest < {:?} m, the surface's own cut-off", law.cut_off))
+            }
+            _ => Ok(()),
+        }
     }
 }
 
-impl SelfAffine {
-    /// The bands, even in ln q, of the law from its own cut-off down to the wavelength `cut_off` (m): an isotropic
-    /// surface has the mean square gradient 2 ∫ q² C dq over each.
-    fn continued(&self, cut_off: f64) -> Vec<(Option<f64>, f64)> {
-        let (low, high) = (TAU / self.cut_off, TAU / cut_off);
-        let edge = |b: usize| low * (high / low).powf(b as f64 / BANDS as f64);
-        let exponent = 2.0 - 2.0 * self.hurst;
-        let plateau = self.plateau() * (TAU / self.roll_off).powf(1.0 + 2.0 * self.hurst);
-        let integral = |a: f64, b: f64| {
-            // ∫ q^(1-2H) dq, with its limit ln(b/a) for H = 1.
-            if exponent == 0.0 { (b / a).ln() } else { (b.powf(exponent) - a.powf(exponent)) / exponent }
-        };
-        let band = |b: usize| {
-            let (a, b) = (edge(b), edge(b + 1));
-            (Some((a * b).sqrt()), 2.0 * plateau * integral(a, b))
-        };
-        (0..BANDS).map(band).collect()
+impl FineBand {
+    /// What `material` answers at its reference temperature as it slides at `speed` (m/s), softened by `softening`.
+    pub fn moduli(&self, material: &Material, softening: f64, speed: f64) -> BandModuli {
+        let mut sum = BandModuli::default();
+        for i in 0..DIRECTIONS {
+            let cosine = (FRAC_PI_2 * (f64::from(i) + 0.5) / f64::from(DIRECTIONS)).cos();
+            let (storage, loss) = material.plane_moduli_at_reference(self.wave_number * speed * cosine);
+            sum.square += storage * storage + loss * loss;
+            sum.loss += cosine * loss;
+        }
+        let mean = 1.0 / f64::from(DIRECTIONS);
+        BandModuli { square: softening * softening * mean * sum.square, loss: softening * mean * sum.loss }
     }
 }
 
 impl Material {
-    /// The least and the largest rate 1/τ_j at the layer's temperature, 1/s, that of E_∞/η among them; `None` for a
-    /// material whose modulus is the same at every frequency.
-    pub fn rates(&self) -> Option<(f64, f64)> {
-        let shift = self.shift_factor();
-        let glassy = self.equilibrium_modulus + self.prony.iter().map(|term| term.modulus).sum::<f64>();
-        let viscous = self.viscosity.filter(|&viscosity| viscosity > 0.0).map(|viscosity| glassy / viscosity);
-        let terms = self.prony.iter().filter(|term| term.modulus > 0.0).map(|term| 1.0 / term.relaxation_time);
-        let rates = terms.chain(viscous).map(|rate| rate / shift);
-        let (low, high) = rates.fold((f64::MAX, 0.0), |(low, high), rate: f64| (rate.min(low), rate.max(high)));
-        (high > 0.0).then_some((low, high))
+    /// The real and the imaginary part of M(ω) = E*(ω)/(1 - ν²), Pa, at the reference temperature, ω in rad/s.
+    fn plane_moduli_at_reference(&self, omega: f64) -> (f64, f64) {
+        let elements = self.prony.iter().map(|term| term.element());
+        let viscosity = self.viscosity.unwrap_or(0.0);
+        let (storage, loss) = complex_stiffness(self.equilibrium_modulus, viscosity, elements, omega);
+        (self.plane_modulus(storage), self.plane_modulus(loss))
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// The middles of bands even in ln q between two wavelengths (m), and the width of a band in ln q.
+fn middles(longest: f64, shortest: f64) -> (Vec<f64>, f64) {
+    let count = (PER_DECADE * (longest / shortest).log10() - ROUNDING).ceil().max(1.0);
+    let width = (longest / shortest).ln() / count;
+    let middle = |b: usize| TAU / longest * (width * (b as f64 + 0.5)).exp();
+    ((0..count as usize).map(middle).collect(), width)
+}
 
-    /// The mean square gradient of the bands is the integral over all of them, here by a sum of many modes.
-    #[test]
-    fn the_law_goes_on() {
-        for hurst in [0.7, 1.0] {
-            let law =
-                SelfAffine { length: 0.1, points: 4000, hurst, rms: 2e-5, roll_off: 5e-3, cut_off: 1e-4, seed: 1 };
-            let step = TAU / 0.1;
-            let modes = 1001..=100_000;
-            let plateau = law.rms.powi(2)
-                / (1..=1000_u32).map(|m| (f64::from(m) / 20.0).max(1.0).powf(-1.0 - 2.0 * hurst)).sum::<f64>();
-            let square =
-                |m: u32| 2.0 * (f64::from(m) * step).powi(2) * plateau * (f64::from(m) / 20.0).powf(-1.0 - 2.0 * hurst);
-            let expected: f64 = modes.map(square).sum();
-            let found: f64 = law.continued(1e-6).iter().map(|band| band.1).sum();
-            // The sum over modes against the integral: half a mode of a thousand at the lower end.
-            assert!((found / expected - 1.0).abs() < 2e-3, "{found} {expected}");
-        }
+/// h'_b² ∝ q_b^(2-2H), together the square of `rms_slope`.
+fn self_affine_bands(hurst: f64, rms_slope: f64, longest: f64, shortest: f64) -> Vec<FineBand> {
+    let (wave_numbers, _) = middles(longest, shortest);
+    // Relative to the first, so that no power overflows.
+    let weights: Vec<f64> = wave_numbers.iter().map(|q| (q / wave_numbers[0]).powf(2.0 - 2.0 * hurst)).collect();
+    let scale = rms_slope * rms_slope / weights.iter().sum::<f64>();
+    let band = |(wave_number, weight)| FineBand { wave_number, gradient_square: scale * weight };
+    wave_numbers.into_iter().zip(weights).map(band).collect()
+}
+
+impl SelfAffine {
+    /// The law from its own cut-off down to the wavelength `shortest` (m).
+    fn continued(&self, shortest: f64) -> Vec<FineBand> {
+        let at_roll_off = self.plateau() * (TAU / self.roll_off).powf(1.0 + 2.0 * self.hurst);
+        let (wave_numbers, width) = middles(self.cut_off, shortest);
+        let band = |q: f64| {
+            let of_lines = at_roll_off * q.powf(-1.0 - 2.0 * self.hurst);
+            FineBand { wave_number: q, gradient_square: gradient_square(q, isotropic(q, of_lines, self.hurst), width) }
+        };
+        wave_numbers.into_iter().map(band).collect()
+    }
+}
+
+/// h'² = 2π q⁴ C Δln q of the isotropic spectrum C (m⁴) at q (rad/m) over a `width` in ln q.
+fn gradient_square(q: f64, spectrum: f64, width: f64) -> f64 {
+    TAU * q.powi(4) * spectrum * width
+}
+
+/// C (m⁴) of the isotropic surface whose lines have the spectrum C1 (m³) ∝ q^-(1+2H): (C1/q) Γ(1+H)/(2√π Γ(½+H)).
+fn isotropic(q: f64, of_lines: f64, hurst: f64) -> f64 {
+    let ratio = (libm::lgamma(1.0 + hurst) - libm::lgamma(0.5 + hurst)).exp();
+    of_lines / q * ratio / (2.0 * std::f64::consts::PI.sqrt())
+}
+
+impl Material {
+    /// The fastest rate 1/τ_j at the reference temperature, 1/s, that of E_∞/η among them; `None` for a material whose modulus
+    /// is the same at every frequency.
+    pub fn fastest_rate(&self) -> Option<f64> {
+        let glassy = self.equilibrium_modulus + self.prony.iter().map(|term| term.modulus).sum::<f64>();
+        let viscous = self.viscosity.filter(|&viscosity| viscosity > 0.0).map(|viscosity| glassy / viscosity);
+        let terms = self.prony.iter().filter(|term| term.modulus > 0.0).map(|term| 1.0 / term.relaxation_time);
+        terms.chain(viscous).reduce(f64::max)
     }
 }

@@ -42,7 +42,7 @@ pub use axis::{Axis, ByAxis};
 pub use carrier::{CarrierBodies, CarrierBody, CarrierInitial, Input};
 pub use error::{ParameterError, Problem, SceneError};
 pub use excitation::{Force, Motion, Path, Phase};
-pub use fine_roughness::FineRoughness;
+pub use fine_roughness::{BandModuli, FineBand, FineRoughness, FineWaves};
 pub use fmu::{DependencyList, FmuOptions, IntegerType};
 pub use foundation::{Body, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};
 pub use keys::similar_keys;
@@ -75,6 +75,8 @@ pub struct Scene {
     pub surface: Surface,
     /// The axes along which the carrier is a body.
     pub carrier: CarrierBodies,
+    /// The roughness below the resolution of the profile; `None`: contacts touch on all of their area.
+    pub fine: Option<FineRoughness>,
     /// Friction in the contacts; `None` is frictionless.
     pub friction: Option<Friction>,
     /// The integrator's settings.
@@ -185,22 +187,6 @@ pub struct Friction {
     pub shear_strength: Option<f64>,
     /// Rate-dependent shear strength.
     pub rate_shear: Option<RateShear>,
-    /// Roughness below the profile's, by which contacts touch on a part of their area alone; in the material form
-    /// alone.
-    pub real_area: Option<RealArea>,
-}
-
-/// The roughness that the profile lacks: `rms_slope` with `wavelength` or `modulus`, or `cut_off_wavelength`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct RealArea {
-    /// Root mean square gradient h'_s, 1.
-    pub rms_slope: Option<f64>,
-    /// Wavelength λ_s of that roughness, m.
-    pub wavelength: Option<f64>,
-    /// Modulus M_c at every speed, Pa.
-    pub modulus: Option<f64>,
-    /// Wavelength down to which the law of a self-affine surface goes on, m.
-    pub cut_off_wavelength: Option<f64>,
 }
 
 /// Shear strength that depends on the speed: A τ_f(v) = A τ_f0 exp(-c [log10(v/v_0)]²) of one mass in contact, constant

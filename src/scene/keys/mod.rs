@@ -212,10 +212,24 @@ impl SurfaceKind {
 
 const KIND: Key = word::<SurfaceKind>("kind", "Where the heights come from");
 
-const SURFACE: &[Key] = &[KIND];
+const FINE: Key = table("fine", FINE_ROUGHNESS).material();
+
+const FINE_ROUGHNESS: &[Key] = &[
+    number("hurst", POSITIVE.up_to(1.0), Unit::One, "Hurst exponent of the roughness that the profile lacks"),
+    number("rms_slope", NOT_NEGATIVE, Unit::One, "Root mean square gradient of the roughness that the profile lacks"),
+    number("longest", POSITIVE, Unit::Meter, "Longest wavelength of the roughness that the profile lacks"),
+    number("shortest", POSITIVE, Unit::Meter, "Shortest wavelength of the roughness that the profile lacks"),
+    number("modulus", POSITIVE, Unit::Pascal, "Plane modulus at which that roughness is pressed flat, at every speed"),
+    number("creep_speed", POSITIVE, Unit::MeterPerSecond, "Speed below which that roughness rubs as at this one"),
+    key("hysteresis", Allowed::Flag, "Whether that roughness rubs by hysteresis"),
+    number("softening", POSITIVE.up_to(1.0), Unit::One, "Factor on the moduli in that roughness"),
+];
+
+const SURFACE: &[Key] = &[KIND, FINE];
 
 const SINUSOID: &[Key] = &[
     KIND,
+    FINE,
     number("amplitude", ANY, Unit::Meter, "Amplitude"),
     number("wavelength", POSITIVE, Unit::Meter, "Wavelength"),
     whole("points_per_wavelength", 4, 10_000_000, "Data points of one wavelength"),
@@ -223,6 +237,7 @@ const SINUSOID: &[Key] = &[
 
 const SELF_AFFINE: &[Key] = &[
     KIND,
+    FINE,
     number("length", POSITIVE, Unit::Meter, "Period"),
     whole("points", 4, 4_000_000, "Data points of one period"),
     number("hurst", POSITIVE.up_to(1.0), Unit::One, "Hurst exponent"),
@@ -234,6 +249,7 @@ const SELF_AFFINE: &[Key] = &[
 
 const POINTS: &[Key] = &[
     KIND,
+    FINE,
     key("x", Allowed::Numbers(ANY), "Positions of the data points, m"),
     key("z", Allowed::Numbers(ANY), "Heights of the data points, m"),
     PERIODIC,
@@ -243,6 +259,7 @@ const PERIODIC: Key = key("periodic", Allowed::Flag, "Whether the profile is rep
 
 const FILE: &[Key] = &[
     KIND,
+    FINE,
     key("path", Allowed::Text(PATH), "File of the profile"),
     PERIODIC,
     word::<LengthUnit>("unit", "Unit of both columns"),
@@ -302,11 +319,12 @@ const CARRIER_Z: &[Key] = &[
     ),
 ];
 
+/// Of the old key, which the reader refuses with what says the same in `surface.fine`.
 const REAL_AREA: &[Key] = &[
-    number("rms_slope", NOT_NEGATIVE, Unit::One, "Root mean square gradient of the roughness that the profile lacks"),
-    number("wavelength", POSITIVE, Unit::Meter, "Wavelength of the roughness that the profile lacks"),
-    number("modulus", POSITIVE, Unit::Pascal, "Plane modulus at which that roughness is pressed flat, at every speed"),
-    number("cut_off_wavelength", POSITIVE, Unit::Meter, "Wavelength down to which the law of the surface goes on"),
+    number("rms_slope", NOT_NEGATIVE, Unit::One, "Gone: surface.fine"),
+    number("wavelength", POSITIVE, Unit::Meter, "Gone: surface.fine"),
+    number("modulus", POSITIVE, Unit::Pascal, "Gone: surface.fine"),
+    number("cut_off_wavelength", POSITIVE, Unit::Meter, "Gone: surface.fine"),
 ];
 
 const RATE_SHEAR: &[Key] = &[

@@ -12,7 +12,7 @@ use super::prony_file::{ElasticConstants, PronySeries};
 use super::values::Word;
 use super::{
     ByLink, CarrierBodies, Extrapolation, FmuOptions, Foundation, FoundationKind, Friction, Initial, Layer, Link,
-    LinkKind, Material, MaxwellElement, OutputGroup, PronyTerm, RateShear, RealArea, Scene, SceneError, Solver,
+    LinkKind, Material, MaxwellElement, OutputGroup, PronyTerm, RateShear, Scene, SceneError, Solver,
     Surface, Wlf, read_file, read_text, warnings,
 };
 use surface::Found;
@@ -55,10 +55,10 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
     let material_entry = root.entry("material");
     let read_material = |entry: &Entry<'_>| entry.table(|table| read_material(table, &mut found));
     let material = material_entry.as_ref().map(read_material).transpose()?;
-    let surface = surface::read(&root.required("surface")?, &mut found)?;
+    let (surface, fine) = surface::read(&root.required("surface")?, &mut found)?;
     let carrier_entry = root.entry("carrier");
     let carrier = carrier_entry.as_ref().map(|entry| entry.table(carrier::read)).transpose()?.unwrap_or_default();
-    let friction = root.optional_table("friction", |table| read_friction(table, &surface))?;
+    let friction = root.optional_table("friction", read_friction)?;
     let solver = root.optional_table("solver", read_solver)?.unwrap_or_default();
     let wlf = material.as_ref().and_then(|material| material.wlf.as_ref());
     let read_input = |table: &mut TableReader<'_>| {
@@ -80,6 +80,7 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
         material,
         foundation,
         surface,
+        fine,
         carrier,
         friction,
         solver,
@@ -214,37 +215,34 @@ fn read_wlf(table: &mut TableReader<'_>) -> Result<Wlf> {
     Ok(wlf)
 }
 
-fn read_friction(table: &mut TableReader<'_>, surface: &Surface) -> Result<Friction> {
+fn read_friction(table: &mut TableReader<'_>) -> Result<Friction> {
+    if let Some(entry) = table.entry("real_area") {
+        return Err(entry.refuse(entry.table(fine_in_place)?));
+    }
     Ok(Friction {
         coulomb: table.optional_number("coulomb")?,
         shear_force: table.optional_number("shear_force")?,
         shear_strength: table.optional_number("shear_strength")?,
         rate_shear: table.optional_table("rate_shear", read_rate_shear)?,
-        real_area: table.entry("real_area").map(|entry| read_real_area(&entry, surface)).transpose()?,
     })
 }
 
-fn read_real_area(entry: &Entry<'_>, surface: &Surface) -> Result<RealArea> {
-    let roughness = entry.table(|table| {
-        Ok(RealArea {
-            rms_slope: table.optional_number("rms_slope")?,
-            wavelength: table.optional_number("wavelength")?,
-            modulus: table.optional_number("modulus")?,
-            cut_off_wavelength: table.optional_number("cut_off_wavelength")?,
-        })
-    })?;
-    let RealArea { rms_slope, wavelength, modulus, cut_off_wavelength } = roughness;
-    match (rms_slope, wavelength, modulus, cut_off_wavelength) {
-        (Some(_), Some(_), None, None) | (Some(_), None, Some(_), None) => Ok(roughness),
-        (None, None, None, Some(cut_off)) => match surface.self_affine() {
-            Some(law) if cut_off < law.cut_off => Ok(roughness),
-            Some(law) => {
-                Err(entry.refuse(format_args!("a cut_off_wavelength < {:?} m, the surface's own", law.cut_off)))
-            }
-            None => Err(entry.refuse("cut_off_wavelength with a self_affine surface alone, whose law it continues")),
-        },
-        _ => Err(entry.refuse("rms_slope and wavelength, or rms_slope and modulus, or cut_off_wavelength alone")),
-    }
+/// What says the same as the old key `friction.real_area`.
+fn fine_in_place(table: &mut TableReader<'_>) -> Result<String> {
+    /// Half a band, of which one wave is the middle.
+    const HALF_BAND: f64 = 1.0 / 16.0;
+    let [slope, wavelength, modulus, cut_off] =
+        ["rms_slope", "wavelength", "modulus", "cut_off_wavelength"].map(|name| table.optional_number(name));
+    let keys = match (slope?, wavelength?, modulus?, cut_off?) {
+        (Some(slope), Some(length), ..) => {
+            let [longest, shortest] = [HALF_BAND, -HALF_BAND].map(|decades| length * 10_f64.powf(decades));
+            format!("hurst = 1, rms_slope = {slope}, longest = {longest:.6e}, shortest = {shortest:.6e}, hysteresis = false")
+        }
+        (Some(slope), None, Some(modulus), _) => format!("rms_slope = {slope}, modulus = {modulus}"),
+        (_, _, _, Some(cut_off)) => format!("shortest = {cut_off}, hysteresis = false"),
+        _ => "...".into(),
+    };
+    Ok(format!("surface.fine = {{ {keys} }} in its place"))
 }
 
 fn read_rate_shear(table: &mut TableReader<'_>) -> Result<RateShear> {

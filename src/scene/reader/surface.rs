@@ -6,7 +6,7 @@ use super::table::{Entry, Result, TableReader};
 use crate::scene::keys::{PATH, SurfaceKind};
 use crate::scene::profile::{self, Extract, ProfileOptions, ReadFailure, ReadingNote, Tilt};
 use crate::scene::surface::{Coordinate, SelfAffine, check_points};
-use crate::scene::{Layer, Surface, warnings};
+use crate::scene::{FineRoughness, FineWaves, Layer, Surface, warnings};
 
 /// A number of points that is whole but for rounding is that number.
 const ROUNDING: f64 = 1.0e-9;
@@ -39,8 +39,9 @@ impl Found {
     }
 }
 
-/// The surface given by the table `entry`; the file that it names, if any, is added to those `found`.
-pub(super) fn read(entry: &Entry<'_>, found: &mut Found) -> Result<Surface> {
+/// The surface given by the table `entry`, and the roughness below it; the file that it names, if any, is added to those
+/// `found`.
+pub(super) fn read(entry: &Entry<'_>, found: &mut Found) -> Result<(Surface, Option<FineRoughness>)> {
     let mut table = entry.open()?;
     let kind = table.required("kind")?.choice::<SurfaceKind>()?;
     table.use_keys(kind.keys())?;
@@ -51,9 +52,43 @@ pub(super) fn read(entry: &Entry<'_>, found: &mut Found) -> Result<Surface> {
         SurfaceKind::Points => read_points(&mut table)?,
         SurfaceKind::File => read_file(&mut table, found)?,
     };
+    let fine = table.entry("fine").map(|entry| read_fine(&entry, &surface)).transpose()?;
     table.finish()?;
     surface.check_slopes().map_err(|expected| entry.refuse(expected))?;
-    Ok(surface)
+    Ok((surface, fine))
+}
+
+/// What `surface.fine` may have, in words.
+const FINE_FORMS: &str = "hurst, rms_slope, longest and shortest; shortest alone; or rms_slope and modulus";
+
+fn read_fine(entry: &Entry<'_>, surface: &Surface) -> Result<FineRoughness> {
+    let mut table = entry.open()?;
+    let [hurst, rms_slope, longest, shortest, modulus] =
+        ["hurst", "rms_slope", "longest", "shortest", "modulus"].map(|name| table.optional_number(name));
+    let waves = match (hurst?, rms_slope?, longest?, shortest?, modulus?) {
+        (Some(hurst), Some(rms_slope), Some(longest), Some(shortest), None) => {
+            FineWaves::SelfAffine { hurst, rms_slope, longest, shortest }
+        }
+        (None, None, None, Some(shortest), None) => FineWaves::Continued { shortest },
+        (None, Some(rms_slope), None, None, Some(modulus)) => FineWaves::Modulus { rms_slope, modulus },
+        _ => return Err(entry.refuse(FINE_FORMS)),
+    };
+    if matches!(waves, FineWaves::Modulus { .. }) {
+        for name in ["creep_speed", "hysteresis", "softening"] {
+            if let Some(entry) = table.entry(name) {
+                return Err(entry.refuse("no such key beside modulus, which is the same at every speed"));
+            }
+        }
+    }
+    let fine = FineRoughness {
+        waves,
+        creep_speed: table.optional_number("creep_speed")?,
+        hysteresis: table.entry("hysteresis").map_or(Ok(true), |entry| entry.flag())?,
+        softening: table.optional_number("softening")?.unwrap_or(1.0),
+    };
+    table.finish()?;
+    fine.check(surface).map_err(|expected| entry.refuse(expected))?;
+    Ok(fine)
 }
 
 fn read_sinusoid(table: &mut TableReader<'_>) -> Result<Surface> {
@@ -176,10 +211,16 @@ pub(super) fn read_roughness(entry: &Entry<'_>, layer: &Layer, found: &mut Found
     let mut table = entry.open()?;
     let kind = table.required("kind")?.choice::<SurfaceKind>()?;
     match (kind, table.has("x")) {
-        (SurfaceKind::Flat, _) => read(entry, found).map(|_| Vec::new()),
+        (SurfaceKind::Flat, _) => read_alone(entry, found).map(|_| Vec::new()),
         (SurfaceKind::Points, false) => read_heights(&mut table, layer.masses),
         _ => sample(entry, layer, found),
     }
+}
+
+/// A surface without roughness below it: only the scene's has that.
+fn read_alone(entry: &Entry<'_>, found: &mut Found) -> Result<Surface> {
+    let (surface, fine) = read(entry, found)?;
+    if fine.is_some() { Err(entry.refuse("no key fine, which surface has")) } else { Ok(surface) }
 }
 
 /// `z` without `x`: one height for each mass.
@@ -195,7 +236,7 @@ fn read_heights(table: &mut TableReader<'_>, masses: usize) -> Result<Vec<f64>> 
 }
 
 fn sample(entry: &Entry<'_>, layer: &Layer, found: &mut Found) -> Result<Vec<f64>> {
-    let surface = read(entry, found)?;
+    let surface = read_alone(entry, found)?;
     found.warnings.extend(warnings::short_roughness(layer, &surface));
     let spline = surface.spline();
     let heights: Vec<f64> = (0..layer.masses).map(|i| spline.evaluate(layer.rest_position(i)).0).collect();
