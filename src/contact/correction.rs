@@ -402,12 +402,12 @@ impl<'a> Correction<'a> {
         let after = v_t + time * acceleration / (1.0 + slowing);
         if model.friction.present && contact.normal >= 0.0 && mode.direction() * after < 0.0 {
             let distance = -0.5 * v_t * v_t / acceleration;
-            self.energies.channels.add_friction(friction * distance, model.friction.shear_share(contact.normal));
+            self.energies.channels.add_friction(friction * distance, model.friction.shares_at_rest(contact.normal));
             self.stop_after(i, (distance - v_t * time) / q, time);
             return Speed { mean: distance / time, at_end: distance / time };
         }
         let mean = 0.5 * (v_t + after);
-        self.energies.channels.add_friction(friction * time * mean, model.friction.shear_share(contact.normal));
+        self.energies.channels.add_friction(friction * time * mean, model.friction.shares_at_rest(contact.normal));
         self.set_slip_velocity(i, after / q);
         Speed { mean, at_end: after }
     }

@@ -120,7 +120,7 @@ pub fn stop_reversed(model: &Model, state: &mut State, forces: &Forces, energies
         let velocity = (state.velocity_x[i], state.velocity_z[i]);
         if has_reversed(state.mode[i], velocity.0) {
             let contact = forces.contact(model, i, velocity.0, &state.surface[i]);
-            energies.add_friction(energy_at(model, velocity), model.friction.shear_share(contact.normal));
+            energies.add_friction(energy_at(model, velocity), model.friction.shares_at_rest(contact.normal));
             (state.velocity_x[i], state.velocity_z[i]) = (0.0, 0.0);
         }
     }

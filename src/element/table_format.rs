@@ -157,7 +157,7 @@ pub struct Basis {
     /// What the links stand for.
     pub foundation: Option<String>,
     /// The roughness below the profile's.
-    pub real_area: Option<String>,
+    pub fine: Option<String>,
     /// What a study of convergence found; `None` without one.
     pub convergence: Option<String>,
     /// What was held at each point instead of the displacement w; `None` where that was.
@@ -169,7 +169,7 @@ pub const CONVERGED: &str = "converged";
 
 impl Basis {
     fn lines(&self) -> impl Iterator<Item = String> {
-        let named = BASIS_KEYS.into_iter().zip([&self.foundation, &self.real_area, &self.convergence, &self.held]);
+        let named = BASIS_KEYS.into_iter().zip([&self.foundation, &self.fine, &self.convergence, &self.held]);
         named.filter_map(|(key, text)| Some(format!("# {key} = {}", one_line(text.as_ref()?))))
     }
 
@@ -179,7 +179,7 @@ impl Basis {
     }
 }
 
-const BASIS_KEYS: [&str; 4] = ["foundation", "real_area", "convergence", "held"];
+const BASIS_KEYS: [&str; 4] = ["foundation", "fine", "convergence", "held"];
 
 impl TableHeader {
     /// The lines of the header, the names of the columns included.
@@ -403,8 +403,8 @@ impl TableText {
 
     /// What the numbers rest on, as far as the table says.
     pub(super) fn basis(&self) -> Basis {
-        let [foundation, real_area, convergence, held] = BASIS_KEYS.map(|key| self.header.get(key).cloned());
-        Basis { foundation, real_area, convergence, held }
+        let [foundation, fine, convergence, held] = BASIS_KEYS.map(|key| self.header.get(key).cloned());
+        Basis { foundation, fine, convergence, held }
     }
 
     /// The header of a table as a sweep writes it.

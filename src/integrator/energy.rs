@@ -74,6 +74,7 @@ impl EnergySums {
         for (weight, exchange) in weights.iter().zip(exchange).take(step.stages().len()) {
             energy.friction += h * weight * exchange.friction;
             energy.shear += h * weight * exchange.shear;
+            energy.fine += h * weight * exchange.fine;
             energy.input += h * weight * exchange.input;
             energy.carrier += h * weight * exchange.carrier;
         }

@@ -6,7 +6,9 @@ use serde::{Deserialize, Serialize};
 use crate::math::dot;
 use crate::scene::{Axis, ByAxis};
 
-use super::{Carrier, CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, Mode, Model, State};
+use super::{
+    Carrier, CarrierPoint, ContactForces, Forces, FrictionPower, FrictionShares, LinkKind, Mode, Model, State,
+};
 
 /// Power through the channels, W.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -49,6 +51,8 @@ pub struct ChannelEnergies {
     pub friction: f64,
     /// E_shear, the part of E_friction against the shear force.
     pub shear: f64,
+    /// E_fine, the part of E_friction by hysteresis of the waves that the profile lacks.
+    pub fine: f64,
     /// E_in, of a prescribed carrier into the layer, of loads and drives into a body.
     pub input: f64,
     /// E_c, lost in the dampers from bodies to their drives; no part of the dissipated energy.
@@ -61,10 +65,11 @@ impl ChannelEnergies {
         self.damper + self.maxwell + self.friction
     }
 
-    /// Adds an `energy` lost in friction, J, of which the shear force has a share.
-    pub fn add_friction(&mut self, energy: f64, shear_share: f64) {
+    /// Adds an `energy` lost in friction, J, that is shared out to its parts.
+    pub fn add_friction(&mut self, energy: f64, shares: FrictionShares) {
         self.friction += energy;
-        self.shear += shear_share * energy;
+        self.shear += shares.shear * energy;
+        self.fine += shares.fine * energy;
     }
 
     /// Subtracts `other`.
@@ -73,6 +78,7 @@ impl ChannelEnergies {
         self.maxwell -= other.maxwell;
         self.friction -= other.friction;
         self.shear -= other.shear;
+        self.fine -= other.fine;
         self.input -= other.input;
         self.carrier -= other.carrier;
     }
@@ -83,6 +89,7 @@ impl ChannelEnergies {
         self.maxwell += other.maxwell;
         self.friction += other.friction;
         self.shear += other.shear;
+        self.fine += other.fine;
         self.input += other.input;
         self.carrier += other.carrier;
     }
@@ -95,6 +102,8 @@ pub struct BoundaryPowers {
     pub friction: f64,
     /// P_shear = Σ (F_T - μ F_N) v_t, W: the part of the shear force.
     pub shear: f64,
+    /// P_fine: the part of the hysteresis of the waves that the profile lacks, W.
+    pub fine: f64,
     /// P_in: -F_x u̇ and -F_z ẇ of a prescribed carrier, the power of loads and drives on a body, W.
     pub input: f64,
     /// P_c = D (u̇ - u̇_d)² and likewise along z, lost in the dampers from bodies to their drives, W.
@@ -131,7 +140,13 @@ impl BoundaryPowers {
     }
 
     fn with_powers(model: &Model, power: &FrictionPower, input: f64) -> Self {
-        Self { friction: power.friction(), shear: power.shear(&model.friction), input, carrier: 0.0 }
+        Self {
+            friction: power.friction(),
+            shear: power.shear(&model.friction),
+            fine: power.fine(),
+            input,
+            carrier: 0.0,
+        }
     }
 
     /// Adds the powers of what acts on the bodies from outside, at the time `s` after the start of the `carrier`'s

@@ -1,22 +1,23 @@
 //! Friction of a mass in contact: the law, and all that follows from it.
 //!
-//! Friction has three parts: Coulomb's, a constant shear force, and a shear force that depends on the speed,
+//! Friction has four parts: Coulomb's, the hysteresis of the waves that the profile lacks, a constant shear force, and
+//! one that depends on the speed,
 //!
-//!   T(v_t) = μ F_N + A τ_0 + A τ_f(v_t)
+//!   T(v_t) = (μ + μ_h(F_N, v_t)) F_N + A_r (τ_0 + τ_f(v_t))
 //!
 //! The last is the shear strength of rubber, τ_f(v) = τ_f0 exp(-c [log10(v/v_0)]²) above a creep speed v_c and constant
 //! below it (B. Lorenz et al., J. Phys.: Condens. Matter 25, 2013). Its plateau A τ_f(v_c) acts at rest too and is
 //! counted in [`FrictionLaw::shear`]; a contact that slips has the [excess](SlipCurve::excess) over it.
 //!
-//! With roughness below the profile's the shear forces act on the part A_r/A of the area alone, which depends on F_N
-//! and on the speed ([`RealAreaLaw`](super::RealAreaLaw)): at rest on A_r(F_N, v_c).
+//! μ_h and the area A_r that touches are those of the roughness below the profile ([`FineFriction`]); without it A_r is A.
+//! At rest both are at v_c.
 //!
 //! A law is what [`FrictionLaw`] answers: T(0), its derivative by F_N, and the excess in slip with its derivative by
 //! the speed; its tangent for Newton's method, its power, the share of the shear force, and what it takes in an impact.
 
 use std::f64::consts::LN_10;
 
-use super::{AreaShare, ContactForces, Forces, Mode, Model, RealAreaLaw, State};
+use super::{ContactForces, ContactQuantity, FineContact, FineFriction, Forces, Mode, Model, State};
 use crate::math::{bracketed_root, dot, sum};
 use crate::scene::{self, Scene};
 
@@ -29,12 +30,21 @@ pub struct FrictionLaw {
     pub coulomb: f64,
     /// Shear force A τ_0 + A τ_f(v_c) at rest or slower than the creep speed, N, where it acts on all of the area.
     pub shear: f64,
-    /// Whether the scene has Coulomb's friction and a shear force, so that their parts are told apart.
-    has_both: bool,
+    /// Whether the scene tells its parts apart.
+    has_parts: bool,
     /// The excess over the shear force in slip; `None` where it does not depend on the speed.
     rate_shear: Option<RateShearLaw>,
-    /// The part of a contact's area that the shear force acts on; `None`: all of it.
-    real_area: Option<RealAreaLaw>,
+    /// The roughness below the profile; `None`: the shear force acts on all of a contact's area.
+    fine: Option<FineFriction>,
+}
+
+/// What parts of friction have in it, 1; Coulomb's has the rest.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrictionShares {
+    /// The shear force.
+    pub shear: f64,
+    /// The hysteresis of the waves that the profile lacks.
+    pub fine: f64,
 }
 
 /// A law of friction that is linear in the normal force, or the tangent of another: T(0) = μ F_N + `shear`.
@@ -54,46 +64,55 @@ impl FrictionLaw {
         let coulomb = scene.friction.as_ref().and_then(|friction| friction.coulomb).unwrap_or(0.0);
         let shear = scene.shear_force().unwrap_or(0.0);
         let rate_shear = scene.rate_shear().and_then(|law| RateShearLaw::new(&law));
+        let fine = FineFriction::new(scene);
+        let rubs = fine.as_ref().is_some_and(FineFriction::rubs);
         Self {
-            present: coulomb > 0.0 || shear > 0.0 || rate_shear.is_some(),
+            present: coulomb > 0.0 || shear > 0.0 || rate_shear.is_some() || rubs,
             coulomb,
             shear: shear + rate_shear.map_or(0.0, |rate_shear| rate_shear.plateau()),
-            has_both: scene.has_both_frictions(),
+            has_parts: scene.has_friction_parts(),
             rate_shear,
-            real_area: RealAreaLaw::new(scene),
+            fine,
         }
     }
 
     /// Whether it depends on the speed of slip.
     pub fn depends_on_speed(&self) -> bool {
-        self.rate_shear.is_some() || self.real_area.as_ref().is_some_and(RealAreaLaw::depends_on_speed)
+        self.rate_shear.is_some() || self.fine.as_ref().is_some_and(FineFriction::depends_on_speed)
     }
 
     /// Whether it is linear in the normal force.
     pub fn is_linear_in_normal(&self) -> bool {
-        self.real_area.is_none()
+        self.fine.is_none()
     }
 
     /// Whether it is linear in the normal force and does not depend on the speed.
     pub fn is_linear(&self) -> bool {
-        self.rate_shear.is_none() && self.real_area.is_none()
+        self.rate_shear.is_none() && self.fine.is_none()
     }
 
-    /// T(0) under the normal force F_N (N), μ F_N + A_r(F_N, v_c) (τ_0 + τ_f(v_c)), N.
+    /// T(0) under the normal force F_N (N), (μ + μ_h(F_N, v_c)) F_N + A_r(F_N, v_c) (τ_0 + τ_f(v_c)), N.
     #[inline]
     pub fn limit(&self, normal: f64) -> f64 {
-        let shear = match &self.real_area {
+        let rest = match &self.fine {
             None => self.shear,
-            Some(area) => area.share_at_rest(normal) * self.shear,
+            Some(fine) => {
+                let contact = fine.at_rest(normal);
+                contact.share.value * self.shear + contact.hysteresis.value
+            }
         };
-        self.coulomb * normal + shear
+        self.coulomb * normal + rest
     }
 
     /// ∂T/∂F_N, 1, under F_N (N) at the `speed` of slip, m/s.
     pub fn by_normal(&self, normal: f64, speed: f64) -> f64 {
         let strength = |law: &RateShearLaw| law.with_slope(speed.abs()).0;
         let force = self.shear + self.rate_shear.as_ref().map_or(0.0, strength);
-        self.coulomb + self.real_area.as_ref().map_or(0.0, |area| area.share(normal, speed).by_normal * force)
+        let by_normal = |fine: &FineFriction| {
+            let contact = fine.contact(normal, speed);
+            contact.share.by_normal * force + contact.hysteresis.by_normal
+        };
+        self.coulomb + self.fine.as_ref().map_or(0.0, by_normal)
     }
 
     /// The excess in slip over T(0) under the normal force F_N (N); `None` where friction does not depend on the speed.
@@ -115,24 +134,38 @@ impl FrictionLaw {
         LinearFriction { normal, coulomb, shear: self.limit(normal) - coulomb * normal }
     }
 
-    /// The part of a contact's area that touches under F_N (N) at the `speed` (m/s): all of it without roughness below
-    /// the profile's.
-    pub fn area_share(&self, normal: f64, speed: f64) -> AreaShare {
-        let whole = AreaShare { value: 1.0, ..AreaShare::default() };
-        self.real_area.as_ref().map_or(whole, |area| area.share(normal, speed))
+    /// What the roughness below the profile does in a contact under F_N (N) at the `speed` (m/s): without it all of the area
+    /// touches, and no hysteresis is added.
+    pub fn fine_contact(&self, normal: f64, speed: f64) -> FineContact {
+        let whole = ContactQuantity { value: 1.0, ..ContactQuantity::default() };
+        let smooth = FineContact { share: whole, ..FineContact::default() };
+        self.fine.as_ref().map_or(smooth, |fine| fine.contact(normal, speed))
     }
 
-    /// The part of T(0) that is shear force under F_N (N), 1: what a sticking force is shared out by.
-    pub fn shear_share(&self, normal: f64) -> f64 {
+    /// The parts of T(0) under F_N (N): what a sticking force is shared out by.
+    pub fn shares_at_rest(&self, normal: f64) -> FrictionShares {
         let (limit, coulomb) = (self.limit(normal), self.coulomb * normal.max(0.0));
-        if limit > coulomb { 1.0 - coulomb / limit } else { 0.0 }
+        if limit <= coulomb {
+            return FrictionShares::default();
+        }
+        let fine = self.hysteresis_at_rest(normal).value / limit;
+        FrictionShares { shear: 1.0 - coulomb / limit - fine, fine }
     }
 
-    /// The derivative of the [share](Self::shear_share) by F_N, 1/N, where that of T(0) is `by_normal`.
-    pub fn shear_share_by_normal(&self, normal: f64, by_normal: f64) -> f64 {
+    /// The derivatives of the [shares](Self::shares_at_rest) by F_N, 1/N, where that of T(0) is `by_normal`.
+    pub fn shares_by_normal(&self, normal: f64, by_normal: f64) -> FrictionShares {
         let (limit, coulomb) = (self.limit(normal), self.coulomb);
-        let has_share = normal > 0.0 && limit > coulomb * normal;
-        if has_share { coulomb * (normal * by_normal / limit - 1.0) / limit } else { 0.0 }
+        if normal <= 0.0 || limit <= coulomb * normal {
+            return FrictionShares::default();
+        }
+        let hysteresis = self.hysteresis_at_rest(normal);
+        let fine = (hysteresis.by_normal - hysteresis.value * by_normal / limit) / limit;
+        FrictionShares { shear: coulomb * (normal * by_normal / limit - 1.0) / limit - fine, fine }
+    }
+
+    /// μ_h(F_N, v_c) F_N, N.
+    fn hysteresis_at_rest(&self, normal: f64) -> ContactQuantity {
+        self.fine.as_ref().map_or(ContactQuantity::default(), |fine| fine.at_rest(normal).hysteresis)
     }
 
     /// v_t (m/s) after an impact with the velocity v_n < 0 (m/s) along the normal: by its impulse J = -m v_n Coulomb's
@@ -220,9 +253,9 @@ pub struct SlipCurve<'a> {
 impl SlipCurve<'_> {
     /// The speed up to which there is no excess, m/s.
     pub fn creep_speed(&self) -> f64 {
-        match (&self.law.rate_shear, &self.law.real_area) {
+        match (&self.law.rate_shear, &self.law.fine) {
             (Some(law), _) => law.creep_speed,
-            (None, Some(area)) => area.creep_speed(),
+            (None, Some(fine)) => fine.creep_speed(),
             (None, None) => 0.0,
         }
     }
@@ -230,11 +263,13 @@ impl SlipCurve<'_> {
     /// Bounds of the excess, N.
     fn bounds(&self) -> (f64, f64) {
         let (least, most) = self.law.rate_shear.as_ref().map_or((0.0, 0.0), RateShearLaw::bounds);
-        match &self.law.real_area {
+        match &self.law.fine {
             None => (least, most),
-            Some(area) => {
-                let (share, at_rest) = (area.at_rest(self.normal).value, self.law.shear);
-                (-share * at_rest, share * most)
+            Some(fine) => {
+                let at_rest = fine.at_rest(self.normal);
+                let (share, hysteresis) = (at_rest.share.value, at_rest.hysteresis.value);
+                let growth = (fine.largest_hysteresis(self.normal) - hysteresis).max(0.0);
+                (-share * self.law.shear - hysteresis, share * most + growth)
             }
         }
     }
@@ -247,12 +282,14 @@ impl SlipCurve<'_> {
     /// The excess, N, and its derivative by the speed, N s/m, at the `speed` in the direction of slip, m/s.
     pub fn with_slope(&self, speed: f64) -> (f64, f64) {
         let of_rate = self.law.rate_shear.as_ref().map_or((0.0, 0.0), |law| law.with_slope(speed));
-        let Some(area) = &self.law.real_area else { return of_rate };
+        let Some(fine) = &self.law.fine else { return of_rate };
         let sign = 1.0_f64.copysign(speed);
-        let (share, at_rest) = (area.share(self.normal, speed), area.at_rest(self.normal).value);
+        let (FineContact { share, hysteresis }, at_rest) =
+            (fine.contact(self.normal, speed), fine.at_rest(self.normal));
         let force = self.law.shear + sign * of_rate.0;
-        let by_size = share.by_speed * sign * force + share.value * of_rate.1;
-        (sign * (share.value * force - at_rest * self.law.shear), by_size)
+        let by_size = share.by_speed * sign * force + share.value * of_rate.1 + sign * hysteresis.by_speed;
+        let of_area = share.value * force - at_rest.share.value * self.law.shear;
+        (sign * (of_area + (hysteresis.value - at_rest.hysteresis.value)), by_size)
     }
 
     /// The excess, N.
@@ -302,7 +339,7 @@ impl SlipCurve<'_> {
     /// The steepest fall of friction up to the `speed` of slip, m/s, by the real area that shrinks: ∂T/∂v, N s/m, 0
     /// where friction does not fall.
     pub fn steepest_fall(&self, speed: f64) -> f64 {
-        let falls = self.law.real_area.iter().flat_map(RealAreaLaw::speeds).take_while(|&at| at <= speed);
+        let falls = self.law.fine.iter().flat_map(FineFriction::speeds).take_while(|&at| at <= speed);
         falls.map(|at| self.with_slope(at).1).fold(0.0, f64::min)
     }
 }
@@ -335,8 +372,10 @@ fn first_bracket(
 pub struct FrictionPower {
     /// Of T(0), W.
     at_rest: f64,
-    /// Of its part μ F_N, W; 0 where the scene does not tell the two apart.
+    /// Of its part μ F_N, W; 0 where the scene does not tell the parts apart.
     coulomb: f64,
+    /// Of the hysteresis of the waves that the profile lacks, in slip, W; likewise.
+    fine: f64,
     /// Of A τ_f(v) - A τ_f(v_c), W.
     excess: f64,
 }
@@ -357,7 +396,7 @@ impl FrictionPower {
     pub fn from_linear_law(law: &FrictionLaw, slip_speeds: &[f64], normal: &[f64]) -> Self {
         let coulomb = law.coulomb * dot(slip_speeds, normal);
         let shear = if law.shear > 0.0 { law.shear * sum(slip_speeds) } else { 0.0 };
-        Self { at_rest: coulomb + shear, coulomb: if law.has_both { coulomb } else { 0.0 }, excess: 0.0 }
+        Self { at_rest: coulomb + shear, coulomb: if law.has_parts { coulomb } else { 0.0 }, fine: 0.0, excess: 0.0 }
     }
 
     /// Adds that of a mass which slips in `mode` with the velocity ẋ (m/s) under the forces of `contact`.
@@ -365,8 +404,12 @@ impl FrictionPower {
     pub fn add(&mut self, law: &FrictionLaw, mode: Mode, velocity_x: f64, contact: &ContactForces) {
         let (sigma, v) = (mode.direction(), velocity_x);
         self.at_rest += sigma * contact.limit * v * contact.q;
-        if law.has_both {
+        if law.has_parts {
             self.coulomb += sigma * (law.coulomb * contact.normal) * v * contact.q;
+            if let Some(fine) = &law.fine {
+                let speed = sigma * v * contact.q;
+                self.fine += fine.contact(contact.normal, speed).hysteresis.value * speed;
+            }
         }
         if let Some(curve) = law.slip_curve(contact.normal) {
             let speed = sigma * v * contact.q;
@@ -379,9 +422,14 @@ impl FrictionPower {
         self.at_rest + self.excess
     }
 
-    /// P_shear, W; 0 where the scene does not tell the two apart.
+    /// P_shear, W; 0 where the scene does not tell the parts apart.
     pub(super) fn shear(&self, law: &FrictionLaw) -> f64 {
-        if law.has_both { (self.at_rest - self.coulomb) + self.excess } else { 0.0 }
+        if law.has_parts { (self.at_rest - self.coulomb) + self.excess - self.fine } else { 0.0 }
+    }
+
+    /// Of the hysteresis of the waves that the profile lacks, W; 0 where the scene does not tell the parts apart.
+    pub(super) fn fine(&self) -> f64 {
+        self.fine
     }
 }
 
@@ -406,7 +454,7 @@ mod tests {
     fn friction(law: &scene::RateShear) -> FrictionLaw {
         let rate_shear = RateShearLaw::new(law);
         let shear = rate_shear.map_or(0.0, |law| law.plateau);
-        FrictionLaw { present: true, coulomb: 0.0, shear, has_both: false, rate_shear, real_area: None }
+        FrictionLaw { present: true, coulomb: 0.0, shear, has_parts: false, rate_shear, fine: None }
     }
 
     fn laws() -> [FrictionLaw; 3] {

@@ -56,7 +56,7 @@ impl Energies {
 
     /// The largest of all energies through the channels and in impacts, J.
     pub fn largest(&self) -> f64 {
-        let ChannelEnergies { damper, maxwell, friction, shear, input, carrier } = self.channels;
+        let ChannelEnergies { damper, maxwell, friction, shear, fine: _, input, carrier } = self.channels;
         let all: [f64; 7] = [damper, maxwell, friction, shear, input, carrier, self.impact];
         all.iter().fold(0.0, |largest, energy| largest.max(energy.abs()))
     }

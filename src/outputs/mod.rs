@@ -44,10 +44,14 @@ pub enum Output {
     CoulombEnergy,
     /// The part of it against the shear force, J.
     ShearEnergy,
+    /// The part of it by hysteresis of the waves that the profile lacks, J.
+    FineEnergy,
     /// Energy dissipated in impacts, J.
     ImpactEnergy,
-    /// Σ -F_N s/q, N.
+    /// Σ -(F_N s + μ_h F_N)/q, N.
     Hysteresis,
+    /// The part of it by the waves that the profile lacks, N.
+    FineForce,
     /// Σ -F_T/q, N.
     Adhesion,
     /// The part of it by Coulomb's friction, N.

@@ -10,8 +10,8 @@ use std::cell::{Cell, OnceCell, RefCell};
 use super::{Counters, Energies, Monitored, Variable};
 use crate::integrator::InterpolatedLayer;
 use crate::model::{
-    BodyEnergy, Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, Powers, State,
-    Tangents, elastic_energy, kinetic_energy,
+    BodyEnergy, Carrier, CarrierPoint, ContactForces, FineContact, Forces, FrictionShares, LinkKind, MaxwellRow, Mode,
+    Model, Powers, State, Tangents, elastic_energy, kinetic_energy,
 };
 use crate::scene::{Axis, ByAxis};
 
@@ -91,6 +91,8 @@ pub(super) struct ContactSums {
     pub(super) adhesion: f64,
     /// The part of the adhesion that is shear force.
     pub(super) shear: f64,
+    /// The part of the hysteresis that is of the waves that the profile lacks.
+    pub(super) fine: f64,
     pub(super) force_z: f64,
     /// Area that touches, m².
     pub(super) real_area: f64,
@@ -232,11 +234,13 @@ impl<'a> Snapshot<'a> {
             let contact = forces.contact(self.model, i, v, surface);
             let s = surface.slope;
             let friction = self.friction((mode, v), &contact);
-            sums.hysteresis -= contact.normal * s / contact.q;
-            sums.adhesion -= friction / contact.q;
-            sums.shear -= self.shear(mode, &contact, friction) / contact.q;
-            sums.real_area +=
-                self.model.friction.area_share(contact.normal, v * contact.q).value * self.model.element_area;
+            let fine = self.model.friction.fine_contact(contact.normal, v * contact.q);
+            let parts = self.parts(mode, &contact, &fine, friction);
+            sums.hysteresis -= contact.normal * s / contact.q + parts.fine / contact.q;
+            sums.fine -= parts.fine / contact.q;
+            sums.adhesion -= (friction - parts.fine) / contact.q;
+            sums.shear -= parts.shear / contact.q;
+            sums.real_area += fine.share.value * self.model.element_area;
             sums.force_z += (contact.normal - friction * s) / contact.q;
         }
         sums
@@ -253,15 +257,21 @@ impl<'a> Snapshot<'a> {
         if self.model.friction.present { contact.friction(self.model, mode, v) } else { 0.0 }
     }
 
-    /// The part of the `friction` in a `contact` (N) that is shear force, N: of a sticking mass, as the two limits
+    /// The parts of the `friction` in a `contact` (N), N: of a sticking mass, as the parts of the largest friction at rest
     /// share it.
-    fn shear(&self, mode: Mode, contact: &ContactForces, friction: f64) -> f64 {
+    fn parts(&self, mode: Mode, contact: &ContactForces, fine: &FineContact, friction: f64) -> FrictionShares {
+        let law = &self.model.friction;
         match mode {
-            Mode::Stick => self.model.friction.shear_share(contact.normal) * friction,
-            _ if self.model.friction.present => {
-                friction - mode.direction() * self.model.friction.coulomb * contact.normal
+            Mode::Stick => {
+                let shares = law.shares_at_rest(contact.normal);
+                FrictionShares { shear: shares.shear * friction, fine: shares.fine * friction }
             }
-            _ => 0.0,
+            _ if law.present => {
+                let (sigma, hysteresis) = (mode.direction(), fine.hysteresis.value);
+                let shear = friction - sigma * law.coulomb * contact.normal - sigma * hysteresis;
+                FrictionShares { shear, fine: sigma * hysteresis }
+            }
+            _ => FrictionShares::default(),
         }
     }
 
@@ -305,6 +315,8 @@ pub(super) struct ContactChange {
     pub(super) friction: f64,
     /// Of the part of the friction that is shear force.
     shear: f64,
+    /// Of the part by hysteresis of the waves that the profile lacks.
+    fine: f64,
     /// Of the area that touches, m².
     real_area: f64,
     slope: f64,
@@ -313,11 +325,15 @@ pub(super) struct ContactChange {
 
 impl ContactChange {
     pub(super) fn hysteresis(self) -> f64 {
-        -self.normal * self.slope / self.q
+        -self.normal * self.slope / self.q - self.fine / self.q
+    }
+
+    pub(super) fn fine(self) -> f64 {
+        -self.fine / self.q
     }
 
     pub(super) fn adhesion(self) -> f64 {
-        -self.friction / self.q
+        -(self.friction - self.fine) / self.q
     }
 
     pub(super) fn shear(self) -> f64 {
@@ -325,7 +341,7 @@ impl ContactChange {
     }
 
     pub(super) fn coulomb(self) -> f64 {
-        -(self.friction - self.shear) / self.q
+        -(self.friction - self.fine - self.shear) / self.q
     }
 
     pub(super) fn real_area(self) -> f64 {
@@ -388,16 +404,23 @@ impl Snapshot<'_> {
         let contact = self.forces().contact(self.model, i, self.state().velocity_x[i], &self.state().surface[i]);
         let (law, v) = (&self.model.friction, self.state().velocity_x[i]);
         let by_normal = law.by_normal(contact.normal, v.abs() * q);
-        let (friction, shear) = match mode {
+        let on_fine = law.fine_contact(contact.normal, v * contact.q);
+        let (friction, shear, fine) = match mode {
             Mode::Stick => {
                 let friction = (f_x + slope * f_z) / q;
-                let of_share = contact.tangential * law.shear_share_by_normal(contact.normal, by_normal) * normal;
-                (friction, law.shear_share(contact.normal) * friction + of_share)
+                let shares = law.shares_at_rest(contact.normal);
+                let changes = law.shares_by_normal(contact.normal, by_normal);
+                let part = |share: f64, change: f64| share * friction + contact.tangential * change * normal;
+                (friction, part(shares.shear, changes.shear), part(shares.fine, changes.fine))
             }
-            _ => (mode.direction() * by_normal * normal, mode.direction() * (by_normal - law.coulomb) * normal),
+            _ => {
+                let (sigma, of_fine) = (mode.direction(), on_fine.hysteresis.by_normal);
+                let of_shear = by_normal - law.coulomb - of_fine;
+                (sigma * by_normal * normal, sigma * of_shear * normal, sigma * of_fine * normal)
+            }
         };
-        let real_area = law.area_share(contact.normal, v * contact.q).by_normal * normal * self.model.element_area;
-        ContactChange { normal, friction, shear, real_area, slope, q }
+        let real_area = on_fine.share.by_normal * normal * self.model.element_area;
+        ContactChange { normal, friction, shear, fine, real_area, slope, q }
     }
 
     pub(super) fn contact_sum(&self, shift: &CarrierShift, part: impl Fn(ContactChange) -> f64) -> f64 {

@@ -185,7 +185,7 @@ macro_rules! tangent {
 
 /// All outputs, in the order of the result files within their groups.
 #[rustfmt::skip]
-pub(super) static TABLE: [OutputRow; 70] = {
+pub(super) static TABLE: [OutputRow; 72] = {
     use OutputType::{Integer, Real};
     use OutputGroup::{Carrier, Contact, Dissipation, Energy, Forces, Friction, Solver, Tangent as Tangents};
     use Unit::{
@@ -232,29 +232,36 @@ pub(super) static TABLE: [OutputRow; 70] = {
             .only_where(has_maxwell_elements),
         layer(Output::FrictionEnergy, Dissipation, "dissipation.E_friction", Real, Joule, "Energy dissipated in friction",
             |now| now.at.energies.channels.friction)
-            .only_where(|scene| scene.friction.is_some()),
+            .only_where(Scene::has_friction),
         layer(Output::CoulombEnergy, Dissipation, "dissipation.E_coulomb", Real, Joule, "Energy dissipated in friction: the part of Coulomb's law",
-            |now| now.at.energies.channels.friction - now.at.energies.channels.shear)
-            .only_where(Scene::has_both_frictions),
+            |now| now.at.energies.channels.friction - now.at.energies.channels.shear - now.at.energies.channels.fine)
+            .only_where(|scene| scene.has_coulomb() && scene.has_friction_parts()),
         layer(Output::ShearEnergy, Dissipation, "dissipation.E_shear", Real, Joule, "Energy dissipated in friction: the part of the shear strength",
             |now| now.at.energies.channels.shear)
-            .only_where(Scene::has_both_frictions),
+            .only_where(|scene| scene.has_shear() && scene.has_friction_parts()),
+        layer(Output::FineEnergy, Dissipation, "dissipation.E_fine", Real, Joule, "Energy dissipated in friction: hysteresis of the waves that the profile lacks",
+            |now| now.at.energies.channels.fine)
+            .only_where(Scene::has_fine_hysteresis),
         layer(Output::ImpactEnergy, Dissipation, "dissipation.E_impact", Real, Joule, "Energy dissipated in impacts",
             |now| now.at.energies.impact),
-        layer(Output::Hysteresis, Friction, "friction.F_hysteresis", Real, Newton, "Tangential force by hysteresis: the tangential part of the normal contact forces on the slopes",
+        layer(Output::Hysteresis, Friction, "friction.F_hysteresis", Real, Newton, "Tangential force by hysteresis: the tangential part of the normal contact forces on the slopes, and F_fine",
             |now| now.contact_sums().hysteresis)
             .depending(elastic, |now, shift| now.at.contact_sum(shift, ContactChange::hysteresis)),
+        layer(Output::FineForce, Friction, "friction.F_fine", Real, Newton, "Tangential force by hysteresis: the part of the waves that the profile lacks",
+            |now| now.contact_sums().fine)
+            .depending(elastic, |now, shift| now.at.contact_sum(shift, ContactChange::fine))
+            .only_where(Scene::has_fine_hysteresis),
         layer(Output::Adhesion, Friction, "friction.F_adhesion", Real, Newton, "Tangential force by adhesion: the tangential part of the friction forces in the contacts",
             |now| now.contact_sums().adhesion)
             .depending(elastic_friction, |now, shift| now.at.contact_sum(shift, ContactChange::adhesion)),
         layer(Output::CoulombForce, Friction, "friction.F_coulomb", Real, Newton, "Tangential force by adhesion: the part of Coulomb's law",
             |now| now.contact_sums().adhesion - now.contact_sums().shear)
             .depending(elastic, |now, shift| now.at.contact_sum(shift, ContactChange::coulomb))
-            .only_where(Scene::has_both_frictions),
+            .only_where(|scene| scene.has_coulomb() && scene.has_shear()),
         layer(Output::ShearForce, Friction, "friction.F_shear", Real, Newton, "Tangential force by adhesion: the part of the shear strength",
             |now| now.contact_sums().shear)
             .depending(elastic, |now, shift| now.at.contact_sum(shift, ContactChange::shear))
-            .only_where(Scene::has_both_frictions),
+            .only_where(|scene| scene.has_coulomb() && scene.has_shear()),
         layer(Output::FrictionCoefficient, Friction, "friction.coefficient", Real, One, "|F_x|/F_z, 0 where F_z <= 0",
             |now| now.at.friction_coefficient())
             .depending(elastic, |now, shift| now.at.friction_coefficient_change(shift)),
@@ -270,7 +277,7 @@ pub(super) static TABLE: [OutputRow; 70] = {
         layer(Output::RealArea, Contact, "contact.area_real", Real, SquareMeter, "Area that touches, with the roughness below the profile's",
             |now| now.contact_sums().real_area)
             .depending(elastic, |now, shift| now.at.contact_sum(shift, ContactChange::real_area))
-            .only_where(|scene| scene.fine_roughness().is_some()),
+            .only_where(|scene| scene.fine.is_some()),
         layer(Output::ContactForceX, Contact, "contact.F_x", Real, Newton, "Sum of the contact forces on the masses along x",
             |now| now.contact_sums().hysteresis + now.contact_sums().adhesion)
             .depending(elastic, |now, shift| now.at.contact_sum(shift, ContactChange::force_x)),
@@ -397,12 +404,12 @@ fn elastic_z(scene: &Scene) -> Dependencies {
 }
 
 fn elastic_friction(scene: &Scene) -> Dependencies {
-    elastic(scene).only_if(scene.friction.is_some())
+    elastic(scene).only_if(scene.has_friction())
 }
 
 fn dissipated_power(scene: &Scene) -> Dependencies {
-    let coulomb = scene.friction.as_ref().is_some_and(|friction| friction.coulomb.is_some());
-    carrier_links(scene, |link| !link.maxwell.is_empty()).or(elastic(scene).only_if(coulomb))
+    let by_normal = scene.has_coulomb() || scene.fine.is_some();
+    carrier_links(scene, |link| !link.maxwell.is_empty()).or(elastic(scene).only_if(by_normal))
 }
 
 /// The inputs whose links to the carrier pass `test`: u elongates the horizontal ones, w the vertical ones. A body's u

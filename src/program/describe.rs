@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use asperity::fmi::FmuModel;
-use asperity::model::{Model, RealAreaLaw, Reduction, Replaced, Replacement};
+use asperity::model::{FineFriction, FrictionLaw, Model, Reduction, Replaced, Replacement};
 use asperity::outputs::variables;
 use asperity::scene::{
     Axis, CarrierBody, CarrierInitial, Extrapolation, Force, Friction, Initial, Input, Layer, Link, LinkKind, Material,
@@ -16,7 +16,6 @@ use super::cli::Describe;
 use super::figure::Figure as _;
 use super::files::{FileError, check_outputs, load, print, sources, table_lines};
 use super::foundation;
-use super::persson::Theory;
 use super::runner::start;
 use super::terminal::{LabelledLine, decimal, labelled, lines, rounded};
 
@@ -212,7 +211,11 @@ fn steepest_slope(surface: &Surface) -> f64 {
 }
 
 fn friction(scene: &Scene) -> Vec<LabelledLine> {
-    let Some(friction) = &scene.friction else { return vec![("Friction", LEFT_OUT.into())] };
+    let fine = fine_texts(scene);
+    let Some(friction) = &scene.friction else {
+        let none = fine.is_empty().then(|| LEFT_OUT.to_owned());
+        return labelled("Friction", none.into_iter().chain(fine));
+    };
     let coulomb = format!("coulomb      {}", or_left_out(friction.coulomb, ""));
     let shear = match friction.shear_strength {
         Some(strength) => format!(
@@ -223,42 +226,36 @@ fn friction(scene: &Scene) -> Vec<LabelledLine> {
         None => format!("shear_force  {}", or_left_out(friction.shear_force, " N a mass in contact")),
     };
     let rate_shear = scene.rate_shear().map_or_else(|| LEFT_OUT.into(), |law| rate_shear_text(&law));
-    let real_area = real_area_texts(scene);
-    labelled("Friction", [coulomb, shear, format!("rate_shear   {rate_shear}")].into_iter().chain(real_area))
+    labelled("Friction", [coulomb, shear, format!("rate_shear   {rate_shear}")].into_iter().chain(fine))
 }
 
-/// The roughness below the profile's, the part of a contact that touches on it, and the hysteresis that it adds.
-fn real_area_texts(scene: &Scene) -> Vec<String> {
-    let (Some(roughness), Some(law), Some(material)) =
-        (scene.fine_roughness(), RealAreaLaw::new(scene), &scene.material)
+/// Speeds (m/s) and pressures (Pa) at which the law of the waves that the profile lacks is printed.
+const FINE_SPEEDS: [f64; 3] = [1e-4, 1e-2, 1.0];
+const FINE_PRESSURES: [f64; 3] = [1e5, 3e5, 1e6];
+
+/// The roughness below the profile: how steep it is, how it rubs and which part of a contact touches.
+fn fine_texts(scene: &Scene) -> Vec<String> {
+    let (Some(fine), Some(law), Some(area)) = (&scene.fine, FineFriction::new(scene), scene.layer.element_area())
     else {
         return Vec::new();
     };
-    let rest = roughness.stress(material, 0.0) / roughness.gradient();
-    let mut texts = vec![format!(
-        "real_area    gradient {:.4} below the profile's waves, M_c {rest:.4e} Pa at rest",
-        roughness.gradient()
-    )];
-    let pressures = scene.excitation.iter().filter_map(|phase| phase.until_pressure);
-    let pressure = pressures.fold(0.0, f64::max);
-    if pressure > 0.0 {
-        let area = scene.layer.element_area().unwrap_or(0.0);
-        let share = |ratio: f64| law.at_rest(pressure / ratio * area).value;
-        texts.push(format!(
-            "             A_r/A {:.4} at rest under {} Pa where all masses touch, {:.4} where a tenth does",
-            share(1.0),
-            number(pressure),
-            share(0.1)
-        ));
-        let speed = scene.excitation.iter().map(|phase| phase.u.rate.abs()).fold(0.0, f64::max);
-        let added = Theory::friction_of_fine_waves(scene, pressure, speed).filter(|_| speed > 0.0);
-        texts.extend(added.map(|friction| {
-            format!(
-                "             its waves would add a hysteresis friction of some {friction:.3} at {} m/s (Persson's theory), which the \
-                 forces do not have",
-                number(speed)
-            )
-        }));
+    let at_rest = FrictionLaw::new(scene).limit(FINE_PRESSURES[1] * area) / (FINE_PRESSURES[1] * area);
+    let mut texts = vec![
+        format!("fine         {}", fine.describe()),
+        format!(
+            "             gradient {:.4}; at rest T/F_N {at_rest:.3} under {:.0e} Pa",
+            scene.fine_gradient(),
+            FINE_PRESSURES[1]
+        ),
+    ];
+    for pressure in FINE_PRESSURES {
+        let at = |speed: &f64| {
+            let contact = law.contact(pressure * area, *speed);
+            let friction = contact.hysteresis.value / (pressure * area);
+            format!("mu_h {friction:.3}, A_r/A {:.3} at {speed:.0e} m/s", contact.share.value)
+        };
+        let at_speeds: Vec<String> = FINE_SPEEDS.iter().map(at).collect();
+        texts.push(format!("             {pressure:.0e} Pa: {}", at_speeds.join("; ")));
     }
     texts
 }

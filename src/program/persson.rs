@@ -7,7 +7,7 @@
 
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
-use asperity::scene::{Body, Material, Scene, Spectrum};
+use asperity::scene::{Body, FineBand, Material, Scene, Spectrum};
 
 /// Area and friction by the theory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -43,10 +43,11 @@ impl Theory {
     /// The friction that the roughness below the profile's adds by hysteresis, on an isotropic surface; `None` where
     /// the scene has no such waves.
     pub(super) fn friction_of_fine_waves(scene: &Scene, pressure: f64, speed: f64) -> Option<f64> {
-        let (roughness, material) = (scene.fine_roughness()?, scene.material.as_ref()?);
+        let material = scene.material.as_ref()?;
         let body = scene.layer.body(material)?;
         // Half of the mean square height of an isotropic surface is in the waves of its lines.
-        let fine = roughness.bands().map(|(q, gradient_square)| (q, 0.5 * gradient_square / (q * q)));
+        let height = |band: FineBand| 0.5 * band.gradient_square / (band.wave_number * band.wave_number);
+        let fine = scene.fine_bands().into_iter().map(|band| (band.wave_number, height(band)));
         let coarse = resolved(scene);
         let all: Vec<(f64, f64)> = coarse.iter().copied().chain(fine).collect();
         let friction = |waves| Self::from_waves(waves, material, body, pressure, speed, Dimension::Two).friction;

@@ -89,6 +89,14 @@ impl Scene {
         }
     }
 
+    /// The root mean square gradient of the waves that the profile lacks, 1.
+    pub fn fine_gradient(&self) -> f64 {
+        match self.fine.as_ref().map(|fine| fine.waves) {
+            Some(FineWaves::Modulus { rms_slope, .. }) => rms_slope,
+            _ => self.fine_bands().iter().map(|band| band.gradient_square).sum::<f64>().sqrt(),
+        }
+    }
+
     /// v_c, m/s at the reference temperature: slip on the roughness below the profile is no slower.
     pub fn fine_creep_speed(&self) -> f64 {
         let of_shear = self.friction.as_ref().and_then(|friction| friction.rate_shear).map(|law| law.creep_speed());
@@ -97,6 +105,22 @@ impl Scene {
 }
 
 impl FineRoughness {
+    /// What it is, in a few words.
+    pub fn describe(&self) -> String {
+        let waves = match self.waves {
+            FineWaves::SelfAffine { hurst, rms_slope, longest, shortest } => {
+                format!("hurst {hurst:?}, rms_slope {rms_slope:?}, from {longest:?} m to {shortest:?} m")
+            }
+            FineWaves::Continued { shortest } => format!("the profile's law down to {shortest:?} m"),
+            FineWaves::Modulus { rms_slope, modulus } => {
+                return format!("rms_slope {rms_slope:?}, modulus {modulus:?} Pa");
+            }
+        };
+        let hysteresis = if self.hysteresis { "" } else { ", real area alone" };
+        let softening = if self.softening < 1.0 { format!(", softening {:?}", self.softening) } else { String::new() };
+        format!("{waves}{hysteresis}{softening}")
+    }
+
     /// Whether its numbers go together, and with the profile.
     ///
     /// # Errors

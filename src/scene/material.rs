@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::error::{ParameterError, Problem};
 use super::keys;
-use super::{ByLink, Layer, Link, LinkKind, MaxwellElement, RateShear, Scene};
+use super::{ByLink, FineWaves, Layer, Link, LinkKind, MaxwellElement, RateShear, Scene};
 
 /// A linear viscoelastic solid: a spring, a dashpot and Maxwell elements in parallel, as moduli.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -185,10 +185,30 @@ impl Scene {
         self.layer.mass.or_else(of_material).unwrap_or(0.0)
     }
 
-    /// Coulomb's friction and a shear force, at rest or in slip, whose parts are told apart.
-    pub fn has_both_frictions(&self) -> bool {
-        let has_shear = self.shear_force().is_some() || self.rate_shear().is_some();
-        has_shear && self.friction.as_ref().is_some_and(|friction| friction.coulomb.is_some())
+    /// Whether contacts have Coulomb's friction.
+    pub fn has_coulomb(&self) -> bool {
+        self.friction.as_ref().is_some_and(|friction| friction.coulomb.is_some())
+    }
+
+    /// Whether contacts have a shear force, at rest or in slip.
+    pub fn has_shear(&self) -> bool {
+        self.shear_force().is_some() || self.rate_shear().is_some()
+    }
+
+    /// Whether the waves that the profile lacks rub.
+    pub fn has_fine_hysteresis(&self) -> bool {
+        self.fine.as_ref().is_some_and(|fine| fine.hysteresis && !matches!(fine.waves, FineWaves::Modulus { .. }))
+    }
+
+    /// Whether the parts of friction are told apart: hysteresis of the waves that the profile lacks from any other, Coulomb's
+    /// from the shear force.
+    pub fn has_friction_parts(&self) -> bool {
+        self.has_fine_hysteresis() || (self.has_coulomb() && self.has_shear())
+    }
+
+    /// Whether contacts rub.
+    pub fn has_friction(&self) -> bool {
+        self.friction.is_some() || self.has_fine_hysteresis()
     }
 
     /// Adhesive shear force A τ_0 of one mass in contact, N, if the scene has it: given, or of the shear strength.

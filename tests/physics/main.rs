@@ -15,6 +15,7 @@
 mod common;
 mod exact;
 mod figure_7;
+mod fine;
 mod foundation;
 mod invariants;
 mod kernels;

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::element::{Basis, Load, OperatingPoint, SweepGrid, TableHeader};
 use asperity::model::Model;
-use asperity::scene::{Initial, OutputGroup, ParameterError, Path as Displacement, Phase, Scene};
+use asperity::scene::{FineRoughness, Initial, OutputGroup, ParameterError, Path as Displacement, Phase, Scene};
 use rayon::prelude::*;
 
 use super::cli::Sweep;
@@ -144,9 +144,9 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
 /// What the table rests on, for those who use it.
 fn basis(scene: &Scene, convergence: Option<String>) -> Basis {
     let foundation = scene.layer.foundation.map(|kind| kind.word().to_owned());
-    let real_area = scene.friction.as_ref().and_then(|friction| friction.real_area).map(|area| area.describe());
+    let fine = scene.fine.as_ref().map(FineRoughness::describe);
     let held = scene.carrier.z.map(|body| format!("load, on a carrier of {} kg", body.mass));
-    Basis { foundation, real_area, convergence, held }
+    Basis { foundation, fine, convergence, held }
 }
 
 /// Computes the points that are not done yet, on all cores.

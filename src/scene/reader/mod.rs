@@ -12,8 +12,8 @@ use super::prony_file::{ElasticConstants, PronySeries};
 use super::values::Word;
 use super::{
     ByLink, CarrierBodies, Extrapolation, FmuOptions, Foundation, FoundationKind, Friction, Initial, Layer, Link,
-    LinkKind, Material, MaxwellElement, OutputGroup, PronyTerm, RateShear, Scene, SceneError, Solver,
-    Surface, Wlf, read_file, read_text, warnings,
+    LinkKind, Material, MaxwellElement, OutputGroup, PronyTerm, RateShear, Scene, SceneError, Solver, Wlf, read_file,
+    read_text, warnings,
 };
 use surface::Found;
 use table::{Entry, Result, Source, TableReader};
@@ -236,7 +236,9 @@ fn fine_in_place(table: &mut TableReader<'_>) -> Result<String> {
     let keys = match (slope?, wavelength?, modulus?, cut_off?) {
         (Some(slope), Some(length), ..) => {
             let [longest, shortest] = [HALF_BAND, -HALF_BAND].map(|decades| length * 10_f64.powf(decades));
-            format!("hurst = 1, rms_slope = {slope}, longest = {longest:.6e}, shortest = {shortest:.6e}, hysteresis = false")
+            format!(
+                "hurst = 1, rms_slope = {slope}, longest = {longest:.6e}, shortest = {shortest:.6e}, hysteresis = false"
+            )
         }
         (Some(slope), None, Some(modulus), _) => format!("rms_slope = {slope}, modulus = {modulus}"),
         (_, _, _, Some(cut_off)) => format!("shortest = {cut_off}, hysteresis = false"),

@@ -128,7 +128,7 @@ fn carrier(text: SceneText, scene: &Scene, axis: Axis) -> SceneText {
 }
 
 fn friction(text: SceneText, friction: &Friction) -> SceneText {
-    let Friction { coulomb, shear_force, shear_strength: _, rate_shear, real_area: _ } = friction;
+    let Friction { coulomb, shear_force, shear_strength: _, rate_shear } = friction;
     let text = text.numbers("friction", &[("coulomb", *coulomb), ("shear_force", *shear_force)]);
     let Some(RateShear { force, strength: _, reference_speed, sharpness, creep_speed }) = *rate_shear else {
         return text;

@@ -127,6 +127,7 @@ fn cases_of(scales: Scales, method: Method) -> impl Strategy<Value = Case> {
                 foundation: None,
                 carrier: Default::default(),
                 surface,
+                fine: None,
                 friction,
                 solver,
                 extrapolation: Extrapolation::Linear,
@@ -233,7 +234,6 @@ fn friction(scales: Scales) -> impl Strategy<Value = Friction> {
         shear_force,
         shear_strength: None,
         rate_shear,
-        real_area: None,
     })
 }
 
