@@ -204,11 +204,53 @@ impl Contacts<'_> {
         others.all(|i| !modes[i].in_contact() || self.change_of(i, None).is_none())
     }
 
+    /// The masses that slip no faster than v_c at the start of the step, where friction changes with the speed beyond.
+    ///
+    /// Their modes stay as they pass v_c. But where friction falls from there on, slip grows faster than a step is long that
+    /// takes it for creep: the step has to end there.
+    fn creeping(&self) -> impl Iterator<Item = usize> {
+        let (start, law) = (&self.step.start, &self.step.model.friction);
+        let creep_speed = law.creep_end();
+        let creeps = move |i: &usize| {
+            start.mode[*i].slips() && creep_speed.is_some_and(|creep| self.slip_speed(*i, start.velocity_x[*i]) < creep)
+        };
+        let masses = if creep_speed.is_some() { self.step.model.masses() } else { 0 };
+        (0..masses).filter(creeps)
+    }
+
+    /// v_t of mass `i` with this ẋ, m/s, over the slope at the start of the step.
+    fn slip_speed(&self, i: usize, velocity_x: f64) -> f64 {
+        let slope = self.step.start.surface[i].slope;
+        velocity_x.abs() * (1.0 + slope * slope).sqrt()
+    }
+
+    /// The fraction at which mass `i`, which creeps, passes v_c; `first` if it does not before that.
+    fn creep_end(&self, i: usize, first: Option<f64>) -> Option<f64> {
+        let Some(creep_speed) = self.step.model.friction.creep_end() else { return first };
+        let beyond = |velocity_x: f64| (1.0 + CREEP_PASSED) * creep_speed - self.slip_speed(i, velocity_x);
+        let stages = self.step.stages();
+        let in_time = |rank: usize| &stages[self.step.interpolation().in_time()[rank]];
+        let rank = (1..stages.len()).find(|&rank| beyond(in_time(rank).velocity_x[i]) < 0.0);
+        let Some(rank) = rank.filter(|&rank| self.node(rank - 1) < first.unwrap_or(1.0)) else { return first };
+        let at = |theta: f64| beyond(self.step.velocity_x(i, theta));
+        let (before, after) = (self.node(rank - 1), self.node(rank));
+        let ends = [(before, at(before)), (after, at(after))];
+        let passes = ends[0].1 > 0.0 && ends[1].1 < 0.0;
+        if passes { earlier(first, Some(root_between(at, ends, LOCATED))) } else { first }
+    }
+
     fn all_changes(&mut self, changes: &mut Vec<(f64, usize)>) {
         for block in (0..self.step.model.masses()).step_by(BLOCK) {
             debug_assert!(self.others_hold(block), "a mode change of a mass from {block} on would be missed");
             for i in self.suspects_from(block) {
                 changes.extend(self.change_of(i, None).map(|theta| (theta, i)));
+            }
+        }
+        for i in self.creeping() {
+            match (self.creep_end(i, None), changes.iter_mut().find(|change| change.1 == i)) {
+                (Some(theta), Some(change)) => change.0 = change.0.min(theta),
+                (Some(theta), None) => changes.push((theta, i)),
+                (None, _) => (),
             }
         }
     }
@@ -220,7 +262,7 @@ impl Contacts<'_> {
                 first = self.change_of(i, first);
             }
         }
-        first
+        self.creeping().fold(first, |first, i| self.creep_end(i, first))
     }
 
     /// The fraction at which mass `i`, in contact, first changes its mode; `first` if it does not before that.
@@ -309,6 +351,8 @@ impl Contacts<'_> {
     }
 }
 
+/// By which part of v_c a mass has passed it where a step ends that it creeps in.
+const CREEP_PASSED: f64 = 1e-3;
 /// How near to half its tolerance a quantity is where an event is located, as a share of the tolerance: any place where
 /// the limit has been passed for certain serves, and each evaluation costs.
 const NEAR: f64 = 0.1;

@@ -121,6 +121,11 @@ impl FrictionLaw {
         self.depends_on_speed().then_some(SlipCurve { law: self, normal })
     }
 
+    /// v_c (m/s), up to which contacts on the roughness below the profile slip as at rest; `None` without it.
+    pub fn creep_end(&self) -> Option<f64> {
+        self.fine.as_ref().filter(|fine| fine.depends_on_speed()).map(FineFriction::creep_speed)
+    }
+
     /// The law without its dependence on the speed, where it is linear in the normal force.
     #[inline(always)]
     pub fn linear(&self) -> LinearFriction {

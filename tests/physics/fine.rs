@@ -27,7 +27,9 @@ fn the_law_is_that_of_the_sums() {
         let contact = fine.contact(normal, speed);
         let whole = law.limit(normal) + law.slip_curve(normal).unwrap().excess(speed);
         let found = [contact.hysteresis.value / normal, contact.share.value, whole];
-        for (name, found, expected) in [("friction", found[0], friction), ("area", found[1], share), ("T", found[2], force)] {
+        for (name, found, expected) in
+            [("friction", found[0], friction), ("area", found[1], share), ("T", found[2], force)]
+        {
             assert!((found - expected).abs() <= ACCURACY * expected, "{line}: {name} {found}");
         }
     }
@@ -54,7 +56,11 @@ fn runs_are_those_of_the_reference() {
         for method in ["event", "step", "auto"] {
             let folder = scratch(&format!("fine-{name}-{method}"));
             let method = format!("solver.method={method}");
-            let found = simulate(&file(&format!("{name}.toml")), &folder, &["--set", &method, "--set", "solver.relative_tolerance=1e-6"]);
+            let found = simulate(
+                &file(&format!("{name}.toml")),
+                &folder,
+                &["--set", &method, "--set", "solver.relative_tolerance=1e-6"],
+            );
             // What the tables are off, and the tolerance.
             compare(name, &found, 1e-3);
         }
