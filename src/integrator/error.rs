@@ -28,6 +28,12 @@ const CARRIER_WEIGHT: f64 = 0.3;
 /// F_z.
 const WEIGHT_OF_FORCE_X: f64 = 4.0;
 
+/// The relative error of the speed of a mass that slips on roughness below the profile, in relative tolerances.
+///
+/// Recommended 30 to 300. A mass that breaks loose where friction falls with the speed passes the decades from its creep
+/// speed on by growth, and comes late by as much as its speed errs there; the tolerance of velocities is far above these.
+const CREEP_SLACK: f64 = 100.0;
+
 /// That weight for `model`. Where friction depends on the speed F_x follows the speeds of creeping masses, which are
 /// far below the tolerance of velocities: there the weight would triple the steps of a creep and make it no more
 /// accurate.
@@ -114,7 +120,8 @@ impl ErrorTest<'_> {
             + of_positions(&workspace.z, &end.elongation_z)
             + of_velocities(&workspace.v_x, &end.velocity_x, rates.x.speed)
             + of_velocities(&workspace.v_z, &end.velocity_z, rates.z.speed)
-            + square(CARRIER_WEIGHT) * in_contact;
+            + square(CARRIER_WEIGHT) * in_contact
+            + self.creep_squares(model, tolerance, &workspace.v_x);
         // Those of the links: stiff ones as rods, Maxwell elements, and the force on the carrier.
         let mut of_forces = 0.0;
         for kind in LinkKind::ALL {
@@ -145,6 +152,15 @@ impl ErrorTest<'_> {
         let motion_error = mean(sum).hypot(of_bodies.sqrt()).hypot(self.tableau.force_weight * of_forces.sqrt());
         let error = motion_error.hypot(self.tableau.energy_weight * of_energies.sqrt());
         ErrorEstimate { error, motion_error, carrier_error: mean(free) }
+    }
+
+    /// The sum of squares of the errors of the velocities of slipping masses, by what changes the friction of the roughness
+    /// below the profile, a function of ln v.
+    fn creep_squares(&self, model: &Model, tolerance: &Tolerance, velocity_error: &[f64]) -> f64 {
+        let Some(creep_speed) = model.friction.creep_end() else { return 0.0 };
+        let allowed = CREEP_SLACK * tolerance.relative;
+        let of = |&i: &usize| square(velocity_error[i] / (allowed * self.end.velocity_x[i].abs().max(creep_speed)));
+        self.contacts.iter().filter(|&&i| self.end.mode[i].slips()).map(of).sum()
     }
 
     /// The sum of squares of the errors of the bodies' displacements and speeds over their tolerances, relative to the
