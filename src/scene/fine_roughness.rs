@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use serde::Serialize;
 
-use super::{Material, Scene, SelfAffine, Surface, complex_stiffness};
+use super::{Friction, Layer, Material, Scene, SelfAffine, Surface, complex_stiffness};
 
 /// The waves that the profile lacks, and how contacts rub on them; in the material form alone.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -119,6 +119,21 @@ impl FineRoughness {
         let hysteresis = if self.hysteresis { "" } else { ", real area alone" };
         let softening = if self.softening < 1.0 { format!(", softening {:?}", self.softening) } else { String::new() };
         format!("{waves}{hysteresis}{softening}")
+    }
+
+    /// What it misses in the rest of a scene, in words.
+    pub(super) fn misses(&self, layer: &Layer, friction: Option<&Friction>) -> Option<&'static str> {
+        let has_rate_shear = friction.is_some_and(|friction| friction.rate_shear.is_some());
+        let rubs = friction.is_some_and(|friction| friction.coulomb.is_some() || friction.shear_strength.is_some());
+        if layer.width.is_none() {
+            return Some("layer.width beside fine: contacts have an area");
+        }
+        if self.creep_speed.is_some() && has_rate_shear {
+            return Some("no fine.creep_speed beside friction.rate_shear, whose own counts");
+        }
+        let only_area = !self.hysteresis || matches!(self.waves, FineWaves::Modulus { .. });
+        (only_area && !rubs && !has_rate_shear)
+            .then_some("fine with hysteresis, or friction with coulomb, shear_strength or rate_shear")
     }
 
     /// Whether its numbers go together, and with the profile.

@@ -65,9 +65,9 @@ pub(super) fn scene_with_real_area() -> Scene {
     let (_, rest) = TEXT.split_once("[surface]").unwrap();
     let layer = "name = 'area'\nlayer = { masses = 6, spacing = 1.1e-4, foundation = 'half_space', width = 1e-2 }\n\
                  material = { density = 1100, poisson_ratio = 0.49, equilibrium_modulus = 2e6, viscosity = 10.0, \
-                 prony = [{ modulus = 3e6, relaxation_time = 1e-4 }] }\n[surface]";
-    let law = "shear_strength = 2e5\nreal_area = { rms_slope = 0.5, wavelength = 1e-5 }";
-    let text = layer.to_owned() + &rest.replace("shear_force = 5e-5", law);
+                 prony = [{ modulus = 3e6, relaxation_time = 1e-4 }] }\n[surface]\n\
+                 fine = { hurst = 0.8, rms_slope = 0.5, longest = 2e-5, shortest = 5e-6 }";
+    let text = layer.to_owned() + &rest.replace("shear_force = 5e-5", "shear_strength = 2e5");
     Scene::parse(&text, FilePath::new("real-area.toml")).unwrap()
 }
 

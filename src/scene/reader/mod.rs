@@ -55,10 +55,14 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
     let material_entry = root.entry("material");
     let read_material = |entry: &Entry<'_>| entry.table(|table| read_material(table, &mut found));
     let material = material_entry.as_ref().map(read_material).transpose()?;
-    let (surface, fine) = surface::read(&root.required("surface")?, &mut found)?;
+    let surface_entry = root.required("surface")?;
+    let (surface, fine) = surface::read(&surface_entry, &mut found)?;
     let carrier_entry = root.entry("carrier");
     let carrier = carrier_entry.as_ref().map(|entry| entry.table(carrier::read)).transpose()?.unwrap_or_default();
     let friction = root.optional_table("friction", read_friction)?;
+    if let Some(expected) = fine.as_ref().and_then(|fine| fine.misses(&layer, friction.as_ref())) {
+        return Err(surface_entry.refuse(expected));
+    }
     let solver = root.optional_table("solver", read_solver)?.unwrap_or_default();
     let wlf = material.as_ref().and_then(|material| material.wlf.as_ref());
     let read_input = |table: &mut TableReader<'_>| {

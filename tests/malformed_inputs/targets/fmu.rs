@@ -102,17 +102,17 @@ damping = 1e-1
 load = 1e-3
 ";
 
-/// Two masses of a material on a fitted foundation, with the adhesion that depends on speed and temperature, on its real area.
+/// Two masses of a material on a fitted foundation, with the adhesion that depends on speed and temperature, on the roughness below the profile.
 const RUBBER: &str = "name = 'rubber'
 layer = { foundation = 'layer', masses = 2, spacing = 0.7e-4, thickness = 1e-3, width = 1e-2, roughness = { kind = 'points', z = [0.0, 1e-7] } }
 material = { density = 1.1e3, poisson_ratio = 0.49, equilibrium_modulus = 2e6, viscosity = 10.0, \
     prony = [{ modulus = 5e6, relaxation_time = 1e-5 }], \
     wlf = { c1 = 7.52, c2 = 119.75, reference_temperature = 293.15, temperature = 313.15 } }
 input = { temperature = true }
-surface = { kind = 'sinusoid', amplitude = 1e-6, wavelength = 1e-4, points_per_wavelength = 8 }
+surface = { kind = 'sinusoid', amplitude = 1e-6, wavelength = 1e-4, points_per_wavelength = 8, \
+    fine = { hurst = 0.8, rms_slope = 1.0, longest = 2e-5, shortest = 5e-6 } }
 friction = { coulomb = 0.3, shear_strength = 1e4, \
-    rate_shear = { strength = 1e5, reference_speed = 6e-3, sharpness = 0.1 }, \
-    real_area = { rms_slope = 1.0, wavelength = 1e-5 } }
+    rate_shear = { strength = 1e5, reference_speed = 6e-3, sharpness = 0.1 } }
 solver = { method = 'auto', relative_tolerance = 1e-3, max_steps = 30 }
 ";
 

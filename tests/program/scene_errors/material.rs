@@ -99,6 +99,6 @@ fn foundations() {
 }
 
 #[test]
-fn real_areas() {
-    assert_refusals("real areas", &BASE);
+fn fine_roughness() {
+    assert_refusals("fine roughness", &BASE);
 }
