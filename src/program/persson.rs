@@ -124,7 +124,7 @@ mod tests {
 
     fn rubber(prony: Vec<PronyTerm>) -> Material {
         let (density, poisson_ratio, equilibrium_modulus) = (1e3, 0.5, 3e6);
-        Material { density, poisson_ratio, equilibrium_modulus, viscosity: None, prony, wlf: None }
+        Material { density, poisson_ratio, equilibrium_modulus, viscosity: None, prony, wlf: None, heat: None }
     }
 
     fn viscoelastic() -> Material {

@@ -21,6 +21,19 @@ pub struct Material {
     pub prony: Vec<PronyTerm>,
     /// How times move with temperature; `None`: the scene has no temperature.
     pub wlf: Option<Wlf>,
+    /// How it takes up the heat of friction; `None`: contacts stay at the layer's temperature.
+    pub heat: Option<Heat>,
+}
+
+/// How a material takes up the heat that friction makes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Heat {
+    /// Conductivity λ, W/(m K).
+    pub conductivity: f64,
+    /// Specific capacity c, J/(kg K).
+    pub capacity: f64,
+    /// χ, 1: the part of the power that the rubber takes, and not the hard side.
+    pub share: f64,
 }
 
 /// A term of a Prony series: a Maxwell element of the material.
@@ -183,6 +196,16 @@ impl Scene {
             Some(self.material.as_ref()?.density * area * depth()?)
         };
         self.layer.mass.or_else(of_material).unwrap_or(0.0)
+    }
+
+    /// τ_0 + τ_f(v), Pa, at the speed v (m/s) and the reference temperature; 0 without a shear strength.
+    pub fn shear_strength_at(&self, speed: f64) -> f64 {
+        let Some(friction) = &self.friction else { return 0.0 };
+        let of_rate = friction.rate_shear.map_or(0.0, |law| {
+            let decades = (speed.max(law.creep_speed()) / law.reference_speed).log10();
+            law.strength.unwrap_or(0.0) * (-law.sharpness * decades * decades).exp()
+        });
+        friction.shear_strength.unwrap_or(0.0) + of_rate
     }
 
     /// Whether contacts have Coulomb's friction.

@@ -47,7 +47,7 @@ pub use fmu::{DependencyList, FmuOptions, IntegerType};
 pub use foundation::{Body, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};
 pub use keys::similar_keys;
 pub use link_kind::{ByLink, LinkKind};
-pub use material::{Material, PronyTerm, Wlf, complex_stiffness};
+pub use material::{Heat, Material, PronyTerm, Wlf, complex_stiffness};
 pub use parameters::{Parameter, Value};
 pub use patch_file::{FaceShape, Grid, NotDoubled, PatchFile, PatchGroup, TableExtrapolation};
 pub use profile::{

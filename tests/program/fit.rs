@@ -18,7 +18,15 @@ const WLF: [f64; 3] = [7.52, 119.75, 293.15];
 fn compound(equilibrium_modulus: f64, terms: impl IntoIterator<Item = (f64, f64)>) -> Material {
     let term = |(relaxation_time, modulus)| PronyTerm { relaxation_time, modulus };
     let prony = terms.into_iter().map(term).collect();
-    Material { density: 1100.0, poisson_ratio: 0.49, equilibrium_modulus, viscosity: None, prony, wlf: None }
+    Material {
+        density: 1100.0,
+        poisson_ratio: 0.49,
+        equilibrium_modulus,
+        viscosity: None,
+        prony,
+        wlf: None,
+        heat: None,
+    }
 }
 
 fn sixteen() -> Material {

@@ -163,11 +163,18 @@ const MATERIAL: &[Key] = &[
         "Prony series",
     ),
     table("wlf", WLF),
+    table("heat", HEAT),
 ];
 
 const PRONY_TERM: &[Key] = &[
     number("modulus", NOT_NEGATIVE, Unit::Pascal, "Modulus"),
     number("relaxation_time", POSITIVE, Unit::Second, "Relaxation time"),
+];
+
+const HEAT: &[Key] = &[
+    number("conductivity", POSITIVE, Unit::One, "Heat conductivity of the layer's material, W/(m K)"),
+    number("capacity", POSITIVE, Unit::One, "Specific heat capacity of the layer's material, J/(kg K)"),
+    number("share", POSITIVE.up_to(1.0), Unit::One, "Part of the friction power that the layer takes"),
 ];
 
 const WLF: &[Key] = &[

@@ -11,7 +11,7 @@ use super::keys::Form;
 use super::prony_file::{ElasticConstants, PronySeries};
 use super::values::Word;
 use super::{
-    ByLink, CarrierBodies, Extrapolation, FmuOptions, Foundation, FoundationKind, Friction, Initial, Layer, Link,
+    ByLink, CarrierBodies, Extrapolation, FmuOptions, Foundation, FoundationKind, Friction, Heat, Initial, Layer, Link,
     LinkKind, Material, MaxwellElement, OutputGroup, PronyTerm, RateShear, Scene, SceneError, Solver, Wlf, read_file,
     read_text, warnings,
 };
@@ -187,6 +187,15 @@ fn read_material(table: &mut TableReader<'_>, found: &mut Found) -> Result<Mater
         viscosity: table.optional_number("viscosity")?,
         prony: read_prony(&table.required("prony")?, elastic, found)?,
         wlf: table.optional_table("wlf", read_wlf)?,
+        heat: table.optional_table("heat", read_heat)?,
+    })
+}
+
+fn read_heat(table: &mut TableReader<'_>) -> Result<Heat> {
+    Ok(Heat {
+        conductivity: table.number("conductivity")?,
+        capacity: table.number("capacity")?,
+        share: table.optional_number("share")?.unwrap_or(1.0),
     })
 }
 
