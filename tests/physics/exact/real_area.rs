@@ -27,6 +27,7 @@ fn scene(lines: &str, method: &str) -> SceneText {
     SceneText::rubber(4, 1e-4, 0.0, 1e-2)
         .without("layer.thickness")
         .set("layer.foundation", "half_space")
+        .set("surface.kind", "flat")
         .set("material.poisson_ratio", 0.5)
         .set("material.equilibrium_modulus", rest)
         .set("material.viscosity", VISCOSITY)
