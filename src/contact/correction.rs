@@ -24,6 +24,7 @@
 use super::laws::{collision, decide_mode};
 use crate::integrator::{OpenEnd, Parabolas, StageValues, TimeSpan, Tolerance};
 use crate::math::{Bounds, bracketed_root};
+use crate::model::Flash;
 use crate::model::{Carrier, CarrierPoint, ChannelEnergies, LinkKind, Mode, Model, SlipCurve, State, SurfacePoint};
 
 use crate::scene::{Axis, ByAxis};
@@ -394,7 +395,8 @@ impl<'a> Correction<'a> {
         let slowing = time * (damping / (q * q) + time * model.mass_stiffness()) / model.mass;
         // No term in κ: v_t contains already how the profile bends from the touch to here.
         let driving = contact.tangential + self.not_passed(i, rest);
-        let curve = model.friction.slip_curve(contact.normal).filter(|_| contact.normal >= 0.0 && time > 0.0);
+        let flash = Flash::held(self.end.state.flash(i));
+        let curve = model.friction.slip_curve(contact.normal, flash).filter(|_| contact.normal >= 0.0 && time > 0.0);
         let weight = model.mass * (1.0 + slowing) / time;
         let excess = curve.map_or(0.0, |curve| rate_excess(&curve, mode.direction(), v_t, driving - at_rest, weight));
         let friction = at_rest + excess;

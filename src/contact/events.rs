@@ -209,13 +209,18 @@ impl Contacts<'_> {
     /// Their modes stay as they pass v_c. But where friction falls from there on, slip grows faster than a step is long that
     /// takes it for creep: the step has to end there.
     fn creeping(&self) -> impl Iterator<Item = usize> {
-        let (start, law) = (&self.step.start, &self.step.model.friction);
-        let creep_speed = law.creep_end();
+        let start = &self.step.start;
         let creeps = move |i: &usize| {
-            start.mode[*i].slips() && creep_speed.is_some_and(|creep| self.slip_speed(*i, start.velocity_x[*i]) < creep)
+            let passes = |creep: f64| self.slip_speed(*i, start.velocity_x[*i]) < creep;
+            start.mode[*i].slips() && self.creep_speed(*i).is_some_and(passes)
         };
-        let masses = if creep_speed.is_some() { self.step.model.masses() } else { 0 };
+        let masses = if self.step.model.friction.creep_end(0.0).is_some() { self.step.model.masses() } else { 0 };
         (0..masses).filter(creeps)
+    }
+
+    /// v_c of mass `i`, m/s, at its flash temperature at the start of the step.
+    fn creep_speed(&self, i: usize) -> Option<f64> {
+        self.step.model.friction.creep_end(self.step.start.flash(i))
     }
 
     /// v_t of mass `i` with this ẋ, m/s, over the slope at the start of the step.
@@ -226,7 +231,7 @@ impl Contacts<'_> {
 
     /// The fraction at which mass `i`, which creeps, passes v_c; `first` if it does not before that.
     fn creep_end(&self, i: usize, first: Option<f64>) -> Option<f64> {
-        let Some(creep_speed) = self.step.model.friction.creep_end() else { return first };
+        let Some(creep_speed) = self.creep_speed(i) else { return first };
         let beyond = |velocity_x: f64| (1.0 + CREEP_PASSED) * creep_speed - self.slip_speed(i, velocity_x);
         let stages = self.step.stages();
         let in_time = |rank: usize| &stages[self.step.interpolation().in_time()[rank]];

@@ -1,6 +1,6 @@
 //! The longest step where a contact is unstable: on a crest of the profile, and where friction weakens with the speed.
 
-use crate::model::{Forces, LinkKind, Model, State};
+use crate::model::{Flash, Forces, LinkKind, Model, State};
 
 /// Largest product of a step's length and the growth rate of an unstable contact.
 ///
@@ -68,7 +68,7 @@ fn fall_passed_over(model: &Model, start: &State, state: &State, forces: &Forces
         return None;
     }
     let contact = forces.contact(model, i, state.velocity_x[i], &state.surface[i]);
-    let curve = model.friction.slip_curve(contact.normal)?;
+    let curve = model.friction.slip_curve(contact.normal, Flash::held(state.flash(i)))?;
     Some(contact.q * contact.q * curve.steepest_fall(after.abs() * contact.q))
 }
 
@@ -80,7 +80,7 @@ fn longest(fastest: f64) -> f64 {
 /// speed.
 fn slope(model: &Model, state: &State, forces: &Forces, i: usize) -> f64 {
     let normal = forces.contact(model, i, state.velocity_x[i], &state.surface[i]).normal;
-    let Some(curve) = model.friction.slip_curve(normal) else { return 0.0 };
+    let Some(curve) = model.friction.slip_curve(normal, Flash::held(state.flash(i))) else { return 0.0 };
     let square = 1.0 + state.surface[i].slope * state.surface[i].slope;
     square * curve.with_slope(state.mode[i].direction() * state.velocity_x[i] * square.sqrt()).1
 }

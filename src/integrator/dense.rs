@@ -91,6 +91,7 @@ impl<'a> DenseOutput<'a> {
             Velocities::Polynomial => self.write_polynomials(theta, workspace, state),
             Velocities::BrokenLine => self.write_parabolas(theta, workspace, state),
         }
+        self.method.heat.within(theta, &self.start.flash, self.stages(), &mut state.flash);
         let mut elements = &mut state.maxwell[..];
         for row in &self.model.rows {
             let (of_row, further) = elements.split_at_mut(row.kind.count(self.masses.len()));
@@ -208,7 +209,7 @@ impl<'a> DenseOutput<'a> {
                 mode => {
                     let (v, surface) = (state.velocity_x[i], &state.surface[i]);
                     let contact = forces.contact(self.model, i, v, surface);
-                    missed(contact.acceleration(self.model, mode, v, surface), a_x, v_x, inertial.x)
+                    missed(contact.acceleration(self.model, mode, v, surface, state.flash(i)), a_x, v_x, inertial.x)
                 }
             };
             largest = largest.max(here);

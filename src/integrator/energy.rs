@@ -305,7 +305,7 @@ mod tests {
             .flatten()
             .for_each(|rate| *rate = number());
         // An elongation of the order of its relaxation time.
-        let mut start = State::new(model.masses(), model.maxwell_variables());
+        let mut start = State::new(&model);
         for row in &model.rows {
             start.maxwell[row.range.clone()].iter_mut().for_each(|a| *a = row.relaxation_time.min(1.0) * number());
         }

@@ -2,6 +2,7 @@
 
 use std::hint::select_unpredictable;
 
+use super::heat::Heat;
 use super::maxwell::Maxwell;
 use super::running_maxima::RunningMaxima;
 use super::stage_values::StageValues;
@@ -33,6 +34,9 @@ const WEIGHT_OF_FORCE_X: f64 = 4.0;
 /// Recommended 30 to 300. A mass that breaks loose where friction falls with the speed passes the decades from its creep
 /// speed on by growth, and comes late by as much as its speed errs there; the tolerance of velocities is far above these.
 const CREEP_SLACK: f64 = 100.0;
+
+/// The change of temperature, K, over which friction changes by a part of itself.
+const FLASH_SCALE: f64 = 10.0;
 
 /// That weight for `model`. Where friction depends on the speed F_x follows the speeds of creeping masses, which are
 /// far below the tolerance of velocities: there the weight would triple the steps of a creep and make it no more
@@ -76,6 +80,7 @@ impl ErrorWorkspace {
 pub(super) struct ErrorTest<'a> {
     pub tableau: &'static Tableau,
     pub maxwell: &'a Maxwell,
+    pub heat: &'a Heat,
     pub stages: &'a [StageValues],
     /// The carrier at the stages.
     pub carrier: &'a [CarrierPoint],
@@ -121,7 +126,8 @@ impl ErrorTest<'_> {
             + of_velocities(&workspace.v_x, &end.velocity_x, rates.x.speed)
             + of_velocities(&workspace.v_z, &end.velocity_z, rates.z.speed)
             + square(CARRIER_WEIGHT) * in_contact
-            + self.creep_squares(model, tolerance, &workspace.v_x);
+            + self.creep_squares(model, tolerance, &workspace.v_x)
+            + self.flash_squares(model, tolerance);
         // Those of the links: stiff ones as rods, Maxwell elements, and the force on the carrier.
         let mut of_forces = 0.0;
         for kind in LinkKind::ALL {
@@ -157,10 +163,19 @@ impl ErrorTest<'_> {
     /// The sum of squares of the errors of the velocities of slipping masses, by what changes the friction of the roughness
     /// below the profile, a function of ln v.
     fn creep_squares(&self, model: &Model, tolerance: &Tolerance, velocity_error: &[f64]) -> f64 {
-        let Some(creep_speed) = model.friction.creep_end() else { return 0.0 };
+        let Some(creep_speed) = model.friction.creep_end(0.0) else { return 0.0 };
         let allowed = CREEP_SLACK * tolerance.relative;
         let of = |&i: &usize| square(velocity_error[i] / (allowed * self.end.velocity_x[i].abs().max(creep_speed)));
         self.contacts.iter().filter(|&&i| self.end.mode[i].slips()).map(of).sum()
+    }
+
+    /// The sum of squares of the errors of the flash temperatures, by what changes friction.
+    fn flash_squares(&self, model: &Model, tolerance: &Tolerance) -> f64 {
+        if model.flash.is_none() {
+            return 0.0;
+        }
+        let allowed = |i: usize| tolerance.relative * (FLASH_SCALE + self.end.flash(i).abs());
+        self.contacts.iter().map(|&i| square(self.heat.error(i, self.stages) / allowed(i))).sum()
     }
 
     /// The sum of squares of the errors of the bodies' displacements and speeds over their tolerances, relative to the

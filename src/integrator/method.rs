@@ -1,6 +1,7 @@
 //! One Runge-Kutta step: the stages of an attempted step, from their history to their error test.
 
 use super::error::{CarrierQuadrature, ErrorEstimate, ErrorTest, ErrorWorkspace};
+use super::heat::{Heat, heat_flux};
 use super::maxwell::Maxwell;
 use super::scheme::{Coefficients, InitialGuess, Scheme};
 use super::sensitivity::{Sensitivity, Solved};
@@ -33,6 +34,7 @@ pub(super) struct RungeKutta {
     pub scheme: Scheme,
     pub coefficients: &'static Coefficients,
     pub maxwell: Maxwell,
+    pub heat: Heat,
 }
 
 /// The values at the stages of the last attempted step. Stage 0 is the start of the step.
@@ -70,7 +72,12 @@ impl RungeKutta {
     /// The method of a `scheme` for `model`, without workspace unless it `is_used`.
     pub(super) fn new(scheme: Scheme, model: &Model, is_used: bool) -> Self {
         let coefficients = scheme.coefficients();
-        Self { scheme, coefficients, maxwell: Maxwell::new(coefficients.tableau, model, is_used) }
+        Self {
+            scheme,
+            coefficients,
+            maxwell: Maxwell::new(coefficients.tableau, model, is_used),
+            heat: Heat::new(coefficients, model, is_used),
+        }
     }
 
     /// Solves all stages of a step.
@@ -88,22 +95,26 @@ impl RungeKutta {
         stages.carrier[0] = carrier.at(span.start);
         stages.solver.begin(model, state, beta, self.scheme.contact_modes());
         self.maxwell.begin(model, &state.maxwell, span.length);
+        self.heat.begin(&state.flash, span.length);
         for i in 1..tableau.stages {
             // What the earlier stages contribute, and a guess of the velocities.
             let (weights, s) = (&tableau.a[i][..], span.at(tableau.c[i]));
             let moved = carrier.moved(span.start, tableau.c[i] * span.length).x;
             let mut point = stages.prepare(step, i, s, moved, weights);
             self.maxwell.known_forces(i, &stages.rates[..i], &mut stages.solver.history.force);
+            self.heat.prepare(i, &stages.rates[..i], &mut stages.solver.flash);
             stages.guess(step, i, &self.coefficients.initial_guess);
             // The velocities at the stage, and their sensitivities.
             stages.solve(step, &mut point, i, s, convergence)?;
-            stages.vary(step, &point, i, s, weights);
+            stages.vary(step, &self.heat, &point, i, s, weights);
             if i < tableau.last() {
                 stages.keep_link_forces(i);
             }
         }
-        // The last stage is the end of the step; its Maxwell elements are still to be found.
-        self.maxwell.at_stage(model, tableau.last(), &state.maxwell, &stages.rates, &mut stages.solver.state.maxwell);
+        // The last stage is the end of the step; its Maxwell elements and flash temperatures are still to be found.
+        let Stages { rates, solver, .. } = stages;
+        self.maxwell.at_stage(model, tableau.last(), &state.maxwell, rates, &mut solver.state.maxwell);
+        self.heat.at_end(&state.flash, rates.iter().map(heat_flux), &mut solver.state.flash);
         Ok(())
     }
 
@@ -119,6 +130,7 @@ impl RungeKutta {
         let test = ErrorTest {
             tableau,
             maxwell: &self.maxwell,
+            heat: &self.heat,
             stages: &stages.rates[..tableau.stages],
             carrier: &stages.carrier[..tableau.stages],
             end: &stages.solver.state,
@@ -296,12 +308,20 @@ impl Stages {
 
     /// Computes the tangents at stage `i`, just solved, at `s` seconds after the start of the carrier's motion; the
     /// stages have `weights`.
-    fn vary(&mut self, step: &Attempt<'_>, point: &StagePoint, i: usize, s: f64, weights: &[f64]) {
+    fn vary(
+        &mut self,
+        step: &Attempt<'_>,
+        heat: &Heat,
+        point: &StagePoint,
+        i: usize,
+        s: f64,
+        weights: &[f64],
+    ) {
         if self.tangents.is_empty() {
             return;
         }
         self.solver.factor_at_solution(step.model, point.beta);
-        let stage = Solved { i, s, h: step.span.length, weights, rates: &self.rates[i], point };
+        let stage = Solved { i, s, h: step.span.length, weights, rates: &self.rates[i], point, heat };
         for tangent in &mut self.tangents {
             tangent.solve_stage(step.model, &mut self.solver, &stage);
         }

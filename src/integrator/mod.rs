@@ -10,6 +10,7 @@ mod carrier_sums;
 mod dense;
 mod energy;
 mod error;
+mod heat;
 mod interpolation;
 mod layer_step;
 mod maxwell;

@@ -8,9 +8,10 @@
 
 use nalgebra::Vector2;
 
+use super::heat::Heat;
 use super::stage::{SlippingMass, StagePoint, StageSolver};
 use super::stage_values::StageValues;
-use crate::model::{Axis, Body, ByAxis, Forces, Input, LinkKind, LinkMotion, Mode, Model, State, TangentsOf};
+use crate::model::{Axis, Body, ByAxis, Flash, Forces, Input, LinkKind, LinkMotion, Mode, Model, State, TangentsOf};
 
 /// The variation of the layer's state: dimensionless for positions, 1/s for velocities. Or its rate of change, each
 /// part that of the part of the state.
@@ -26,6 +27,8 @@ struct Variation {
     v_z: Vec<f64>,
     /// Of the elongations a_j of the Maxwell elements.
     maxwell: Vec<f64>,
+    /// Of the parts ϑ_j of the flash temperatures, K; no rate of them is needed.
+    flash: Vec<f64>,
     /// Of the displacements and speeds of the bodies along x and z.
     bodies: CarrierVariation,
 }
@@ -45,6 +48,10 @@ pub(super) struct Sensitivity {
     end: Variation,
     /// The rates at the stages.
     stages: Vec<Variation>,
+    /// The variations of the heat fluxes at the stages, W/m²; empty where friction heats nothing.
+    heat_fluxes: Vec<Vec<f64>>,
+    /// The variation of what is known of the flash temperatures at the stage, K; likewise.
+    known_flash: Vec<f64>,
     forces: Forces,
     /// The known part of the motion of the links at a stage, with the unknown velocities not varied; positions relative
     /// to the carrier, and no elements.
@@ -54,8 +61,9 @@ pub(super) struct Sensitivity {
 impl Variation {
     fn new(model: &Model) -> Self {
         let zero = vec![0.0; model.masses()];
-        let maxwell = vec![0.0; model.maxwell_variables()];
-        Self { x: zero.clone(), z: zero.clone(), v_x: zero.clone(), v_z: zero, maxwell, bodies: ByAxis::default() }
+        let [maxwell, flash] = [model.maxwell_variables(), model.flash_variables()].map(|count| vec![0.0; count]);
+        let (x, z, v_x) = (zero.clone(), zero.clone(), zero.clone());
+        Self { x, z, v_x, v_z: zero, maxwell, flash, bodies: ByAxis::default() }
     }
 
     fn parts(&self) -> [&[f64]; 5] {
@@ -79,12 +87,15 @@ impl Variation {
 
 impl Sensitivity {
     pub(super) fn new(model: &Model, input: Input, stages: usize) -> Self {
+        let heated = if model.flash.is_some() { model.masses() } else { 0 };
         Self {
             input,
             duration: 1.0,
             start: Variation::new(model),
             end: Variation::new(model),
             stages: vec![Variation::new(model); stages],
+            heat_fluxes: vec![vec![0.0; heated]; stages],
+            known_flash: vec![0.0; heated],
             forces: Forces::new(model),
             known: Variation { maxwell: Vec::new(), ..Variation::new(model) },
         }
@@ -96,6 +107,7 @@ impl Sensitivity {
         for part in self.start.parts_mut() {
             part.fill(0.0);
         }
+        self.start.flash.fill(0.0);
         self.start.bodies = ByAxis::default();
     }
 
@@ -163,8 +175,11 @@ impl Sensitivity {
                 (self.start.z[i], self.start.v_x[i], self.start.v_z[i]) = (mass.z, mass.v_x, mass.v_z);
             }
         }
-        self.forces_at_start(model, &carrier);
-        // The rates of the masses.
+        self.evaluate_forces(model, &carrier);
+        // The rates of the masses, and the heat that they make.
+        for i in 0..self.known_flash.len() {
+            self.known_flash[i] = self.start.flash.iter().skip(i).step_by(model.masses()).sum();
+        }
         for i in 0..model.masses() {
             let on_mass = (self.forces.on_mass_x[i], self.forces.on_mass_z[i]);
             let rates = &mut self.stages[0];
@@ -174,12 +189,17 @@ impl Sensitivity {
                 Mode::Free => on_mass.0 / model.mass,
                 Mode::Stick => 0.0,
                 Mode::Forward | Mode::Backward => {
-                    let slip = SlippingMass::from_state(model, state, forces, i, accelerations[i]);
+                    let flash = Flash::held(state.flash(i));
+                    let (slip, friction) = SlippingMass::from_state(model, state, forces, i, accelerations[i], flash);
                     let forces = (forces.on_mass_x[i], forces.on_mass_z[i]);
-                    slip.variation(model, x, v_x, on_mass, forces) / (model.mass * slip.q2())
+                    let of_flash = self.known_flash.get(i).map_or(0.0, |known| friction.by_flash * known);
+                    slip.variation(model, (&friction, of_flash), (x, v_x), on_mass, forces) / (model.mass * slip.q2())
                 }
             };
             rates.v_z[i] = on_mass.1 / model.mass;
+        }
+        for i in 0..self.known_flash.len() {
+            self.heat_fluxes[0][i] = self.heat_flux(model, state, forces, i, Flash::held(state.flash(i)));
         }
         // Of the bodies.
         for axis in Axis::ALL {
@@ -204,12 +224,12 @@ impl Sensitivity {
 
     /// The derivatives at the start of the next step, `s` seconds after the start of the motion.
     pub(super) fn tangents(&mut self, model: &Model, s: f64) -> TangentsOf {
-        self.forces_at_start(model, &self.carrier(model, s, &self.start.bodies));
+        self.evaluate_forces(model, &self.carrier(model, s, &self.start.bodies));
         TangentsOf { force: ByAxis::from_fn(|axis| self.forces.on_carrier(axis)), body: self.start.bodies }
     }
 
     /// Computes the variation of the forces of the links at the start of the step.
-    fn forces_at_start(&mut self, model: &Model, carrier: &CarrierVariation) {
+    fn evaluate_forces(&mut self, model: &Model, carrier: &CarrierVariation) {
         let start = &self.start;
         for i in 0..model.masses() {
             self.known.x[i] = start.x[i] - carrier.x[0];
@@ -229,13 +249,15 @@ impl Sensitivity {
     pub(super) fn accept(&mut self, last: usize) {
         std::mem::swap(&mut self.start, &mut self.end);
         self.stages.swap(0, last);
+        self.heat_fluxes.swap(0, last);
     }
     /// Solves stage `i` of a step of length `h` (s) for the tangent: into `end` and the rates of the stage. The
     /// `solver` has solved the stage itself, which lies `s` seconds after the start of the motion and has these
     /// `rates`, and has factored its matrix there; `weights` are those of the earlier stages.
     pub(super) fn solve_stage(&mut self, model: &Model, solver: &mut StageSolver, stage: &Solved<'_>) {
-        let &Solved { i, s, h, weights, rates, point } = stage;
+        let &Solved { i, s, h, weights, rates, point, heat } = stage;
         self.collect_history(h, &weights[..i]);
+        heat.vary(i, &self.start.flash, &self.heat_fluxes[..i], &mut self.known_flash);
         // The known part of a body's motion: its speed, unknown, is not varied.
         let known = self.end.bodies.map(|[displacement, _]| [displacement, 0.0]);
         self.known_forces(model, solver, point.beta, &self.carrier(model, s, &known));
@@ -255,6 +277,43 @@ impl Sensitivity {
         }
         self.set_masses(model, solver, point.beta, i);
         self.set_elements(model, point.beta, &self.carrier(model, s, &self.end.bodies), i);
+        if !self.known_flash.is_empty() {
+            self.set_heat(model, solver, s, i);
+            if heat.ends_with(i) {
+                let fluxes = self.heat_fluxes.iter().map(Vec::as_slice);
+                heat.at_end(&self.start.flash, fluxes, &mut self.end.flash);
+            }
+        }
+    }
+
+    /// Computes the variations of the heat fluxes at stage `stage` from those of the state.
+    fn set_heat(&mut self, model: &Model, solver: &StageSolver, s: f64, stage: usize) {
+        // The forces are evaluated in the variation at the start.
+        std::mem::swap(&mut self.start, &mut self.end);
+        self.evaluate_forces(model, &self.carrier(model, s, &self.start.bodies));
+        for i in 0..model.masses() {
+            let flash = solver.flash.of_mass(i);
+            self.heat_fluxes[stage][i] = self.heat_flux(model, &solver.state, &solver.forces, i, flash);
+        }
+        std::mem::swap(&mut self.start, &mut self.end);
+    }
+
+    /// The variation of the heat flux F_T v_t/A of mass `i`, W/m², for those of the state in the place of the start's and of
+    /// the links' forces: δF_T = ∂T/∂F_N δF_N + ∂T/∂v_t δv_t + ∂T/∂ϑ δϑ.
+    fn heat_flux(&self, model: &Model, state: &State, forces: &Forces, i: usize, flash: Flash) -> f64 {
+        let mode = state.mode[i];
+        if !mode.slips() {
+            return 0.0;
+        }
+        let (slip, friction) = SlippingMass::from_state(model, state, forces, i, 0.0, flash);
+        let of_forces = [&forces.on_mass_x, &forces.on_mass_z].map(|on_mass| on_mass[i]);
+        let varied = [&self.forces.on_mass_x, &self.forces.on_mass_z].map(|on_mass| on_mass[i]);
+        let [normal, speed] = slip.contact_variation(model.mass, (self.start.x[i], self.start.v_x[i]), varied, of_forces);
+        let change = friction.by_normal * normal
+            + friction.by_speed * mode.direction() * speed
+            + friction.by_flash * self.known_flash[i];
+        let v_t = mode.direction() * slip.speed();
+        (change * v_t + friction.force() * mode.direction() * speed) / model.element_area
     }
 
     /// Takes the variation of a body at stage `stage` from its speed `found`.
@@ -296,9 +355,12 @@ impl Sensitivity {
             Mode::Free => Vector2::new(on_mass.0 + inertia * v_x, on_mass.1 + inertia * v_z),
             Mode::Stick => Vector2::zeros(),
             Mode::Forward | Mode::Backward => {
-                let slip = SlippingMass::from_state(model, &solver.state, &solver.forces, i, acceleration);
+                let flash = solver.flash.of_mass(i);
+                let (slip, friction) =
+                    SlippingMass::from_state(model, &solver.state, &solver.forces, i, acceleration, flash);
                 let forces = (solver.forces.on_mass_x[i], solver.forces.on_mass_z[i]);
-                let varied = slip.variation(model, self.end.x[i], 0.0, on_mass, forces);
+                let of_flash = self.known_flash.get(i).map_or(0.0, |known| friction.by_flash * known);
+                let varied = slip.variation(model, (&friction, of_flash), (self.end.x[i], 0.0), on_mass, forces);
                 Vector2::new(varied + inertia * slip.q2() * v_x, 0.0)
             }
         }
@@ -356,6 +418,7 @@ pub(super) struct Solved<'a> {
     pub weights: &'a [f64],
     pub rates: &'a StageValues,
     pub point: &'a StagePoint,
+    pub heat: &'a Heat,
 }
 
 /// sum += factor · term.

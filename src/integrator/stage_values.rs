@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::running_maxima::RunningMaxima;
 use crate::model::{
-    BoundaryPowers, ByAxis, ByLink, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, SlipCurve,
+    BoundaryPowers, ByAxis, ByLink, CarrierPoint, ContactForces, Flash, Forces, LinkKind, MaxwellRow, Mode, Model, SlipCurve,
     State, SurfacePoint,
 };
 
@@ -32,6 +32,8 @@ pub struct StageValues {
     pub elongation_rate: ByLink<Vec<f64>>,
     /// F_N of the masses in contact, N; [`NO_LIMIT`] for a free one.
     pub normal: Vec<f64>,
+    /// F_T v_t/A of the masses that slip, W/m², 0 of the others; empty where friction heats nothing.
+    pub heat_flux: Vec<f64>,
     /// Margin to the next mode change along t: σẋ (m/s) of a slipping mass, T - |f·t| (N) of a sticking one;
     /// [`NO_LIMIT`] for a free mass, and where the scene has no friction.
     pub margin: Vec<f64>,
@@ -48,6 +50,7 @@ impl StageValues {
             acceleration_z: zeros(),
             elongation_rate: Forces::zeros_by_link(model),
             normal: zeros(),
+            heat_flux: if model.flash.is_some() { zeros() } else { Vec::new() },
             margin: zeros(),
         }
     }
@@ -55,6 +58,7 @@ impl StageValues {
     /// Sets the contact forces and margins to those of free masses.
     pub fn clear_contacts(&mut self) {
         self.normal.fill(NO_LIMIT);
+        self.heat_flux.fill(0.0);
         self.margin.fill(NO_LIMIT);
     }
 
@@ -66,6 +70,7 @@ impl StageValues {
             (&mut self.acceleration_x, &other.acceleration_x),
             (&mut self.acceleration_z, &other.acceleration_z),
             (&mut self.normal, &other.normal),
+            (&mut self.heat_flux, &other.heat_flux),
             (&mut self.margin, &other.margin),
         ];
         for (mine, theirs) in pairs {
@@ -83,7 +88,7 @@ impl StageValues {
         for i in 0..model.masses() {
             self.evaluate_mass(model, state, forces, i);
             if state.mode[i].slips()
-                && let Some(curve) = model.friction.slip_curve(self.normal[i])
+                && let Some(curve) = model.friction.slip_curve(self.normal[i], Flash::held(state.flash(i)))
             {
                 self.soften(model, &curve, state, i, beta);
             }
@@ -124,14 +129,19 @@ impl StageValues {
         } else {
             let surface = &state.surface[i];
             let contact = ContactForces::new(model, (f_x, f_z), v, surface);
-            self.acceleration_x[i] = contact.acceleration(model, mode, v, surface);
+            self.acceleration_x[i] = contact.acceleration(model, mode, v, surface, state.flash(i));
             self.set_contact(model, i, mode, v, surface, &contact);
+            if let Some(flux) = self.heat_flux.get_mut(i) {
+                let friction = contact.friction(model, mode, v, state.flash(i));
+                *flux = if mode.slips() { friction.abs() * (v * contact.q).abs() / model.element_area } else { 0.0 };
+            }
         }
     }
 
     /// Recomputes the rates of mass `i` and of its links from the forces in `state` under the carrier.
     pub fn refresh(&mut self, model: &Model, state: &State, forces: &Forces, i: usize, carrier: &CarrierPoint) {
         (self.normal[i], self.margin[i]) = (NO_LIMIT, NO_LIMIT);
+        self.heat_flux.get_mut(i).into_iter().for_each(|flux| *flux = 0.0);
         self.evaluate_mass(model, state, forces, i);
         for kind in LinkKind::ALL {
             let (velocity, carrier_rate) = if kind.is_along_x() {
@@ -203,7 +213,7 @@ pub struct LayerState {
 impl LayerState {
     /// A layer of `model` at rest and free.
     pub fn new(model: &Model) -> Self {
-        let state = State::new(model.masses(), model.maxwell_variables());
+        let state = State::new(model);
         Self {
             state,
             rates: StageValues::new(model),

@@ -1,6 +1,6 @@
 //! The forces in a contact: the normal force and the tangential one, and the acceleration that they leave.
 
-use super::{Forces, Mode, Model, SurfacePoint};
+use super::{Flash, Forces, Mode, Model, SlipFriction, SurfacePoint};
 
 /// The forces in one contact, from (6)-(9).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,29 +40,41 @@ impl ContactForces {
         Self { normal, tangential: 0.0, limit: model.friction.limit(normal), q: (1.0 + slope * slope).sqrt() }
     }
 
-    /// F_T on a mass in `mode` at the velocity ẋ, N, positive against +t: f·t of a sticking mass, T(v_t) sign(v_t) of a
-    /// slipping one.
+    /// F_T on a mass in `mode` at the velocity ẋ and the flash temperature `flash` (K), N, positive against +t: f·t of a
+    /// sticking mass, T(v_t) sign(v_t) of a slipping one.
     #[inline]
-    pub fn friction(&self, model: &Model, mode: Mode, velocity_x: f64) -> f64 {
+    pub fn friction(&self, model: &Model, mode: Mode, velocity_x: f64, flash: f64) -> f64 {
         match mode {
             Mode::Free => 0.0,
             Mode::Stick => self.tangential,
             Mode::Forward | Mode::Backward => {
                 let sigma = mode.direction();
-                let excess =
-                    model.friction.slip_curve(self.normal).map_or(0.0, |law| law.excess(sigma * velocity_x * self.q));
+                let curve = model.friction.slip_curve(self.normal, Flash::held(flash));
+                let excess = curve.map_or(0.0, |law| law.at(sigma * velocity_x * self.q).excess);
                 sigma * (self.limit + excess)
             }
         }
     }
 
+    /// The friction on a mass that slips in `mode` with the velocity ẋ at the flash temperature `flash`, K.
+    pub fn slip(&self, model: &Model, mode: Mode, velocity_x: f64, flash: f64) -> SlipFriction {
+        model.friction.slip(self.normal, mode.direction() * velocity_x * self.q, Flash::held(flash))
+    }
+
     /// ẍ of a mass in contact in `mode`: m q² ẍ + m s κ ẋ² = f_x + s f_z - F_T q.
-    pub fn acceleration(&self, model: &Model, mode: Mode, velocity_x: f64, surface: &SurfacePoint) -> f64 {
+    pub fn acceleration(
+        &self,
+        model: &Model,
+        mode: Mode,
+        velocity_x: f64,
+        surface: &SurfacePoint,
+        flash: f64,
+    ) -> f64 {
         if mode == Mode::Stick {
             return 0.0;
         }
         let centripetal = surface.slope * surface.curvature * velocity_x * velocity_x;
-        ((self.tangential - self.friction(model, mode, velocity_x)) / model.mass - centripetal / self.q) / self.q
+        ((self.tangential - self.friction(model, mode, velocity_x, flash)) / model.mass - centripetal / self.q) / self.q
     }
 }
 

@@ -8,15 +8,17 @@
 //! with the diffusivity D and the parts s_b and s_a that the bands and the surface have in friction. κ is a sum of
 //! exponentials, by the trapezoidal rule in ln k.
 
-use std::f64::consts::{PI, SQRT_2};
+use std::f64::consts::{LN_10, PI, SQRT_2};
 
-use crate::scene::{FineBand, Heat, Material, Scene};
+use crate::scene::{FineBand, Material, Scene, Wlf};
 
 /// χ κ(t) as Σ_j w_j e^(-t/t_j), from [`SHORTEST`] to [`LONGEST`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlashKernel {
     /// w_j, K m²/J, and t_j, s, from the longest.
     pub terms: Vec<FlashTerm>,
+    /// χ, the part of the power of friction that heats the rubber, 1.
+    pub share: f64,
 }
 
 /// A term of the kernel.
@@ -26,6 +28,60 @@ pub struct FlashTerm {
     pub weight: f64,
     /// t_j, s.
     pub time: f64,
+}
+
+/// The flash temperature ϑ of a contact with the friction T at the speed v_t, as this makes it: ϑ = `known` + `gain` T v_t.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Flash {
+    /// What the past has left, K.
+    pub known: f64,
+    /// K/W.
+    pub gain: f64,
+    /// From where ϑ is looked for, K.
+    pub guess: f64,
+}
+
+impl Flash {
+    /// A temperature that is held, K.
+    pub fn held(known: f64) -> Self {
+        Self { known, gain: 0.0, guess: known }
+    }
+}
+
+/// How the flash temperature shifts the speeds of friction: by a_T(T + ϑ)/a_T(T).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpeedShift {
+    /// C_1 ln 10.
+    c1: f64,
+    /// C_2, K.
+    c2: f64,
+    /// T - T_ref, K.
+    above: f64,
+    /// ln a_T(T).
+    at_layer: f64,
+}
+
+/// The law of Williams, Landel and Ferry is used down to this temperature above its pole T_ref - C_2, K.
+const ABOVE_POLE: f64 = 30.0;
+
+impl SpeedShift {
+    /// The shift of a scene; `None` where friction heats nothing.
+    pub fn new(scene: &Scene) -> Option<Self> {
+        let material = scene.material.as_ref()?;
+        let (Wlf { c1, c2, reference_temperature, temperature }, _) = (material.wlf?, material.heat?);
+        let above = temperature - reference_temperature;
+        let c1 = c1 * LN_10;
+        Some(Self { c1, c2, above, at_layer: -c1 * above / (c2 + above) })
+    }
+
+    /// a_T(T + ϑ)/a_T(T) and the derivative of its logarithm by ϑ, 1/K; as the law has it [`ABOVE_POLE`] where it is colder.
+    pub fn ratio(&self, flash: f64) -> (f64, f64) {
+        let above = self.above + flash;
+        let (from_pole, is_colder) = ((self.c2 + above).max(ABOVE_POLE), self.c2 + above < ABOVE_POLE);
+        let shift = -self.c1 * (from_pole - self.c2) / from_pole;
+        let slope = if is_colder { 0.0 } else { -self.c1 * self.c2 / (from_pole * from_pole) };
+        ((shift - self.at_layer).exp(), slope)
+    }
 }
 
 /// The times between which the kernel is right within 2 %, and its integral from 0 within 1 %, s.
@@ -59,7 +115,7 @@ impl FlashKernel {
             let weight = heat.share * 2.0 / (PI * capacity) * k * share * share * width;
             FlashTerm { weight, time: 1.0 / (diffusivity * k * k) }
         };
-        Some(Self { terms: (0..TERMS).map(term).collect() })
+        Some(Self { terms: (0..TERMS).map(term).collect(), share: heat.share })
     }
 
     /// χ κ(t), K m²/J.

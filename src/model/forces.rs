@@ -409,7 +409,7 @@ mod tests {
         let mut model = Model::from_text(SCENE);
         model.freeze_dashpots(ByAxis { x: 0.0, z: -0.3 });
         assert!(model.frozen_stiffness.0 == [5.0, 0.0, 0.0, 1.5] && model.frozen[1] > 0.1);
-        let mut state = State::new(model.masses(), model.maxwell_variables());
+        let mut state = State::new(&model);
         let carrier = moving(0.2, -0.1);
         let mut refreshed = Forces::new(&model);
         refreshed.evaluate(&model, &state, &carrier);
@@ -440,7 +440,7 @@ mod tests {
         {
             let mut model = Model::from_text(&text);
             model.freeze_dashpots(ByAxis { x: 0.0, z: -0.3 });
-            let mut state = State::new(model.masses(), model.maxwell_variables());
+            let mut state = State::new(&model);
             let number = |i: usize| (i as f64).sin();
             for i in 0..model.masses() {
                 (state.elongation_x[i], state.elongation_z[i]) = (number(i), number(i + 10));

@@ -12,12 +12,15 @@
 //! μ_h and the area A_r that touches are those of the roughness below the profile ([`FineFriction`]); without it A_r is A.
 //! At rest both are at v_c.
 //!
-//! A law is what [`FrictionLaw`] answers: T(0), its derivative by F_N, and the excess in slip with its derivative by
-//! the speed; its tangent for Newton's method, its power, the share of the shear force, and what it takes in an impact.
+//! Where friction heats the contacts, speeds are those at the contact's own temperature, v a_T(T + ϑ)/a_T(T), with the
+//! [flash temperature](Flash) ϑ that friction itself raises. T(0) does not depend on it.
+//!
+//! A law is what [`FrictionLaw`] answers: T(0), and the excess over it [in slip](SlipFriction), with the derivatives; its
+//! power, the shares of its parts, and what it takes in an impact.
 
 use std::f64::consts::LN_10;
 
-use super::{ContactForces, ContactQuantity, FineContact, FineFriction, Forces, Mode, Model, State};
+use super::{ContactForces, ContactQuantity, FineContact, FineFriction, Flash, Forces, Mode, Model, SpeedShift, State};
 use crate::math::{bracketed_root, dot, sum};
 use crate::scene::{self, Scene};
 
@@ -36,6 +39,45 @@ pub struct FrictionLaw {
     rate_shear: Option<RateShearLaw>,
     /// The roughness below the profile; `None`: the shear force acts on all of a contact's area.
     fine: Option<FineFriction>,
+    /// How speeds count in contacts that friction heats; `None`: they stay at the layer's temperature.
+    shift: Option<SpeedShift>,
+}
+
+/// Friction T of a contact in slip, with what the heat that it makes adds to its derivatives.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SlipFriction {
+    /// F_N, N; 0 under a law that is linear in it.
+    pub normal: f64,
+    /// T(0), N, at that F_N.
+    pub limit: f64,
+    /// ∂T/∂F_N, 1.
+    pub by_normal: f64,
+    /// T - T(0), N; odd in the speed, so that a mass that turns round is braked before its mode changes.
+    pub excess: f64,
+    /// ∂T/∂v_t, N s/m.
+    pub by_speed: f64,
+    /// The part of T by the hysteresis of the waves that the profile lacks, N.
+    pub hysteresis: f64,
+    /// ϑ, K.
+    pub flash: f64,
+    /// ∂T/∂ϑ by a change of the known part of ϑ, N/K.
+    pub by_flash: f64,
+    /// The part of a change of ϑ that heat makes of itself: ∂ϑ/∂T ∂T/∂ϑ. Beyond 1/2 a step has other solutions nearby.
+    pub feedback: f64,
+}
+
+impl SlipFriction {
+    /// T, N, at the `speed` in the direction of slip.
+    pub fn force(&self) -> f64 {
+        self.limit + self.excess
+    }
+
+    /// The tangent of T(0) + ∂T/∂F_N δF_N.
+    #[inline(always)]
+    pub fn tangent(&self) -> LinearFriction {
+        let Self { normal, limit, by_normal, .. } = *self;
+        LinearFriction { normal, coulomb: by_normal, shear: limit - by_normal * normal }
+    }
 }
 
 /// What parts of friction have in it, 1; Coulomb's has the rest.
@@ -73,6 +115,7 @@ impl FrictionLaw {
             has_parts: scene.has_friction_parts(),
             rate_shear,
             fine,
+            shift: SpeedShift::new(scene),
         }
     }
 
@@ -104,26 +147,35 @@ impl FrictionLaw {
         self.coulomb * normal + rest
     }
 
-    /// ∂T/∂F_N, 1, under F_N (N) at the `speed` of slip, m/s.
-    pub fn by_normal(&self, normal: f64, speed: f64) -> f64 {
-        let strength = |law: &RateShearLaw| law.with_slope(speed.abs()).0;
-        let force = self.shear + self.rate_shear.as_ref().map_or(0.0, strength);
-        let by_normal = |fine: &FineFriction| {
-            let contact = fine.contact(normal, speed);
-            contact.share.by_normal * force + contact.hysteresis.by_normal
-        };
-        self.coulomb + self.fine.as_ref().map_or(0.0, by_normal)
-    }
-
-    /// The excess in slip over T(0) under the normal force F_N (N); `None` where friction does not depend on the speed.
+    /// The excess in slip over T(0) under the normal force F_N (N), at the flash temperature that goes with it; `None` where
+    /// friction does not depend on the speed.
     #[inline]
-    pub fn slip_curve(&self, normal: f64) -> Option<SlipCurve<'_>> {
-        self.depends_on_speed().then_some(SlipCurve { law: self, normal })
+    pub fn slip_curve(&self, normal: f64, flash: Flash) -> Option<SlipCurve<'_>> {
+        let at_rest = |fine: &FineFriction| fine.at_rest(normal);
+        let at_rest = self.fine.as_ref().map_or(FineContact::default(), at_rest);
+        self.depends_on_speed().then_some(SlipCurve { law: self, normal, flash, at_rest })
     }
 
-    /// v_c (m/s), up to which contacts on the roughness below the profile slip as at rest; `None` without it.
-    pub fn creep_end(&self) -> Option<f64> {
-        self.fine.as_ref().filter(|fine| fine.depends_on_speed()).map(FineFriction::creep_speed)
+    /// Friction under F_N (N) at the `speed` in the direction of slip, m/s.
+    #[inline]
+    pub fn slip(&self, normal: f64, speed: f64, flash: Flash) -> SlipFriction {
+        match self.slip_curve(normal, flash) {
+            Some(curve) => curve.at(speed),
+            None => SlipFriction {
+                normal,
+                limit: self.limit(normal),
+                by_normal: self.coulomb + self.shear * self.fine_contact(normal, speed, flash.known).share.by_normal,
+                flash: flash.known,
+                ..SlipFriction::default()
+            },
+        }
+    }
+
+    /// v_c (m/s), up to which contacts on the roughness below the profile slip as at rest, at the flash temperature
+    /// `flash` (K); `None` without it.
+    pub fn creep_end(&self, flash: f64) -> Option<f64> {
+        let fine = self.fine.as_ref().filter(|fine| fine.depends_on_speed())?;
+        Some(fine.creep_speed() / self.shift.map_or(1.0, |shift| shift.ratio(flash).0))
     }
 
     /// The law without its dependence on the speed, where it is linear in the normal force.
@@ -132,19 +184,13 @@ impl FrictionLaw {
         LinearFriction { normal: 0.0, coulomb: self.coulomb, shear: self.shear }
     }
 
-    /// The tangent at F_N (N) and the `speed` of slip (m/s), where the law is not linear in the normal force.
-    #[inline(never)]
-    pub fn tangent(&self, normal: f64, speed: f64) -> LinearFriction {
-        let coulomb = self.by_normal(normal, speed);
-        LinearFriction { normal, coulomb, shear: self.limit(normal) - coulomb * normal }
-    }
-
-    /// What the roughness below the profile does in a contact under F_N (N) at the `speed` (m/s): without it all of the area
-    /// touches, and no hysteresis is added.
-    pub fn fine_contact(&self, normal: f64, speed: f64) -> FineContact {
+    /// What the roughness below the profile does in a contact under F_N (N) at the `speed` (m/s) and the flash temperature
+    /// `flash` (K): without it all of the area touches, and no hysteresis is added.
+    pub fn fine_contact(&self, normal: f64, speed: f64, flash: f64) -> FineContact {
         let whole = ContactQuantity { value: 1.0, ..ContactQuantity::default() };
         let smooth = FineContact { share: whole, ..FineContact::default() };
-        self.fine.as_ref().map_or(smooth, |fine| fine.contact(normal, speed))
+        let shift = self.shift.map_or(1.0, |shift| shift.ratio(flash).0);
+        self.fine.as_ref().map_or(smooth, |fine| fine.contact(normal, shift * speed))
     }
 
     /// The parts of T(0) under F_N (N): what a sticking force is shared out by.
@@ -253,10 +299,21 @@ pub struct SlipCurve<'a> {
     law: &'a FrictionLaw,
     /// F_N, N.
     normal: f64,
+    flash: Flash,
+    /// The contact at rest on the roughness below the profile.
+    at_rest: FineContact,
 }
 
+/// Corrections of a flash temperature below this, K, are the last: friction is taken along its tangent over them, which
+/// changes by some hundredths a kelvin.
+const FLASH_ACCURACY: f64 = 1e-4;
+/// Iterations for a flash temperature. Where they do not end, heat feeds itself so much that the step is refused.
+const MAX_FLASH_ITERATIONS: usize = 30;
+/// The largest feedback with which a correction of Newton's method is taken.
+const MAX_FEEDBACK: f64 = 0.9;
+
 impl SlipCurve<'_> {
-    /// The speed up to which there is no excess, m/s.
+    /// The speed up to which there is no excess, m/s, where friction does not heat the contact.
     pub fn creep_speed(&self) -> f64 {
         match (&self.law.rate_shear, &self.law.fine) {
             (Some(law), _) => law.creep_speed,
@@ -271,8 +328,7 @@ impl SlipCurve<'_> {
         match &self.law.fine {
             None => (least, most),
             Some(fine) => {
-                let at_rest = fine.at_rest(self.normal);
-                let (share, hysteresis) = (at_rest.share.value, at_rest.hysteresis.value);
+                let (share, hysteresis) = (self.at_rest.share.value, self.at_rest.hysteresis.value);
                 let growth = (fine.largest_hysteresis(self.normal) - hysteresis).max(0.0);
                 (-share * self.law.shear - hysteresis, share * most + growth)
             }
@@ -284,17 +340,79 @@ impl SlipCurve<'_> {
         self.law.rate_shear.as_ref().map_or([self.creep_speed(); 2], RateShearLaw::marks)
     }
 
+    /// Friction at the `speed` in the direction of slip, m/s.
+    #[inline]
+    pub fn at(&self, speed: f64) -> SlipFriction {
+        match &self.law.shift {
+            None => self.at_layer_temperature(speed),
+            Some(shift) => self.heated(shift, speed),
+        }
+    }
+
+    /// Friction at the layer's temperature.
+    #[inline]
+    fn at_layer_temperature(&self, speed: f64) -> SlipFriction {
+        let law = self.law;
+        let of_rate = law.rate_shear.as_ref().map_or((0.0, 0.0), |law| law.with_slope(speed));
+        let Some(fine) = &law.fine else {
+            return SlipFriction {
+                normal: self.normal,
+                limit: law.limit(self.normal),
+                by_normal: law.coulomb,
+                excess: of_rate.0,
+                by_speed: of_rate.1,
+                ..SlipFriction::default()
+            };
+        };
+        let sign = 1.0_f64.copysign(speed);
+        let (FineContact { share, hysteresis }, at_rest) = (fine.contact(self.normal, speed), &self.at_rest);
+        let force = law.shear + sign * of_rate.0;
+        let of_area = share.value * force - at_rest.share.value * law.shear;
+        SlipFriction {
+            normal: self.normal,
+            limit: law.coulomb * self.normal + (at_rest.share.value * law.shear + at_rest.hysteresis.value),
+            by_normal: law.coulomb + share.by_normal * force + hysteresis.by_normal,
+            excess: sign * (of_area + (hysteresis.value - at_rest.hysteresis.value)),
+            by_speed: share.by_speed * sign * force + share.value * of_rate.1 + sign * hysteresis.by_speed,
+            hysteresis: hysteresis.value,
+            ..SlipFriction::default()
+        }
+    }
+
+    /// Friction and the flash temperature that it raises, ϑ = known + gain T |v|, by Newton's method.
+    fn heated(&self, shift: &SpeedShift, speed: f64) -> SlipFriction {
+        let Flash { known, gain, guess } = self.flash;
+        let (mut flash, size, sign) = (guess, speed.abs(), 1.0_f64.copysign(speed));
+        for _ in 0..MAX_FLASH_ITERATIONS {
+            // Friction at this temperature is that at the layer's at another speed.
+            let (ratio, by_flash) = shift.ratio(flash);
+            let at = self.at_layer_temperature(ratio * speed);
+            let by_flash = at.by_speed * (ratio * size) * by_flash;
+            let friction = at.limit + sign * at.excess;
+            let feedback = gain * size * by_flash;
+            let correction = (known + gain * size * friction - flash) / (1.0 - feedback.min(MAX_FEEDBACK));
+            flash += correction;
+            if correction.abs() > FLASH_ACCURACY {
+                continue;
+            }
+            let own = 1.0 / (1.0 - feedback);
+            return SlipFriction {
+                by_normal: own * at.by_normal,
+                excess: at.excess + sign * by_flash * correction,
+                by_speed: own * (ratio * at.by_speed + by_flash * gain * friction),
+                flash,
+                by_flash: own * by_flash,
+                feedback,
+                ..at
+            };
+        }
+        SlipFriction { excess: f64::NAN, feedback: f64::INFINITY, ..SlipFriction::default() }
+    }
+
     /// The excess, N, and its derivative by the speed, N s/m, at the `speed` in the direction of slip, m/s.
     pub fn with_slope(&self, speed: f64) -> (f64, f64) {
-        let of_rate = self.law.rate_shear.as_ref().map_or((0.0, 0.0), |law| law.with_slope(speed));
-        let Some(fine) = &self.law.fine else { return of_rate };
-        let sign = 1.0_f64.copysign(speed);
-        let (FineContact { share, hysteresis }, at_rest) =
-            (fine.contact(self.normal, speed), fine.at_rest(self.normal));
-        let force = self.law.shear + sign * of_rate.0;
-        let by_size = share.by_speed * sign * force + share.value * of_rate.1 + sign * hysteresis.by_speed;
-        let of_area = share.value * force - at_rest.share.value * self.law.shear;
-        (sign * (of_area + (hysteresis.value - at_rest.hysteresis.value)), by_size)
+        let friction = self.at(speed);
+        (friction.excess, friction.by_speed)
     }
 
     /// The excess, N.
@@ -391,7 +509,8 @@ impl FrictionPower {
         let mut power = Self::default();
         for i in (0..model.masses()).filter(|&i| model.friction.present && state.mode[i].slips()) {
             let v = state.velocity_x[i];
-            power.add(&model.friction, state.mode[i], v, &forces.contact(model, i, v, &state.surface[i]));
+            let contact = forces.contact(model, i, v, &state.surface[i]);
+            power.add(&model.friction, state.mode[i], v, &contact, &contact.slip(model, state.mode[i], v, state.flash(i)));
         }
         power
     }
@@ -404,21 +523,26 @@ impl FrictionPower {
         Self { at_rest: coulomb + shear, coulomb: if law.has_parts { coulomb } else { 0.0 }, fine: 0.0, excess: 0.0 }
     }
 
-    /// Adds that of a mass which slips in `mode` with the velocity ẋ (m/s) under the forces of `contact`.
+    /// Adds that of a mass which slips in `mode` with the velocity ẋ (m/s) under the forces of `contact`, and with this
+    /// friction.
     #[inline]
-    pub fn add(&mut self, law: &FrictionLaw, mode: Mode, velocity_x: f64, contact: &ContactForces) {
+    pub fn add(
+        &mut self,
+        law: &FrictionLaw,
+        mode: Mode,
+        velocity_x: f64,
+        contact: &ContactForces,
+        friction: &SlipFriction,
+    ) {
         let (sigma, v) = (mode.direction(), velocity_x);
+        let speed = sigma * v * contact.q;
         self.at_rest += sigma * contact.limit * v * contact.q;
         if law.has_parts {
             self.coulomb += sigma * (law.coulomb * contact.normal) * v * contact.q;
-            if let Some(fine) = &law.fine {
-                let speed = sigma * v * contact.q;
-                self.fine += fine.contact(contact.normal, speed).hysteresis.value * speed;
-            }
+            self.fine += friction.hysteresis * speed;
         }
-        if let Some(curve) = law.slip_curve(contact.normal) {
-            let speed = sigma * v * contact.q;
-            self.excess += curve.excess(speed) * speed;
+        if law.depends_on_speed() {
+            self.excess += friction.excess * speed;
         }
     }
 
@@ -459,7 +583,7 @@ mod tests {
     fn friction(law: &scene::RateShear) -> FrictionLaw {
         let rate_shear = RateShearLaw::new(law);
         let shear = rate_shear.map_or(0.0, |law| law.plateau);
-        FrictionLaw { present: true, coulomb: 0.0, shear, has_parts: false, rate_shear, fine: None }
+        FrictionLaw { present: true, coulomb: 0.0, shear, has_parts: false, rate_shear, fine: None, shift: None }
     }
 
     fn laws() -> [FrictionLaw; 3] {
@@ -469,7 +593,7 @@ mod tests {
     }
 
     fn curve(law: &FrictionLaw) -> SlipCurve<'_> {
-        law.slip_curve(0.0).unwrap_or_else(|| panic!("no law"))
+        law.slip_curve(0.0, Flash::default()).unwrap_or_else(|| panic!("no law"))
     }
 
     /// Speeds over eleven decades, from the creep speed of [`LAW`] on.

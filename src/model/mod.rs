@@ -20,9 +20,11 @@ pub use contact::ContactForces;
 pub use end_forces::EndForces;
 pub use energy::{BoundaryPowers, ChannelEnergies, Powers, elastic_energy, kinetic_energy, vertical_spring_energy_at};
 pub use fine_friction::{ContactQuantity, FineContact, FineFriction};
-pub use flash::{FlashKernel, FlashTerm};
+pub use flash::{Flash, FlashKernel, FlashTerm, SpeedShift};
 pub use forces::{Forces, LinkLaw, LinkMotion, MaxwellRow};
-pub use friction::{FrictionLaw, FrictionPower, FrictionShares, LinearFriction, RateShearLaw, SlipCurve};
+pub use friction::{
+    FrictionLaw, FrictionPower, FrictionShares, LinearFriction, RateShearLaw, SlipCurve, SlipFriction,
+};
 pub use reduction::{Reduction, Replaced, Replacement};
 pub use state::{Mode, State};
 pub use tangents::{Tangents, TangentsOf};
@@ -102,6 +104,8 @@ pub struct Model {
     pub bodies: ByAxis<Option<Body>>,
     /// Friction in the contacts.
     pub friction: FrictionLaw,
+    /// How friction heats the contacts; `None`: they stay at the layer's temperature.
+    pub flash: Option<FlashKernel>,
     /// How the dashpots start.
     pub initial: Initial,
     /// Elongations of the vertical links at the start, m: those of the frozen dashpots, see
@@ -133,6 +137,7 @@ impl Model {
             profile: Arc::clone(scene.surface.spline()),
             bodies: Body::along_axes(scene),
             friction: FrictionLaw::new(scene),
+            flash: FlashKernel::new(scene),
             initial: layer.initial,
         }
     }
@@ -227,6 +232,11 @@ impl Model {
     /// The Maxwell elements of the links of `kind`.
     pub fn rows_of(&self, kind: LinkKind) -> impl Iterator<Item = &MaxwellRow> {
         self.rows.iter().filter(move |row| row.kind == kind)
+    }
+
+    /// Number of the parts of the flash temperatures of the whole layer.
+    pub fn flash_variables(&self) -> usize {
+        self.flash.as_ref().map_or(0, |kernel| kernel.terms.len() * self.masses())
     }
 
     /// Number of Maxwell elements of the whole layer.

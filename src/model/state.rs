@@ -74,6 +74,9 @@ pub struct State {
     /// force of an element is c_j a_j. da_j/dt = ė - a_j/τ_j keeps all digits also for a short τ_j, where e - y_j would
     /// cancel.
     pub maxwell: Vec<f64>,
+    /// The parts ϑ_j of the flash temperatures, K: of the term j of the kernel one for each mass, term after term; empty
+    /// where friction heats nothing.
+    pub flash: Vec<f64>,
     /// The contact modes.
     pub mode: Vec<Mode>,
     /// The profile under each mass in contact; zeros for a free mass.
@@ -110,15 +113,22 @@ impl State {
         }
     }
 
-    /// All masses at rest and free.
-    pub fn new(masses: usize, maxwell_variables: usize) -> Self {
+    /// ϑ of mass `i`, K: how much warmer its contact is than the layer.
+    pub fn flash(&self, i: usize) -> f64 {
+        self.flash.iter().skip(i).step_by(self.mode.len()).sum()
+    }
+
+    /// All masses of `model` at rest and free.
+    pub fn new(model: &Model) -> Self {
+        let masses = model.masses();
         let zeros = || vec![0.0; masses];
         Self {
             elongation_x: zeros(),
             elongation_z: zeros(),
             velocity_x: zeros(),
             velocity_z: zeros(),
-            maxwell: vec![0.0; maxwell_variables],
+            maxwell: vec![0.0; model.maxwell_variables()],
+            flash: vec![0.0; model.flash_variables()],
             mode: vec![Mode::Free; masses],
             surface: vec![SurfacePoint::default(); masses],
         }
@@ -137,6 +147,7 @@ impl State {
         self.velocity_x.copy_from_slice(&other.velocity_x);
         self.velocity_z.copy_from_slice(&other.velocity_z);
         self.maxwell.copy_from_slice(&other.maxwell);
+        self.flash.copy_from_slice(&other.flash);
         self.mode.copy_from_slice(&other.mode);
         self.surface.copy_from_slice(&other.surface);
     }

@@ -70,6 +70,10 @@ pub enum Output {
     ContactArea,
     /// Area that touches below the profile's resolution, m².
     RealArea,
+    /// The largest flash temperature of all masses, K.
+    FlashLargest,
+    /// The mean one of the masses in contact, K.
+    FlashMean,
     /// Sum of the contact forces on the masses along x, N.
     ContactForceX,
     /// Sum of the contact forces on the masses along z, N.
@@ -80,6 +84,8 @@ pub enum Output {
     KineticEnergy,
     /// V, J.
     ElasticEnergy,
+    /// Heat that the rubber has taken from friction since the start, J.
+    HeatEnergy,
     /// T_c, J.
     CarrierKineticEnergy,
     /// V_c, J.
@@ -112,6 +118,8 @@ pub enum Output {
     ElementFrictionForce(usize),
     /// Mode of mass `.0` (from 0): 0 free, 1 or -1 slipping, 2 sticking.
     ElementMode(usize),
+    /// The flash temperature of mass `.0` (from 0), K.
+    ElementFlash(usize),
 }
 
 /// A quantity whose derivatives by the targets of the inputs are outputs.

@@ -9,6 +9,7 @@ use std::cell::{Cell, OnceCell, RefCell};
 
 use super::{Counters, Energies, Monitored, Variable};
 use crate::integrator::InterpolatedLayer;
+use crate::model::Flash;
 use crate::model::{
     BodyEnergy, Carrier, CarrierPoint, ContactForces, FineContact, Forces, FrictionShares, LinkKind, MaxwellRow, Mode,
     Model, Powers, State, Tangents, elastic_energy, kinetic_energy,
@@ -206,6 +207,29 @@ impl<'a> Snapshot<'a> {
         self.state().mode.iter().filter(|&&mode| test(mode)).count() as f64
     }
 
+    /// The flash temperature of mass `i`, K.
+    pub(super) fn flash(&self, i: usize) -> f64 {
+        self.state().flash(i)
+    }
+
+    /// The largest flash temperature of all masses, K.
+    pub(super) fn flash_largest(&self) -> f64 {
+        (0..self.model.masses()).map(|i| self.flash(i)).fold(0.0, f64::max)
+    }
+
+    /// The mean one of the masses in contact, K; 0 where there are none.
+    pub(super) fn flash_mean(&self) -> f64 {
+        let modes = &self.state().mode;
+        let in_contact = || (0..modes.len()).filter(|&i| modes[i].in_contact());
+        let count = in_contact().count();
+        if count > 0 { in_contact().map(|i| self.flash(i)).sum::<f64>() / count as f64 } else { 0.0 }
+    }
+
+    /// Heat that the rubber has taken from friction since the start, J.
+    pub(super) fn heat(&self) -> f64 {
+        self.model.flash.as_ref().map_or(0.0, |kernel| kernel.share * self.energies.channels.friction)
+    }
+
     /// Position of mass `i` along x and z, m.
     pub(super) fn position(&self, i: usize) -> (f64, f64) {
         (
@@ -222,7 +246,7 @@ impl<'a> Snapshot<'a> {
     /// F_T on mass `i` against v_t, N; 0 where it is free.
     pub(super) fn friction_force(&self, i: usize) -> f64 {
         let motion = (self.state().mode[i], self.state().velocity_x[i]);
-        self.contact(i).map_or(0.0, |contact| self.friction(motion, &contact))
+        self.contact(i).map_or(0.0, |contact| self.friction(motion, &contact, self.state().flash(i)))
     }
 
     /// The surface pushes a mass with F_N n - F_T t, n = (-s, 1)/q, t = (1, s)/q (6), (7).
@@ -233,8 +257,9 @@ impl<'a> Snapshot<'a> {
             let (mode, v, surface) = (state.mode[i], state.velocity_x[i], &state.surface[i]);
             let contact = forces.contact(self.model, i, v, surface);
             let s = surface.slope;
-            let friction = self.friction((mode, v), &contact);
-            let fine = self.model.friction.fine_contact(contact.normal, v * contact.q);
+            let friction = self.friction((mode, v), &contact, state.flash(i));
+            let flash = state.flash(i);
+            let fine = self.model.friction.fine_contact(contact.normal, v * contact.q, flash);
             let parts = self.parts(mode, &contact, &fine, friction);
             sums.hysteresis -= contact.normal * s / contact.q + parts.fine / contact.q;
             sums.fine -= parts.fine / contact.q;
@@ -252,9 +277,9 @@ impl<'a> Snapshot<'a> {
         self.state().mode[i].in_contact().then(|| self.forces().contact(self.model, i, v, &self.state().surface[i]))
     }
 
-    /// F_T (N) in a `contact` of this mode and ẋ (m/s).
-    fn friction(&self, (mode, v): (Mode, f64), contact: &ContactForces) -> f64 {
-        if self.model.friction.present { contact.friction(self.model, mode, v) } else { 0.0 }
+    /// F_T (N) in a `contact` of this mode and ẋ (m/s), at the flash temperature `flash`, K.
+    fn friction(&self, (mode, v): (Mode, f64), contact: &ContactForces, flash: f64) -> f64 {
+        if self.model.friction.present { contact.friction(self.model, mode, v, flash) } else { 0.0 }
     }
 
     /// The parts of the `friction` in a `contact` (N), N: of a sticking mass, as the parts of the largest friction at rest
@@ -403,8 +428,9 @@ impl Snapshot<'_> {
         let normal = (slope * f_x - f_z) / q;
         let contact = self.forces().contact(self.model, i, self.state().velocity_x[i], &self.state().surface[i]);
         let (law, v) = (&self.model.friction, self.state().velocity_x[i]);
-        let by_normal = law.by_normal(contact.normal, v.abs() * q);
-        let on_fine = law.fine_contact(contact.normal, v * contact.q);
+        let flash = self.state().flash(i);
+        let by_normal = law.slip(contact.normal, v.abs() * q, Flash::held(flash)).by_normal;
+        let on_fine = law.fine_contact(contact.normal, v * contact.q, flash);
         let (friction, shear, fine) = match mode {
             Mode::Stick => {
                 let friction = (f_x + slope * f_z) / q;

@@ -185,11 +185,11 @@ macro_rules! tangent {
 
 /// All outputs, in the order of the result files within their groups.
 #[rustfmt::skip]
-pub(super) static TABLE: [OutputRow; 72] = {
+pub(super) static TABLE: [OutputRow; 76] = {
     use OutputType::{Integer, Real};
     use OutputGroup::{Carrier, Contact, Dissipation, Energy, Forces, Friction, Solver, Tangent as Tangents};
     use Unit::{
-        Joule, Meter, MeterPerNewton, MeterPerNewtonSecond, MeterPerSecond, Newton, NewtonPerMeter, One, PerSecond, Second,
+        Joule, Kelvin, Meter, MeterPerNewton, MeterPerNewtonSecond, MeterPerSecond, Newton, NewtonPerMeter, One, PerSecond, Second,
         SquareMeter, Watt,
     };
     [
@@ -278,6 +278,12 @@ pub(super) static TABLE: [OutputRow; 72] = {
             |now| now.contact_sums().real_area)
             .depending(elastic, |now, shift| now.at.contact_sum(shift, ContactChange::real_area))
             .only_where(|scene| scene.fine.is_some()),
+        layer(Output::FlashLargest, Contact, "contact.flash_largest", Real, Kelvin, "Largest flash temperature of all masses: by how much their contacts are warmer than the layer",
+            |now| now.at.flash_largest())
+            .only_where(Scene::has_heat),
+        layer(Output::FlashMean, Contact, "contact.flash_mean", Real, Kelvin, "Mean flash temperature of the masses in contact",
+            |now| now.at.flash_mean())
+            .only_where(Scene::has_heat),
         layer(Output::ContactForceX, Contact, "contact.F_x", Real, Newton, "Sum of the contact forces on the masses along x",
             |now| now.contact_sums().hysteresis + now.contact_sums().adhesion)
             .depending(elastic, |now, shift| now.at.contact_sum(shift, ContactChange::force_x)),
@@ -291,6 +297,9 @@ pub(super) static TABLE: [OutputRow; 72] = {
         layer(Output::ElasticEnergy, Energy, "energy.elastic", Real, Joule, "Elastic energy of the links",
             |now| now.elastic_energy())
             .depending(elastic, |now, shift| now.at.elastic_energy_change(shift)),
+        layer(Output::HeatEnergy, Energy, "energy.heat", Real, Joule, "Heat that the rubber has taken from friction since the start",
+            |now| now.at.heat())
+            .only_where(Scene::has_heat),
         layer(Output::CarrierKineticEnergy, Energy, "energy.carrier_kinetic", Real, Joule, "Kinetic energy of the carrier",
             |now| now.at.body_energy().kinetic)
             .only_where(|scene| scene.carrier.any()),
@@ -353,6 +362,9 @@ pub(super) static TABLE: [OutputRow; 72] = {
             .each_depending(elastic_friction, |now, i, shift| now.at.contact_change(i, shift).friction),
         mass(Output::ElementMode, "mode", Integer, One, "Mode (0 free, 1 or -1 slipping, 2 sticking) of mass",
             |now, i| f64::from(now.at.mode(i).number())),
+        mass(Output::ElementFlash, "flash", Real, Kelvin, "Flash temperature of mass",
+            |now, i| now.at.flash(i))
+            .only_where(Scene::has_heat),
     ]
 };
 

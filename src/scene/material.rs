@@ -218,6 +218,11 @@ impl Scene {
         self.shear_force().is_some() || self.rate_shear().is_some()
     }
 
+    /// Whether friction heats the contacts.
+    pub fn has_heat(&self) -> bool {
+        self.material.as_ref().is_some_and(|material| material.heat.is_some())
+    }
+
     /// Whether the waves that the profile lacks rub.
     pub fn has_fine_hysteresis(&self) -> bool {
         self.fine.as_ref().is_some_and(|fine| fine.hysteresis && !matches!(fine.waves, FineWaves::Modulus { .. }))

@@ -51,7 +51,7 @@ impl Context {
         let mut context = Box::new(Self {
             integrator: settings.integrator(&model),
             forces: Forces::new(&model),
-            interpolated: State::new(model.masses(), model.maxwell_variables()),
+            interpolated: State::new(&model),
             interpolated_at: None,
             dense: DenseWorkspace::new(&model),
             modes_before: state.layer.state.mode.clone(),

@@ -253,11 +253,11 @@ fn check_layer(found: &LayerState, expected: &LayerState) -> Result<(), RestoreE
 }
 
 /// The arrays of numbers of a layer and its rates.
-fn arrays(layer: &LayerState) -> [(&'static str, &[f64]); 15] {
-    let State { elongation_x, elongation_z, velocity_x, velocity_z, maxwell, mode: _, surface: _ } = &layer.state;
+fn arrays(layer: &LayerState) -> [(&'static str, &[f64]); 17] {
+    let State { elongation_x, elongation_z, velocity_x, velocity_z, maxwell, flash, mode: _, surface: _ } = &layer.state;
     let rates = &layer.rates;
     let StageValues { velocity_x: rate_x, velocity_z: rate_z, acceleration_x, acceleration_z, .. } = rates;
-    let StageValues { elongation_rate, normal, margin, .. } = rates;
+    let StageValues { elongation_rate, normal, heat_flux, margin, .. } = rates;
     let [vertical, horizontal, lateral_x, lateral_z] = &elongation_rate.0;
     [
         ("elongations along x", elongation_x),
@@ -265,6 +265,7 @@ fn arrays(layer: &LayerState) -> [(&'static str, &[f64]); 15] {
         ("velocities along x", velocity_x),
         ("velocities along z", velocity_z),
         ("Maxwell elongations", maxwell),
+        ("flash temperatures", flash),
         ("rates of positions along x", rate_x),
         ("rates of positions along z", rate_z),
         ("accelerations along x", acceleration_x),
@@ -274,6 +275,7 @@ fn arrays(layer: &LayerState) -> [(&'static str, &[f64]); 15] {
         ("elongation rates of lateral links along x", lateral_x),
         ("elongation rates of lateral links along z", lateral_z),
         ("normal forces", normal),
+        ("heat fluxes", heat_flux),
         ("margins", margin),
     ]
 }

@@ -19,6 +19,7 @@ use std::ops::Range;
 
 use nalgebra::Vector2;
 
+use super::heat::StageFlash;
 use super::scheme::ContactModes;
 use super::stage_values::{NO_LIMIT, StageValues};
 use super::tolerance::{NEWTON_SHARE, Tolerance};
@@ -27,7 +28,7 @@ use crate::model::{
     ByAxis, ByLink, CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, LinkLaw, LinkMotion, Mode, Model,
     State, SurfacePoint,
 };
-use newton::{NeighbourWeights, RateFriction, RowShares, largest_of};
+use newton::{NeighbourWeights, RowShares, StageFriction, largest_of};
 
 pub(super) use border::{BodyHistory, Border};
 pub(super) use newton::SlippingMass;
@@ -159,8 +160,10 @@ pub(super) struct StageSolver {
     sticks: Vec<usize>,
     /// The slipping ones as runs of masses that follow one another.
     slip_runs: Vec<Range<usize>>,
-    /// The rate-dependent part of their friction; empty where the scene has none.
-    rate: Vec<RateFriction>,
+    /// The friction of the slipping ones under a law that is not linear; empty under one that is.
+    friction: Vec<StageFriction>,
+    /// Their flash temperatures at the stage.
+    pub flash: StageFlash,
     rows: Vec<RowShares>,
     columns: Vec<NeighbourWeights>,
     pub system: BlockTridiagonal,
@@ -187,7 +190,7 @@ impl StageSolver {
         let k = model.masses();
         Self {
             history: MassHistory::new(model),
-            state: State::new(k, model.maxwell_variables()),
+            state: State::new(model),
             forces: Forces::new(model),
             friction_power: FrictionPower::default(),
             slip_speed: vec![0.0; k],
@@ -199,7 +202,8 @@ impl StageSolver {
             slips: Vec::with_capacity(k),
             sticks: Vec::with_capacity(k),
             slip_runs: Vec::with_capacity(k.div_ceil(2)),
-            rate: Vec::with_capacity(if model.friction.depends_on_speed() { k } else { 0 }),
+            friction: Vec::with_capacity(if model.friction.is_linear() { 0 } else { k }),
+            flash: StageFlash::new(model),
             rows: vec![RowShares::default(); k],
             columns: vec![NeighbourWeights::default(); k],
             system: BlockTridiagonal::new(k),
@@ -244,8 +248,8 @@ impl StageSolver {
         self.slip_runs.clear();
         let runs = self.slips.chunk_by(|&i, &next| i + 1 == next);
         self.slip_runs.extend(runs.map(|run| run[0]..run[0] + run.len()));
-        if model.friction.depends_on_speed() {
-            self.rate.resize(self.slips.len(), RateFriction::default());
+        if !model.friction.is_linear() {
+            self.friction.resize(self.slips.len(), StageFriction::default());
         }
     }
 
@@ -321,7 +325,12 @@ impl StageSolver {
             self.iterate(model, point, test)?;
         }
         self.write_rates(model, point, rates);
-        Ok(())
+        if self.slips_continuously() { Ok(()) } else { Err(NoConvergence) }
+    }
+
+    /// Whether no contact heats itself so much that the step may have other solutions.
+    fn slips_continuously(&self) -> bool {
+        self.friction.iter().take(self.slips.len()).all(|slip| self.flash.is_continuous(slip.friction.feedback))
     }
 
     /// Solves the equations without slip, which are linear: their matrix is factored once per step.
@@ -500,15 +509,22 @@ impl StageSolver {
         let k = state.mode.len();
         let (modes, velocities, surfaces) = (&state.mode[..k], &state.velocity_x[..k], &state.surface[..k]);
         let (f_x, f_z) = (&self.forces.on_mass_x[..k], &self.forces.on_mass_z[..k]);
+        let mut slips = self.friction.iter();
         for &i in &self.contacts {
-            let (mode, v, surface) = (modes[i], velocities[i], &surfaces[i]);
-            if mode == Mode::Stick {
+            let (mode, v, surface, forces) = (modes[i], velocities[i], &surfaces[i], (f_x[i], f_z[i]));
+            let slip = if mode.slips() { slips.next() } else { None };
+            let Some(StageFriction { friction, .. }) = slip else {
                 rates.acceleration_x[i] = 0.0;
-            }
-            let contact = ContactForces::new(model, (f_x[i], f_z[i]), v, surface);
+                rates.set_contact(model, i, mode, v, surface, &ContactForces::new(model, forces, v, surface));
+                continue;
+            };
+            let contact = ContactForces::without_limit(model.mass, forces, v, surface);
+            let limit = friction.limit + (contact.normal - friction.normal) * friction.by_normal;
+            let contact = ContactForces { limit, ..contact };
             rates.set_contact(model, i, mode, v, surface, &contact);
-            if mode.slips() && model.friction.present {
-                friction_power.add(&model.friction, mode, v, &contact);
+            friction_power.add(&model.friction, mode, v, &contact, friction);
+            if let Some(flux) = rates.heat_flux.get_mut(i) {
+                *flux = self.flash.heat_flux(friction.force(), v * contact.q);
             }
         }
         self.friction_power = friction_power;

@@ -8,7 +8,9 @@ use nalgebra::{Matrix2, Vector2};
 use super::{MassHistory, StageSolver};
 use crate::math::with_widest_vectors;
 use crate::model::{Axis, ByLink};
-use crate::model::{ContactForces, Forces, LinearFriction, LinkLaw, Mode, Model, State, SurfacePoint};
+use crate::model::{
+    ContactForces, Flash, Forces, LinearFriction, LinkLaw, Mode, Model, SlipFriction, State, SurfacePoint,
+};
 
 impl StageSolver {
     /// Factors the Jacobian at the solution, for the tangents of the stage.
@@ -41,10 +43,7 @@ impl StageSolver {
             || set_linear_residuals(&mut system.right, model, state, history, forces, beta),
         );
         if !model.friction.is_linear() {
-            self.slip_residuals(model, 1.0 / beta);
-        }
-        if model.friction.depends_on_speed() {
-            self.add_rate_shear(model, beta);
+            self.slip_residuals(model, beta);
         }
         self.set_border_residuals(beta);
     }
@@ -52,32 +51,33 @@ impl StageSolver {
     /// Of mass `i`, which slips: the factor with which a force on it along `axis` enters its equation, and how its
     /// elongation along that axis follows its ẋ.
     pub(super) fn slip_border(&self, model: &Model, i: usize, beta: f64, axis: Axis) -> (f64, ContactJacobian) {
-        let slip = self.slipping_mass(model, i, beta);
+        let Self { state, history, forces, laws, weights, .. } = self;
+        let stage = Evaluated { model, state, history, forces, laws, weights, beta };
+        let slip = match self.slips.binary_search(&i) {
+            Ok(n) if !model.friction.is_linear() => stage.slipping_mass(i, &self.friction[n].friction),
+            _ => stage.slipping_mass_under(model.friction.linear(), i),
+        };
         match axis {
             Axis::X => (slip.share_x, ContactJacobian { height: beta, rate: 1.0 }),
             Axis::Z => (slip.share_z, slip.climb(beta)),
         }
     }
 
-    fn slip_residuals(&mut self, model: &Model, per_beta: f64) {
-        let right = &mut self.system.right[..];
-        // Slices of one length, so that an index into one of them is one into all.
-        let k = right.len();
-        let (velocity, star) = (&self.state.velocity_x[..k], &self.history.velocity_x[..k]);
-        let (mode, surface) = (&self.state.mode[..k], &self.state.surface[..k]);
-        let (f_x, f_z) = (&self.forces.on_mass_x[..k], &self.forces.on_mass_z[..k]);
-        for &i in &self.slips {
-            let acceleration = (velocity[i] - star[i]) * per_beta;
-            let forces = (f_x[i], f_z[i]);
-            let slip = SlippingMass::new(model, mode[i], &surface[i], (velocity[i], acceleration), forces);
-            right[i].x = -slip.residual(model.mass, forces);
+    /// Evaluates the friction of the slipping masses, and writes their residuals, under a law that is not linear.
+    fn slip_residuals(&mut self, model: &Model, beta: f64) {
+        let Self { state, history, forces, laws, weights, flash, .. } = self;
+        let stage = Evaluated { model, state, history, forces, laws, weights, beta };
+        for (&i, slip) in self.slips.iter().zip(&mut self.friction) {
+            let normal = if model.friction.is_linear_in_normal() { 0.0 } else { stage.normal(i) };
+            slip.friction = model.friction.slip(normal, stage.slip_speed(i), flash.of_mass(i));
+            flash.set_guess(i, slip.friction.flash);
+            let mass = stage.slipping_mass(i, &slip.friction);
+            let right = &mut self.system.right[i].x;
+            *right = -mass.residual(model.mass, (forces.on_mass_x[i], forces.on_mass_z[i]));
+            if model.friction.depends_on_speed() {
+                *right -= mass.sigma * mass.q * slip.friction.excess;
+            }
         }
-    }
-
-    /// The equation of mass `i`, which slips, at the present velocities.
-    fn slipping_mass(&self, model: &Model, i: usize, beta: f64) -> SlippingMass {
-        let Self { state, history, forces, laws, weights, .. } = self;
-        Evaluated { model, state, history, forces, laws, weights, beta }.slipping_mass(i)
     }
 
     /// Assembles the part of the Jacobian that is constant through a step: all but the rows and columns of slipping
@@ -137,11 +137,7 @@ impl StageSolver {
     pub(super) fn assemble_slips(&mut self, model: &Model, beta: f64) {
         let Self { rows, columns, state, history, forces, laws, weights, slip_runs, system, .. } = self;
         let stage = Evaluated { model, state, history, forces, laws, weights, beta };
-        if !model.friction.is_linear_in_normal() {
-            for i in slip_runs.iter().cloned().flatten() {
-                (system.diagonal[i], rows[i], columns[i]) = stage.assembled(i, &stage.slipping_mass(i));
-            }
-        } else {
+        if model.friction.is_linear_in_normal() {
             with_widest_vectors(
                 #[inline(always)]
                 || {
@@ -152,8 +148,18 @@ impl StageSolver {
                 },
             );
         }
-        if model.friction.depends_on_speed() {
-            self.assemble_rate_shear(model, beta);
+        if !model.friction.is_linear() {
+            for (&i, slip) in self.slips.iter().zip(&mut self.friction) {
+                let mass = stage.slipping_mass(i, &slip.friction);
+                if !model.friction.is_linear_in_normal() {
+                    (system.diagonal[i], rows[i], columns[i]) = stage.assembled(i, &mass);
+                }
+                let diagonal = &mut system.diagonal[i].m11;
+                slip.derivative_without = *diagonal;
+                if model.friction.depends_on_speed() {
+                    *diagonal += mass.rate_variation(&slip.friction, 1.0, mass.s * beta * mass.kappa);
+                }
+            }
         }
         self.couple_slips();
     }
@@ -208,9 +214,24 @@ impl Evaluated<'_> {
         }
     }
 
-    /// The equation of mass `i`, which slips.
-    fn slipping_mass(&self, i: usize) -> SlippingMass {
-        SlippingMass::from_state(self.model, self.state, self.forces, i, self.acceleration(i))
+    /// The equation of mass `i`, which slips with this friction.
+    #[inline]
+    fn slipping_mass(&self, i: usize, friction: &SlipFriction) -> SlippingMass {
+        self.slipping_mass_under(friction.tangent(), i)
+    }
+
+    /// v_t of mass `i` in the direction of its slip, m/s.
+    #[inline]
+    fn slip_speed(&self, i: usize) -> f64 {
+        let slope = self.state.surface[i].slope;
+        self.state.mode[i].direction() * ((1.0 + slope * slope).sqrt() * self.state.velocity_x[i])
+    }
+
+    /// F_N on mass `i`, N.
+    #[inline]
+    fn normal(&self, i: usize) -> f64 {
+        let forces = (self.forces.on_mass_x[i], self.forces.on_mass_z[i]);
+        ContactForces::without_limit(self.model.mass, forces, self.state.velocity_x[i], &self.state.surface[i]).normal
     }
 
     /// The equation of mass `i`, which slips under this law of friction.
@@ -340,8 +361,6 @@ pub(in crate::integrator) struct SlippingMass {
     velocity: f64,
     acceleration: f64,
     sigma: f64,
-    /// F_N, N; 0 where no law needs it.
-    normal: f64,
     /// σμ; with a real area σ ∂T/∂F_N.
     sigma_mu: f64,
     /// σ (A τ_0 + A τ_f(v_c)); with a real area what σ ∂T/∂F_N F_N leaves of it.
@@ -355,27 +374,10 @@ pub(in crate::integrator) struct SlippingMass {
 }
 
 impl SlippingMass {
-    /// A mass that slips in `mode` over `surface` with ẋ and ẍ (`motion`), under the links' `forces` (f_x, f_z), N.
-    ///
-    /// A friction law that is not linear in F_N is taken along its tangent at F_N: the value and the derivatives there
-    /// are the law's.
-    #[inline]
-    fn new(model: &Model, mode: Mode, surface: &SurfacePoint, motion: (f64, f64), forces: (f64, f64)) -> Self {
-        let sigma = mode.direction();
-        let law = if model.friction.is_linear_in_normal() {
-            model.friction.linear()
-        } else {
-            let (velocity, _) = motion;
-            let contact = ContactForces::without_limit(model.mass, forces, velocity, surface);
-            model.friction.tangent(contact.normal, sigma * velocity * contact.q)
-        };
-        Self::under(law, sigma, surface, motion)
-    }
-
     /// A mass that slips in the direction `sigma` over `surface` with ẋ and ẍ (`motion`), under this law of friction.
     #[inline(always)]
     fn under(law: LinearFriction, sigma: f64, surface: &SurfacePoint, (velocity, acceleration): (f64, f64)) -> Self {
-        let LinearFriction { normal, coulomb, shear } = law;
+        let LinearFriction { coulomb, shear, .. } = law;
         let s = surface.slope;
         let q2 = 1.0 + s * s;
         let sigma_mu = sigma * coulomb;
@@ -386,7 +388,6 @@ impl SlippingMass {
             velocity,
             acceleration,
             sigma,
-            normal,
             sigma_mu,
             sigma_shear: sigma * shear,
             share_x: 1.0 - sigma_mu * s,
@@ -396,7 +397,9 @@ impl SlippingMass {
         }
     }
 
-    /// Mass `i` of `state`, which slips, with ẍ = `acceleration` under the `forces` of the links.
+    /// Mass `i` of `state`, which slips, with ẍ = `acceleration` under the `forces` of the links, and its friction.
+    ///
+    /// A law that is not linear is taken along its tangent at F_N: the value and the derivatives there are the law's.
     #[inline(always)]
     pub(in crate::integrator) fn from_state(
         model: &Model,
@@ -404,14 +407,17 @@ impl SlippingMass {
         forces: &Forces,
         i: usize,
         acceleration: f64,
-    ) -> Self {
-        let motion = (state.velocity_x[i], acceleration);
-        let forces = (forces.on_mass_x[i], forces.on_mass_z[i]);
-        Self::new(model, state.mode[i], &state.surface[i], motion, forces)
+        flash: Flash,
+    ) -> (Self, SlipFriction) {
+        let (v, surface, sigma) = (state.velocity_x[i], &state.surface[i], state.mode[i].direction());
+        let contact = ContactForces::without_limit(model.mass, (forces.on_mass_x[i], forces.on_mass_z[i]), v, surface);
+        let normal = if model.friction.is_linear_in_normal() { 0.0 } else { contact.normal };
+        let friction = model.friction.slip(normal, sigma * (contact.q * v), flash);
+        (Self::under(friction.tangent(), sigma, surface, (v, acceleration)), friction)
     }
 
     /// m q² ẍ + m s κ ẋ² - f_x - s f_z + F_T q with F_T = σ (μ F_N + A τ_0), from (6)-(9), where A τ_0 stands for the
-    /// shear force at rest (for the rate-dependent part see [`RateFriction`]):
+    /// shear force at rest (for the rate-dependent part see [`StageFriction`]):
     ///
     ///   m q² ẍ + m κ ẋ² (s + σμ) - (1 - σμs) f_x - (s + σμ) f_z + σ A τ_0 q = 0
     #[inline(always)]
@@ -443,36 +449,51 @@ impl SlippingMass {
     ///   m q² ẍ = (1 - σμs) f_x + (s + σμ) f_z - m κ ẋ² (s + σμ) - σ A τ_0 q - σ q B(σ q ẋ),
     ///
     /// with B the rate-dependent friction in excess of that at rest. This is the residual's derivative again, by
-    /// direction and with ẍ as the unknown.
+    /// direction and with ẍ as the unknown. Friction itself changes by `of_flash` (N) with the known part of ϑ.
     pub(in crate::integrator) fn variation(
         &self,
         model: &Model,
-        x: f64,
-        v_x: f64,
+        (friction, of_flash): (&SlipFriction, f64),
+        (x, v_x): (f64, f64),
         varied: (f64, f64),
         (f_x, f_z): (f64, f64),
     ) -> f64 {
         let Self { s, kappa, velocity: v, share_x, share_z, .. } = *self;
         let (ds, dkappa) = (kappa * x, self.third * x);
         let centripetal = dkappa * v * v * share_z + 2.0 * kappa * v * v_x * share_z + kappa * v * v * ds;
-        let rate_shear = model
-            .friction
-            .slip_curve(self.normal)
-            .map_or(0.0, |curve| self.rate_variation(curve.with_slope(self.sigma * self.speed()), v_x, s * ds));
+        let of_rate =
+            if model.friction.depends_on_speed() { self.rate_variation(friction, v_x, s * ds) } else { 0.0 };
         share_x * varied.0 + share_z * varied.1 + ds * (f_z - self.sigma_mu * f_x)
             - model.mass * (centripetal + 2.0 * s * ds * self.acceleration)
             - self.sigma_shear * s * ds / self.q
-            - rate_shear
+            - of_rate
+            - self.sigma * self.q * of_flash
+    }
+
+    /// δF_N (N) and δv_t (m/s) for the variations δx and δẋ and those of the links' forces (`varied`), which are (f_x, f_z)
+    /// themselves, from F_N = (m κ ẋ² - f_z + s f_x)/q and v_t = q ẋ.
+    pub(in crate::integrator) fn contact_variation(
+        &self,
+        mass: f64,
+        (x, v_x): (f64, f64),
+        [varied_x, varied_z]: [f64; 2],
+        [f_x, f_z]: [f64; 2],
+    ) -> [f64; 2] {
+        let Self { s, kappa, third, velocity: v, q, .. } = *self;
+        let (ds, dq) = (kappa * x, s * kappa * x / q);
+        let normal = (mass * kappa * v * v - f_z + s * f_x) / q;
+        let centripetal = mass * (third * x * v * v + 2.0 * kappa * v * v_x);
+        [(centripetal - varied_z + s * varied_x + ds * f_x - normal * dq) / q, q * v_x + dq * v]
     }
 
     /// v_t = q ẋ, m/s.
-    fn speed(&self) -> f64 {
+    pub(in crate::integrator) fn speed(&self) -> f64 {
         self.q * self.velocity
     }
 
-    /// δ[σ q B(σ q ẋ)] for δẋ and s δs, with B and its derivative in `excess`.
-    fn rate_variation(&self, excess: (f64, f64), v_x: f64, s_ds: f64) -> f64 {
-        self.sigma * excess.0 * s_ds / self.q + excess.1 * (self.q2 * v_x + self.velocity * s_ds)
+    /// δ[σ q B(σ q ẋ)] for δẋ and s δs, with B the excess of the `friction` over that at rest.
+    fn rate_variation(&self, friction: &SlipFriction, v_x: f64, s_ds: f64) -> f64 {
+        self.sigma * friction.excess * s_ds / self.q + friction.by_speed * (self.q2 * v_x + self.velocity * s_ds)
     }
 
     /// q² = 1 + s².
@@ -521,53 +542,32 @@ impl RowShares {
     }
 }
 
-/// The rate-dependent friction σ q A τ_f(v) of a slipping mass at v = σ q ẋ. Its value at the creep speed belongs to
-/// the equation of [`SlippingMass`] already.
+/// The friction of a slipping mass at the velocities of the last residuals, where the law is not linear. Its value at rest
+/// belongs to the equation of [`SlippingMass`] already.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct RateFriction {
-    /// A τ_f(v) - A τ_f(v_c), N, and its derivative, N s/m.
-    excess: (f64, f64),
-    /// The derivative of the equation by ẋ without this part, kg/s.
+pub(super) struct StageFriction {
+    pub(super) friction: SlipFriction,
+    /// The derivative of the equation by ẋ without its excess over that at rest, kg/s.
     derivative_without: f64,
 }
 
 impl StageSolver {
-    /// Subtracts σ q (A τ_f(v) - A τ_f(v_c)) at the present velocities from the right sides.
-    fn add_rate_shear(&mut self, model: &Model, beta: f64) {
-        for n in 0..self.slips.len() {
-            let i = self.slips[n];
-            let slip = self.slipping_mass(model, i, beta);
-            let curve = model.friction.slip_curve(slip.normal);
-            self.rate[n].excess = curve.map_or((0.0, 0.0), |curve| curve.with_slope(slip.sigma * slip.speed()));
-            self.system.right[i].x -= slip.sigma * slip.q * self.rate[n].excess.0;
-        }
-    }
-
-    /// Adds the derivative of the rate-dependent friction to the diagonal.
-    fn assemble_rate_shear(&mut self, model: &Model, beta: f64) {
-        for n in 0..self.slips.len() {
-            let i = self.slips[n];
-            let slip = self.slipping_mass(model, i, beta);
-            let (rate, diagonal) = (&mut self.rate[n], &mut self.system.diagonal[i].m11);
-            rate.derivative_without = *diagonal;
-            *diagonal += slip.rate_variation(rate.excess, 1.0, slip.s * beta * slip.kappa);
-        }
-    }
-
     /// Replaces the corrections of slipping masses, which follow the tangent of the friction curve, by those along the
     /// curve itself. Returns the largest of them as the velocity, m/s, that the same force would change if friction did
     /// not depend on the speed: where the curve is steep, a small correction may still mean a large force.
     pub(super) fn correct_along_friction_curve(&mut self, model: &Model, beta: f64) -> f64 {
+        let Self { state, history, forces, laws, weights, flash, .. } = self;
+        let stage = Evaluated { model, state, history, forces, laws, weights, beta };
         let mut largest: f64 = 0.0;
-        for (n, rate) in self.rate.iter().enumerate() {
-            let i = self.slips[n];
-            let slip = self.slipping_mass(model, i, beta);
-            let Some(curve) = model.friction.slip_curve(slip.normal) else { return largest };
+        for (&i, slip) in self.slips.iter().zip(&self.friction) {
+            let StageFriction { friction, derivative_without } = slip;
+            let mass = stage.slipping_mass(i, friction);
+            let Some(curve) = model.friction.slip_curve(friction.normal, flash.of_mass(i)) else { return largest };
             let right = &mut self.system.right[i].x;
-            let per_velocity = slip.sigma * slip.q;
-            let (speed, by) = (slip.sigma * slip.speed(), per_velocity * *right);
-            let steepness = 1.0 + (slip.q2 * rate.excess.1 / rate.derivative_without).max(0.0);
-            let corrected = curve.along_curve(speed, by, rate.derivative_without / slip.q2);
+            let per_velocity = mass.sigma * mass.q;
+            let (speed, by) = (mass.sigma * mass.speed(), per_velocity * *right);
+            let steepness = 1.0 + (mass.q2 * friction.by_speed / derivative_without).max(0.0);
+            let corrected = curve.along_curve(speed, by, derivative_without / mass.q2);
             *right = (corrected - speed) / per_velocity;
             largest = largest.max(steepness * right.abs());
         }
