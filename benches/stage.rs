@@ -45,7 +45,7 @@ impl Stages {
     /// A free layer, or one that slips.
     fn new(masses: usize, elements: usize, mode: Mode) -> Self {
         let model = Model::new(&parse(&layer(masses, elements, 1e-2)));
-        let mut state = State::new(masses, model.maxwell_variables());
+        let mut state = State::new(&model);
         let noise = |i: usize| ((i * 7919) % 1000) as f64 * 1e-3;
         for i in 0..masses {
             (state.elongation_x[i], state.velocity_x[i]) = (1e-7 * noise(i), 1e-2 * (1.0 + noise(i + 1)));

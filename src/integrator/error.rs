@@ -5,6 +5,7 @@ use std::hint::select_unpredictable;
 use super::heat::Heat;
 use super::maxwell::Maxwell;
 use super::running_maxima::RunningMaxima;
+use super::scheme::ContactModes;
 use super::stage_values::StageValues;
 use super::tableau::Tableau;
 use super::tolerance::{Rod, Tolerance, square};
@@ -29,11 +30,12 @@ const CARRIER_WEIGHT: f64 = 0.3;
 /// F_z.
 const WEIGHT_OF_FORCE_X: f64 = 4.0;
 
-/// The relative error of the speed of a mass that slips on roughness below the profile, in relative tolerances.
+/// The relative error of the speed of a mass that slips on roughness below the profile, in relative tolerances, where modes
+/// are held and in steps of time-stepping.
 ///
-/// Recommended 30 to 300. A mass that breaks loose where friction falls with the speed passes the decades from its creep
-/// speed on by growth, and comes late by as much as its speed errs there; the tolerance of velocities is far above these.
-const CREEP_SLACK: f64 = 100.0;
+/// Recommended 3 to 30 and 30 to 300. A mass that breaks loose where friction falls with the speed passes the decades from its creep speed
+/// on by growth, and comes late by as much as its speed errs there; the tolerance of velocities is far above these.
+const CREEP_SLACK: [f64; 2] = [10.0, 100.0];
 
 /// The change of temperature, K, over which friction changes by a part of itself.
 const FLASH_SCALE: f64 = 10.0;
@@ -78,6 +80,7 @@ impl ErrorWorkspace {
 /// What the error test of an attempted step needs.
 #[derive(Clone, Copy)]
 pub(super) struct ErrorTest<'a> {
+    pub modes: ContactModes,
     pub tableau: &'static Tableau,
     pub maxwell: &'a Maxwell,
     pub heat: &'a Heat,
@@ -164,7 +167,7 @@ impl ErrorTest<'_> {
     /// below the profile, a function of ln v.
     fn creep_squares(&self, model: &Model, tolerance: &Tolerance, velocity_error: &[f64]) -> f64 {
         let Some(creep_speed) = model.friction.creep_end(0.0) else { return 0.0 };
-        let allowed = CREEP_SLACK * tolerance.relative;
+        let allowed = CREEP_SLACK[self.modes as usize] * tolerance.relative;
         let of = |&i: &usize| square(velocity_error[i] / (allowed * self.end.velocity_x[i].abs().max(creep_speed)));
         self.contacts.iter().filter(|&&i| self.end.mode[i].slips()).map(of).sum()
     }

@@ -128,6 +128,7 @@ impl RungeKutta {
     ) -> ErrorEstimate {
         let tableau = self.coefficients.tableau;
         let test = ErrorTest {
+            modes: self.scheme.contact_modes(),
             tableau,
             maxwell: &self.maxwell,
             heat: &self.heat,

@@ -67,11 +67,14 @@ impl StageSolver {
     fn slip_residuals(&mut self, model: &Model, beta: f64) {
         let Self { state, history, forces, laws, weights, flash, .. } = self;
         let stage = Evaluated { model, state, history, forces, laws, weights, beta };
+        let per_beta = 1.0 / beta;
         for (&i, slip) in self.slips.iter().zip(&mut self.friction) {
             let normal = if model.friction.is_linear_in_normal() { 0.0 } else { stage.normal(i) };
             slip.friction = model.friction.slip(normal, stage.slip_speed(i), flash.of_mass(i));
             flash.set_guess(i, slip.friction.flash);
-            let mass = stage.slipping_mass(i, &slip.friction);
+            let motion = (state.velocity_x[i], (state.velocity_x[i] - history.velocity_x[i]) * per_beta);
+            let (sigma, surface) = (state.mode[i].direction(), &state.surface[i]);
+            let mass = SlippingMass::under(slip.friction.tangent(), sigma, surface, motion);
             let right = &mut self.system.right[i].x;
             *right = -mass.residual(model.mass, (forces.on_mass_x[i], forces.on_mass_z[i]));
             if model.friction.depends_on_speed() {

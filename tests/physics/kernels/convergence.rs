@@ -23,7 +23,7 @@ pub const PATHS: (Path, Path) =
 
 /// A state away from rest.
 pub fn displaced(model: &Model) -> State {
-    let mut state = State::new(model.masses(), model.maxwell_variables());
+    let mut state = State::new(model);
     for i in 0..model.masses() {
         let phase = i as f64 + 1.0;
         (state.elongation_x[i], state.elongation_z[i]) = (0.1 * phase.sin(), 0.1 * phase.cos());
@@ -168,7 +168,7 @@ pub fn rate_slider(reference_speed: f64) -> Layer {
 
 /// The slider at a position and a speed, its dashpots relaxed, the carrier at `w`.
 pub fn sliding(model: &Model, velocity: f64, w: f64) -> State {
-    let mut state = State::new(1, model.maxwell_variables());
+    let mut state = State::new(model);
     let surface = model.surface_at(0.0);
     state.mode[0] = Mode::along(velocity);
     state.surface[0] = surface;

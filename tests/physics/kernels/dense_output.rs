@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use crate::common::random::Random;
 use crate::kernels::convergence::{Exact, PATHS, chain, differences, displaced, slider, sliding};
 use crate::kernels::equations::{random_layer, random_state};
-use crate::kernels::layer::{Layer, Method, SEVEN_STAGES, Stepper, at_rate, last_order, link};
+use crate::kernels::layer::{Layer, Method, SEVEN_STAGES, Stepper, at_rate, last_order, link, one_mass};
 
 const THETAS: [f64; 6] = [0.0, 0.13, 0.37, 0.5, 0.81, 1.0];
 
@@ -99,7 +99,7 @@ fn a_stiff_element_is_followed_after_a_jump_of_the_velocity() {
         // So weak a link leaves the velocity as it is, 1 m/s, but for 1e-12 of it.
         let link = link(1e-6, 0.0, &[(1e-6, tau)]);
         let layer = Layer { links: [link, None, None, None], clearance: 10.0, ..Layer::default() };
-        let mut state = State::new(1, 1);
+        let mut state = one_mass(1);
         state.velocity_z[0] = 1.0;
         let mut stepper = Stepper::new(layer.model(), (at_rate(0.0), at_rate(0.0)), state, 1e-12);
         stepper.attempt(h);
@@ -205,7 +205,7 @@ fn parts_of_a_step_make_the_whole() {
 
         let mut workspace = DenseWorkspace::new(model);
         let mut step = LayerStep { dense: integrator.dense(model, carrier, start, span), workspace: &mut workspace };
-        let mut joined = State::new(model.masses(), model.maxwell_variables());
+        let mut joined = State::new(model);
         let (mut sums, mut powers) = ([0.0; 7], Vec::new());
         let middle = 1 + case % (model.masses() - 1);
         for masses in [0..middle, middle..model.masses()] {
@@ -213,7 +213,7 @@ fn parts_of_a_step_make_the_whole() {
             part.move_part(model, masses.start);
             let mut of_part = LayerSums::new(&part, 0);
             of_part.begin_part(&mut step, &part, masses.start);
-            let mut state = State::new(part.masses(), part.maxwell_variables());
+            let mut state = State::new(&part);
             let (dense, workspace) = step.restricted_to(&masses);
             dense.state_at(theta, workspace, &mut state);
             state.write_part((&part, model), &mut joined, masses.start);

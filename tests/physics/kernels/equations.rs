@@ -39,7 +39,7 @@ type CarrierMotion = (Vector2<f64>, Vector2<f64>);
 
 /// A state with random modes, on the profile where it is in contact.
 pub fn random_state(random: &mut Random, model: &Model, position: &Vector2<f64>) -> State {
-    let mut state = State::new(model.masses(), model.maxwell_variables());
+    let mut state = State::new(model);
     state.maxwell.fill_with(|| random.between(-0.05, 0.05));
     for i in 0..model.masses() {
         state.elongation_x[i] = random.between(-0.1, 0.1);

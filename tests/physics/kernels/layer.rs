@@ -4,7 +4,7 @@ use asperity::integrator::{
     ContactModes, DenseOutput, DenseWorkspace, ErrorEstimate, Integrator, LayerState, Scheme, TimeSpan, Tolerance,
     Tracked,
 };
-use asperity::model::{ByAxis, Carrier, Forces, LinkKind, Model, State};
+use asperity::model::{ByAxis, Carrier, Forces, LinkKind, Mode, Model, State, SurfacePoint};
 use asperity::scene::{Path, RateShear, Scene};
 
 use crate::common::scenes::{Law, SceneText};
@@ -196,4 +196,19 @@ pub fn at_rate(rate: f64) -> Path {
 pub fn last_order(errors: &[f64]) -> f64 {
     let [.., coarse, fine] = errors else { panic!("two errors at least") };
     (coarse / fine).log2()
+}
+
+/// One free mass at rest on links with so many Maxwell elements.
+pub fn one_mass(maxwell: usize) -> State {
+    let zeros = |count| vec![0.0; count];
+    State {
+        elongation_x: zeros(1),
+        elongation_z: zeros(1),
+        velocity_x: zeros(1),
+        velocity_z: zeros(1),
+        maxwell: zeros(maxwell),
+        flash: Vec::new(),
+        mode: vec![Mode::Free],
+        surface: vec![SurfacePoint::default()],
+    }
 }

@@ -3,7 +3,7 @@
 use asperity::model::{State, elastic_energy, kinetic_energy};
 
 use crate::kernels::convergence::{Exact, PATHS, differences, slider, sliding};
-use crate::kernels::layer::{Layer, Method, SEVEN_STAGES, Stepper, at_rate, link};
+use crate::kernels::layer::{Layer, Method, SEVEN_STAGES, Stepper, at_rate, link, one_mass};
 
 /// One mass with a spring and one Maxwell element along either axis.
 pub fn oscillator(relaxation_time: f64) -> Layer {
@@ -13,7 +13,7 @@ pub fn oscillator(relaxation_time: f64) -> Layer {
 
 /// Away from rest, every Maxwell element on its slow manifold: a = τ ė, but for O(τ²).
 pub fn on_slow_manifold(relaxation_time: f64) -> State {
-    let mut state = State::new(1, 2);
+    let mut state = one_mass(2);
     (state.elongation_x[0], state.elongation_z[0]) = (0.1, -0.2);
     (state.velocity_x[0], state.velocity_z[0]) = (1.0, 0.5);
     let (u_rate, w_rate) = (PATHS.0.at(0.0).speed, PATHS.1.at(0.0).speed);
@@ -100,7 +100,7 @@ pub fn stops_within_a_step(method: Method, most: f64, rounding: impl Fn(f64, f64
         let links = [link(), link(), None, None];
         let free = Layer { links: links.clone(), ..oscillator(1.0) };
         let slipping = Layer { links, ..slider() };
-        let mut state = State::new(1, 2);
+        let mut state = one_mass(2);
         (state.velocity_x[0], state.velocity_z[0]) = (1.0, 1.0);
         for (layer, start) in [(&free, state), (&slipping, sliding(&slipping.model(), 1.0, 0.0))] {
             let paths = (at_rate(0.0), at_rate(0.0));
@@ -125,7 +125,7 @@ pub fn never_gains_energy(method: Method) {
     for phase in [1e-3, 0.03, 0.3, 1.0, 3.0, 30.0, 1e4] {
         let link = || link(100.0, 0.0, &[]);
         let layer = Layer { links: [link(), link(), None, None], ..Layer::default() };
-        let mut state = State::new(1, 0);
+        let mut state = one_mass(0);
         (state.elongation_x[0], state.velocity_z[0]) = (0.1, 1.0);
         let mut stepper = method(Stepper::new(layer.model(), (at_rate(0.0), at_rate(0.0)), state, 1e-12));
         let first = energy(&stepper);
