@@ -300,7 +300,9 @@ fn check_modes(modes: &[Mode], has_friction: bool) -> Result<(), RestoreError> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{WAVE, scene, scene_with_rate_shear, scene_with_real_area, variables_of};
+    use super::super::tests::{
+        WAVE, scene, scene_with_heat, scene_with_rate_shear, scene_with_real_area, variables_of,
+    };
     use super::*;
     use crate::scene::Path;
     use crate::scene::Scene;
@@ -319,7 +321,7 @@ mod tests {
 
     #[test]
     fn a_saved_run_goes_on_bit_for_bit() {
-        for scene in [scene(), scene_with_rate_shear(), scene_with_real_area()] {
+        for scene in [scene(), scene_with_rate_shear(), scene_with_real_area(), scene_with_heat()] {
             let mut first = run(&scene);
             let bytes = postcard::to_stdvec(&first.state()).unwrap();
             let mut second = Simulation::restore(&scene, &postcard::from_bytes(&bytes).unwrap()).unwrap();

@@ -62,13 +62,24 @@ pub(super) fn scene_with_rate_shear() -> Scene {
 
 /// Six masses of a material whose contacts touch on a part of their area.
 pub(super) fn scene_with_real_area() -> Scene {
+    Scene::parse(&text_with_real_area(), FilePath::new("real-area.toml")).unwrap()
+}
+
+fn text_with_real_area() -> String {
     let (_, rest) = TEXT.split_once("[surface]").unwrap();
     let layer = "name = 'area'\nlayer = { masses = 6, spacing = 1.1e-4, foundation = 'half_space', width = 1e-2 }\n\
                  material = { density = 1100, poisson_ratio = 0.49, equilibrium_modulus = 2e6, viscosity = 10.0, \
                  prony = [{ modulus = 3e6, relaxation_time = 1e-4 }] }\n[surface]\n\
                  fine = { hurst = 0.8, rms_slope = 0.5, longest = 2e-5, shortest = 5e-6 }";
-    let text = layer.to_owned() + &rest.replace("shear_force = 5e-5", "shear_strength = 2e5");
-    Scene::parse(&text, FilePath::new("real-area.toml")).unwrap()
+    layer.to_owned() + &rest.replace("shear_force = 5e-5", "shear_strength = 2e5")
+}
+
+/// The same where friction heats the contacts.
+pub(super) fn scene_with_heat() -> Scene {
+    let material = "density = 1100, wlf = { c1 = 8.0, c2 = 100.0, reference_temperature = 300.0, temperature = 300.0 }, \
+                    heat = { conductivity = 0.25, capacity = 1700.0 }, ";
+    let text = text_with_real_area().replace("density = 1100, ", material);
+    Scene::parse(&text, FilePath::new("heat.toml")).unwrap()
 }
 
 /// All variables but the processor time, by name.
