@@ -291,7 +291,7 @@ impl FmuRun for LayerRun {
     }
 
     fn take_warnings(&mut self, time: f64) -> Vec<String> {
-        let texts = [self.profile_warning(), self.reduction_warning(time)];
+        let texts = [self.profile_warning(), self.reduction_warning(time), self.temperature_warning()];
         texts.into_iter().flatten().map(|text| format!("t = {time} s: {text}")).collect()
     }
 
@@ -329,6 +329,14 @@ impl LayerRun {
         }
         let text = self.scene.off_profile(self.simulation.carrier().0);
         self.history.left_profile = text.is_some();
+        text
+    }
+
+    /// Of a temperature that is an input; that of the scene is among its own warnings.
+    fn temperature_warning(&mut self) -> Option<String> {
+        let temperature = self.simulation.temperature().filter(|_| !self.history.cold_contacts)?;
+        let text = self.scene.cold_contacts(temperature);
+        self.history.cold_contacts = text.is_some();
         text
     }
 

@@ -196,4 +196,6 @@ pub struct RunRecord {
     pub left_profile: bool,
     /// Whether it has warned that it is longer than the reduction of links assumes.
     pub exceeded_reduction: bool,
+    /// Whether it has warned that friction does not follow so low a temperature.
+    pub cold_contacts: bool,
 }

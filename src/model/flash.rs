@@ -61,9 +61,6 @@ pub struct SpeedShift {
     at_layer: f64,
 }
 
-/// The law of Williams, Landel and Ferry is used down to this temperature above its pole T_ref - C_2, K.
-const ABOVE_POLE: f64 = 30.0;
-
 impl SpeedShift {
     /// The shift of a scene; `None` where friction heats nothing.
     pub fn new(scene: &Scene) -> Option<Self> {
@@ -74,10 +71,10 @@ impl SpeedShift {
         Some(Self { c1, c2, above, at_layer: -c1 * above / (c2 + above) })
     }
 
-    /// a_T(T + ϑ)/a_T(T) and the derivative of its logarithm by ϑ, 1/K; as the law has it [`ABOVE_POLE`] where it is colder.
+    /// a_T(T + ϑ)/a_T(T) and the derivative of its logarithm by ϑ, 1/K; that at [`Wlf::ABOVE_POLE`] where it is colder.
     pub fn ratio(&self, flash: f64) -> (f64, f64) {
         let above = self.above + flash;
-        let (from_pole, is_colder) = ((self.c2 + above).max(ABOVE_POLE), self.c2 + above < ABOVE_POLE);
+        let (from_pole, is_colder) = ((self.c2 + above).max(Wlf::ABOVE_POLE), self.c2 + above < Wlf::ABOVE_POLE);
         let shift = -self.c1 * (from_pole - self.c2) / from_pole;
         let slope = if is_colder { 0.0 } else { -self.c1 * self.c2 / (from_pole * from_pole) };
         ((shift - self.at_layer).exp(), slope)

@@ -63,6 +63,9 @@ impl Wlf {
     /// meant in °C.
     pub const COLDEST: f64 = 100.0;
 
+    /// Contacts that friction heats are taken to be this far above the pole at least, K.
+    pub const ABOVE_POLE: f64 = 30.0;
+
     /// a_T: log10 a_T = -C_1 (T - T_ref)/(C_2 + T - T_ref), for T above
     /// [`lowest_temperature`](Self::lowest_temperature).
     pub fn shift_factor(&self) -> f64 {

@@ -37,6 +37,21 @@ impl Scene {
     }
 }
 
+impl Scene {
+    /// A layer at a `temperature` (K) where friction in the contacts does not follow it.
+    pub fn cold_contacts(&self, temperature: f64) -> Option<String> {
+        let wlf = self.material.as_ref().filter(|material| material.heat.is_some())?.wlf?;
+        let coldest = wlf.lowest_temperature() + Wlf::ABOVE_POLE;
+        (temperature < coldest).then(|| {
+            format!(
+                "the layer is at {temperature:?} K: friction in the contacts is that at {coldest:?} K, {:?} K above the pole of \
+                 the WLF equation",
+                Wlf::ABOVE_POLE
+            )
+        })
+    }
+}
+
 /// A roughness, sampled from a natural profile that ends before the layer does.
 pub(super) fn short_roughness(layer: &Layer, roughness: &Surface) -> Option<String> {
     roughness.too_short_for(layer.reach()).then(|| {

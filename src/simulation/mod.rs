@@ -180,6 +180,11 @@ impl Simulation {
         self.run.context.state.time()
     }
 
+    /// The layer's temperature, K; `None` where it is no input.
+    pub fn temperature(&self) -> Option<f64> {
+        self.scene.as_ref().map(|_| self.run.context.state.temperature)
+    }
+
     /// Displacement of the carrier: u and w, m.
     pub fn carrier(&self) -> (f64, f64) {
         let ByAxis { x: u, z: w } = self.run.context.state.displacement();

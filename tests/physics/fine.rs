@@ -194,6 +194,6 @@ fn tangents_carry_the_heat() {
         assert!(up[2] == events && down[2] == events && flash > 1.0, "{name}: {flash} K");
         let quotient = (up[0] - down[0]) / (2.0 * moved);
         // Steps are chosen anew for every run, and with them the error, which the quotient magnifies.
-        assert!((tangent / quotient - 1.0).abs() < 1e-3, "{name} {method:?}: {tangent} {quotient}");
+        assert!((tangent / quotient - 1.0).abs() < 2e-3, "{name} {method:?}: {tangent} {quotient}");
     }
 }

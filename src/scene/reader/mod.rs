@@ -99,8 +99,10 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
         notes,
     };
     let cold = scene.material.as_ref().and_then(warnings::cold_temperatures);
-    let warnings: Vec<String> =
-        scene.short_profile().into_iter().chain(cold).chain(scene.foundation_warnings()).collect();
+    let temperature = scene.material.as_ref().and_then(|material| material.wlf).map(|wlf| wlf.temperature);
+    let cold_contacts = temperature.and_then(|temperature| scene.cold_contacts(temperature));
+    let own = scene.short_profile().into_iter().chain(cold).chain(cold_contacts);
+    let warnings: Vec<String> = own.chain(scene.foundation_warnings()).collect();
     scene.warnings.extend(warnings);
     if let (Err(error), Some(entry)) = (scene.check_equilibrium(scene.first_load()), carrier_entry) {
         return Err(SceneError::new(entry.location(), error.name(), error.problem().clone()));
