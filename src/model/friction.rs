@@ -193,6 +193,11 @@ impl FrictionLaw {
         self.fine.as_ref().map_or(smooth, |fine| fine.contact(normal, shift * speed))
     }
 
+    /// Bound of the hysteresis of the waves that the profile lacks under F_N (N) at any speed, N.
+    pub fn largest_hysteresis(&self, normal: f64) -> f64 {
+        self.fine.as_ref().map_or(0.0, |fine| fine.largest_hysteresis(normal))
+    }
+
     /// The parts of T(0) under F_N (N): what a sticking force is shared out by.
     pub fn shares_at_rest(&self, normal: f64) -> FrictionShares {
         let (limit, coulomb) = (self.limit(normal), self.coulomb * normal.max(0.0));

@@ -109,7 +109,9 @@ impl Limits {
     fn friction(&self, normal: f64, friction: f64, mode: f64) -> Option<String> {
         // On the area that touches at rest: the rubber is no softer in slip.
         let share = self.model.friction.fine_contact(normal.max(0.0), 0.0, 0.0).share.value;
-        let limit = self.friction.0 * normal.max(0.0) + share * (self.friction.1 + self.rate_limit(mode));
+        let limit = self.friction.0 * normal.max(0.0)
+            + share * (self.friction.1 + self.rate_limit(mode))
+            + self.model.friction.largest_hysteresis(normal);
         let slack = self.force * (1.0 + self.friction.0) + self.relative * limit;
         (friction.abs() > limit + slack).then(|| format!("|F_T| = {:.2e} above {limit:.2e}", friction.abs()))
     }

@@ -107,7 +107,8 @@ const RUBBER: &str = "name = 'rubber'
 layer = { foundation = 'layer', masses = 2, spacing = 0.7e-4, thickness = 1e-3, width = 1e-2, roughness = { kind = 'points', z = [0.0, 1e-7] } }
 material = { density = 1.1e3, poisson_ratio = 0.49, equilibrium_modulus = 2e6, viscosity = 10.0, \
     prony = [{ modulus = 5e6, relaxation_time = 1e-5 }], \
-    wlf = { c1 = 7.52, c2 = 119.75, reference_temperature = 293.15, temperature = 313.15 } }
+    wlf = { c1 = 7.52, c2 = 119.75, reference_temperature = 293.15, temperature = 313.15 }, \
+    heat = { conductivity = 0.25, capacity = 1.7e3 } }
 input = { temperature = true }
 surface = { kind = 'sinusoid', amplitude = 1e-6, wavelength = 1e-4, points_per_wavelength = 8, \
     fine = { hurst = 0.8, rms_slope = 1.0, longest = 2e-5, shortest = 5e-6 } }
