@@ -218,9 +218,10 @@ impl Contacts<'_> {
         (0..masses).filter(creeps)
     }
 
-    /// v_c of mass `i`, m/s, at its flash temperature at the start of the step.
+    /// v_c of mass `i`, m/s, at its flash temperature at the start of the step; not so slow that no step could end there.
     fn creep_speed(&self, i: usize) -> Option<f64> {
-        self.step.model.friction.creep_end(self.step.start.flash(i))
+        let creep_speed = self.step.model.friction.creep_end(self.step.start.flash(i))?;
+        Some(creep_speed.max(CREEP_RESOLVED * self.tolerance.velocity))
     }
 
     /// v_t of mass `i` with this ẋ, m/s, over the slope at the start of the step.
@@ -355,6 +356,9 @@ impl Contacts<'_> {
         if function == EventFunction::Normal { contact.normal } else { contact.limit - contact.tangential.abs() }
     }
 }
+
+/// The share of the velocity tolerance of stops below which no step ends where a creeping mass becomes faster.
+const CREEP_RESOLVED: f64 = 1e-2;
 
 /// By which part of v_c a mass has passed it where a step ends that it creeps in.
 const CREEP_PASSED: f64 = 1e-3;

@@ -40,6 +40,9 @@ const CREEP_SLACK: [f64; 2] = [10.0, 100.0];
 /// The change of temperature, K, over which friction changes by a part of itself.
 const FLASH_SCALE: f64 = 10.0;
 
+/// Speeds of slip below this share of the tolerance of velocities are not resolved: Newton's iterations leave them open.
+const UNRESOLVED: f64 = 1e-3;
+
 /// That weight for `model`. Where friction depends on the speed F_x follows the speeds of creeping masses, which are
 /// far below the tolerance of velocities: there the weight would triple the steps of a creep and make it no more
 /// accurate.
@@ -167,8 +170,9 @@ impl ErrorTest<'_> {
     /// below the profile, a function of ln v.
     fn creep_squares(&self, model: &Model, tolerance: &Tolerance, velocity_error: &[f64]) -> f64 {
         let Some(creep_speed) = model.friction.creep_end(0.0) else { return 0.0 };
+        let slowest = creep_speed.max(UNRESOLVED * tolerance.velocity);
         let allowed = CREEP_SLACK[self.modes as usize] * tolerance.relative;
-        let of = |&i: &usize| square(velocity_error[i] / (allowed * self.end.velocity_x[i].abs().max(creep_speed)));
+        let of = |&i: &usize| square(velocity_error[i] / (allowed * self.end.velocity_x[i].abs().max(slowest)));
         self.contacts.iter().filter(|&&i| self.end.mode[i].slips()).map(of).sum()
     }
 

@@ -467,10 +467,14 @@ impl SlipCurve<'_> {
     /// The steepest fall of friction up to the `speed` of slip, m/s, by the real area that shrinks: ∂T/∂v, N s/m, 0
     /// where friction does not fall.
     pub fn steepest_fall(&self, speed: f64) -> f64 {
-        let falls = self.law.fine.iter().flat_map(FineFriction::speeds).take_while(|&at| at <= speed);
+        let speeds = self.law.fine.iter().flat_map(FineFriction::speeds);
+        let falls = speeds.filter(|&at| at >= SLOWEST_FALL * speed).take_while(|&at| at <= speed);
         falls.map(|at| self.with_slope(at).1).fold(0.0, f64::min)
     }
 }
+
+/// Falls of friction at less than this share of a speed are over before it is reached.
+const SLOWEST_FALL: f64 = 1e-3;
 
 /// The part of the bracket (m/s) with the first zero of `residual` from the speed `from`. The `marks` divide the speeds
 /// into three parts: in each there is one zero at most if the signs at its ends differ.

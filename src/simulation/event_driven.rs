@@ -192,7 +192,7 @@ impl Stepper for EventDriven {
                 if h <= bounds.shortest {
                     return Err(context.step_too_small(h));
                 }
-                h = context.state.controller.step_size;
+                h = context.state.controller.step_size.max(bounds.shortest);
                 continue;
             };
             // Propose the length of the next.
