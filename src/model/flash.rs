@@ -83,13 +83,13 @@ struct HeatParts {
 
 impl HeatParts {
     fn new(scene: &Scene, material: &Material) -> Self {
-        let (bands, softening) = (scene.fine_bands(), scene.fine.as_ref().map_or(1.0, |fine| fine.softening));
+        let bands = scene.fine_bands();
         let speed = SPEED_OF_PARTS.max(scene.fine_creep_speed());
         // μ_h of each band and A_r/(A p), for p → 0.
         let mut stress_square = 0.0;
         let rubs = scene.has_fine_hysteresis();
         let friction = |band: &FineBand| {
-            let moduli = band.moduli(material, softening, speed);
+            let moduli = band.moduli(material, speed);
             let own = band.gradient_square * moduli.square;
             let middle = stress_square + 0.5 * own;
             stress_square += own;
