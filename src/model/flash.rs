@@ -103,7 +103,8 @@ impl HeatParts {
         let shear = scene.shear_strength_at(speed) * 2.0 / stress_square.sqrt();
         let surface = shear + scene.friction.as_ref().and_then(|friction| friction.coulomb).unwrap_or(0.0);
         let whole = of_bands.iter().sum::<f64>() + surface;
-        if whole <= 0.0 {
+        // Nothing rubs, or all of a contact touches for there are no waves.
+        if whole <= 0.0 || !whole.is_finite() {
             return Self { bands: Vec::new(), surface: 1.0 };
         }
         let bands = bands.iter().zip(&of_bands).map(|(band, part)| (band.wave_number, part / whole)).collect();

@@ -378,9 +378,10 @@ fn what_is_assumed_of_the_finer_waves_is_said() {
     write_line(&folder);
     let said = |surface: &str, settings: &[&str]| {
         fs::write(folder.join("scene.toml"), on_rubber(surface)).unwrap();
-        let output = asperity().arg("simulate").arg(folder.join("scene.toml")).arg("-o").arg(folder.join("out.csv"));
-        let output =
-            settings.iter().fold(output, |command, setting| command.args(["--set", setting])).output().unwrap();
+        let mut command = asperity();
+        command.arg("simulate").arg(folder.join("scene.toml")).arg("-o").arg(folder.join("out.csv"));
+        settings.iter().for_each(|setting| _ = command.args(["--set", setting]));
+        let output = command.output().unwrap();
         assert!(output.status.success(), "{output:?}");
         String::from_utf8(output.stderr).unwrap()
     };
