@@ -396,3 +396,27 @@ fn what_is_assumed_of_the_finer_waves_is_said() {
     assert!(text.contains("psd.csv: no names: column 1 is taken as wave numbers in 1/m"), "{text}");
     assert!(text.contains("psd.csv: no names: column 2 is taken as power spectrum in m⁴"), "{text}");
 }
+
+/// An FMU carries the files of the roughness below the profile, and has its numbers and those of heat as parameters.
+#[test]
+fn an_fmu_has_the_spectrum_and_the_softening() {
+    let folder = scratch("surface-fine-fmu");
+    let [source, fmu, unpacked] = ["scene.toml", "scene.fmu", "unpacked"].map(|name| folder.join(name));
+    fs::write(folder.join("psd.csv"), "q [1/mm],C [mm^4]\n1,1e-6\n1000,1e-16\n").unwrap();
+    fs::write(folder.join("strain.csv"), "strain [%],storage,loss\n0.1,1,1\n50,0.3,0.6\n").unwrap();
+    let fine = "spectrum = 'psd.csv', longest = 1e-3, shortest = 1e-5, softening = 'strain.csv'";
+    fs::write(&source, on_rubber(&format!("kind = 'flat'\nfine = {{ {fine} }}"))).unwrap();
+    let scene = Scene::load(&source).unwrap();
+    assert_eq!(scene.files, ["psd.csv", "strain.csv"].map(Path::new));
+    // Any file serves as the library here.
+    run(asperity().arg("pack").arg(&source).arg("-o").arg(&fmu).arg("--library").arg(&source));
+    let mut archive = ZipArchive::new(Cursor::new(fs::read(&fmu).unwrap())).unwrap();
+    archive.extract(&unpacked).unwrap();
+    assert_eq!(Scene::load(&unpacked.join("resources/scene.toml")).unwrap(), scene);
+    let mut description = String::new();
+    archive.by_name("modelDescription.xml").unwrap().read_to_string(&mut description).unwrap();
+    for name in ["surface.fine.longest", "surface.fine.shortest", "surface.fine.creep_speed", "material.heat.share"] {
+        assert!(description.contains(&format!("name=\"{name}\"")), "{name}");
+    }
+    assert!(!description.contains("surface.fine.softening") && description.contains("J/(kg.K)"));
+}
