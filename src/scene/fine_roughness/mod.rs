@@ -344,3 +344,73 @@ impl Material {
         terms.chain(viscous).reduce(f64::max)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    /// Rubber of two terms on a flat surface with these waves.
+    fn scene(fine: FineRoughness) -> Scene {
+        let text = "name = 'f'\nlayer = { masses = 4, spacing = 1e-4, thickness = 1e-3, width = 1e-2 }\n\
+                    surface = { kind = 'flat' }\n[material]\ndensity = 1100\npoisson_ratio = 0.49\n\
+                    equilibrium_modulus = 1e6\nprony = [{ modulus = 5e6, relaxation_time = 1e-5 }]\n";
+        let scene = Scene::parse(text, Path::new("f.toml")).unwrap_or_else(|error| unreachable!("{error}"));
+        Scene { fine: Some(fine), ..scene }
+    }
+
+    fn bands(waves: FineWaves, softening: Softening) -> Vec<FineBand> {
+        scene(FineRoughness { waves, creep_speed: None, hysteresis: true, softening }).fine_bands()
+    }
+
+    const LAW: FineWaves = FineWaves::SelfAffine { hurst: 0.7, rms_slope: 0.9, longest: 2e-3, shortest: 5e-6 };
+
+    /// C ∝ q^-2(1+H) in a table with rows of its own: the same bands, but for a constant.
+    #[test]
+    fn a_self_affine_table_has_the_bands_of_the_law() {
+        let row = |i: u32| {
+            let q = 1e3 * 10_f64.powf(f64::from(i) / 3.0);
+            [q, q.powf(-3.4)]
+        };
+        let spectrum = RoughnessSpectrum::new((0..=10).map(row).collect());
+        let table = bands(FineWaves::Table { spectrum, longest: 2e-3, shortest: 5e-6 }, Softening::Factor(1.0));
+        let law = bands(LAW, Softening::Factor(1.0));
+        assert_eq!((table.len(), law.len()), (21, 21));
+        let ratio = law[0].gradient_square / table[0].gradient_square;
+        for (one, other) in table.iter().zip(&law) {
+            assert_eq!(one.wave_number, other.wave_number);
+            assert!((ratio * one.gradient_square / other.gradient_square - 1.0).abs() < 1e-12, "{one:?} {other:?}");
+        }
+    }
+
+    /// Both moduli by s: M_b² by s², L_b by s.
+    #[test]
+    fn a_factor_softens_both_moduli() {
+        let (hard, soft) = (bands(LAW, Softening::Factor(1.0)), bands(LAW, Softening::Factor(0.4)));
+        let fine = FineRoughness { waves: LAW, creep_speed: None, hysteresis: true, softening: Softening::Factor(1.0) };
+        let material = scene(fine).material;
+        for (hard, soft) in hard.iter().zip(&soft) {
+            let [hard, soft] = [hard, soft].map(|band| material.as_ref().map(|rubber| band.moduli(rubber, 0.1)));
+            let (hard, soft) = (hard.unwrap_or_default(), soft.unwrap_or_default());
+            assert!((soft.square / hard.square / 0.16 - 1.0).abs() < 1e-14);
+            assert!((soft.loss / hard.loss / 0.4 - 1.0).abs() < 1e-14);
+        }
+    }
+
+    /// The strain of a band is half the gradient of all waves down to its own.
+    #[test]
+    fn a_table_softens_by_the_strain_of_each_band() {
+        let row = |strain, storage, loss| SofteningRow { strain, factors: ModulusFactors { storage, loss } };
+        let table = Softening::Table(vec![row(1e-3, 1.0, 1.0), row(1.0, 0.1, 0.7)]);
+        let mut gradient_square = 0.0;
+        for band in bands(LAW, table) {
+            gradient_square += band.gradient_square;
+            let decades = (0.5 * gradient_square.sqrt() / 1e-3).log10();
+            let expected = [1.0 - 0.3 * decades, 1.0 - 0.1 * decades];
+            let found = [band.factors.storage, band.factors.loss];
+            assert!(found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-12), "{band:?}");
+        }
+        assert!((gradient_square - 0.81).abs() < 1e-12);
+    }
+}
