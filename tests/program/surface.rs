@@ -353,8 +353,8 @@ fn a_line_split_beforehand_is_the_line_split_in_the_scene() {
         // The wavelengths have seven digits.
         assert!((one.gradient_square / other.gradient_square - 1.0).abs() < 1e-5, "{one:?} {other:?}");
     }
-    // The gradient of an isotropic surface is √2 times the slope of its lines, but for the ratio at H = 0.8 (1.90 in place of
-    // 2), means over bands, and what lies between twice the step and the cut-off of 0.1 mm, nothing.
+    // The gradient of an isotropic surface is √2 times the slope of its lines, but for the ratio at H = 0.8 (1.90 in
+    // place of 2), means over bands, and what lies between twice the step and the cut-off of 0.1 mm, nothing.
     let gradient: f64 = whole.iter().map(|band| band.gradient_square).sum::<f64>().sqrt();
     let of_line = found["removed"]["rms_slope"].as_f64().unwrap();
     assert!((1.2..1.6).contains(&(gradient / of_line)), "{gradient} {of_line}");

@@ -160,12 +160,14 @@ pub(in crate::scene) fn read_softening(bytes: &[u8]) -> Result<(Softening, Vec<R
 mod tests {
     use super::*;
 
-    fn spectrum(text: &str) -> Result<(Vec<[f64; 2]>, usize), (Option<usize>, String)> {
+    /// The points, and how many notes say what is assumed; else the line and the message.
+    type Found = Result<(Vec<[f64; 2]>, usize), (Option<usize>, String)>;
+
+    fn spectrum(text: &str) -> Found {
         read_with(text, Convention::Persson)
     }
 
-    /// The points, and how many notes say what is assumed.
-    fn read_with(text: &str, convention: Convention) -> Result<(Vec<[f64; 2]>, usize), (Option<usize>, String)> {
+    fn read_with(text: &str, convention: Convention) -> Found {
         let found = read_spectrum(text.as_bytes(), convention);
         let found = found.map_err(|error| (error.line, error.problem.about(&error.key)));
         found.map(|(spectrum, notes)| (spectrum.points().to_vec(), notes.iter().filter(|note| note.assumed).count()))

@@ -23,8 +23,8 @@ pub use split::SplitSurface;
 pub struct FineRoughness {
     /// Which waves there are.
     pub waves: FineWaves,
-    /// v_c, m/s at the reference temperature: slower slip rubs as this does. `None` follows `friction.rate_shear` where there
-    /// is one.
+    /// v_c, m/s at the reference temperature: slower slip rubs as this does. `None` follows `friction.rate_shear` where
+    /// there is one.
     pub creep_speed: Option<f64>,
     /// Whether the waves rub by hysteresis; without, they only leave a part of the area in contact.
     pub hysteresis: bool,
@@ -173,6 +173,17 @@ impl FineWaves {
         }
     }
 
+    /// The shortest wavelength, m; `None` where the modulus is given.
+    pub fn shortest(&self) -> Option<f64> {
+        match self {
+            Self::SelfAffine { shortest, .. }
+            | Self::Table { shortest, .. }
+            | Self::Split { shortest, .. }
+            | Self::Continued { shortest } => Some(*shortest),
+            Self::Modulus { .. } => None,
+        }
+    }
+
     /// Whether there are bands: waves that the rubber meets with a modulus of its own.
     pub fn has_bands(&self) -> bool {
         !matches!(self, Self::Modulus { .. })
@@ -202,8 +213,8 @@ impl FineRoughness {
         format!("{waves}{hysteresis}{softening}")
     }
 
-    /// What it misses in the friction of a scene: the key of its own that is wrong then, none where it is all of it, and what is
-    /// expected.
+    /// What it misses in the friction of a scene: the key of its own that is wrong then, none where it is all of it,
+    /// and what is expected.
     pub(super) fn misses(&self, friction: Option<&Friction>) -> Option<(Option<&'static str>, &'static str)> {
         let has_rate_shear = friction.is_some_and(|friction| friction.rate_shear.is_some());
         let rubs = friction.is_some_and(|friction| friction.coulomb.is_some() || friction.shear_strength.is_some());
@@ -247,11 +258,9 @@ impl FineRoughness {
 
     /// A spectrum, or a law that goes on, may rise beyond all numbers.
     fn check_gradient(&self, surface: &Surface) -> Result<(), Clash> {
-        let bands = self.waves.bands(surface);
-        let square: f64 = bands.iter().map(|band| band.gradient_square).sum();
-        match bands.last() {
-            Some(last) if square.is_nan() || square > LARGEST * LARGEST => {
-                let given = TAU / last.wave_number;
+        let square: f64 = self.waves.bands(surface).iter().map(|band| band.gradient_square).sum();
+        match self.waves.shortest() {
+            Some(given) if square.is_nan() || square > LARGEST * LARGEST => {
                 Err(Clash { key: "shortest", given, expected: format!("waves with a gradient up to {LARGEST:e}") })
             }
             _ => Ok(()),
@@ -335,8 +344,8 @@ fn gradient_square(q: f64, spectrum: f64, width: f64) -> f64 {
 }
 
 impl Material {
-    /// The fastest rate 1/τ_j at the reference temperature, 1/s, that of E_∞/η among them; `None` for a material whose modulus
-    /// is the same at every frequency.
+    /// The fastest rate 1/τ_j at the reference temperature, 1/s, that of E_∞/η among them; `None` for a material whose
+    /// modulus is the same at every frequency.
     pub fn fastest_rate(&self) -> Option<f64> {
         let glassy = self.equilibrium_modulus + self.prony.iter().map(|term| term.modulus).sum::<f64>();
         let viscous = self.viscosity.filter(|&viscosity| viscosity > 0.0).map(|viscosity| glassy / viscosity);

@@ -11,8 +11,8 @@ use crate::scene::{Spectrum, Surface};
 pub struct SplitSurface {
     /// The line without the finer waves.
     pub profile: Surface,
-    /// C (1 - G²) of the isotropic surface that has such lines, G being the filter's transmission: from where that is 5 % of C
-    /// down to twice the line's step; the law of the last decade of C beyond.
+    /// C (1 - G²) of the isotropic surface that has such lines, G being the filter's transmission: from where that is 5
+    /// % of C down to twice the line's step; the law of the last decade of C beyond.
     pub finer: RoughnessSpectrum,
 }
 
@@ -69,8 +69,8 @@ mod tests {
     const ROUGH: SelfAffine =
         SelfAffine { length: 0.1, points: 10_000, hurst: 0.8, rms: 2e-5, roll_off: 5e-3, cut_off: 2e-5, seed: 7 };
 
-    /// Of a self-affine line, every mode of which has the power of its law: C (1 - G²), within the means over bands of a
-    /// twelfth of a decade; beyond the resolution the law goes on.
+    /// Of a self-affine line, every mode of which has the power of its law: C (1 - G²), within the means over bands of
+    /// a twelfth of a decade; beyond the resolution the law goes on.
     #[test]
     fn the_finer_waves_of_a_self_affine_line_have_their_law() {
         let line = ROUGH.surface();

@@ -26,8 +26,8 @@ impl Scene {
         let gradient = self.fine_gradient();
         (gradient > STEEP).then(|| {
             format!(
-                "surface.fine has a root mean square gradient of {gradient:.3}, more than {STEEP:?}: is the unit of its \
-                 spectrum right, and its convention?"
+                "surface.fine has a root mean square gradient of {gradient:.3}, more than {STEEP:?}: is the unit of \
+                 its spectrum right, and its convention?"
             )
         })
     }
@@ -37,8 +37,8 @@ impl Scene {
         let (exponent, [_, resolved]) = (spectrum.tail_exponent()?, spectrum.wavelengths());
         (*shortest < resolved * (1.0 - ROUNDING)).then(|| {
             format!(
-                "surface.fine: the line resolves waves down to {resolved:.3e} m; from there to {shortest:.3e} m the law of its \
-                 last decade goes on, C ~ q^{exponent:.2}"
+                "surface.fine: the line resolves waves down to {resolved:.3e} m; from there to {shortest:.3e} m the law \
+                 of its last decade goes on, C ~ q^{exponent:.2}"
             )
         })
     }
@@ -75,8 +75,8 @@ impl Scene {
     }
 }
 
-/// h'² of the waves up to a `ratio` longer than the longest of the bands, each of a `width` in ln q, if their spectrum went on
-/// as it begins.
+/// h'² of the waves up to a `ratio` longer than the longest of the bands, each of a `width` in ln q, if their spectrum
+/// went on as it begins.
 fn missing(bands: &[FineBand], width: f64, ratio: f64) -> f64 {
     let Some(first) = bands.first() else { return 0.0 };
     // h'² over ln q is a power of q, between that of H = 1 and that of H = 0.
@@ -104,7 +104,8 @@ mod tests {
 
     use super::*;
 
-    /// The warnings of a self-affine surface from 10 mm to the cut-off, and bands of the same law from `longest` (m) to 10 µm.
+    /// The warnings of a self-affine surface from 10 mm to the cut-off, and bands of the same law from `longest` (m) to
+    /// 10 µm.
     fn warnings(cut_off: f64, longest: f64, rms_slope: f64) -> Vec<String> {
         let text = format!(
             "name = 'w'\nlayer = {{ masses = 4, spacing = 1e-4, thickness = 1e-3, width = 1e-2 }}\n\
@@ -116,19 +117,19 @@ mod tests {
         Scene::parse(&text, Path::new("w.toml")).unwrap_or_else(|error| unreachable!("{error}")).warnings
     }
 
-    /// Of the law h'² ∝ q^0.4 between wavelengths a and b: a^-0.4 - b^-0.4. The bands from 1 mm to 10 µm have 84.2 of it, a gap to
-    /// 2 mm 3.8 (5 %), to 8 mm 8.9 (11 %).
+    /// Of the law h'² ∝ q^0.4 between wavelengths a and b: a^-0.4 - b^-0.4. The bands from 1 mm to 10 µm have 84.2 of
+    /// it, a gap to 2 mm 3.8 (5 %), to 8 mm 8.9 (11 %).
     #[test]
     fn waves_that_are_missing_are_a_warning() {
         assert!(warnings(1e-3, 1e-3, 0.5).is_empty() && warnings(2e-3, 1e-3, 0.5).is_empty());
         let found = warnings(8.3e-3, 1e-3, 0.5);
-        let expected = "surface.fine.longest = 0.001 m: waves between the profile's shortest, 8.333e-3 m, and longest are \
-                        missing, 11 % of the bands' mean square gradient";
+        let expected = "surface.fine.longest = 0.001 m: waves between the profile's shortest, 8.333e-3 m, and longest \
+                        are missing, 11 % of the bands' mean square gradient";
         assert_eq!(found, [expected]);
     }
 
-    /// From 1 mm to its cut-off of 0.1 mm the profile has h'² of 0.012: of the bands with a gradient of 0.3 that is 13 %, of
-    /// those with 0.5 it is 5 %.
+    /// From 1 mm to its cut-off of 0.1 mm the profile has h'² of 0.012: of the bands with a gradient of 0.3 that is 13
+    /// %, of those with 0.5 it is 5 %.
     #[test]
     fn waves_that_are_in_both_are_a_warning() {
         let found = warnings(1e-4, 1e-3, 0.3);

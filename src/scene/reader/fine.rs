@@ -16,11 +16,11 @@ const FORMS: [(&str, &[&str]); 5] = [
 ];
 
 /// The forms in words.
-const EXPECTED: &str = "hurst, rms_slope, longest and shortest; spectrum, longest and shortest; split and shortest; shortest \
-                        alone; or rms_slope and modulus";
+const EXPECTED: &str = "hurst, rms_slope, longest and shortest; spectrum, longest and shortest; split and shortest; \
+                        shortest alone; or rms_slope and modulus";
 
-/// The roughness below the `surface` of the table `surface_entry`, which it may split; the files that it names are added to
-/// those `found`.
+/// The roughness below the `surface` of the table `surface_entry`, which it may split; the files that it names are
+/// added to those `found`.
 pub(super) fn read(
     surface_entry: &Entry<'_>,
     surface: Surface,

@@ -56,8 +56,8 @@ impl Found {
     }
 }
 
-/// The surface given by the table `entry`, without the roughness below it; the file that it names, if any, is added to those
-/// `found`.
+/// The surface given by the table `entry`, without the roughness below it; the file that it names, if any, is added to
+/// those `found`.
 pub(super) fn read(entry: &Entry<'_>, found: &mut Found) -> Result<Surface> {
     let mut table = entry.open()?;
     let kind = table.required("kind")?.choice::<SurfaceKind>()?;

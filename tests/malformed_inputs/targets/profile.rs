@@ -1,5 +1,5 @@
-//! A file with a profile, a Prony series, a spectrum or a table of softening, as a scene reads it: an error with a position
-//! and a reason, or a valid spline, material or roughness.
+//! A file with a profile, a Prony series, a spectrum or a table of softening, as a scene reads it: an error with a
+//! position and a reason, or a valid spline, material or roughness.
 
 use std::io::{Cursor, Write as _};
 use std::path::{Path, PathBuf};
