@@ -13,7 +13,7 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-use crate::scene::{BandModuli, FineBand, FineRoughness, FineWaves, Material, Scene};
+use crate::scene::{BandModuli, FineBand, FineWaves, Material, Scene};
 
 /// Friction and area of one mass in contact.
 #[derive(Clone, Debug)]
@@ -98,7 +98,7 @@ impl FineFriction {
         let first = bands.first().filter(|_| rubs)?;
         let log_speeds = log_speeds(creep_speed, first.wave_number, material);
         let sums: Vec<BandSums> =
-            log_speeds.values().map(|log_speed| BandSums::new(&bands, material, fine, log_speed.exp())).collect();
+            log_speeds.values().map(|log_speed| BandSums::new(&bands, material, log_speed.exp())).collect();
         let log_stresses: Vec<f64> = sums.iter().map(|sums| sums.stress().ln()).collect();
         let stress = log_stresses.iter().copied().zip(slopes(&log_stresses)).map(|(y, slope)| [y, slope]).collect();
         let loses = fine.hysteresis && sums.iter().any(|sums| sums.losses() > 0.0);
@@ -205,10 +205,10 @@ struct BandSums {
 }
 
 impl BandSums {
-    fn new(bands: &[FineBand], material: &Material, fine: &FineRoughness, speed: f64) -> Self {
+    fn new(bands: &[FineBand], material: &Material, speed: f64) -> Self {
         let mut whole = 0.0;
         let band = |band: &FineBand| {
-            let BandModuli { square, loss } = band.moduli(material, fine.softening, speed);
+            let BandModuli { square, loss } = band.moduli(material, speed);
             let own = band.gradient_square * square;
             let middle = whole + 0.5 * own;
             whole += own;

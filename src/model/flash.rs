@@ -148,13 +148,13 @@ struct HeatParts {
 
 impl HeatParts {
     fn new(scene: &Scene, material: &Material) -> Self {
-        let (bands, softening) = (scene.fine_bands(), scene.fine.as_ref().map_or(1.0, |fine| fine.softening));
+        let bands = scene.fine_bands();
         let speed = SPEED_OF_PARTS.max(scene.fine_creep_speed());
         // μ_h of each band and A_r/(A p), for p → 0.
         let mut stress_square = 0.0;
         let rubs = scene.has_fine_hysteresis();
         let friction = |band: &FineBand| {
-            let moduli = band.moduli(material, softening, speed);
+            let moduli = band.moduli(material, speed);
             let own = band.gradient_square * moduli.square;
             let middle = stress_square + 0.5 * own;
             stress_square += own;
@@ -168,7 +168,8 @@ impl HeatParts {
         let shear = scene.shear_strength_at(speed) * 2.0 / stress_square.sqrt();
         let surface = shear + scene.friction.as_ref().and_then(|friction| friction.coulomb).unwrap_or(0.0);
         let whole = of_bands.iter().sum::<f64>() + surface;
-        if whole <= 0.0 {
+        // Nothing rubs, or all of a contact touches for there are no waves.
+        if whole <= 0.0 || !whole.is_finite() {
             return Self { bands: Vec::new(), surface: 1.0 };
         }
         let bands = bands.iter().zip(&of_bands).map(|(band, part)| (band.wave_number, part / whole)).collect();

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::error::{ParameterError, Problem};
 use super::keys;
-use super::{ByLink, FineWaves, Layer, Link, LinkKind, MaxwellElement, RateShear, Scene};
+use super::{ByLink, Layer, Link, LinkKind, MaxwellElement, RateShear, Scene};
 
 /// A linear viscoelastic solid: a spring, a dashpot and Maxwell elements in parallel, as moduli.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -228,7 +228,7 @@ impl Scene {
 
     /// Whether the waves that the profile lacks rub.
     pub fn has_fine_hysteresis(&self) -> bool {
-        self.fine.as_ref().is_some_and(|fine| fine.hysteresis && !matches!(fine.waves, FineWaves::Modulus { .. }))
+        self.fine.as_ref().is_some_and(|fine| fine.hysteresis && fine.waves.has_bands())
     }
 
     /// Whether the parts of friction are told apart: hysteresis of the waves that the profile lacks from any other, Coulomb's
@@ -293,13 +293,17 @@ impl Scene {
     }
 
     /// Checks what follows from several parameters at once, and so cannot be refused when one of them is set: the
-    /// temperature, and the constants that follow from the material.
+    /// temperature, the roughness below the profile, and the constants that follow from the material.
     ///
     /// # Errors
     /// [`ParameterError`] for the first that is out of range.
     pub fn check(&self) -> Result<(), ParameterError> {
         let Some(material) = &self.material else { return Ok(()) };
         material.wlf.map_or(Ok(()), |wlf| wlf.check())?;
+        if let Some(Err(clash)) = self.fine.as_ref().map(|fine| fine.check(&self.surface)) {
+            let problem = Problem::value(format_args!("{:?}", clash.given), clash.expected);
+            return Err(ParameterError::new(format!("surface.fine.{}", clash.key), problem));
+        }
         in_range("mass of a point mass, from the material", self.mass(), "layer.mass")?;
         self.rate_shear().map_or(Ok(()), |law| law.check())?;
         LinkKind::ALL

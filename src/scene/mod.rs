@@ -8,6 +8,7 @@
 
 mod axis;
 mod carrier;
+mod column_file;
 mod error;
 mod excitation;
 mod fine_roughness;
@@ -36,13 +37,17 @@ use std::path::{Path as FilePath, PathBuf};
 
 use serde::Serialize;
 
+use fine_roughness::Convention;
 use values::Word;
 
 pub use axis::{Axis, ByAxis};
 pub use carrier::{CarrierBodies, CarrierBody, CarrierInitial, Input};
 pub use error::{ParameterError, Problem, SceneError};
 pub use excitation::{Force, Motion, Path, Phase};
-pub use fine_roughness::{BandModuli, FineBand, FineRoughness, FineWaves};
+pub use fine_roughness::{
+    BandModuli, FineBand, FineRoughness, FineWaves, ModulusFactors, RoughnessSpectrum, Softening, SofteningRow,
+    SplitSurface,
+};
 pub use fmu::{DependencyList, FmuOptions, IntegerType};
 pub use foundation::{Body, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};
 pub use keys::similar_keys;

@@ -77,6 +77,23 @@ impl Spectrum {
         reliable.map(|(m, density)| (m as f64 * self.step, density * self.step))
     }
 
+    /// The mean square slope of the waves, 1.
+    pub fn slope_square(&self) -> f64 {
+        self.modes().map(|(q, square)| q * q * square).sum()
+    }
+
+    /// The wavelength (m) below which there is 1 % of the mean square slope; `None` of a line without slopes.
+    pub fn shortest_wavelength(&self) -> Option<f64> {
+        /// Of the mean square slope.
+        const NEGLIGIBLE: f64 = 0.01;
+        let mut left = self.slope_square() * (1.0 - NEGLIGIBLE);
+        let reached = self.modes().find(|(q, square)| {
+            left -= q * q * square;
+            left < 0.0
+        });
+        reached.map(|(q, _)| TAU / q)
+    }
+
     /// The means over bands that are even in the logarithm; a band without a wave number is omitted.
     pub fn bands(&self) -> Vec<Band> {
         let mut bands = Vec::new();

@@ -78,6 +78,19 @@ impl Surface {
         &self.spline
     }
 
+    /// The root mean square slope of the spline, including the tilt, 1.
+    pub fn rms_slope(&self) -> f64 {
+        /// Gauss-Legendre nodes and weights on 0 to 1: exact for the square of a cubic's slope.
+        const GAUSS: [(f64, f64); 3] =
+            [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+        let slope = |x: f64| self.spline.evaluate(x).1;
+        let squares = self.x.windows(2).map(|ends| {
+            let step = ends[1] - ends[0];
+            step * GAUSS.iter().map(|(at, weight)| weight * slope(ends[0] + at * step).powi(2)).sum::<f64>()
+        });
+        (squares.sum::<f64>() / (self.x[self.x.len() - 1] - self.x[0])).sqrt()
+    }
+
     /// Checks that slopes and curvatures of the spline are numbers that can be worked with, or says what they must be.
     pub(super) fn check_slopes(&self) -> Result<(), String> {
         let bounds = self.spline.bounds();

@@ -39,6 +39,11 @@ impl NumberRange {
         Self { largest, ..self }
     }
 
+    /// These numbers, and smaller ones down to another bound.
+    pub(super) const fn down_to(self, smallest: f64) -> Self {
+        Self { smallest, ..self }
+    }
+
     pub(super) fn holds(&self, number: f64) -> bool {
         let size = number.abs();
         let in_range = self.smallest <= size && size <= self.largest && (self.negative || number > 0.0);
@@ -131,6 +136,10 @@ pub enum Unit {
     Pascal,
     /// Pa s.
     PascalSecond,
+    /// W/(m K).
+    WattPerMeterKelvin,
+    /// J/(kg K).
+    JoulePerKilogramKelvin,
     /// J.
     Joule,
     /// W.
@@ -184,6 +193,8 @@ impl Unit {
             Self::KilogramPerCubicMeter => ("kg/m3", [1, -3, 0, 0]),
             Self::Pascal => ("Pa", [1, -1, -2, 0]),
             Self::PascalSecond => ("Pa.s", [1, -1, -1, 0]),
+            Self::WattPerMeterKelvin => ("W/(m.K)", [1, 1, -3, -1]),
+            Self::JoulePerKilogramKelvin => ("J/(kg.K)", [0, 2, -2, -1]),
             Self::Joule => ("J", [1, 2, -2, 0]),
             Self::Watt => ("W", [1, 2, -3, 0]),
             Self::Radian => ("rad", [0, 0, 0, 0]),

@@ -300,6 +300,14 @@ pub(crate) struct Surface {
     /// shorter ones.
     #[arg(long, value_name = "WAVELENGTH", value_parser = positive)]
     pub(crate) smooth: Option<f64>,
+    /// Splits the profile at this wavelength in m: smooths it as --smooth does, and takes the spectrum of the finer
+    /// waves, from the whole of it, for the key fine of a scene's surface.
+    #[arg(long, value_name = "WAVELENGTH", value_parser = positive, conflicts_with = "smooth")]
+    pub(crate) split: Option<f64>,
+    /// Writes the spectrum of the finer waves, of an isotropic surface with such lines, as two columns, q in 1/m and C
+    /// in m⁴, that a scene can use.
+    #[arg(long, value_name = "OUT.csv", requires = "split")]
+    pub(crate) spectrum: Option<PathBuf>,
     /// Makes the profile periodic: its mirror image follows it, after smoothing. Heights and slopes stay; the period is
     /// twice the length.
     #[arg(long, conflicts_with_all = ["taper", "periodic"])]

@@ -4,7 +4,7 @@ mod periodic;
 
 use std::path::{Path, PathBuf};
 
-use asperity::scene::{self, Band, PowerLaw, Spectrum};
+use asperity::scene::{self, Band, PowerLaw, RoughnessSpectrum, Spectrum};
 use serde::Serialize;
 
 use super::cli::{Reading, Surface};
@@ -23,6 +23,8 @@ pub(crate) enum SurfaceError {
     SceneHasOptions { path: PathBuf },
     #[error("{}: --mirror and --taper make a profile periodic, and it is", .path.display())]
     AlreadyPeriodic { path: PathBuf },
+    #[error("--split {split:?}: expected {expected}")]
+    Split { split: f64, expected: String },
     #[error("cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
 }
@@ -30,18 +32,23 @@ pub(crate) enum SurfaceError {
 /// Reads the surface, prints the analysis, plots it and writes the profile.
 pub(crate) fn surface(command: &Surface) -> Result<(), SurfaceError> {
     let (read, files) = read(command)?;
-    check_outputs(command.output.iter().chain(&command.write), files)?;
+    check_outputs(command.output.iter().chain(&command.write).chain(&command.spectrum), files)?;
     if (command.mirror || command.taper) && read.is_periodic() {
         return Err(SurfaceError::AlreadyPeriodic { path: command.file.clone() });
     }
-    let smooth = command.smooth.map_or_else(|| read.clone(), |cut_off| read.smoothed(cut_off));
-    let removed = command.smooth.map(|cut_off| Removed::of(&read, &smooth, cut_off));
+    let refused = |expected| SurfaceError::Split { split: command.split.unwrap_or_default(), expected };
+    let (smooth, finer) = match command.split.map(|split| read.split(split)).transpose().map_err(refused)? {
+        Some(parts) => (parts.profile, Some(parts.finer)),
+        None => (command.smooth.map_or_else(|| read.clone(), |cut_off| read.smoothed(cut_off)), None),
+    };
+    let removed = command.smooth.or(command.split).map(|cut_off| Removed::of(&read, &smooth, cut_off));
     let surface = match (command.mirror, command.taper) {
         (true, _) => periodic::mirrored(&smooth),
         (_, true) => periodic::tapered(&smooth),
         _ => smooth,
     };
-    let analysis = Analysis { removed, ..Analysis::of(&surface, command) };
+    let finer_waves = finer.as_ref().map(FinerWaves::of);
+    let analysis = Analysis { removed, finer: finer_waves, ..Analysis::of(&surface, command) };
     let text = if command.json { serde_json::to_string(&analysis)? + "\n" } else { analysis.text() };
     print_beside(&command.write, &text)?;
     if let Some(path) = &command.output {
@@ -51,6 +58,15 @@ pub(crate) fn surface(command: &Surface) -> Result<(), SurfaceError> {
         files::write(path, columns(&surface))?;
         let periodic = if surface.is_periodic() { " with periodic = true" } else { "" };
         note(&format!("{} holds the profile in m, for path = of a scene's surface{periodic}", named(path)));
+    }
+    if let (Some(path), Some(finer)) = (&command.spectrum, finer) {
+        files::write(path, spectrum_columns(&finer))?;
+        let [longest, shortest] = finer.wavelengths();
+        note(&format!(
+            "{} holds their spectrum, for fine = {{ spectrum = \"{}\", longest = {longest:.6e}, shortest = {shortest:.6e} }}",
+            named(path),
+            name_of(path)
+        ));
     }
     Ok(())
 }
@@ -96,24 +112,15 @@ struct Statistics {
     largest_slope: f64,
 }
 
-/// Gauss-Legendre nodes and weights on 0 to 1: exact for the square of a cubic's slope.
-const GAUSS: [(f64, f64); 3] =
-    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
-
 /// Relative difference below which steps count as even: positions are rounded.
 const EVEN: f64 = 0.02;
 
 impl Statistics {
     fn of(surface: &scene::Surface) -> Self {
         let (x, z) = (surface.x(), surface.z());
-        let spline = surface.spline();
         let line = surface.line();
         let length = x[x.len() - 1] - x[0];
         let mean_square = |height: &dyn Fn(usize) -> f64| trapezoid(x, |i| height(i).powi(2)) / length;
-        let squares = x.windows(2).map(|ends| {
-            let step = ends[1] - ends[0];
-            step * GAUSS.iter().map(|(at, weight)| weight * spline.evaluate(ends[0] + at * step).1.powi(2)).sum::<f64>()
-        });
         let steps = x.windows(2).map(|ends| ends[1] - ends[0]);
         let (highest, lowest) = z.iter().fold((f64::MIN, f64::MAX), |(high, low), &z| (z.max(high), z.min(low)));
         Self {
@@ -126,8 +133,8 @@ impl Statistics {
             rms_height: mean_square(&|i| z[i] - line.z).sqrt(),
             rms_height_without_tilt: mean_square(&|i| z[i] - line.at(x[i])).sqrt(),
             peak_to_valley: highest - lowest,
-            rms_slope: (squares.sum::<f64>() / length).sqrt(),
-            largest_slope: spline.bounds().slope_max_abs,
+            rms_slope: surface.rms_slope(),
+            largest_slope: surface.spline().bounds().slope_max_abs,
         }
     }
 
@@ -159,12 +166,34 @@ impl Removed {
     }
 }
 
+/// The waves that splitting took away, of an isotropic surface with such lines, in SI units.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+struct FinerWaves {
+    /// The longest and the shortest of them.
+    wavelengths: [f64; 2],
+    rms_height: f64,
+    /// Root mean square gradient.
+    rms_gradient: f64,
+}
+
+impl FinerWaves {
+    fn of(spectrum: &RoughnessSpectrum) -> Self {
+        Self {
+            wavelengths: spectrum.wavelengths(),
+            rms_height: spectrum.rms_height(),
+            rms_gradient: spectrum.rms_gradient(),
+        }
+    }
+}
+
 /// The analysis of a profile, as JSON has it.
 #[derive(Debug, Serialize)]
 struct Analysis {
     #[serde(flatten)]
     statistics: Statistics,
     removed: Option<Removed>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    finer: Option<FinerWaves>,
     law: Option<PowerLaw>,
     /// How the spectrum was computed.
     taken: String,
@@ -179,7 +208,7 @@ impl Analysis {
         let points = if statistics.is_even() { "" } else { "at even points of the spline, " };
         let window =
             if surface.is_periodic() { "over one period, as it is" } else { "without tilt, under a Hann window" };
-        Self { statistics, removed: None, law, taken: format!("{points}{window}"), spectrum: bands }
+        Self { statistics, removed: None, finer: None, law, taken: format!("{points}{window}"), spectrum: bands }
     }
 
     fn text(&self) -> String {
@@ -201,6 +230,10 @@ impl Analysis {
         ];
         rows.extend(self.removed.map(|Removed { cut_off, rms_slope }| {
             ("Smoothed", format!("waves of {cut_off:.3e} m halved, shorter ones taken away: rms slope {rms_slope:.4}"))
+        }));
+        rows.extend(self.finer.map(|FinerWaves { wavelengths: [longest, shortest], rms_height, rms_gradient }| {
+            let range = format!("from {longest:.3e} m to {shortest:.3e} m");
+            ("Finer", format!("waves {range}: rms height {rms_height:.4e} m, rms gradient {rms_gradient:.4}"))
         }));
         rows.push(("Spectrum", format!("taken {}", self.taken)));
         rows.extend(self.law_rows().into_iter().map(|row| ("", row)));
@@ -242,6 +275,12 @@ fn picture(surface: &scene::Surface, analysis: &Analysis, file: &Path) -> Profil
         spectrum: analysis.spectrum.iter().map(|band| (band.wave_number, band.density)).collect(),
         law,
     }
+}
+
+fn spectrum_columns(spectrum: &RoughnessSpectrum) -> String {
+    let rows: String =
+        spectrum.points().iter().map(|[q, density]| format!("{},{}\n", real(*q), real(*density))).collect();
+    format!("q [1/m],C [m^4]\n{rows}")
 }
 
 fn columns(surface: &scene::Surface) -> String {

@@ -7,8 +7,8 @@ use std::fmt;
 
 use super::values::{ANY, LOOSEST_TOLERANCE, NOT_NEGATIVE, NumberRange, POSITIVE, WholeRange, Word, words};
 use super::{
-    CarrierInitial, DependencyList, Extrapolation, FoundationKind, Initial, IntegerType, LengthUnit, Method, Missing,
-    OutputGroup, ThirdColumn, Tilt, Unit,
+    CarrierInitial, Convention, DependencyList, Extrapolation, FoundationKind, Initial, IntegerType, LengthUnit,
+    Method, Missing, OutputGroup, ThirdColumn, Tilt, Unit,
 };
 
 pub(super) use patch::{AREA, COORDINATE, PATCH_ROOT, REFINE, ShapeKind};
@@ -172,8 +172,8 @@ const PRONY_TERM: &[Key] = &[
 ];
 
 const HEAT: &[Key] = &[
-    number("conductivity", POSITIVE, Unit::One, "Heat conductivity of the layer's material, W/(m K)"),
-    number("capacity", POSITIVE, Unit::One, "Specific heat capacity of the layer's material, J/(kg K)"),
+    number("conductivity", POSITIVE, Unit::WattPerMeterKelvin, "Heat conductivity of the layer's material"),
+    number("capacity", POSITIVE, Unit::JoulePerKilogramKelvin, "Specific heat capacity of the layer's material"),
     number("share", POSITIVE.up_to(1.0), Unit::One, "Part of the friction power that the layer takes"),
 ];
 
@@ -226,6 +226,14 @@ const FINE_ROUGHNESS: &[Key] = &[
     number("rms_slope", NOT_NEGATIVE, Unit::One, "Root mean square gradient of the roughness that the profile lacks"),
     number("longest", POSITIVE, Unit::Meter, "Longest wavelength of the roughness that the profile lacks"),
     number("shortest", POSITIVE, Unit::Meter, "Shortest wavelength of the roughness that the profile lacks"),
+    key("spectrum", Allowed::Text(PATH), "File of the spectrum of the roughness that the profile lacks"),
+    word::<Convention>("convention", "How that spectrum is normalised"),
+    number(
+        "split",
+        POSITIVE,
+        Unit::Meter,
+        "Wavelength at which the measured line is split into profile and fine roughness",
+    ),
     number("modulus", POSITIVE, Unit::Pascal, "Plane modulus at which that roughness is pressed flat, at every speed"),
     number("creep_speed", POSITIVE, Unit::MeterPerSecond, "Speed below which that roughness rubs as at this one"),
     key("hysteresis", Allowed::Flag, "Whether that roughness rubs by hysteresis"),

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::error::{ParameterError, Problem};
 use super::keys::{self, Allowed, Key};
 use super::values::{Word, words};
-use super::{Axis, Foundation, Link, LinkKind, Scene, Unit};
+use super::{Axis, FineRoughness, FineWaves, Foundation, Link, LinkKind, Scene, Softening, Unit};
 
 /// One settable number or word of a scene. Elements of lists are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -53,6 +53,26 @@ pub enum Parameter {
     ReferenceTemperature,
     /// `material.wlf.temperature`
     Temperature,
+    /// `material.heat.conductivity`
+    Conductivity,
+    /// `material.heat.capacity`
+    HeatCapacity,
+    /// `material.heat.share`
+    HeatShare,
+    /// `surface.fine.hurst`
+    FineHurst,
+    /// `surface.fine.rms_slope`
+    FineSlope,
+    /// `surface.fine.longest`
+    FineLongest,
+    /// `surface.fine.shortest`
+    FineShortest,
+    /// `surface.fine.modulus`
+    FineModulus,
+    /// `surface.fine.creep_speed`
+    FineCreepSpeed,
+    /// `surface.fine.softening`
+    FineSoftening,
     /// `carrier.x.mass` and so on
     CarrierMass(Axis),
     /// `carrier.x.stiffness` and so on
@@ -146,6 +166,16 @@ impl Parameter {
             Self::WlfC2 => "material.wlf.c2",
             Self::ReferenceTemperature => "material.wlf.reference_temperature",
             Self::Temperature => "material.wlf.temperature",
+            Self::Conductivity => "material.heat.conductivity",
+            Self::HeatCapacity => "material.heat.capacity",
+            Self::HeatShare => "material.heat.share",
+            Self::FineHurst => "surface.fine.hurst",
+            Self::FineSlope => "surface.fine.rms_slope",
+            Self::FineLongest => "surface.fine.longest",
+            Self::FineShortest => "surface.fine.shortest",
+            Self::FineModulus => "surface.fine.modulus",
+            Self::FineCreepSpeed => "surface.fine.creep_speed",
+            Self::FineSoftening => "surface.fine.softening",
             Self::CarrierMass(axis) => return format!("carrier.{}.mass", axis.name()),
             Self::CarrierStiffness(axis) => return format!("carrier.{}.stiffness", axis.name()),
             Self::CarrierDamping(axis) => return format!("carrier.{}.damping", axis.name()),
@@ -241,6 +271,37 @@ macro_rules! field {
             WlfC2 => Some(&$($mut)? scene.material.$as_ref()?.wlf.$as_ref()?.c2),
             ReferenceTemperature => Some(&$($mut)? scene.material.$as_ref()?.wlf.$as_ref()?.reference_temperature),
             Temperature => Some(&$($mut)? scene.material.$as_ref()?.wlf.$as_ref()?.temperature),
+            Conductivity => Some(&$($mut)? scene.material.$as_ref()?.heat.$as_ref()?.conductivity),
+            HeatCapacity => Some(&$($mut)? scene.material.$as_ref()?.heat.$as_ref()?.capacity),
+            HeatShare => Some(&$($mut)? scene.material.$as_ref()?.heat.$as_ref()?.share),
+            FineHurst => match &$($mut)? scene.fine.$as_ref()?.waves {
+                FineWaves::SelfAffine { hurst, .. } => Some(hurst),
+                _ => None,
+            },
+            FineSlope => match &$($mut)? scene.fine.$as_ref()?.waves {
+                FineWaves::SelfAffine { rms_slope, .. } | FineWaves::Modulus { rms_slope, .. } => Some(rms_slope),
+                _ => None,
+            },
+            FineLongest => match &$($mut)? scene.fine.$as_ref()?.waves {
+                FineWaves::SelfAffine { longest, .. } | FineWaves::Table { longest, .. } => Some(longest),
+                _ => None,
+            },
+            FineShortest => match &$($mut)? scene.fine.$as_ref()?.waves {
+                FineWaves::SelfAffine { shortest, .. }
+                | FineWaves::Table { shortest, .. }
+                | FineWaves::Split { shortest, .. }
+                | FineWaves::Continued { shortest } => Some(shortest),
+                FineWaves::Modulus { .. } => None,
+            },
+            FineModulus => match &$($mut)? scene.fine.$as_ref()?.waves {
+                FineWaves::Modulus { modulus, .. } => Some(modulus),
+                _ => None,
+            },
+            FineSoftening => match scene.fine.$as_ref()? {
+                FineRoughness { waves: FineWaves::Modulus { .. }, .. } => None,
+                FineRoughness { softening: Softening::Factor(factor), .. } => Some(factor),
+                FineRoughness { softening: Softening::Table(_), .. } => None,
+            },
             CarrierMass(axis) => Some(&$($mut)? scene.carrier[axis].$as_ref()?.mass),
             CarrierStiffness(axis) => scene.carrier[axis].$as_ref()?.stiffness.$as_ref(),
             CarrierDamping(axis) => scene.carrier[axis].$as_ref()?.damping.$as_ref(),
@@ -257,7 +318,7 @@ macro_rules! field {
             Sharpness => Some(&$($mut)? scene.friction.$as_ref()?.rate_shear.$as_ref()?.sharpness),
             RelativeTolerance => Some(&$($mut)? scene.solver.relative_tolerance),
             // They follow others until they are set: see `real` and `write_real`.
-            CreepSpeed | AbsoluteTolerance => None,
+            CreepSpeed | FineCreepSpeed | AbsoluteTolerance => None,
             Initial | CarrierInitial | Method | MaxSteps | Extrapolation | TableExtrapolation | Refine => None,
         }
     }};
@@ -278,6 +339,16 @@ impl Scene {
         parameters.extend([Thickness, Density, PoissonRatio, EquilibriumModulus, Viscosity]);
         parameters.extend((0..terms).flat_map(|j| [PronyModulus(j), PronyRelaxationTime(j)]));
         parameters.extend([WlfC1, WlfC2, ReferenceTemperature, Temperature]);
+        parameters.extend([Conductivity, HeatCapacity, HeatShare]);
+        parameters.extend([
+            FineHurst,
+            FineSlope,
+            FineLongest,
+            FineShortest,
+            FineModulus,
+            FineCreepSpeed,
+            FineSoftening,
+        ]);
         let body = |axis, force| {
             [
                 CarrierMass(axis),
@@ -321,9 +392,16 @@ impl Scene {
     fn real(&self, parameter: Parameter) -> Option<f64> {
         match parameter {
             Parameter::CreepSpeed => Some(self.friction.as_ref()?.rate_shear?.creep_speed()),
+            Parameter::FineCreepSpeed => self.has_own_creep_speed().then(|| self.fine_creep_speed()),
             Parameter::AbsoluteTolerance => Some(self.absolute_tolerance()),
             _ => field!(self, parameter, as_ref, get).copied(),
         }
+    }
+
+    /// Whether roughness below the profile has a creep speed of its own: not where that of the shear strength counts.
+    fn has_own_creep_speed(&self) -> bool {
+        let of_shear = self.friction.as_ref().is_some_and(|friction| friction.rate_shear.is_some());
+        self.fine.as_ref().is_some_and(|fine| fine.waves.has_bands()) && !of_shear
     }
 
     /// Gives `parameter` a value. Call [`check`](Self::check) once all are set: some values must agree with others.
@@ -364,6 +442,7 @@ impl Scene {
         match parameter {
             // These follow others until they are set themselves.
             Parameter::CreepSpeed => self.friction.as_mut()?.rate_shear.as_mut()?.creep_speed = Some(number),
+            Parameter::FineCreepSpeed => self.fine.as_mut()?.creep_speed = Some(number),
             Parameter::AbsoluteTolerance => self.solver.absolute_tolerance = Some(number),
             _ => *field!(&mut *self, parameter, as_mut, get_mut, mut)? = number,
         }

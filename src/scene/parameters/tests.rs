@@ -307,3 +307,60 @@ fn a_temperature_that_has_no_shift_is_found_once_all_is_set() {
     let refused = refusal(&mut scene, "material.wlf.temperature", "0");
     assert_eq!(refused, "material.wlf.temperature = 0.0: expected a number from 1e-30 to 1e30");
 }
+
+/// The rubber on roughness below its profile, with heat.
+fn on_fine_roughness(fine: &str) -> Scene {
+    let text = MATERIAL.replace("kind = \"flat\"", &format!("kind = \"flat\"\nfine = {{ {fine} }}"));
+    let heat =
+        if fine.contains("modulus") { "" } else { "heat = { conductivity = 0.25, capacity = 1700, share = 0.9 }\n" };
+    Scene::parse(&text.replace("[surface]", &format!("{heat}[surface]")), Path::new("rubber.toml")).unwrap()
+}
+
+const SELF_AFFINE: &str = "hurst = 0.8, rms_slope = 1.0, longest = 1e-3, shortest = 1e-5";
+
+#[test]
+fn roughness_below_the_profile_has_its_numbers() {
+    let names = |fine: &str| {
+        let all = on_fine_roughness(fine).parameters().into_iter();
+        let own = all.filter(|parameter| parameter.name().starts_with("surface."));
+        own.map(|parameter| (parameter.name()["surface.fine.".len()..].to_owned(), parameter.unit()))
+            .collect::<Vec<_>>()
+    };
+    let expected =
+        |names: &[(&str, Unit)]| names.iter().map(|(name, unit)| ((*name).to_owned(), *unit)).collect::<Vec<_>>();
+    let of_bands = [("creep_speed", Unit::MeterPerSecond), ("softening", Unit::One)];
+    let lengths = [("longest", Unit::Meter), ("shortest", Unit::Meter)];
+    let law = [("hurst", Unit::One), ("rms_slope", Unit::One)];
+    assert_eq!(names(SELF_AFFINE), expected(&[&law[..], &lengths, &of_bands].concat()));
+    assert_eq!(names("rms_slope = 1.0, modulus = 1e7"), expected(&[law[1], ("modulus", Unit::Pascal)]));
+    let heat: Vec<_> = ["conductivity", "capacity", "share"].map(|name| format!("material.heat.{name}")).into();
+    let all = on_fine_roughness(SELF_AFFINE).parameters().into_iter().map(Parameter::name);
+    assert_eq!(all.filter(|name| name.starts_with("material.heat")).collect::<Vec<_>>(), heat);
+}
+
+#[test]
+fn numbers_of_roughness_below_the_profile_are_set() {
+    for fine in [SELF_AFFINE, "rms_slope = 1.0, modulus = 1e7"] {
+        let mut scene = on_fine_roughness(fine);
+        for parameter in scene.parameters() {
+            let Value::Real(number) = scene.parameter(parameter) else { continue };
+            scene.set_parameter(parameter, Value::Real(0.5 * number)).unwrap();
+            assert_eq!(scene.parameter(parameter), Value::Real(0.5 * number), "{}", parameter.name());
+        }
+    }
+    let mut scene = on_fine_roughness(SELF_AFFINE);
+    assert_eq!(scene.parameter(Parameter::FineCreepSpeed), Value::Real(1e-6));
+    scene.set_by_name("surface.fine.rms_slope", "0.5").unwrap();
+    assert!((scene.fine_gradient() - 0.5).abs() < 1e-12);
+}
+
+/// Both wavelengths may be set one after the other.
+#[test]
+fn wavelengths_that_clash_are_found_once_all_is_set() {
+    let mut scene = on_fine_roughness(SELF_AFFINE);
+    scene.set_by_name("surface.fine.longest", "1e-6").unwrap();
+    let told = scene.check().unwrap_err().to_string();
+    assert_eq!(told, "surface.fine.longest = 1e-6: expected more than 1e-5 m, the shortest");
+    scene.set_by_name("surface.fine.shortest", "1e-7").unwrap();
+    assert_eq!(scene.check(), Ok(()));
+}

@@ -1,6 +1,7 @@
 //! A Prony series as a table: columns found by their names.
 
 use super::{ModulusKind, WrittenSeries, WrittenTerm, note};
+use crate::scene::column_file::check_stated;
 use crate::scene::error::ContentError;
 use crate::scene::keys;
 use crate::scene::profile::ReadingNote;
@@ -122,7 +123,7 @@ impl Columns {
                 HeadingUnit::Known(unit) => (*unit, format!(" in {unit}")),
                 HeadingUnit::None if heading.dimension == Dimension::Number => (Unit::ONE, String::new()),
                 HeadingUnit::None => {
-                    check_stated(block, heading.dimension, head.line)?;
+                    check_stated(block, heading.dimension, example(heading.dimension), head.line)?;
                     let unit = Unit::si(heading.dimension);
                     (unit, format!(", which names no unit: {unit} is assumed"))
                 }
@@ -154,8 +155,8 @@ impl Columns {
             let expected = format!("{EXPECTED}; without names two columns, relaxation_time in s and modulus in Pa");
             return Err(ContentError::value(Some(block.first), "columns", &block.columns.to_string(), &expected));
         }
-        check_stated(block, Dimension::Time, None)?;
-        check_stated(block, Dimension::Pressure, None)?;
+        check_stated(block, Dimension::Time, example(Dimension::Time), None)?;
+        check_stated(block, Dimension::Pressure, example(Dimension::Pressure), None)?;
         Ok(Self {
             time: (0, Unit::si(Dimension::Time)),
             modulus: (1, Unit::si(Dimension::Pressure)),
@@ -168,14 +169,9 @@ impl Columns {
     }
 }
 
-/// Refuses to assume SI units where the header speaks of others.
-fn check_stated(block: &Block<'_>, dimension: Dimension, names: Option<usize>) -> Result<(), ContentError> {
-    let stated = block.stated_unit(dimension, names).filter(|(_, unit)| !unit.is_si());
-    let Some(((line, text), unit)) = stated else { return Ok(()) };
-    let given = format!("`{}`", text.chars().take(60).collect::<String>());
-    let example = if dimension == Dimension::Time { "tau" } else { "E" };
-    let expected = format!("the unit beside the name of its column, as in {example} [{unit}]");
-    Err(ContentError::value(Some(line), "unit", &given, &expected))
+/// The name of a column, as an example.
+fn example(dimension: Dimension) -> &'static str {
+    if dimension == Dimension::Time { "tau" } else { "E" }
 }
 
 /// Reads rows.

@@ -1,6 +1,7 @@
 //! From TOML text to a [`Scene`].
 
 mod carrier;
+mod fine;
 mod patch;
 mod surface;
 mod table;
@@ -12,8 +13,8 @@ use super::prony_file::{ElasticConstants, PronySeries};
 use super::values::Word;
 use super::{
     ByLink, CarrierBodies, Extrapolation, FmuOptions, Foundation, FoundationKind, Friction, Heat, Initial, Layer, Link,
-    LinkKind, Material, MaxwellElement, OutputGroup, PronyTerm, RateShear, Scene, SceneError, Solver, Wlf, read_file,
-    read_text, warnings,
+    LinkKind, Material, MaxwellElement, OutputGroup, PronyTerm, RateShear, Scene, SceneError, Solver, Wlf, read_text,
+    warnings,
 };
 use surface::Found;
 use table::{Entry, Result, Source, TableReader};
@@ -56,13 +57,13 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
     let read_material = |entry: &Entry<'_>| entry.table(|table| read_material(table, &mut found));
     let material = material_entry.as_ref().map(read_material).transpose()?;
     let surface_entry = root.required("surface")?;
-    let (surface, fine) = surface::read(&surface_entry, &mut found)?;
+    let surface = surface::read(&surface_entry, &mut found)?;
+    let (surface, fine) = fine::read(&surface_entry, surface, &mut found)?;
     let carrier_entry = root.entry("carrier");
     let carrier = carrier_entry.as_ref().map(|entry| entry.table(carrier::read)).transpose()?.unwrap_or_default();
     let friction = root.optional_table("friction", read_friction)?;
-    if let Some(expected) = fine.as_ref().and_then(|fine| fine.misses(&layer, friction.as_ref())) {
-        return Err(surface_entry.refuse(expected));
-    }
+    let material_and_entry = material_entry.as_ref().zip(material.as_ref());
+    fine::check_rest(&surface_entry, fine.as_ref(), material_and_entry, friction.as_ref())?;
     let solver = root.optional_table("solver", read_solver)?.unwrap_or_default();
     let wlf = material.as_ref().and_then(|material| material.wlf.as_ref());
     let read_input = |table: &mut TableReader<'_>| {
@@ -101,8 +102,9 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
     let cold = scene.material.as_ref().and_then(warnings::cold_temperatures);
     let temperature = scene.material.as_ref().and_then(|material| material.wlf).map(|wlf| wlf.temperature);
     let cold_contacts = temperature.and_then(|temperature| scene.cold_contacts(temperature));
-    let own = scene.short_profile().into_iter().chain(cold).chain(cold_contacts);
-    let warnings: Vec<String> = own.chain(scene.foundation_warnings()).collect();
+    let of_contacts = scene.fine_warnings().into_iter().chain(cold_contacts);
+    let of_scene = scene.short_profile().into_iter().chain(cold).chain(scene.foundation_warnings());
+    let warnings: Vec<String> = of_scene.chain(of_contacts).collect();
     scene.warnings.extend(warnings);
     if let (Err(error), Some(entry)) = (scene.check_equilibrium(scene.first_load()), carrier_entry) {
         return Err(SceneError::new(entry.location(), error.name(), error.problem().clone()));
@@ -208,14 +210,9 @@ fn read_prony(entry: &Entry<'_>, elastic: ElasticConstants, found: &mut Found) -
             Ok(PronyTerm { modulus: table.number("modulus")?, relaxation_time: table.number("relaxation_time")? })
         });
     }
-    let path = surface::read_path(entry)?;
-    let file = entry.source().folder().join(&path);
-    let bytes = read_file(&file).map_err(|error| entry.unreadable(&error))?;
-    let series = PronySeries::parse(&bytes, elastic)
-        .map_err(|error| error.in_file(file).named_by(entry.location(), entry.path()))?;
-    found.add_notes(&path, series.notes);
-    found.add_file(path);
-    Ok(series.terms)
+    found.read_file(entry, &surface::read_path(entry)?, |bytes| {
+        PronySeries::parse(bytes, elastic).map(|series| (series.terms, series.notes))
+    })
 }
 
 fn read_wlf(table: &mut TableReader<'_>) -> Result<Wlf> {

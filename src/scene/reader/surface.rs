@@ -3,10 +3,11 @@
 use std::path::{Component, Path as FilePath, PathBuf};
 
 use super::table::{Entry, Result, TableReader};
+use crate::scene::error::ContentError;
 use crate::scene::keys::{PATH, SurfaceKind};
 use crate::scene::profile::{self, Extract, ProfileOptions, ReadFailure, ReadingNote, Tilt};
 use crate::scene::surface::{Coordinate, SelfAffine, check_points};
-use crate::scene::{FineRoughness, FineWaves, Layer, Surface, warnings};
+use crate::scene::{Layer, Surface, read_file as read_bytes, warnings};
 
 /// A number of points that is whole but for rounding is that number.
 const ROUNDING: f64 = 1.0e-9;
@@ -31,6 +32,22 @@ impl Found {
         }
     }
 
+    /// What `parse` makes of the bytes of the file at `path`, which `entry` names, and of how it reads them.
+    pub(super) fn read_file<T>(
+        &mut self,
+        entry: &Entry<'_>,
+        path: &FilePath,
+        parse: impl FnOnce(&[u8]) -> std::result::Result<(T, Vec<ReadingNote>), ContentError>,
+    ) -> Result<T> {
+        let file = entry.source().folder().join(path);
+        let bytes = read_bytes(&file).map_err(|error| entry.unreadable(&error))?;
+        let (content, notes) =
+            parse(&bytes).map_err(|error| error.in_file(file).named_by(entry.location(), entry.path()))?;
+        self.add_notes(path, notes);
+        self.add_file(path.to_owned());
+        Ok(content)
+    }
+
     /// Adds a file that the scene reads, each once.
     pub(super) fn add_file(&mut self, path: PathBuf) {
         if !self.files.contains(&path) {
@@ -39,9 +56,9 @@ impl Found {
     }
 }
 
-/// The surface given by the table `entry`, and the roughness below it; the file that it names, if any, is added to those
-/// `found`.
-pub(super) fn read(entry: &Entry<'_>, found: &mut Found) -> Result<(Surface, Option<FineRoughness>)> {
+/// The surface given by the table `entry`, without the roughness below it; the file that it names, if any, is added to
+/// those `found`.
+pub(super) fn read(entry: &Entry<'_>, found: &mut Found) -> Result<Surface> {
     let mut table = entry.open()?;
     let kind = table.required("kind")?.choice::<SurfaceKind>()?;
     table.use_keys(kind.keys())?;
@@ -52,43 +69,11 @@ pub(super) fn read(entry: &Entry<'_>, found: &mut Found) -> Result<(Surface, Opt
         SurfaceKind::Points => read_points(&mut table)?,
         SurfaceKind::File => read_file(&mut table, found)?,
     };
-    let fine = table.entry("fine").map(|entry| read_fine(&entry, &surface)).transpose()?;
+    // Read once the surface is known.
+    table.entry("fine");
     table.finish()?;
     surface.check_slopes().map_err(|expected| entry.refuse(expected))?;
-    Ok((surface, fine))
-}
-
-/// What `surface.fine` may have, in words.
-const FINE_FORMS: &str = "hurst, rms_slope, longest and shortest; shortest alone; or rms_slope and modulus";
-
-fn read_fine(entry: &Entry<'_>, surface: &Surface) -> Result<FineRoughness> {
-    let mut table = entry.open()?;
-    let [hurst, rms_slope, longest, shortest, modulus] =
-        ["hurst", "rms_slope", "longest", "shortest", "modulus"].map(|name| table.optional_number(name));
-    let waves = match (hurst?, rms_slope?, longest?, shortest?, modulus?) {
-        (Some(hurst), Some(rms_slope), Some(longest), Some(shortest), None) => {
-            FineWaves::SelfAffine { hurst, rms_slope, longest, shortest }
-        }
-        (None, None, None, Some(shortest), None) => FineWaves::Continued { shortest },
-        (None, Some(rms_slope), None, None, Some(modulus)) => FineWaves::Modulus { rms_slope, modulus },
-        _ => return Err(entry.refuse(FINE_FORMS)),
-    };
-    if matches!(waves, FineWaves::Modulus { .. }) {
-        for name in ["creep_speed", "hysteresis", "softening"] {
-            if let Some(entry) = table.entry(name) {
-                return Err(entry.refuse("no such key beside modulus, which is the same at every speed"));
-            }
-        }
-    }
-    let fine = FineRoughness {
-        waves,
-        creep_speed: table.optional_number("creep_speed")?,
-        hysteresis: table.entry("hysteresis").map_or(Ok(true), |entry| entry.flag())?,
-        softening: table.optional_number("softening")?.unwrap_or(1.0),
-    };
-    table.finish()?;
-    fine.check(surface).map_err(|expected| entry.refuse(expected))?;
-    Ok(fine)
+    Ok(surface)
 }
 
 fn read_sinusoid(table: &mut TableReader<'_>) -> Result<Surface> {
@@ -219,8 +204,10 @@ pub(super) fn read_roughness(entry: &Entry<'_>, layer: &Layer, found: &mut Found
 
 /// A surface without roughness below it: only the scene's has that.
 fn read_alone(entry: &Entry<'_>, found: &mut Found) -> Result<Surface> {
-    let (surface, fine) = read(entry, found)?;
-    if fine.is_some() { Err(entry.refuse("no key fine, which surface has")) } else { Ok(surface) }
+    match entry.open()?.entry("fine") {
+        Some(fine) => Err(fine.refuse("no such key here: surface has it")),
+        None => read(entry, found),
+    }
 }
 
 /// `z` without `x`: one height for each mass.

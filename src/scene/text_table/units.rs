@@ -26,6 +26,12 @@ pub enum Dimension {
     Speed,
     /// N.
     Force,
+    /// rad/m.
+    WaveNumber,
+    /// m³: of the power spectrum of lines.
+    LineSpectrum,
+    /// m⁴: of the power spectrum of a surface.
+    SurfaceSpectrum,
     /// 1.
     Number,
 }
@@ -108,6 +114,8 @@ fn plain(text: &str) -> String {
             '\u{212b}' => plain.push('\u{c5}'),
             '\u{ba}' | '\u{2da}' => plain.push('°'),
             '\u{b2}' => plain.push('2'),
+            '\u{b3}' => plain.push('3'),
+            '\u{2074}' => plain.push('4'),
             '\u{b9}' => plain.push('1'),
             '\u{207b}' | '\u{2212}' => plain.push('-'),
             '^' | '·' | '\u{22c5}' | '*' | '.' => (),
@@ -131,6 +139,9 @@ impl Dimension {
             Self::Angle => "rad",
             Self::Speed => "m/s",
             Self::Force => "N",
+            Self::WaveNumber => "1/m",
+            Self::LineSpectrum => "m³",
+            Self::SurfaceSpectrum => "m⁴",
             Self::Number => "1",
         }
     }
@@ -162,7 +173,10 @@ const FAHRENHEIT: f64 = 459.67 * 5.0 / 9.0;
 
 /// The units and their spellings, without blanks, dots and multiplication signs.
 const UNITS: &[(Unit, &[&str])] = &{
-    use Dimension::{Angle, Area, Force, Frequency, Length, Number, Pressure, Rate, Speed, Temperature, Time};
+    use Dimension::{
+        Angle, Area, Force, Frequency, Length, LineSpectrum, Number, Pressure, Rate, Speed, SurfaceSpectrum,
+        Temperature, Time, WaveNumber,
+    };
     [
         (Unit::si(Length), &["m", "meter", "meters", "metre", "metres"] as &[&str]),
         (Unit::part("mm", Length, 1e3), &["mm", "millimeter", "millimeters", "millimetre", "millimetres"]),
@@ -222,6 +236,19 @@ const UNITS: &[(Unit, &[&str])] = &{
         (Unit::part("km/h", Speed, 3.6), &["km/h", "kph"]),
         (Unit::si(Force), &["N", "newton"]),
         (Unit::new("kN", Force, 1e3), &["kN"]),
+        (Unit::si(WaveNumber), &["1/m", "m-1", "rad/m", "radm-1"]),
+        (Unit::new("1/cm", WaveNumber, 1e2), &["1/cm", "cm-1", "rad/cm", "radcm-1"]),
+        (Unit::new("1/mm", WaveNumber, 1e3), &["1/mm", "mm-1", "rad/mm", "radmm-1"]),
+        (Unit::new("1/µm", WaveNumber, 1e6), &["1/um", "um-1", "rad/um", "radum-1"]),
+        (Unit::new("1/nm", WaveNumber, 1e9), &["1/nm", "nm-1", "rad/nm", "radnm-1"]),
+        (Unit::si(LineSpectrum), &["m3"]),
+        (Unit::part("mm³", LineSpectrum, 1e9), &["mm3"]),
+        (Unit::part("µm³", LineSpectrum, 1e18), &["um3"]),
+        (Unit::part("nm³", LineSpectrum, 1e27), &["nm3"]),
+        (Unit::si(SurfaceSpectrum), &["m4"]),
+        (Unit::part("mm⁴", SurfaceSpectrum, 1e12), &["mm4"]),
+        (Unit::part("µm⁴", SurfaceSpectrum, 1e24), &["um4"]),
+        (Unit::part("nm⁴", SurfaceSpectrum, 1e36), &["nm4"]),
         (Unit::ONE, &["1", "-", "--", "–", "none"]),
         (Unit::part("%", Number, 1e2), &["%", "percent"]),
     ]
@@ -237,7 +264,9 @@ mod tests {
 
     #[test]
     fn units_as_people_write_them() {
-        use Dimension::{Frequency, Length, Pressure, Rate, Temperature, Time};
+        use Dimension::{
+            Frequency, Length, LineSpectrum, Pressure, Rate, SurfaceSpectrum, Temperature, Time, WaveNumber,
+        };
         let cases = [
             ("mm", Length, 1e-3),
             ("MM", Length, 1e-3),
@@ -263,6 +292,11 @@ mod tests {
             ("rad·s⁻¹", Frequency, 1.0),
             ("rad s^-1", Frequency, 1.0),
             ("1/s", Rate, 1.0),
+            ("rad/mm", WaveNumber, 1e3),
+            ("µm⁻¹", WaveNumber, 1e6),
+            ("µm³", LineSpectrum, 1e-18),
+            ("mm^4", SurfaceSpectrum, 1e-12),
+            ("m⁴", SurfaceSpectrum, 1.0),
             ("° C", Temperature, 274.15),
             ("deg. C", Temperature, 274.15),
             ("K", Temperature, 1.0),

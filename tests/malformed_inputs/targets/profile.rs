@@ -1,5 +1,5 @@
-//! A file with a profile or with a Prony series, as a scene reads it: an error with a position and a reason, or a valid
-//! spline or material.
+//! A file with a profile, a Prony series, a spectrum or a table of softening, as a scene reads it: an error with a
+//! position and a reason, or a valid spline, material or roughness.
 
 use std::io::{Cursor, Write as _};
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use super::scene::run_scene;
 const MAX_BYTES: usize = 4096;
 
 /// Writes all bytes but the first two into a file and reads a scene that names it, as a profile with the keys that the
-/// bits of those two select, or as a Prony series where the highest bit is set.
+/// bits of those two select, or where the highest bit is set as another file of a scene of rubber.
 pub fn run(bytes: &[u8]) {
     let Some(([first, second], text)) = bytes.split_first_chunk().filter(|(_, text)| text.len() <= MAX_BYTES) else {
         return;
@@ -26,10 +26,13 @@ pub fn run(bytes: &[u8]) {
     let file = if bit(*first, 2) { archive(text) } else { text.to_vec() };
     fs::write(folder().join("profile.csv"), file).unwrap();
     let periodic = bit(*first, 0);
-    let is_series = bit(*first, 7);
-    let read = if is_series { rubber() } else { scene(periodic, &keys(*first, *second)) };
+    let of_rubber = bit(*first, 7);
+    let read = if of_rubber { rubber(*second) } else { scene(periodic, &keys(*first, *second)) };
     match Scene::parse(&read, &scene_file) {
-        Ok(scene) if is_series => run_scene(scene),
+        Ok(scene) if of_rubber => {
+            check_fine(&scene);
+            run_scene(scene);
+        }
         Ok(scene) => {
             check(&scene, periodic);
             if let Some(extract) = scene.extracts.first() {
@@ -99,12 +102,29 @@ fn scene(periodic: bool, keys: &str) -> String {
     )
 }
 
-/// One mass whose material is in the file.
-fn rubber() -> String {
-    "name='r'\nlayer={masses=1,spacing=1e-4,thickness=1e-3,width=1e-2}\n\
-     material={density=1e3,poisson_ratio=0.49,equilibrium_modulus=2e6,prony='profile.csv'}\n\
-     surface={kind='flat'}"
-        .into()
+/// One mass of which the file holds what the bits select.
+fn rubber(second: u8) -> String {
+    let (prony, surface) = match second % 4 {
+        3 => ("'profile.csv'", "kind='flat'"),
+        1 => (TERM, "kind='flat',fine={spectrum='profile.csv',longest=1e-3,shortest=1e-5}"),
+        2 => (TERM, "kind='flat',fine={hurst=0.8,rms_slope=1,longest=1e-3,shortest=1e-5,softening='profile.csv'}"),
+        _ => (TERM, "kind='file',path='profile.csv',fine={split=1e-4,shortest=1e-6}"),
+    };
+    format!(
+        "name='r'\nlayer={{masses=1,spacing=1e-4,thickness=1e-3,width=1e-2}}\n\
+         material={{density=1e3,poisson_ratio=0.49,equilibrium_modulus=2e6,prony={prony}}}\n\
+         surface={{{surface}}}"
+    )
+}
+
+const TERM: &str = "[{modulus=5e6,relaxation_time=1e-5}]";
+
+/// The bands are numbers.
+fn check_fine(scene: &Scene) {
+    for band in scene.fine_bands() {
+        let numbers = [band.wave_number, band.gradient_square, band.factors.storage, band.factors.loss];
+        assert!(numbers.iter().all(|number| number.is_finite() && *number >= 0.0), "{band:?}");
+    }
 }
 
 fn with_links(mut scene: Scene, method: Method) -> Scene {

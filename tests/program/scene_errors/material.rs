@@ -100,5 +100,71 @@ fn foundations() {
 
 #[test]
 fn fine_roughness() {
-    assert_refusals("fine roughness", &BASE);
+    for section in ["fine roughness", "fine roughness: its forms", "fine roughness: its numbers"] {
+        assert_refusals(section, &BASE);
+    }
+    assert_refusals("fine roughness: the rest of the scene", &BASE);
+    // Without friction nothing rubs but by hysteresis.
+    let frictionless = |fine: &str| {
+        let mut lines = BASE.to_vec();
+        lines.splice(14..18, [r#"kind = "flat""#, fine]);
+        Folder::new("fine-frictionless").refusal(&lines.join("\n"))
+    };
+    let expected = "expected hysteresis, or friction with coulomb, shear_strength or rate_shear: else nothing rubs";
+    let area = "hurst = 0.8, rms_slope = 1.0, longest = 1e-3, shortest = 1e-5, hysteresis = false";
+    let refusal = frictionless(&format!("fine = {{ {area} }}"));
+    assert_eq!(refusal, format!("scene.toml:16: surface.fine.hysteresis = false: {expected}"));
+    let refusal = frictionless("fine = { rms_slope = 1.0, modulus = 1e7 }");
+    assert_eq!(refusal, format!("scene.toml:16: surface.fine = {{ rms_slope = 1.0, modulus = 1e7 }}: {expected}"));
+}
+
+#[test]
+fn files_of_fine_roughness() {
+    let folder = Folder::new("fine-files");
+    let scene = |fine: &str| {
+        let mut lines = BASE.to_vec();
+        let surface = format!("kind = \"flat\"\nfine = {{ {fine} }}");
+        lines[14] = &surface;
+        lines.join("\n")
+    };
+    let table = "spectrum = 'psd.csv', longest = 1e-3, shortest = 1e-5";
+    let refusal = folder.refusal(&scene(table));
+    assert!(refusal.starts_with("scene.toml:16: surface.fine.spectrum = 'psd.csv': cannot be read: "), "{refusal}");
+    folder.write("psd.csv", "q [1/mm],C [m^4]\n1,1e-18\n0.5,1e-25\n");
+    assert_eq!(
+        folder.refusal(&scene(table)),
+        "psd.csv:3: q = 500.0: expected more than 1000.0, that of the row before: they must rise \
+         (file named by surface.fine.spectrum, scene.toml:16)"
+    );
+    // 2π/q from 6.28 mm to 62.8 µm.
+    folder.write("psd.csv", "q [1/mm],C [m^4]\n1,1e-18\n100,1e-25\n");
+    let covered = "expected wavelengths that the spectrum covers, 0.006283185307179587 m to 6.283185307179586e-5 m";
+    assert_eq!(folder.refusal(&scene(table)), format!("scene.toml:16: surface.fine.shortest = 1e-5: {covered}"));
+    let long = "spectrum = 'psd.csv', longest = 7e-3, shortest = 1e-4";
+    assert_eq!(folder.refusal(&scene(long)), format!("scene.toml:16: surface.fine.longest = 7e-3: {covered}"));
+    folder.write("strain.csv", "strain,storage,loss\n0.001,1,1\n0.1,1.5,1\n");
+    let softened = "hurst = 0.8, rms_slope = 1.0, longest = 1e-3, shortest = 1e-5, softening = 'strain.csv'";
+    assert_eq!(
+        folder.refusal(&scene(softened)),
+        "strain.csv:3: storage = \"1.5\": expected a number from 1e-30 to 1.0 \
+         (file named by surface.fine.softening, scene.toml:16)"
+    );
+    folder.write("strain.csv", "strain,storage,loss\n0.001,1,1\n0.1,.5,1\n");
+    let good = "spectrum = 'psd.csv', longest = 6e-3, shortest = 7e-5, softening = 'strain.csv'";
+    folder.write("scene.toml", &scene(good));
+    let found = Scene::load(&folder.0.join("scene.toml")).unwrap();
+    assert_eq!(found.files, [std::path::PathBuf::from("psd.csv"), std::path::PathBuf::from("strain.csv")]);
+    // Of lines of 100 points over 1 mm.
+    let line: String = (0..=100).map(|i| format!("{i}e-5,{}e-6\n", i % 7)).collect();
+    folder.write("line.csv", &format!("x [m],z [m]\n{line}"));
+    let split = |split: &str| {
+        let mut lines = BASE.to_vec();
+        let surface = format!("kind = 'file'\npath = 'line.csv'\nfine = {{ split = {split}, shortest = 1e-6 }}");
+        lines[14] = &surface;
+        folder.refusal(&lines.join("\n"))
+    };
+    let refusal =
+        |given: &str, expected: &str| format!("scene.toml:17: surface.fine.split = {given}: expected {expected}");
+    assert_eq!(split("2.6e-4"), refusal("2.6e-4", "at most 0.00025 m, a quarter of the line"));
+    assert_eq!(split("3.9e-5"), refusal("3.9e-5", "at least 4e-5 m, four steps of the line"));
 }
