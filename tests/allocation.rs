@@ -159,6 +159,49 @@ fn other_methods_allocate_nothing() {
     }
 }
 
+/// Contacts on roughness below the profile, warmed by friction, by each method.
+#[test]
+fn heated_contacts_allocate_nothing() {
+    let (_, rest) = RATTLE.split_once("[surface]").unwrap();
+    let (rest, _) = rest.split_once("coulomb = 0.2").unwrap();
+    let text = "name = 'warm'
+        layer = { masses = 20, spacing = 1.3e-4, clearance = 1e-6, foundation = 'half_space', width = 1e-2 }
+        [material]
+        density = 1100.0
+        poisson_ratio = 0.49
+        equilibrium_modulus = 2e6
+        prony = [{ modulus = 3e6, relaxation_time = 1e-4 }]
+        wlf = { c1 = 8.0, c2 = 100.0, reference_temperature = 300.0, temperature = 300.0 }
+        heat = { conductivity = 0.25, capacity = 1700.0 }
+        [surface]
+        fine = { hurst = 0.8, rms_slope = 0.5, longest = 2e-5, shortest = 5e-6 }";
+    for method in ["event", "step", "auto"] {
+        let text = format!(
+            "{text}{rest}shear_strength = 1e5
+            [solver]
+            method = '{method}'
+            relative_tolerance = 1e-3
+            [fmu]
+            outputs = ['forces', 'dissipation', 'friction', 'contact', 'energy', 'solver', 'elements']"
+        );
+        let scene = Scene::parse(&text, FilePath::new("warm.toml")).unwrap();
+        let mut simulation = Simulation::new(&scene, &Start { w: -5e-6, ..Start::default() }).unwrap();
+        simulation.advance(&SWING).unwrap();
+        let variables = variables(&scene);
+        let mut values = vec![0.0; variables.len()];
+        let times: [f64; 11] = std::array::from_fn(|i| 1e-5 * i as f64);
+        let count = allocations(|| {
+            for _ in 0..4 {
+                let row = |_: f64, now: &Snapshot<'_>| now.evaluate(&variables, &mut values);
+                simulation.advance_observed(&SWING, None, &times, row).unwrap();
+            }
+        });
+        simulation.evaluate(&variables, &mut values);
+        assert_eq!(count, 0, "{method}");
+        assert!(value(&variables, &values, "contact.flash_largest") > 0.0, "{method} warms");
+    }
+}
+
 /// Nor does a carrier that is a body, on a drive along x and under a load that jumps along z.
 #[test]
 fn bodies_allocate_nothing() {

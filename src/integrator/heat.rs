@@ -158,18 +158,18 @@ impl Heat {
     /// Writes the parts of the temperatures at the end of the step, K, or their variations for those of the parts at the
     /// start and of the `fluxes` at the stages.
     pub(super) fn at_end<'a>(
-        &'a self,
+        &self,
         start: &'a [f64],
         fluxes: impl Iterator<Item = &'a [f64]> + Clone,
         flash: &mut [f64],
     ) {
-        write(&self.ends, start, fluxes, flash);
+        write(self.ends.iter().copied(), start, fluxes, flash);
     }
 
     /// Writes the parts of the temperatures at the fraction `theta` of the step, K.
     pub(super) fn within(&self, theta: f64, start: &[f64], stages: &[StageValues], flash: &mut [f64]) {
-        let weights: Vec<TermWeights> = self.terms.iter().map(|term| self.at(term, theta)).collect();
-        write(&weights, start, stages.iter().map(heat_flux), flash);
+        let weights = self.terms.iter().map(|term| self.at(term, theta));
+        write(weights, start, stages.iter().map(heat_flux), flash);
     }
 
     /// Whether stage `i` is the end of the step.
@@ -201,19 +201,19 @@ fn decayed(terms: &[FlashTerm], time: f64, flash: &[f64], sums: &mut [f64]) {
 
 /// Writes the parts with these weights, term by term.
 fn write<'a>(
-    weights: &'a [TermWeights],
+    weights: impl ExactSizeIterator<Item = TermWeights>,
     start: &'a [f64],
     fluxes: impl Iterator<Item = &'a [f64]> + Clone,
     flash: &mut [f64],
 ) {
-    if weights.is_empty() {
+    if start.is_empty() {
         return;
     }
     let masses = start.len() / weights.len();
     let parts = start.chunks_exact(masses).zip(flash.chunks_exact_mut(masses));
-    for (weights, (start, flash)) in weights.iter().zip(parts) {
-        let driven = weighted(&weights.flux, fluxes.clone());
-        weighted_sum(flash, std::iter::once((weights.decay, start)).chain(driven));
+    for (TermWeights { decay, flux }, (start, flash)) in weights.zip(parts) {
+        let driven = flux.into_iter().zip(fluxes.clone()).filter(|(weight, _)| *weight != 0.0);
+        weighted_sum(flash, std::iter::once((decay, start)).chain(driven));
     }
 }
 
