@@ -159,12 +159,11 @@ fn other_methods_allocate_nothing() {
     }
 }
 
-/// Contacts on roughness below the profile, warmed by friction, by each method.
-#[test]
-fn heated_contacts_allocate_nothing() {
+/// The same of rubber on roughness below the profile, whose contacts friction warms.
+fn warm() -> String {
     let (_, rest) = RATTLE.split_once("[surface]").unwrap();
     let (rest, _) = rest.split_once("coulomb = 0.2").unwrap();
-    let text = "name = 'warm'
+    let head = "name = 'warm'
         layer = { masses = 20, spacing = 1.3e-4, clearance = 1e-6, foundation = 'half_space', width = 1e-2 }
         [material]
         density = 1100.0
@@ -175,15 +174,16 @@ fn heated_contacts_allocate_nothing() {
         heat = { conductivity = 0.25, capacity = 1700.0 }
         [surface]
         fine = { hurst = 0.8, rms_slope = 0.5, longest = 2e-5, shortest = 5e-6 }";
+    let outputs = "outputs = ['forces', 'dissipation', 'friction', 'contact', 'energy', 'solver', 'elements']";
+    format!("{head}{rest}shear_strength = 1e5\n[fmu]\n{outputs}")
+}
+
+/// Contacts on roughness below the profile, warmed by friction, by each method.
+#[test]
+fn heated_contacts_allocate_nothing() {
+    let text = warm();
     for method in ["event", "step", "auto"] {
-        let text = format!(
-            "{text}{rest}shear_strength = 1e5
-            [solver]
-            method = '{method}'
-            relative_tolerance = 1e-3
-            [fmu]
-            outputs = ['forces', 'dissipation', 'friction', 'contact', 'energy', 'solver', 'elements']"
-        );
+        let text = format!("{text}\n[solver]\nmethod = '{method}'\nrelative_tolerance = 1e-3");
         let scene = Scene::parse(&text, FilePath::new("warm.toml")).unwrap();
         let mut simulation = Simulation::new(&scene, &Start { w: -5e-6, ..Start::default() }).unwrap();
         simulation.advance(&SWING).unwrap();
@@ -237,7 +237,8 @@ fn memory_reckoned_is_memory_taken() {
     let few = RATTLE.replace("\"solver\", \"elements\"", "\"contact\"").replace("\"contact\", \"energy\", ", "");
     let plain = few.split("horizontal =").next().unwrap().to_owned() + "\n[surface]\nkind = \"flat\"";
     let tangents = RATTLE.replace("\"solver\"", "\"tangent\", \"solver\"");
-    for text in [RATTLE, &few, &plain, &tangents] {
+    let (warm, warm_tangents) = (warm(), warm().replace("'solver'", "'tangent', 'solver'"));
+    for text in [RATTLE, &few, &plain, &tangents, &warm, &warm_tangents] {
         let text = text.replace("masses = 20", "masses = 3000");
         for method in ["event", "step", "auto"] {
             let text = format!("{text}\n[solver]\nmethod = \"{method}\"\nrelative_tolerance = 1e-3");

@@ -11,7 +11,7 @@ use super::log::{Category, Message};
 use super::model::{Experiment, FmuModel, FmuRun, RunRecord, RunState};
 use super::resources::SCENE_FILE;
 use super::variables::VariableRef;
-use crate::model::{Reduction, Replacement};
+use crate::model::{FlashKernel, Reduction, Replacement};
 use crate::outputs::{self, Output, Variable};
 use crate::scene::{
     Extrapolation, FmuOptions, Force, Input, LinkKind, OutputGroup, Parameter, ParameterError, Path, Scene, Solver,
@@ -81,7 +81,7 @@ impl FmuModel for Arc<Scene> {
     }
 
     fn memory(&self) -> usize {
-        /// Of a mass; of its variables, five with their names in two places; of each of its Maxwell elements.
+        /// Of a mass; of its variables, five with their names in two places; of each of its elements.
         const MASS: usize = 2048;
         const VARIABLES: usize = 5 * 512;
         const ELEMENT: usize = 512;
@@ -89,16 +89,16 @@ impl FmuModel for Arc<Scene> {
         const TANGENT: f64 = 0.5;
         let asks = |group| self.outputs.contains(&group);
         let tangents = if asks(OutputGroup::Tangent) { Scene::inputs(self).len() } else { 0 };
-        let run = (MASS + ELEMENT * maxwell_elements(self)) as f64 * (1.0 + TANGENT * tangents as f64);
+        let run = (MASS + ELEMENT * elements(self)) as f64 * (1.0 + TANGENT * tangents as f64);
         let variables = if asks(OutputGroup::Elements) { VARIABLES } else { 0 };
         (1 << 20) + self.layer.masses * (runs(self) * run as usize + variables)
     }
 
     fn state_memory(&self) -> usize {
-        /// Of a mass; of each of its Maxwell elements.
+        /// Of a mass; of each of its elements.
         const MASS: usize = 192;
         const ELEMENT: usize = 8;
-        (1 << 14) + runs(self) * self.layer.masses * (MASS + ELEMENT * maxwell_elements(self))
+        (1 << 14) + runs(self) * self.layer.masses * (MASS + ELEMENT * elements(self))
     }
 
     fn options(&self) -> FmuOptions {
@@ -126,9 +126,11 @@ impl FmuModel for Arc<Scene> {
     }
 }
 
-/// Maxwell elements of a mass.
-fn maxwell_elements(scene: &Scene) -> usize {
-    LinkKind::ALL.into_iter().filter_map(|kind| scene.link(kind)).map(|link| link.maxwell.len()).sum()
+/// Maxwell elements of a mass, and the parts of its flash temperature, which relax as these do.
+fn elements(scene: &Scene) -> usize {
+    let maxwell: usize =
+        LinkKind::ALL.into_iter().filter_map(|kind| scene.link(kind)).map(|link| link.maxwell.len()).sum();
+    maxwell + if scene.has_heat() { FlashKernel::TERMS } else { 0 }
 }
 
 /// With the more accurate one beside it.

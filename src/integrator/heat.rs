@@ -218,10 +218,7 @@ fn write<'a>(
 }
 
 /// Those of the `values` whose weight counts.
-fn weighted<'a>(
-    weights: &'a [f64],
-    values: impl Iterator<Item = &'a [f64]>,
-) -> impl Iterator<Item = (f64, &'a [f64])> {
+fn weighted<'a>(weights: &'a [f64], values: impl Iterator<Item = &'a [f64]>) -> impl Iterator<Item = (f64, &'a [f64])> {
     weights.iter().copied().zip(values).filter(|(weight, _)| *weight != 0.0)
 }
 

@@ -309,15 +309,7 @@ impl Stages {
 
     /// Computes the tangents at stage `i`, just solved, at `s` seconds after the start of the carrier's motion; the
     /// stages have `weights`.
-    fn vary(
-        &mut self,
-        step: &Attempt<'_>,
-        heat: &Heat,
-        point: &StagePoint,
-        i: usize,
-        s: f64,
-        weights: &[f64],
-    ) {
+    fn vary(&mut self, step: &Attempt<'_>, heat: &Heat, point: &StagePoint, i: usize, s: f64, weights: &[f64]) {
         if self.tangents.is_empty() {
             return;
         }

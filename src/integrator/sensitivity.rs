@@ -308,7 +308,8 @@ impl Sensitivity {
         let (slip, friction) = SlippingMass::from_state(model, state, forces, i, 0.0, flash);
         let of_forces = [&forces.on_mass_x, &forces.on_mass_z].map(|on_mass| on_mass[i]);
         let varied = [&self.forces.on_mass_x, &self.forces.on_mass_z].map(|on_mass| on_mass[i]);
-        let [normal, speed] = slip.contact_variation(model.mass, (self.start.x[i], self.start.v_x[i]), varied, of_forces);
+        let [normal, speed] =
+            slip.contact_variation(model.mass, (self.start.x[i], self.start.v_x[i]), varied, of_forces);
         let change = friction.by_normal * normal
             + friction.by_speed * mode.direction() * speed
             + friction.by_flash * self.known_flash[i];

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::running_maxima::RunningMaxima;
 use crate::model::{
-    BoundaryPowers, ByAxis, ByLink, CarrierPoint, ContactForces, Flash, Forces, LinkKind, MaxwellRow, Mode, Model, SlipCurve,
-    State, SurfacePoint,
+    BoundaryPowers, ByAxis, ByLink, CarrierPoint, ContactForces, Flash, Forces, LinkKind, MaxwellRow, Mode, Model,
+    SlipCurve, State, SurfacePoint,
 };
 
 /// The share of an explicit acceleration that friction may take away within the step without the implicit one in its

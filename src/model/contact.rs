@@ -62,14 +62,7 @@ impl ContactForces {
     }
 
     /// ẍ of a mass in contact in `mode`: m q² ẍ + m s κ ẋ² = f_x + s f_z - F_T q.
-    pub fn acceleration(
-        &self,
-        model: &Model,
-        mode: Mode,
-        velocity_x: f64,
-        surface: &SurfacePoint,
-        flash: f64,
-    ) -> f64 {
+    pub fn acceleration(&self, model: &Model, mode: Mode, velocity_x: f64, surface: &SurfacePoint, flash: f64) -> f64 {
         if mode == Mode::Stick {
             return 0.0;
         }

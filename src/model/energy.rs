@@ -135,7 +135,13 @@ impl BoundaryPowers {
         for i in (0..modes.len()).filter(|&i| model.friction.present && modes[i].slips() && velocity_x[i] != 0.0) {
             let contact = ContactForces::in_slip(model, normal[i], (velocity_x[i], velocity_z[i]));
             // No part of a layer is computed alone where friction heats the contacts.
-            power.add(&model.friction, modes[i], velocity_x[i], &contact, &contact.slip(model, modes[i], velocity_x[i], 0.0));
+            power.add(
+                &model.friction,
+                modes[i],
+                velocity_x[i],
+                &contact,
+                &contact.slip(model, modes[i], velocity_x[i], 0.0),
+            );
         }
         Self::with_powers(model, &power, -(on_carrier.x * carrier.x.speed + on_carrier.z * carrier.z.speed))
     }

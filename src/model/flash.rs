@@ -84,11 +84,10 @@ impl SpeedShift {
 /// The times between which the kernel is right within 2 %, and its integral from 0 within 1 %, s.
 const SHORTEST: f64 = 1e-6;
 const LONGEST: f64 = 100.0;
-/// The terms, and how far they go beyond the wave numbers 1/√(Dt) of these times on either side.
+/// How far the terms go beyond the wave numbers 1/√(Dt) of these times on either side.
 ///
-/// Recommended 16 to 24 and 2 to 10. Between them it takes the rule's steps, which err by 1e-4 of the integral with 20 and
-/// 3; what is beyond is lumped into the first and the last term by its first two moments.
-const TERMS: usize = 20;
+/// Recommended 2 to 10, with 16 to 24 terms. Between their ends it takes the rule's steps, which err by 1e-4 of the integral
+/// with 3 and 20; what is beyond is lumped into the first and the last term by its first two moments.
 const BEYOND: f64 = 3.0;
 /// Steps of the rule on either side of the terms that are lumped: some ten decades of wave numbers.
 const LUMPED: usize = 50;
@@ -97,6 +96,9 @@ const LUMPED: usize = 50;
 const SPEED_OF_PARTS: f64 = 1.0;
 
 impl FlashKernel {
+    /// The number of terms.
+    pub const TERMS: usize = 20;
+
     /// The kernel of a scene; `None` where friction heats nothing.
     pub fn new(scene: &Scene) -> Option<Self> {
         let material = scene.material.as_ref()?;
@@ -107,23 +109,23 @@ impl FlashKernel {
         // The trapezoidal rule in ln k from wave numbers far below the terms to far above.
         let wave_number = |time: f64| 1.0 / (diffusivity * time).sqrt();
         let (low, high) = (wave_number(LONGEST) / BEYOND, wave_number(SHORTEST) * BEYOND);
-        let step = (high / low).ln() / (TERMS - 1) as f64;
+        let step = (high / low).ln() / (Self::TERMS - 1) as f64;
         let term = |j: usize| {
             let k = low * (step * (j as f64 - LUMPED as f64)).exp();
             let share = parts.share(k);
             let weight = heat.share * 2.0 / (PI * capacity) * k * share * share * step;
             FlashTerm { weight, time: 1.0 / (diffusivity * k * k) }
         };
-        let all: Vec<FlashTerm> = (0..LUMPED + TERMS + LUMPED).map(term).collect();
+        let all: Vec<FlashTerm> = (0..LUMPED + Self::TERMS + LUMPED).map(term).collect();
         // What is slow counts by κ and its slope, what is fast by the integral of κ and that of tκ.
         let moment = |terms: &[FlashTerm], power: i32| -> f64 {
             terms.iter().map(|term| term.weight * term.time.powi(power)).sum()
         };
-        let (slow, fast) = (&all[..=LUMPED], &all[LUMPED + TERMS - 1..]);
-        let mut terms = all[LUMPED..LUMPED + TERMS].to_vec();
+        let (slow, fast) = (&all[..=LUMPED], &all[LUMPED + Self::TERMS - 1..]);
+        let mut terms = all[LUMPED..LUMPED + Self::TERMS].to_vec();
         terms[0] = FlashTerm { weight: moment(slow, 0), time: moment(slow, 0) / moment(slow, -1) };
         let time = moment(fast, 2) / moment(fast, 1);
-        terms[TERMS - 1] = FlashTerm { weight: moment(fast, 1) / time, time };
+        terms[Self::TERMS - 1] = FlashTerm { weight: moment(fast, 1) / time, time };
         Some(Self { terms, share: heat.share })
     }
 

@@ -519,7 +519,13 @@ impl FrictionPower {
         for i in (0..model.masses()).filter(|&i| model.friction.present && state.mode[i].slips()) {
             let v = state.velocity_x[i];
             let contact = forces.contact(model, i, v, &state.surface[i]);
-            power.add(&model.friction, state.mode[i], v, &contact, &contact.slip(model, state.mode[i], v, state.flash(i)));
+            power.add(
+                &model.friction,
+                state.mode[i],
+                v,
+                &contact,
+                &contact.slip(model, state.mode[i], v, state.flash(i)),
+            );
         }
         power
     }

@@ -254,7 +254,8 @@ fn check_layer(found: &LayerState, expected: &LayerState) -> Result<(), RestoreE
 
 /// The arrays of numbers of a layer and its rates.
 fn arrays(layer: &LayerState) -> [(&'static str, &[f64]); 17] {
-    let State { elongation_x, elongation_z, velocity_x, velocity_z, maxwell, flash, mode: _, surface: _ } = &layer.state;
+    let State { elongation_x, elongation_z, velocity_x, velocity_z, maxwell, flash, mode: _, surface: _ } =
+        &layer.state;
     let rates = &layer.rates;
     let StageValues { velocity_x: rate_x, velocity_z: rate_z, acceleration_x, acceleration_z, .. } = rates;
     let StageValues { elongation_rate, normal, heat_flux, margin, .. } = rates;

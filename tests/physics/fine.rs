@@ -74,8 +74,7 @@ fn compare(name: &str, found: &Table, bound: f64) {
 
 fn run(name: &str, method: &str, tolerance: &str) -> Table {
     let folder = scratch(&format!("{name}-{method}"));
-    let [method, tolerance] =
-        [format!("solver.method={method}"), format!("solver.relative_tolerance={tolerance}")];
+    let [method, tolerance] = [format!("solver.method={method}"), format!("solver.relative_tolerance={tolerance}")];
     simulate(&file(&format!("{name}.toml")), &folder, &["--set", &method, "--set", &tolerance])
 }
 
@@ -106,7 +105,8 @@ fn heated_runs_are_those_of_the_reference() {
 #[test]
 fn heat_is_the_work_of_friction() {
     let set = ["--set", "fmu.outputs=['energy', 'dissipation', 'elements']", "--set", "solver.relative_tolerance=1e-6"];
-    let found = simulate(&file("fine-heat.toml"), &scratch("heat-energy"), &[&set[..], &["--points", "20001"]].concat());
+    let found =
+        simulate(&file("fine-heat.toml"), &scratch("heat-energy"), &[&set[..], &["--points", "20001"]].concat());
     let [time, force, x] = ["time", "element[1].F_T", "element[1].x"].map(|name| found.column(name));
     let mut work = 0.0;
     for i in 1..time.len() {

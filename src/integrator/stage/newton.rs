@@ -464,8 +464,7 @@ impl SlippingMass {
         let Self { s, kappa, velocity: v, share_x, share_z, .. } = *self;
         let (ds, dkappa) = (kappa * x, self.third * x);
         let centripetal = dkappa * v * v * share_z + 2.0 * kappa * v * v_x * share_z + kappa * v * v * ds;
-        let of_rate =
-            if model.friction.depends_on_speed() { self.rate_variation(friction, v_x, s * ds) } else { 0.0 };
+        let of_rate = if model.friction.depends_on_speed() { self.rate_variation(friction, v_x, s * ds) } else { 0.0 };
         share_x * varied.0 + share_z * varied.1 + ds * (f_z - self.sigma_mu * f_x)
             - model.mass * (centripetal + 2.0 * s * ds * self.acceleration)
             - self.sigma_shear * s * ds / self.q
