@@ -477,8 +477,7 @@ mod tests {
         let FrictionParts { whole, hysteresis, adhesion, .. } = of(1.0, 0.6, 0.2);
         assert!((hysteresis + adhesion - whole).abs() < 1e-15 && (hysteresis / adhesion - 3.0).abs() < 1e-12);
         // Of hysteresis that lacks a fifth in its sample the fine waves keep their share.
-        let means =
-            BlockMeans { drag: 1.0, load: 2.0, hysteresis: 0.8, fine: Some(0.4), ..BlockMeans::default() };
+        let means = BlockMeans { drag: 1.0, load: 2.0, hysteresis: 0.8, fine: Some(0.4), ..BlockMeans::default() };
         let fine = FrictionParts::new(&means).fine.unwrap();
         assert!((fine - 0.25).abs() < 1e-15, "{fine}");
         // Nothing sampled: all that there is are slopes.
