@@ -17,7 +17,7 @@
 
 use std::f64::consts::LN_10;
 
-use super::{ContactForces, ContactQuantity, FineContact, FineFriction, Forces, Mode, Model, State};
+use super::{ContactForces, ContactQuantity, FineContact, FineFriction, Forces, Mode, Model, PressedContact, State};
 use crate::math::{bracketed_root, dot, sum};
 use crate::scene::{self, Scene};
 
@@ -118,7 +118,11 @@ impl FrictionLaw {
     /// The excess in slip over T(0) under the normal force F_N (N); `None` where friction does not depend on the speed.
     #[inline]
     pub fn slip_curve(&self, normal: f64) -> Option<SlipCurve<'_>> {
-        self.depends_on_speed().then_some(SlipCurve { law: self, normal })
+        let fine = self.fine.as_ref().map(|fine| {
+            let pressed = fine.under(normal);
+            (pressed, pressed.at_rest())
+        });
+        self.depends_on_speed().then_some(SlipCurve { law: self, fine, normal })
     }
 
     /// v_c (m/s), up to which contacts on the roughness below the profile slip as at rest; `None` without it.
@@ -251,6 +255,8 @@ impl RateShearLaw {
 #[derive(Clone, Copy, Debug)]
 pub struct SlipCurve<'a> {
     law: &'a FrictionLaw,
+    /// The contact on the roughness below the profile, and as it is at rest.
+    fine: Option<(PressedContact<'a>, FineContact)>,
     /// F_N, N.
     normal: f64,
 }
@@ -268,14 +274,13 @@ impl SlipCurve<'_> {
     /// Bounds of the excess, N.
     fn bounds(&self) -> (f64, f64) {
         let (least, most) = self.law.rate_shear.as_ref().map_or((0.0, 0.0), RateShearLaw::bounds);
-        match &self.law.fine {
-            None => (least, most),
-            Some(fine) => {
-                let at_rest = fine.at_rest(self.normal);
+        match (&self.law.fine, &self.fine) {
+            (Some(fine), Some((_, at_rest))) => {
                 let (share, hysteresis) = (at_rest.share.value, at_rest.hysteresis.value);
                 let growth = (fine.largest_hysteresis(self.normal) - hysteresis).max(0.0);
                 (-share * self.law.shear - hysteresis, share * most + growth)
             }
+            _ => (least, most),
         }
     }
 
@@ -287,10 +292,9 @@ impl SlipCurve<'_> {
     /// The excess, N, and its derivative by the speed, N s/m, at the `speed` in the direction of slip, m/s.
     pub fn with_slope(&self, speed: f64) -> (f64, f64) {
         let of_rate = self.law.rate_shear.as_ref().map_or((0.0, 0.0), |law| law.with_slope(speed));
-        let Some(fine) = &self.law.fine else { return of_rate };
+        let Some((pressed, at_rest)) = &self.fine else { return of_rate };
         let sign = 1.0_f64.copysign(speed);
-        let (FineContact { share, hysteresis }, at_rest) =
-            (fine.contact(self.normal, speed), fine.at_rest(self.normal));
+        let FineContact { share, hysteresis } = pressed.at(speed);
         let force = self.law.shear + sign * of_rate.0;
         let by_size = share.by_speed * sign * force + share.value * of_rate.1 + sign * hysteresis.by_speed;
         let of_area = share.value * force - at_rest.share.value * self.law.shear;
