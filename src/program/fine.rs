@@ -238,7 +238,7 @@ mod tests {
     use super::*;
 
     const SCENE: &str = "name = 'w'\n\
-        layer = { masses = 8, spacing = 1e-4, thickness = 1e-3, width = 0.01, foundation = 'half_space' }\n\
+        layer = { masses = 8, spacing = 1e-4, width = 0.01, foundation = 'half_space' }\n\
         surface = { kind = 'flat', fine = { hurst = 0.8, rms_slope = 0.9, longest = 4e-4, shortest = 4e-6 } }\n\
         friction = { shear_strength = 1e6 }\n\
         [material]\ndensity = 1100.0\npoisson_ratio = 0.5\nequilibrium_modulus = 3e6\n\

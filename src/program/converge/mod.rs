@@ -116,7 +116,7 @@ fn plan(command: &Converge, template: &Template) -> Result<Plan, ConvergeError> 
         return Err(ConvergeError::NoSeed);
     }
     let seeds = template.has_seed().then_some(command.seeds.unwrap_or(SEEDS));
-    Ok(Plan { error: command.error, max_halvings, seeds })
+    Ok(Plan { error: command.error, max_halvings, seeds, has_split: template.has_split() })
 }
 
 fn header(command: &Converge, scene: &Scene) -> Result<StudyHeader, ConvergeError> {
