@@ -10,7 +10,7 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-use crate::scene::{FineBand, Heat, Material, Scene};
+use crate::scene::{FineBand, Material, Scene};
 
 /// χ κ(t) as Σ_j w_j e^(-t/t_j), from [`SHORTEST`] to [`LONGEST`].
 #[derive(Clone, Debug, PartialEq)]

@@ -280,8 +280,7 @@ mod tests {
     fn parts_of_friction_add_up() {
         let rows = rows(&scene(|text| text));
         let shares = |start: &str| -> f64 {
-            let of =
-                |row: &String| row.trim().split_whitespace().rev().filter_map(|word| word.parse::<f64>().ok()).next();
+            let of = |row: &String| row.split_whitespace().rev().filter_map(|word| word.parse::<f64>().ok()).next();
             rows.iter().filter(|row| row.starts_with(start)).filter_map(of).sum()
         };
         let (profile, bands, adhesion) = (shares("  profile"), shares("  bands"), shares("  shear"));
