@@ -42,7 +42,7 @@ fn number(value: f64) -> String {
 fn gradients(scene: &Scene) -> String {
     let bands = scene.fine_bands();
     // An isotropic surface is √2 times as steep as its lines.
-    let slopes: f64 = Spectrum::new(&scene.surface).modes().map(|(q, square)| q * q * square).sum();
+    let slopes = Spectrum::new(&scene.surface).modes().fold(0.0, |sum, (q, square)| sum + q * q * square);
     let height = bands.iter().map(|band| band.gradient_square / (band.wave_number * band.wave_number)).sum::<f64>();
     let height = if bands.is_empty() { String::new() } else { format!(", rms height {} m", number(height.sqrt())) };
     format!(

@@ -100,7 +100,7 @@ impl WholeFriction {
 
     /// Its part by the hysteresis of some waves.
     pub(super) fn hysteresis(&self, of: impl Fn(&WaveFriction) -> bool) -> f64 {
-        self.by_wave.iter().filter(|wave| of(wave)).map(|wave| wave.friction).sum()
+        self.by_wave.iter().filter(|wave| of(wave)).fold(0.0, |sum, wave| sum + wave.friction)
     }
 
     pub(super) fn friction(&self) -> f64 {
