@@ -1,5 +1,5 @@
-//! One implicit stage against the number of masses k and of Maxwell elements n, and against its floor:
-//! `cargo bench --bench stage`.
+//! One implicit stage against the number of masses k and of Maxwell elements n, and against its floor; and what the
+//! roughness below the profile costs in it: `cargo bench --bench stage`.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "like a test")]
 
@@ -29,6 +29,7 @@ fn main() {
     criterion.final_summary();
     if prints_tables() {
         print_ratios();
+        print_fine();
     }
 }
 
@@ -44,7 +45,13 @@ struct Stages {
 impl Stages {
     /// A free layer, or one that slips.
     fn new(masses: usize, elements: usize, mode: Mode) -> Self {
-        let model = Model::new(&parse(&layer(masses, elements, 1e-2)));
+        Self::of(&layer(masses, elements, 1e-2), mode, 0.0)
+    }
+
+    /// Those of the scene of this text, the carrier at the displacement `w` (m).
+    fn of(scene: &str, mode: Mode, w: f64) -> Self {
+        let model = Model::new(&parse(scene));
+        let masses = model.masses();
         let mut state = State::new(&model);
         let noise = |i: usize| ((i * 7919) % 1000) as f64 * 1e-3;
         for i in 0..masses {
@@ -57,7 +64,7 @@ impl Stages {
                 (state.mode[i], state.surface[i]) = (mode, surface);
             }
         }
-        let carrier = Carrier::new(0.0, ByAxis::default(), ByAxis::default(), &model.profile);
+        let carrier = Carrier::new(0.0, ByAxis { x: 0.0, z: w }, ByAxis::default(), &model.profile);
         let mut forces = Forces::new(&model);
         forces.evaluate(&model, &state, &carrier.at(0.0));
         let integrator = Integrator::new(&model, Tracked::default(), &[Scheme::Esdirk5]);
@@ -111,6 +118,36 @@ fn print_ratios() {
             let times = side_by_side([&mut || stages.run(), &mut || floor.stages()], Duration::from_secs(2));
             let [stage, floor] = times.shortest.map(|time| 1e9 * time / (masses * IMPLICIT) as f64);
             println!("{masses:>8} {elements:>4} {stage:>8.1} {floor:>8.1} {:>6.2}", times.ratio);
+        }
+    }
+}
+
+/// A layer of a compound that slips, pressed, over waves that its profile lacks or not.
+fn compound(masses: usize, keys: &str, fine: &str) -> String {
+    format!(
+        "name = 'w'\nlayer = {{ masses = {masses}, spacing = 2e-4, width = 1e-2, thickness = 1e-2 }}\n\
+         surface = {{ kind = 'flat'{fine} }}\nfriction = {{ coulomb = 0.2, shear_strength = 5e5 }}\n\
+         [material]\ndensity = 1100.0\npoisson_ratio = 0.49\nequilibrium_modulus = 5e6\nprony = [\
+         {{ modulus = 2e6, relaxation_time = 1e-2 }}, {{ modulus = 8e6, relaxation_time = 1e-4 }}, \
+         {{ modulus = 4e7, relaxation_time = 1e-6 }}]\n{keys}\n"
+    )
+}
+
+/// Stages with and without the roughness below the profile, and with its heat, in turns: ns a mass and stage.
+fn print_fine() {
+    const W: f64 = -2e-4;
+    const FINE: &str = ", fine = { hurst = 0.8, rms_slope = 1.2, longest = 2e-3, shortest = 5e-6 }";
+    const HEAT: &str = "wlf = { c1 = 8.0, c2 = 120.0, reference_temperature = 293.15, temperature = 303.15 }\n\
+        heat = { conductivity = 0.25, capacity = 1700.0 }";
+    println!("\none stage of a slipping layer with the roughness below the profile over one without, ns a mass");
+    println!("{:>8} {:<16} {:>8} {:>8} {:>6}", "k", "", "with", "without", "ratio");
+    for masses in [100, 1000] {
+        for (name, keys) in [("bands", ""), ("bands and heat", HEAT)] {
+            let mut with = Stages::of(&compound(masses, keys, FINE), Mode::Forward, W);
+            let mut without = Stages::of(&compound(masses, "", ""), Mode::Forward, W);
+            let times = side_by_side([&mut || with.run(), &mut || without.run()], Duration::from_secs(2));
+            let [with, without] = times.shortest.map(|time| 1e9 * time / (masses * IMPLICIT) as f64);
+            println!("{masses:>8} {name:<16} {with:>8.1} {without:>8.1} {:>6.2}", times.ratio);
         }
     }
 }

@@ -8,8 +8,8 @@
 //!   P_b = erf(√2 p/√Σ_b),   μ_h(p, v) = (1/2p) Σ_b h'_b² L_b P_b (¾ + ¼ P_b²),   A_r = A erf(√π p/√Σ).
 //!
 //! The form is B. N. J. Persson's (J. Chem. Phys. 115, 2001, 3840). The sums are tabulated: √Σ over ln v, and
-//! μ_h (1 + p/√Σ), which goes from one limit to another, over ln v and ln(p/√Σ). Speeds are those at the reference
-//! temperature, a_T v, but at least the creep speed v_c.
+//! μ_h (1 + p/√Σ), which goes from one limit to another, over ln v and ln(p/√Σ); and so is the error function, as
+//! A_r/A (1 + √Σ/p). Speeds are those at the reference temperature, a_T v, but at least the creep speed v_c.
 
 use std::f64::consts::{PI, SQRT_2};
 
@@ -26,8 +26,20 @@ pub struct FineFriction {
     log_speeds: EvenSteps,
     /// ln √Σ there and its slope by the number of steps; √Σ in Pa.
     stress: Vec<[f64; 2]>,
+    /// A_r/A (1 + √Σ/p).
+    share: ShareTable,
     /// μ_h (1 + p/√Σ); `None` where the waves do not rub.
     hysteresis: Option<HysteresisTable>,
+}
+
+/// The law under a normal force that is held.
+#[derive(Clone, Copy, Debug)]
+pub struct PressedContact<'a> {
+    fine: &'a FineFriction,
+    /// F_N, N.
+    normal: f64,
+    /// ln p, p in Pa.
+    log_pressure: f64,
 }
 
 /// A quantity of a contact, and its derivatives.
@@ -59,6 +71,13 @@ struct EvenSteps {
     count: usize,
 }
 
+/// A_r/A (1 + √Σ/p) over ln(p/√Σ) in even steps: the value and its slope by the number of steps.
+#[derive(Clone, Debug)]
+struct ShareTable {
+    log_pressures: EvenSteps,
+    nodes: Vec<[f64; 2]>,
+}
+
 /// A function of ln v and x = ln(p/√Σ) in even steps of both, by bicubic polynomials.
 #[derive(Clone, Debug)]
 struct HysteresisTable {
@@ -66,12 +85,16 @@ struct HysteresisTable {
     /// For each speed, at each pressure: the value, its derivatives by the numbers of steps along x and along ln v, and the mixed
     /// one.
     nodes: Vec<[f64; 4]>,
+    /// The largest value of all.
+    largest: f64,
 }
 
 /// Speeds of a decade in the tables: cubics are then off by some 1e-5 of the functions, whose features are a decade wide.
 const PER_DECADE: f64 = 12.0;
 /// The step of ln(p/√Σ), over which each band's P_b changes within some units.
 const PRESSURE_STEP: f64 = 0.2;
+/// The step of the same in the table of the error function.
+const SHARE_STEP: f64 = 0.1;
 /// The tables end where the moduli have come to their limits: this factor beyond the rates 1/τ of the material.
 const MARGIN: f64 = 1.0e4;
 /// Where √2 p/√Σ_b is below this, erf is a line to its square.
@@ -87,7 +110,7 @@ impl FineFriction {
         let creep_speed = scene.fine_creep_speed();
         let law = |log_speeds, stress, hysteresis| {
             let creep_speed = creep_speed / material.shift_factor();
-            Self { area, creep_speed, log_speeds, stress, hysteresis }
+            Self { area, creep_speed, log_speeds, stress, share: ShareTable::new(), hysteresis }
         };
         if let FineWaves::Modulus { rms_slope, modulus } = fine.waves {
             let constant = EvenSteps { first: 0.0, step: 1.0, count: 1 };
@@ -127,8 +150,7 @@ impl FineFriction {
 
     /// Bound of μ_h F_N (N) under F_N (N) at any speed.
     pub fn largest_hysteresis(&self, normal: f64) -> f64 {
-        let Some(table) = &self.hysteresis else { return 0.0 };
-        table.nodes.iter().map(|node| node[0]).fold(0.0, f64::max) * normal.max(0.0)
+        self.hysteresis.as_ref().map_or(0.0, |table| table.largest * normal.max(0.0))
     }
 
     /// The contact at rest under the normal force F_N (N).
@@ -139,41 +161,13 @@ impl FineFriction {
 
     /// The contact under F_N (N) at a `speed` of either sign, m/s.
     pub fn contact(&self, normal: f64, speed: f64) -> FineContact {
-        if normal <= 0.0 {
-            return FineContact::default();
-        }
-        let size = speed.abs();
-        let slips = size > self.creep_speed;
-        // The place in the table of speeds, as a number of steps, and its derivative by the speed.
-        let log_ratio = if slips { (size / self.creep_speed).ln() } else { 0.0 };
-        let steps = log_ratio / self.log_speeds.step;
-        let by_speed = if slips { 1.0_f64.copysign(speed) / (self.log_speeds.step * size) } else { 0.0 };
-        let [log_stress, stress_slope] = self.log_stress(steps);
+        self.under(normal).at(speed)
+    }
 
-        // The part of the area that touches.
-        let stress = log_stress.exp();
-        let pressed = normal / (self.area * stress);
-        let x = PI.sqrt() * pressed;
-        let by_pressed = 2.0 * (-x * x).exp();
-        let share = ContactQuantity {
-            value: libm::erf(x),
-            by_normal: by_pressed / (self.area * stress),
-            by_speed: -by_pressed * pressed * stress_slope * by_speed,
-        };
-
-        // μ_h = R/(1 + p/√Σ), R of the table.
-        let hysteresis = self.hysteresis.as_ref().map_or(ContactQuantity::default(), |table| {
-            let [ratio, along_pressure, along_speed] = table.at(pressed.ln(), steps.min(self.log_speeds.last()));
-            let along_speed = if steps < self.log_speeds.last() { along_speed } else { 0.0 };
-            let whole = 1.0 / (1.0 + pressed);
-            let by_log_pressed = (along_pressure - ratio * pressed * whole) * whole;
-            ContactQuantity {
-                value: normal * ratio * whole,
-                by_normal: ratio * whole + by_log_pressed,
-                by_speed: normal * (along_speed * whole - stress_slope * by_log_pressed) * by_speed,
-            }
-        });
-        FineContact { share, hysteresis }
+    /// The law under F_N, N.
+    pub fn under(&self, normal: f64) -> PressedContact<'_> {
+        let log_pressure = if normal > 0.0 { (normal / self.area).ln() } else { f64::NEG_INFINITY };
+        PressedContact { fine: self, normal, log_pressure }
     }
 
     /// ln √Σ at a number of steps of the speed, and its slope by that.
@@ -192,6 +186,83 @@ impl FineFriction {
         let (value, slope) = (hermite(t), hermite_slopes(t));
         let of = |basis: &[f64; 4]| basis[0] * here[0] + basis[1] * here[1] + basis[2] * next[0] + basis[3] * next[1];
         [of(&value), of(&slope)]
+    }
+}
+
+impl PressedContact<'_> {
+    /// The contact at rest.
+    pub fn at_rest(&self) -> FineContact {
+        self.at(0.0)
+    }
+
+    /// The contact at a `speed` of either sign, m/s.
+    pub fn at(&self, speed: f64) -> FineContact {
+        let Self { fine, normal, log_pressure } = *self;
+        if normal <= 0.0 {
+            return FineContact::default();
+        }
+        let size = speed.abs();
+        let slips = size > fine.creep_speed;
+        // The place in the table of speeds, as a number of steps, and its derivative by the speed.
+        let steps = if slips { (size / fine.creep_speed).ln() / fine.log_speeds.step } else { 0.0 };
+        let by_speed = if slips { 1.0_f64.copysign(speed) / (fine.log_speeds.step * size) } else { 0.0 };
+        let [log_stress, stress_slope] = if slips { fine.log_stress(steps) } else { fine.stress[0] };
+        let x = log_pressure - log_stress;
+        let pressed = x.exp();
+        let whole = 1.0 / (1.0 + pressed);
+
+        // The part of the area that touches, and its derivative by ln p.
+        let [share, by_log] = fine.share.at(x, pressed, whole);
+        let share =
+            ContactQuantity { value: share, by_normal: by_log / normal, by_speed: -by_log * stress_slope * by_speed };
+
+        // μ_h = R/(1 + p/√Σ), R of the table.
+        let Some(table) = &fine.hysteresis else {
+            return FineContact { share, hysteresis: ContactQuantity::default() };
+        };
+        let last = fine.log_speeds.last();
+        let [ratio, along_pressure, along_speed] = table.at(x, steps.min(last));
+        let along_speed = if steps < last { along_speed } else { 0.0 };
+        let by_log_pressed = (along_pressure - ratio * pressed * whole) * whole;
+        let hysteresis = ContactQuantity {
+            value: normal * ratio * whole,
+            by_normal: ratio * whole + by_log_pressed,
+            by_speed: normal * (along_speed * whole - stress_slope * by_log_pressed) * by_speed,
+        };
+        FineContact { share, hysteresis }
+    }
+}
+
+impl ShareTable {
+    /// p/√Σ from which on all of the area touches, but for 1e-15 of it, and up to which it is a line, but for 1e-6.
+    const ENDS: (f64, f64) = (1.0e-3, 3.2);
+
+    fn new() -> Self {
+        let (first, last) = (Self::ENDS.0.ln(), Self::ENDS.1.ln());
+        let count = ((last - first) / SHARE_STEP).ceil() as usize + 1;
+        let log_pressures = EvenSteps { first, step: (last - first) / (count - 1) as f64, count };
+        let value = |x: f64| libm::erf(PI.sqrt() * x.exp()) * (1.0 + (-x).exp());
+        let values: Vec<f64> = log_pressures.values().map(value).collect();
+        let nodes = values.iter().copied().zip(slopes(&values)).map(|(value, slope)| [value, slope]).collect();
+        Self { log_pressures, nodes }
+    }
+
+    /// erf(√π p/√Σ) at x = ln(p/√Σ), `pressed` = e^x and `whole` = 1/(1 + e^x), and its derivative by x.
+    fn at(&self, x: f64, pressed: f64, whole: f64) -> [f64; 2] {
+        let EvenSteps { first, step, .. } = self.log_pressures;
+        let place = (x - first) / step;
+        if place < 0.0 {
+            return [2.0 * pressed, 2.0 * pressed];
+        }
+        if place >= self.log_pressures.last() {
+            return [1.0, 0.0];
+        }
+        let (i, t) = self.log_pressures.interval(place);
+        let (here, next) = (self.nodes[i], self.nodes[i + 1]);
+        let of = |basis: [f64; 4]| basis[0] * here[0] + basis[1] * here[1] + basis[2] * next[0] + basis[3] * next[1];
+        let (value, slope) = (of(hermite(t)), of(hermite_slopes(t)) / step);
+        let part = pressed * whole;
+        [value * part, (slope + value * whole) * part]
     }
 }
 
@@ -260,8 +331,10 @@ impl HysteresisTable {
         let along_pressure: Vec<Vec<f64>> = rows.iter().map(|row| slopes(row)).collect();
         let (along_speed, mixed) = (columns_slopes(&rows), columns_slopes(&along_pressure));
         let node = |j: usize, i: usize| [rows[j][i], along_pressure[j][i], along_speed[j][i], mixed[j][i]];
-        let nodes = (0..rows.len()).flat_map(|j| (0..count).map(move |i| (j, i))).map(|(j, i)| node(j, i)).collect();
-        Self { log_pressures, nodes }
+        let nodes: Vec<[f64; 4]> =
+            (0..rows.len()).flat_map(|j| (0..count).map(move |i| (j, i))).map(|(j, i)| node(j, i)).collect();
+        let largest = nodes.iter().map(|node| node[0]).fold(0.0, f64::max);
+        Self { log_pressures, nodes, largest }
     }
 
     /// The value at x = ln(p/√Σ) and at a number of steps of the speed within the table, its derivative by x, and that by the
@@ -273,21 +346,21 @@ impl HysteresisTable {
         let place = ((x - first) / step).clamp(0.0, self.log_pressures.last());
         let within = x > first && x < first + step * self.log_pressures.last();
         let ((i, s), (j, t)) = (self.log_pressures.interval(place), speeds.interval(steps));
-        let (by_pressure, by_speed) = ([hermite(s), hermite_slopes(s)], [hermite(t), hermite_slopes(t)]);
-        let mut found = [0.0; 3];
-        for (right, above) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-            let row = (j + above).min(speeds.count - 1);
-            let [value, along_x, along_speed, mixed] = self.nodes[row * count + i + right];
-            let sum = |[a, b]: [usize; 2]| {
-                let (p, v) = (&by_pressure[a], &by_speed[b]);
-                let of_value = p[2 * right] * (value * v[2 * above] + along_speed * v[2 * above + 1]);
-                of_value + p[2 * right + 1] * (along_x * v[2 * above] + mixed * v[2 * above + 1])
+        let (value, slope) = (hermite(s), hermite_slopes(s));
+        // Along a row: the value and its derivative by the speed, and of both the derivatives by the pressure.
+        let along = |row: usize| {
+            let [here, next] = [self.nodes[row * count + i], self.nodes[row * count + i + 1]];
+            let of = |basis: &[f64; 4], which: usize, slope: usize| {
+                basis[0] * here[which] + basis[1] * here[slope] + basis[2] * next[which] + basis[3] * next[slope]
             };
-            for (found, which) in found.iter_mut().zip([[0, 0], [1, 0], [0, 1]]) {
-                *found += sum(which);
-            }
-        }
-        [found[0], if within { found[1] / step } else { 0.0 }, found[2]]
+            [of(&value, 0, 1), of(&value, 2, 3), of(&slope, 0, 1), of(&slope, 2, 3)]
+        };
+        let (low, high) = (along(j), along((j + 1).min(speeds.count - 1)));
+        let between = |basis: [f64; 4], which: usize| {
+            basis[0] * low[which] + basis[1] * low[which + 1] + basis[2] * high[which] + basis[3] * high[which + 1]
+        };
+        let by_pressure = if within { between(hermite(t), 2) / step } else { 0.0 };
+        [between(hermite(t), 0), by_pressure, between(hermite_slopes(t), 0)]
     }
 }
 

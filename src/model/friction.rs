@@ -20,7 +20,10 @@
 
 use std::f64::consts::LN_10;
 
-use super::{ContactForces, ContactQuantity, FineContact, FineFriction, Flash, Forces, Mode, Model, SpeedShift, State};
+use super::{
+    ContactForces, ContactQuantity, FineContact, FineFriction, Flash, Forces, Mode, Model, PressedContact, SpeedShift,
+    State,
+};
 use crate::math::{bracketed_root, dot, sum};
 use crate::scene::{self, Scene};
 
@@ -151,9 +154,11 @@ impl FrictionLaw {
     /// friction does not depend on the speed.
     #[inline]
     pub fn slip_curve(&self, normal: f64, flash: Flash) -> Option<SlipCurve<'_>> {
-        let at_rest = |fine: &FineFriction| fine.at_rest(normal);
-        let at_rest = self.fine.as_ref().map_or(FineContact::default(), at_rest);
-        self.depends_on_speed().then_some(SlipCurve { law: self, normal, flash, at_rest })
+        let fine = self.fine.as_ref().map(|fine| {
+            let pressed = fine.under(normal);
+            (pressed, pressed.at_rest())
+        });
+        self.depends_on_speed().then_some(SlipCurve { law: self, fine, normal, flash })
     }
 
     /// Friction under F_N (N) at the `speed` in the direction of slip, m/s.
@@ -302,11 +307,11 @@ impl RateShearLaw {
 #[derive(Clone, Copy, Debug)]
 pub struct SlipCurve<'a> {
     law: &'a FrictionLaw,
+    /// The contact on the roughness below the profile, and as it is at rest.
+    fine: Option<(PressedContact<'a>, FineContact)>,
     /// F_N, N.
     normal: f64,
     flash: Flash,
-    /// The contact at rest on the roughness below the profile.
-    at_rest: FineContact,
 }
 
 /// Corrections of a flash temperature below this, K, are the last: friction is taken along its tangent over them, which
@@ -330,13 +335,13 @@ impl SlipCurve<'_> {
     /// Bounds of the excess, N.
     fn bounds(&self) -> (f64, f64) {
         let (least, most) = self.law.rate_shear.as_ref().map_or((0.0, 0.0), RateShearLaw::bounds);
-        match &self.law.fine {
-            None => (least, most),
-            Some(fine) => {
-                let (share, hysteresis) = (self.at_rest.share.value, self.at_rest.hysteresis.value);
+        match (&self.law.fine, &self.fine) {
+            (Some(fine), Some((_, at_rest))) => {
+                let (share, hysteresis) = (at_rest.share.value, at_rest.hysteresis.value);
                 let growth = (fine.largest_hysteresis(self.normal) - hysteresis).max(0.0);
                 (-share * self.law.shear - hysteresis, share * most + growth)
             }
+            _ => (least, most),
         }
     }
 
@@ -359,7 +364,7 @@ impl SlipCurve<'_> {
     fn at_layer_temperature(&self, speed: f64) -> SlipFriction {
         let law = self.law;
         let of_rate = law.rate_shear.as_ref().map_or((0.0, 0.0), |law| law.with_slope(speed));
-        let Some(fine) = &law.fine else {
+        let Some((pressed, at_rest)) = &self.fine else {
             return SlipFriction {
                 normal: self.normal,
                 limit: law.limit(self.normal),
@@ -370,7 +375,7 @@ impl SlipCurve<'_> {
             };
         };
         let sign = 1.0_f64.copysign(speed);
-        let (FineContact { share, hysteresis }, at_rest) = (fine.contact(self.normal, speed), &self.at_rest);
+        let FineContact { share, hysteresis } = pressed.at(speed);
         let force = law.shear + sign * of_rate.0;
         let of_area = share.value * force - at_rest.share.value * law.shear;
         SlipFriction {

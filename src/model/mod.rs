@@ -19,7 +19,7 @@ pub use carrier::{Body, BodyEnergy, BodyInterpolant, BodyStart, Carrier, Carrier
 pub use contact::ContactForces;
 pub use end_forces::EndForces;
 pub use energy::{BoundaryPowers, ChannelEnergies, Powers, elastic_energy, kinetic_energy, vertical_spring_energy_at};
-pub use fine_friction::{ContactQuantity, FineContact, FineFriction};
+pub use fine_friction::{ContactQuantity, FineContact, FineFriction, PressedContact};
 pub use flash::{Flash, FlashKernel, FlashTerm, SpeedShift};
 pub use forces::{Forces, LinkLaw, LinkMotion, MaxwellRow};
 pub use friction::{FrictionLaw, FrictionPower, FrictionShares, LinearFriction, RateShearLaw, SlipCurve, SlipFriction};

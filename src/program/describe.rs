@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use asperity::fmi::FmuModel;
-use asperity::model::{FineFriction, FrictionLaw, Model, Reduction, Replaced, Replacement};
+use asperity::model::{Model, Reduction, Replaced, Replacement};
 use asperity::outputs::variables;
 use asperity::scene::{
     Axis, CarrierBody, CarrierInitial, Extrapolation, Force, Friction, Initial, Input, Layer, Link, LinkKind, Material,
@@ -13,11 +13,11 @@ use asperity::simulation::{Simulation, SimulationError};
 use serde::Serialize;
 
 use super::cli::Describe;
-use super::figure::Figure as _;
+use super::figure::{Below, Figure as _};
 use super::files::{FileError, check_outputs, load, print, sources, table_lines};
-use super::foundation;
 use super::runner::start;
 use super::terminal::{LabelledLine, decimal, labelled, lines, rounded};
+use super::{fine, foundation};
 
 /// `asperity describe` failed.
 #[derive(Debug, thiserror::Error)]
@@ -40,7 +40,10 @@ pub(crate) fn describe(command: &Describe, path: &std::path::Path) -> Result<(),
     if let Some(output) = &command.plot {
         let picture = foundation::picture(&scene).ok_or(DescribeError::NothingToPlot)?;
         check_outputs([output], sources(path, &scene))?;
-        picture.write(output)?;
+        match fine::picture(&scene) {
+            Some(fine) => Below(picture, fine).write(output)?,
+            None => picture.write(output)?,
+        }
     }
     let text = if command.json { json(&scene)? } else { text(&scene)? };
     Ok(print(&text)?)
@@ -70,6 +73,7 @@ pub(super) fn rows(scene: &Scene) -> Vec<LabelledLine> {
     rows.extend(labelled("Order", [paper_order(scene), order_as_coded(scene)]));
     rows.push(("Profile", profile(&scene.surface)));
     rows.extend(friction(scene));
+    rows.extend(labelled("Fine", fine::rows(scene)));
     rows.extend(labelled("Outputs", OutputGroup::ALL.map(|group| outputs(scene, group))));
     rows.push(("Solver", solver(scene)));
     rows.extend(reduction(scene));
@@ -211,11 +215,7 @@ fn steepest_slope(surface: &Surface) -> f64 {
 }
 
 fn friction(scene: &Scene) -> Vec<LabelledLine> {
-    let fine = fine_texts(scene);
-    let Some(friction) = &scene.friction else {
-        let none = fine.is_empty().then(|| LEFT_OUT.to_owned());
-        return labelled("Friction", none.into_iter().chain(fine));
-    };
+    let Some(friction) = &scene.friction else { return vec![("Friction", LEFT_OUT.into())] };
     let coulomb = format!("coulomb      {}", or_left_out(friction.coulomb, ""));
     let shear = match friction.shear_strength {
         Some(strength) => format!(
@@ -226,38 +226,7 @@ fn friction(scene: &Scene) -> Vec<LabelledLine> {
         None => format!("shear_force  {}", or_left_out(friction.shear_force, " N a mass in contact")),
     };
     let rate_shear = scene.rate_shear().map_or_else(|| LEFT_OUT.into(), |law| rate_shear_text(&law));
-    labelled("Friction", [coulomb, shear, format!("rate_shear   {rate_shear}")].into_iter().chain(fine))
-}
-
-/// Speeds (m/s) and pressures (Pa) at which the law of the waves that the profile lacks is printed.
-const FINE_SPEEDS: [f64; 3] = [1e-4, 1e-2, 1.0];
-const FINE_PRESSURES: [f64; 3] = [1e5, 3e5, 1e6];
-
-/// The roughness below the profile: how steep it is, how it rubs and which part of a contact touches.
-fn fine_texts(scene: &Scene) -> Vec<String> {
-    let (Some(fine), Some(law), Some(area)) = (&scene.fine, FineFriction::new(scene), scene.layer.element_area())
-    else {
-        return Vec::new();
-    };
-    let at_rest = FrictionLaw::new(scene).limit(FINE_PRESSURES[1] * area) / (FINE_PRESSURES[1] * area);
-    let mut texts = vec![
-        format!("fine         {}", fine.describe()),
-        format!(
-            "             gradient {:.4}; at rest T/F_N {at_rest:.3} under {:.0e} Pa",
-            scene.fine_gradient(),
-            FINE_PRESSURES[1]
-        ),
-    ];
-    for pressure in FINE_PRESSURES {
-        let at = |speed: &f64| {
-            let contact = law.contact(pressure * area, *speed);
-            let friction = contact.hysteresis.value / (pressure * area);
-            format!("mu_h {friction:.3}, A_r/A {:.3} at {speed:.0e} m/s", contact.share.value)
-        };
-        let at_speeds: Vec<String> = FINE_SPEEDS.iter().map(at).collect();
-        texts.push(format!("             {pressure:.0e} Pa: {}", at_speeds.join("; ")));
-    }
-    texts
+    labelled("Friction", [coulomb, shear, format!("rate_shear   {rate_shear}")])
 }
 
 /// The law of the contacts, for a material at its temperature.

@@ -200,6 +200,7 @@ impl<'a> Responses<'a> {
         let mut rows: Vec<LabelledLine> = vec![("Scene", self.scene.name.clone())];
         rows.extend(self.temperature().map(|text| ("Temperature", text)));
         rows.extend(self.responses.iter().map(|response| (kind, self.figures(response))));
+        rows.extend(self.heat().map(|text| ("Heat", text)));
         rows.extend(files::table_lines(self.scene));
         format!("{}\n{}\n", lines(&rows), self.table())
     }
@@ -216,6 +217,20 @@ impl<'a> Responses<'a> {
                     short(wlf.reference_temperature)
                 )
             },
+        ))
+    }
+
+    /// How it takes up the heat of friction.
+    fn heat(&self) -> Option<String> {
+        let material = self.scene.material.as_ref()?;
+        let heat = material.heat?;
+        let diffusivity = heat.conductivity / (material.density * heat.capacity);
+        Some(format!(
+            "conductivity {} W/(m K), capacity {} J/(kg K), diffusivity {} m²/s; takes {} of the power of friction",
+            short(heat.conductivity),
+            short(heat.capacity),
+            short(diffusivity),
+            short(heat.share)
         ))
     }
 

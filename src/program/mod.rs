@@ -6,6 +6,7 @@ mod describe;
 mod draft;
 mod figure;
 mod files;
+mod fine;
 mod fit;
 mod foundation;
 mod html;

@@ -3,16 +3,17 @@
 //! B. N. J. Persson, J. Chem. Phys. 115, 2001, 3840. Waves of the profile are added in the order of their wave numbers
 //! q. Those up to m press with the mean square σ_m² = Σ z_n² <|K M(q_n v cos φ)|²>, so the part P_m = erf(p/(√2 σ_m))
 //! of the surface is in contact, and μ = (1/p) Σ q_m z_m² K <cos φ Im M(q_m v cos φ)> P_m S_m. S is 1, or ½ + ½P² for
-//! contacts that deform less than the whole surface would.
+//! contacts that deform less than the whole surface would. The waves that the profile lacks follow in bands; the area is
+//! that of the profile's waves, as the contact ratio of a run is.
 
-use std::f64::consts::{FRAC_PI_2, SQRT_2};
+use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 
-use asperity::scene::{Body, FineBand, Material, Scene, Spectrum};
+use asperity::scene::{Body, FineBand, FineRoughness, Material, Scene, Spectrum};
 
 /// Area and friction by the theory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Theory {
-    /// In contact over the whole, 1.
+    /// In contact over the whole by the waves of the profile, 1.
     pub(super) area: f64,
     /// Friction coefficient with S = 1.
     pub(super) friction: f64,
@@ -31,27 +32,11 @@ pub(super) enum Dimension {
 const ANGLES: u32 = 32;
 
 impl Theory {
-    /// Area and friction of the waves that the layer of `scene` resolves, sliding at `speed` (m/s) under `pressure`
-    /// (Pa); `None` in the direct form.
+    /// Area and friction of the waves that the layer of `scene` resolves and of those that the profile lacks, sliding at
+    /// `speed` (m/s) under `pressure` (Pa); `None` in the direct form.
     pub(super) fn new(scene: &Scene, pressure: f64, speed: f64, dimension: Dimension) -> Option<Self> {
-        let material = scene.material.as_ref()?;
-        let body = scene.layer.body(material)?;
-        let waves = resolved(scene);
-        Some(Self::from_waves(&waves, material, body, pressure, speed, dimension))
-    }
-
-    /// The friction that the roughness below the profile's adds by hysteresis, on an isotropic surface; `None` where
-    /// the scene has no such waves.
-    pub(super) fn friction_of_fine_waves(scene: &Scene, pressure: f64, speed: f64) -> Option<f64> {
-        let material = scene.material.as_ref()?;
-        let body = scene.layer.body(material)?;
-        // Half of the mean square height of an isotropic surface is in the waves of its lines.
-        let height = |band: FineBand| 0.5 * band.gradient_square / (band.wave_number * band.wave_number);
-        let fine = scene.fine_bands().into_iter().map(|band| (band.wave_number, height(band)));
-        let coarse = resolved(scene);
-        let all: Vec<(f64, f64)> = coarse.iter().copied().chain(fine).collect();
-        let friction = |waves| Self::from_waves(waves, material, body, pressure, speed, Dimension::Two).friction;
-        (all.len() > coarse.len()).then(|| friction(&all) - friction(&coarse))
+        let parts = Part::all(scene, speed, dimension)?;
+        Some(Self::of(&parts, pressure))
     }
 
     /// Area, friction and friction reduced.
@@ -59,27 +44,139 @@ impl Theory {
         [self.area, self.friction, self.friction_reduced]
     }
 
-    /// Area and friction of waves (q in rad/m, mean square height in m²) in the order of q.
-    fn from_waves(
-        waves: &[(f64, f64)],
-        material: &Material,
-        body: Body,
-        pressure: f64,
-        speed: f64,
-        dimension: Dimension,
-    ) -> Self {
-        let (mut variance, mut theory) = (0.0, Self { area: 1.0, friction: 0.0, friction_reduced: 0.0 });
-        for &(wave_number, mean_square) in waves {
-            let (stiffness, square) = (body.normal(wave_number), dimension.factor() * mean_square);
-            let (modulus_square, loss) = dimension.means(material, wave_number * speed);
-            variance += square * stiffness * stiffness * modulus_square;
-            theory.area = libm::erf(pressure / (SQRT_2 * variance.sqrt()));
-            let friction = wave_number * square * stiffness * loss * theory.area / pressure;
+    fn of(parts: &[Part], pressure: f64) -> Self {
+        let mut theory = Self { area: 1.0, friction: 0.0, friction_reduced: 0.0 };
+        for (part, in_contact) in in_contact(parts, pressure) {
+            if !part.is_fine {
+                theory.area = in_contact;
+            }
+            let friction = part.loss * in_contact / pressure;
             theory.friction += friction;
-            theory.friction_reduced += friction * 0.5 * (1.0 + theory.area * theory.area);
+            theory.friction_reduced += friction * 0.5 * (1.0 + in_contact * in_contact);
         }
         theory
     }
+}
+
+/// What a wave of an isotropic surface, or a band of waves that the profile lacks, gives of friction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct WaveFriction {
+    /// q, rad/m.
+    pub(super) wave_number: f64,
+    /// Whether the profile lacks it.
+    pub(super) is_fine: bool,
+    /// Its part of the friction coefficient by hysteresis, with S = ¾ + ¼P².
+    friction: f64,
+}
+
+/// The friction coefficient of an isotropic surface by the theory, and its parts, with the factors of the law of the
+/// waves that the profile lacks (docs/foundation.md, section 5).
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct WholeFriction {
+    /// Of each wave, in the order of q.
+    pub(super) by_wave: Vec<WaveFriction>,
+    /// What Coulomb's friction and the shear of the area that touches add.
+    pub(super) adhesion: f64,
+}
+
+impl WholeFriction {
+    /// That of `scene` at `speed` (m/s) under `pressure` (Pa); without waves in the direct form.
+    pub(super) fn new(scene: &Scene, pressure: f64, speed: f64) -> Self {
+        let parts = Part::all(scene, speed, Dimension::Two).unwrap_or_default();
+        let of = |(part, in_contact): (&Part, f64)| {
+            let Part { wave_number, is_fine, loss, .. } = *part;
+            let reduced = in_contact * (0.75 + 0.25 * in_contact * in_contact);
+            WaveFriction { wave_number, is_fine, friction: loss * reduced / pressure }
+        };
+        let by_wave = in_contact(&parts, pressure).map(of).collect();
+        let stress = parts.iter().map(|part| part.stress_square).sum::<f64>().sqrt();
+        // σ is ½√Σ of the law on a half-space.
+        let touches = libm::erf(0.5 * PI.sqrt() * pressure / stress);
+        let at_reference = speed * scene.material.as_ref().map_or(1.0, Material::shift_factor);
+        let coulomb = scene.friction.as_ref().and_then(|friction| friction.coulomb).unwrap_or(0.0);
+        let adhesion = coulomb + touches * scene.shear_strength_at(at_reference) / pressure;
+        Self { by_wave, adhesion }
+    }
+
+    /// Its part by the hysteresis of some waves.
+    pub(super) fn hysteresis(&self, of: impl Fn(&WaveFriction) -> bool) -> f64 {
+        self.by_wave.iter().filter(|wave| of(wave)).fold(0.0, |sum, wave| sum + wave.friction)
+    }
+
+    pub(super) fn friction(&self) -> f64 {
+        self.hysteresis(|_| true) + self.adhesion
+    }
+}
+
+/// A wave of the profile, or a band of waves that it lacks, as the material meets it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Part {
+    /// q, rad/m.
+    wave_number: f64,
+    /// What it adds to σ², Pa².
+    stress_square: f64,
+    /// What it loses per distance and area in full contact, Pa.
+    loss: f64,
+    /// Whether the profile lacks it.
+    is_fine: bool,
+}
+
+impl Part {
+    /// Those that the layer of `scene` resolves and the bands below, at `speed` (m/s); `None` in the direct form.
+    fn all(scene: &Scene, speed: f64, dimension: Dimension) -> Option<Vec<Self>> {
+        let material = scene.material.as_ref()?;
+        let body = scene.layer.body(material)?;
+        let profile = resolved(scene).into_iter().map(|wave| Self::of_profile(wave, material, body, speed, dimension));
+        let at_reference = speed * material.shift_factor();
+        let bands = scene.fine.iter().flat_map(|fine| {
+            let bands = scene.fine_bands().into_iter();
+            bands.map(move |band| Self::of_band(band, fine, material, body, at_reference))
+        });
+        Some(profile.chain(bands).collect())
+    }
+
+    /// Of a wave of the profile: q in rad/m and mean square height in m².
+    fn of_profile(
+        (wave_number, mean_square): (f64, f64),
+        material: &Material,
+        body: Body,
+        speed: f64,
+        dimension: Dimension,
+    ) -> Self {
+        let (stiffness, square) = (body.normal(wave_number), dimension.factor() * mean_square);
+        let (modulus_square, loss) = dimension.means(material, wave_number * speed);
+        Self {
+            wave_number,
+            stress_square: square * stiffness * stiffness * modulus_square,
+            loss: wave_number * square * stiffness * loss,
+            is_fine: false,
+        }
+    }
+
+    /// Of a band, which is isotropic whatever the profile is; `speed` in m/s at the reference temperature.
+    fn of_band(band: FineBand, fine: &FineRoughness, material: &Material, body: Body, speed: f64) -> Self {
+        let FineBand { wave_number, gradient_square, .. } = band;
+        let moduli = band.moduli(material, speed);
+        let ratio = body.normal(wave_number) / wave_number;
+        Self {
+            wave_number,
+            stress_square: gradient_square * ratio * ratio * moduli.square,
+            loss: if fine.hysteresis { gradient_square * ratio * moduli.loss } else { 0.0 },
+            is_fine: true,
+        }
+    }
+}
+
+/// Each of the waves, in the order of q, and the part P of the surface that is in contact on it under `pressure` (Pa). A
+/// wave counts in its own P whole, a band, which is wide, by half.
+fn in_contact(parts: &[Part], pressure: f64) -> impl Iterator<Item = (&Part, f64)> {
+    let mut variance = 0.0;
+    parts.iter().map(move |part| {
+        let own = if part.is_fine { 0.5 } else { 1.0 };
+        let seen = variance + own * part.stress_square;
+        variance += part.stress_square;
+        (part, libm::erf(pressure / (SQRT_2 * seen.sqrt())))
+    })
 }
 
 impl Dimension {
@@ -141,8 +238,10 @@ mod tests {
         (1..=200_u32).map(|m| (1e3 * f64::from(m), 1e-12 * f64::from(m).powf(-2.6))).collect()
     }
 
+    /// Area and friction of waves (q in rad/m, mean square height in m²) in the order of q, at 0.3 m/s.
     fn on_half_plane(waves: &[(f64, f64)], material: &Material, pressure: f64, dimension: Dimension) -> Theory {
-        Theory::from_waves(waves, material, Body::HalfPlane, pressure, 0.3, dimension)
+        let part = |&wave: &(f64, f64)| Part::of_profile(wave, material, Body::HalfPlane, 0.3, dimension);
+        Theory::of(&waves.iter().map(part).collect::<Vec<_>>(), pressure)
     }
 
     /// One wave a cos qx in full contact, as Westergaard's: μ = (qa)² Im M(qv)/(4p).

@@ -129,7 +129,7 @@ fn a_table_cut_off_is_completed() {
         let lines = table.lines().map(|line| line.rsplit_once(',').map_or(line, |(start, _)| start).to_owned());
         lines.collect::<Vec<_>>()
     };
-    let row = whole.find("\n0,1,0,16").unwrap() + 1;
+    let row = whole.find("\n0,1,0,1,16").unwrap() + 1;
     let end = row + whole[row..].find('\n').unwrap() + 1;
     // Within the header, within the first row, within the second.
     for cut in [40, row + 30, end + 30] {

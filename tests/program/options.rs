@@ -192,7 +192,7 @@ fn tables_go_to_standard_output() {
     // Of a study all but the run times is the same.
     let study = ["converge", rubber, "--pressure", "1e4", "--speed", "0.1", "--error", "1", "--most-masses", "16"];
     let output = asperity().args(study).args(["-o", "-"]).output().unwrap();
-    assert!(output.stdout.starts_with(b"# asperity converge = 2\n") && output.stdout.ends_with(b"\n"));
+    assert!(output.stdout.starts_with(b"# asperity converge = 3\n") && output.stdout.ends_with(b"\n"));
     assert!(String::from_utf8(output.stderr).unwrap().contains("Verdict"));
 }
 

@@ -4,6 +4,9 @@ use std::f64::consts::TAU;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use asperity::model::FineFriction;
+use asperity::scene::Scene;
+
 use crate::common::scenes::SceneText;
 use crate::common::{Table, asperity, run, scratch};
 
@@ -346,4 +349,33 @@ fn a_profile_that_ends_is_to_be_made_periodic() {
     assert!(message.lines().count() == 1 && !table.exists(), "{message}");
     let (periodic, table) = scene(&folder, &text(true));
     sweep(&periodic, &table, &["--speeds", "1", "--forces", "1"]);
+}
+
+/// One mass on a plane with waves that it lacks: all hysteresis is theirs, and the area that touches is the law's. At 0.1 m/s,
+/// where its friction falls steeply, it would stick and slip.
+#[test]
+fn waves_below_the_profile_have_columns_of_their_own() {
+    let folder = scratch("sweep-fine");
+    let reference = |name: &str| crate::common::root().join(format!("tests/reference/fine/{name}.toml"));
+    let (path, table) = (reference("fine-flat"), folder.join("table.csv"));
+    sweep(&path, &table, &["--speeds", "1,10", "--pressures", "3e5"]);
+    let rows = Table::read(&table);
+    let scene = Scene::load(&path).unwrap();
+    let (law, area) = (FineFriction::new(&scene).unwrap(), scene.layer.element_area().unwrap());
+    for (i, speed) in [1.0, 10.0].into_iter().enumerate() {
+        let contact = law.contact(3e5 * area, speed);
+        let expected = [contact.hysteresis.value / (3e5 * area), contact.share.value * area];
+        let found = ["friction_fine", "area_real"].map(|name| rows.column(name)[i]);
+        for (found, expected) in found.into_iter().zip(expected) {
+            // The mass swings as it slides, and its samples with it.
+            assert!((found / expected - 1.0).abs() < 1e-2, "{found} for {expected} at {speed} m/s");
+        }
+        let hysteresis = rows.column("friction_hysteresis")[i];
+        assert!((hysteresis / found[0] - 1.0).abs() < 1e-9, "{hysteresis} and {found:?}");
+    }
+    assert!(rows.texts("flash_mean").iter().all(|text| text.is_empty()));
+    let table = folder.join("heat.csv");
+    let refused =
+        refused(&[&reference("fine-heat"), Path::new("-o"), &table], &["--speeds", "1", "--pressures", "1e5"]);
+    assert!(refused.contains("material.heat: expected none for steady sliding"), "{refused}");
 }

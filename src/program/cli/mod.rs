@@ -149,8 +149,8 @@ pub(crate) struct Describe {
     /// entries are null or empty.
     #[arg(long)]
     pub(crate) json: bool,
-    /// Plots the stiffness of the links over that of the material's surface, over wavelength, as SVG or PNG according
-    /// to the file name.
+    /// Plots the stiffness of the links over that of the material's surface, over wavelength, and the friction below the
+    /// profile over speed at three temperatures, as SVG or PNG according to the file name.
     #[arg(long, value_name = "OUT.svg", value_parser = picture())]
     pub(crate) plot: Option<PathBuf>,
 }

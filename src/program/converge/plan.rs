@@ -1,5 +1,5 @@
-//! Which runs are to be made: halvings of the spacing until nothing changes any more, then twice the length and other
-//! seeds at that spacing.
+//! Which runs are to be made: halvings of the spacing until nothing changes any more, then twice the length, another
+//! split into profile and finer waves, and other seeds at that spacing.
 
 use super::variants::Variant;
 use super::verdict::{Pair, Study};
@@ -13,6 +13,8 @@ pub(super) struct Plan {
     pub(super) max_halvings: u32,
     /// Number of seeds, the scene's own included; `None` where it has none.
     pub(super) seeds: Option<u32>,
+    /// Whether the profile may end elsewhere, and the waves that it lacks begin there.
+    pub(super) has_split: bool,
 }
 
 /// A run's values; `None`: it did not become steady.
@@ -41,7 +43,8 @@ impl Plan {
             return Next::Runs(vec![Variant::halved(ladder.len() as u32)]);
         }
         let Some(finest) = ladder.len().checked_sub(1) else {
-            return Next::Done(Study { ladder, length: None, seeds: self.seeds.map(|_| vec![None]) });
+            let (split, seeds) = (self.has_split.then_some(None), self.seeds.map(|_| vec![None]));
+            return Next::Done(Study { ladder, length: None, split, seeds });
         };
         let others = self.others(finest as u32);
         let left = missing(others.clone());
@@ -49,8 +52,9 @@ impl Plan {
             return Next::Runs(left);
         }
         let outcomes: Vec<Outcome> = others.into_iter().filter_map(outcome).collect();
-        let seeds = self.seeds.map(|_| outcomes[1..].to_vec());
-        Next::Done(Study { ladder, length: outcomes[0], seeds })
+        let split = self.has_split.then(|| outcomes[1]);
+        let seeds = self.seeds.map(|_| outcomes[1 + usize::from(self.has_split)..].to_vec());
+        Next::Done(Study { ladder, length: outcomes[0], split, seeds })
     }
 
     /// The steady runs from the scene's spacing on, and whether no finer one is to be made.
@@ -67,17 +71,18 @@ impl Plan {
         (ladder, unsteady)
     }
 
-    /// Twice the length, then the other seeds.
+    /// Twice the length, then the other split and the other seeds.
     fn others(&self, halvings: u32) -> Vec<Variant> {
         let finest = Variant::halved(halvings);
         let seeds = (1..self.seeds.unwrap_or(1)).map(|seed_shift| Variant { seed_shift, ..finest });
-        std::iter::once(Variant { doubled: true, ..finest }).chain(seeds).collect()
+        let split = self.has_split.then_some(Variant { split: true, ..finest });
+        std::iter::once(Variant { doubled: true, ..finest }).chain(split).chain(seeds).collect()
     }
 
     /// Number of runs that follow these at least.
     pub(super) fn following(&self, runs: &[Variant]) -> usize {
         let is_of_ladder = runs.iter().any(|run| run.is_of_ladder());
-        if is_of_ladder { self.seeds.unwrap_or(1) as usize } else { 0 }
+        if is_of_ladder { self.others(0).len() } else { 0 }
     }
 }
 
@@ -101,7 +106,7 @@ mod tests {
         unreachable!("the plan has an end")
     }
 
-    const PLAN: Plan = Plan { error: 0.05, max_halvings: 6, seeds: Some(3) };
+    const PLAN: Plan = Plan { error: 0.05, max_halvings: 6, seeds: Some(3), has_split: false };
 
     /// 0.1 (1 + 0.4 2^-i): the fourth halving changes by less than 5 %.
     fn first_order(variant: Variant) -> Outcome {
@@ -117,6 +122,14 @@ mod tests {
         assert_eq!(rounds[1..3], [vec![Variant::halved(2)], vec![Variant::halved(3)]]);
         assert_eq!(rounds[3..], [vec![doubled, seeds[0], seeds[1]]]);
         assert_eq!((study.ladder.len(), study.seeds.map(|seeds| seeds.len())), (4, Some(2)));
+    }
+
+    #[test]
+    fn the_other_split_is_run_at_the_finest_spacing() {
+        let (rounds, study) = made(Plan { has_split: true, ..PLAN }, first_order);
+        assert_eq!(rounds[3][1], Variant { split: true, ..Variant::halved(3) });
+        assert!(study.split.is_some_and(|split| split.is_some()));
+        assert_eq!(study.seeds.map(|seeds| seeds.len()), Some(2));
     }
 
     #[test]

@@ -33,7 +33,7 @@ pub(super) fn picture(title: &str, runs: &[RunRow]) -> Stacked {
     Stacked { title: title.to_owned(), x_title: "spacing in m".into(), panels }
 }
 
-fn measured(runs: &[RunRow], value: fn(&Pair) -> f64) -> [Curve; 3] {
+fn measured(runs: &[RunRow], value: fn(&Pair) -> f64) -> [Curve; 4] {
     let curve = |name: &str, look: usize, stroke: Stroke, has: fn(&RunRow) -> bool| {
         let point = |run: &RunRow| Some((run.dimensions.spacing, value(&run.mean()?)));
         let points = runs.iter().filter(|run| has(run)).filter_map(point).collect();
@@ -42,6 +42,7 @@ fn measured(runs: &[RunRow], value: fn(&Pair) -> f64) -> [Curve; 3] {
     [
         curve("this scene", 0, Stroke::Line, |run| run.variant.is_of_ladder()),
         curve("twice the length", 1, Stroke::Rings, |run| run.variant.doubled),
+        curve("another split", 4, Stroke::Rings, |run| run.variant.split),
         curve("other seeds", 2, Stroke::Rings, |run| run.variant.seed_shift > 0),
     ]
 }

@@ -5,11 +5,12 @@ use super::verdict::{LargestOpen, Open, Pair, Source, Verdict};
 use crate::program::persson::Theory;
 use crate::program::terminal::{LabelledLine, decimal, labelled, lines, rounded};
 
-const TITLES: [&str; 12] = [
+const TITLES: [&str; 13] = [
     "masses",
     "spacing, m",
     "length, m",
     "seed",
+    "split, m",
     "r rms",
     "friction",
     "std. error",
@@ -46,6 +47,7 @@ fn fields(run: &RunRow, change: Option<Pair>) -> Vec<String> {
         number(dimensions.spacing),
         number(dimensions.length()),
         dimensions.seed.map_or_else(|| "-".into(), |seed| seed.to_string()),
+        dimensions.split.map_or_else(|| "-".into(), number),
         format!("{:.3}", run.fit_rms),
     ];
     let of = |value: fn(&Pair) -> f64| match &run.outcome {
@@ -108,6 +110,9 @@ fn open_line(open: &Open, seeds: Option<u32>) -> String {
     let of = match open.source {
         Source::Spacing => "the last change; an area is of first order, as much again is left of it".to_owned(),
         Source::Length => "the change with twice the length".to_owned(),
+        Source::Split => {
+            "the change with the profile down to half its shortest wave and the finer ones from there".into()
+        }
         Source::Chance => format!("the standard deviation over {} seeds", seeds.unwrap_or_default()),
     };
     format!("{name:<9}friction {}, area {}: {of}", percent(shares.friction), percent(shares.area))
@@ -155,7 +160,7 @@ mod tests {
     fn the_verdict_names_what_leaves_most_open() {
         let pair = |friction: f64, area: f64| Pair { friction, area };
         let ladder = vec![pair(0.5, 0.102), pair(0.5, 0.1)];
-        let study = Study { ladder, length: Some(pair(0.5, 0.1)), seeds: None };
+        let study = Study { ladder, length: Some(pair(0.5, 0.1)), split: None, seeds: None };
         assert_eq!(
             sentence(&Verdict::new(&study, 0.05), 0.05),
             "converged: spacing leaves most open, 2 % of the area, within 5 %"

@@ -15,16 +15,18 @@ use crate::program::persson::Theory;
 use crate::program::terminal::{real, warn};
 
 /// The first line of a table; its number grows when readers have to know of a change.
-const FORMAT: &str = "# asperity converge = 2";
+const FORMAT: &str = "# asperity converge = 3";
 
-const COLUMNS: [&str; 23] = [
+const COLUMNS: [&str; 25] = [
     "halvings [1]",
     "length_factor [1]",
     "seed_shift [1]",
+    "split_factor [1]",
     "masses [1]",
     "spacing [m]",
     "length [m]",
     "seed [1]",
+    "split [m]",
     "status",
     "fit_rms [1]",
     "friction [1]",
@@ -77,7 +79,7 @@ impl RunRow {
 
     /// The row's line, its end included; `change` is that of the values from another run to this one.
     fn line(&self, change: Option<Pair>) -> String {
-        let Dimensions { masses, spacing, seed } = self.dimensions;
+        let Dimensions { masses, spacing, seed, split: longest } = self.dimensions;
         let status = self.outcome.as_ref().err().map_or(STEADY, String::as_str);
         let measured = self.outcome.as_ref().ok();
         let text = |value: Option<f64>| value.map(real).unwrap_or_default();
@@ -88,15 +90,17 @@ impl RunRow {
                 change.map(|pair| value(&pair)),
             ]
         };
-        let Variant { halvings, doubled, seed_shift } = self.variant;
+        let Variant { halvings, doubled, seed_shift, split } = self.variant;
         let dimensions = [
             halvings.to_string(),
             if doubled { "2" } else { "1" }.to_owned(),
             seed_shift.to_string(),
+            if split { "0.5" } else { "1" }.to_owned(),
             masses.to_string(),
             real(spacing),
             real(self.dimensions.length()),
             seed.map(|seed| seed.to_string()).unwrap_or_default(),
+            text(longest),
             text_table::quoted(status),
             real(self.fit_rms),
         ];
@@ -118,19 +122,25 @@ impl RunRow {
             |i: usize| Some(Theory { area: number(i)?, friction: number(i + 1)?, friction_reduced: number(i + 2)? });
         let whole = |i: usize| text(i).parse::<u64>().ok();
         let small = |i: usize| text(i).parse::<u32>().ok();
-        let seed = if text(6).is_empty() { None } else { Some(whole(6)?) };
+        let seed = if text(7).is_empty() { None } else { Some(whole(7)?) };
+        let longest = if text(8).is_empty() { None } else { Some(number(8)?) };
         let pair = |friction: usize, area: usize| Some(Pair { friction: number(friction)?, area: number(area)? });
-        let outcome = match text(7) {
-            STEADY => Ok(Measured { mean: pair(9, 13)?, error: pair(10, 14)?, hysteresis: number(12)? }),
+        let outcome = match text(9) {
+            STEADY => Ok(Measured { mean: pair(11, 15)?, error: pair(12, 16)?, hysteresis: number(14)? }),
             status => Err(status.to_owned()),
         };
         Some(Self {
-            variant: Variant { halvings: small(0)?, doubled: text(1) == "2", seed_shift: small(2)? },
-            dimensions: Dimensions { masses: whole(3)?, spacing: number(4)?, seed },
-            fit_rms: number(8)?,
+            variant: Variant {
+                halvings: small(0)?,
+                doubled: text(1) == "2",
+                seed_shift: small(2)?,
+                split: text(3) == "0.5",
+            },
+            dimensions: Dimensions { masses: whole(4)?, spacing: number(5)?, seed, split: longest },
+            fit_rms: number(10)?,
             outcome,
-            theories: [theory(16)?, theory(19)?],
-            run_time: number(22)?,
+            theories: [theory(18)?, theory(21)?],
+            run_time: number(24)?,
         })
     }
 }
@@ -235,8 +245,8 @@ mod tests {
 
     fn run(outcome: Result<Measured, String>) -> RunRow {
         let theory = |area: f64| Theory { area, friction: 0.1 / 3.0, friction_reduced: 1e-7 };
-        let dimensions = Dimensions { masses: 64, spacing: 1e-4 / 3.0, seed: Some(u64::MAX) };
-        let variant = Variant { halvings: 3, doubled: true, seed_shift: 2 };
+        let dimensions = Dimensions { masses: 64, spacing: 1e-4 / 3.0, seed: Some(u64::MAX), split: Some(2e-3) };
+        let variant = Variant { halvings: 3, doubled: true, seed_shift: 2, split: true };
         RunRow { variant, dimensions, fit_rms: 0.25, outcome, theories: [theory(0.1), theory(0.2)], run_time: 12.5 }
     }
 
@@ -246,7 +256,7 @@ mod tests {
         let (mean, error) = (pair(0.1 + 0.2, 0.125), pair(1e-9, 0.0));
         let steady = run(Ok(Measured { mean, error, hysteresis: 0.1 }));
         let failed = run(Err("not steady after 0.5 m, at all: \"never\"".into()));
-        let seedless = Dimensions { seed: None, ..steady.dimensions };
+        let seedless = Dimensions { seed: None, split: None, ..steady.dimensions };
         for run in [steady.clone(), failed, RunRow { dimensions: seedless, ..steady }] {
             for change in [None, Some(pair(-0.5, 0.25))] {
                 let line = run.line(change);

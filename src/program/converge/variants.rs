@@ -21,6 +21,8 @@ pub(super) struct Variant {
     pub(super) doubled: bool,
     /// What is added to the seeds.
     pub(super) seed_shift: u32,
+    /// Whether the profile has waves down to half the wavelength at which those that it lacks begin in the scene.
+    pub(super) split: bool,
 }
 
 impl Variant {
@@ -30,7 +32,7 @@ impl Variant {
 
     /// Whether nothing but the spacing differs.
     pub(super) fn is_of_ladder(self) -> bool {
-        !self.doubled && self.seed_shift == 0
+        !self.doubled && !self.split && self.seed_shift == 0
     }
 
     /// The one that its values are compared with: twice the spacing, or the same one.
@@ -42,9 +44,9 @@ impl Variant {
         }
     }
 
-    /// The place in a table: halvings, then lengths, then seeds.
-    pub(super) fn place(self) -> (bool, bool, u32, u32) {
-        (self.seed_shift > 0, self.doubled, self.halvings, self.seed_shift)
+    /// The place in a table: halvings, then lengths, then the other split, then seeds.
+    pub(super) fn place(self) -> (bool, bool, bool, u32, u32) {
+        (self.seed_shift > 0, self.split, self.doubled, self.halvings, self.seed_shift)
     }
 }
 
@@ -57,6 +59,8 @@ pub(super) struct Dimensions {
     pub(super) spacing: f64,
     /// The seed of the surface, else that of the layer's roughness; `None`: neither has one.
     pub(super) seed: Option<u64>,
+    /// The wavelength at which the profile ends and the waves that it lacks begin, m; `None` where it cannot move.
+    pub(super) split: Option<f64>,
 }
 
 impl Dimensions {
@@ -87,6 +91,15 @@ struct SelfAffineNumbers {
     seed: Number,
 }
 
+/// The number at which the profile ends and the waves that it lacks begin.
+#[derive(Clone, Debug, PartialEq)]
+struct SplitNumber {
+    /// The wavelength, m.
+    wavelength: Number,
+    /// The points of a self-affine surface, which follow its shortest wave.
+    points: Option<Number>,
+}
+
 /// A scene in the material form of which variants are made.
 #[derive(Clone, Debug)]
 pub(super) struct Template {
@@ -98,6 +111,7 @@ pub(super) struct Template {
     spacing: Number,
     /// The surface, then the roughness of the layer.
     self_affine: Vec<SelfAffineNumbers>,
+    split: Option<SplitNumber>,
     /// The dimensions of the scene itself.
     own: Dimensions,
 }
@@ -129,13 +143,21 @@ impl Template {
         let (masses, spacing) = (number(layer, "masses"), number(layer, "spacing"));
         let (masses, spacing) = masses.zip(spacing).ok_or_else(unclear)?;
         let seed = self_affine.first().map(|surface| surface.seed.value.whole());
-        let own = Dimensions { masses: masses.value.whole(), spacing: spacing.value.real(), seed };
-        Ok(Self { path: path.to_owned(), text, in_named_files, masses, spacing, self_affine, own })
+        let split = table(document, "surface").and_then(SplitNumber::new);
+        let longest = split.as_ref().map(|split| split.wavelength.value.real());
+        let (masses_of_scene, spacing_of_scene) = (masses.value.whole(), spacing.value.real());
+        let own = Dimensions { masses: masses_of_scene, spacing: spacing_of_scene, seed, split: longest };
+        Ok(Self { path: path.to_owned(), text, in_named_files, masses, spacing, self_affine, split, own })
     }
 
     /// Whether there are other seeds.
     pub(super) fn has_seed(&self) -> bool {
         self.own.seed.is_some()
+    }
+
+    /// Whether the profile may end elsewhere, and the waves that it lacks begin there.
+    pub(super) fn has_split(&self) -> bool {
+        self.split.is_some()
     }
 
     /// Number of masses of the scene itself.
@@ -148,6 +170,7 @@ impl Template {
             masses: (self.own.masses << variant.halvings) << u32::from(variant.doubled),
             spacing: self.own.spacing / f64::from(variant.halvings).exp2(),
             seed: self.own.seed.map(|seed| shifted(seed, variant.seed_shift)),
+            split: self.own.split.map(|split| if variant.split { 0.5 * split } else { split }),
         }
     }
 
@@ -167,6 +190,13 @@ impl Template {
             changes.push((length, NumberValue::Real(f64::from(factor) * length.value.real())));
             changes.push((points, NumberValue::Whole(u64::from(factor) * points.value.whole())));
             changes.push((seed, NumberValue::Whole(shifted(seed.value.whole(), variant.seed_shift))));
+        }
+        if let Some(SplitNumber { wavelength, points }) = self.split.as_ref().filter(|_| variant.split) {
+            changes.push((wavelength, NumberValue::Real(0.5 * wavelength.value.real())));
+            changes.retain(|(number, _)| Some(*number) != points.as_ref());
+            changes.extend(
+                points.iter().map(|points| (points, NumberValue::Whole(2 * u64::from(factor) * points.value.whole()))),
+            );
         }
         changes.retain(|(number, value)| number.value != *value);
         // From the end, so that those before stay where they are.
@@ -193,6 +223,20 @@ impl SelfAffineNumbers {
             points: number(surface, "points")?,
             seed: number(surface, "seed")?,
         })
+    }
+}
+
+impl SplitNumber {
+    /// That of a table of a surface: of a self-affine one whose law goes on below its cut-off, or of a measured line that
+    /// is split; `None` for every other one.
+    fn new(surface: &DeTable<'_>) -> Option<Self> {
+        let fine = table(surface, "fine")?;
+        if fine.contains_key("split") {
+            return Some(Self { wavelength: number(fine, "split")?, points: None });
+        }
+        let continued = fine.contains_key("shortest") && !fine.contains_key("longest");
+        let wavelength = number(surface, "cut_off_wavelength").filter(|_| continued)?;
+        Some(Self { wavelength, points: number(surface, "points") })
     }
 }
 
@@ -259,7 +303,7 @@ mod tests {
     #[test]
     fn variants_change_spacing_length_and_seeds_alone() {
         let template = template(TEXT).unwrap();
-        let variant = Variant { halvings: 2, doubled: true, seed_shift: 3 };
+        let variant = Variant { halvings: 2, doubled: true, seed_shift: 3, split: false };
         let expected = TEXT
             .replace("0x10, spacing = 1e-4", "128, spacing = 2.5e-5")
             .replace("9223372036854775807, length = 1.0, points = 1_000", "2, length = 2.0, points = 2000")
@@ -268,8 +312,23 @@ mod tests {
         assert_eq!(template.text_of(variant), expected);
         let scene = template.scene(variant).unwrap();
         assert_eq!((scene.layer.masses, scene.layer.roughness.len(), scene.surface.x().len()), (128, 128, 129));
-        assert_eq!(template.dimensions(variant), Dimensions { masses: 128, spacing: 2.5e-5, seed: Some(8) });
+        let dimensions = Dimensions { masses: 128, spacing: 2.5e-5, seed: Some(8), split: None };
+        assert_eq!(template.dimensions(variant), dimensions);
         assert!(scene.layer.roughness.iter().any(|height| *height != 0.0));
+    }
+
+    /// The profile gets the waves that it lacked, down to half the wavelength, and points for them.
+    #[test]
+    fn the_split_moves_with_the_profile() {
+        let text = TEXT.replace("[solver]", "fine = { shortest = 1e-6 }\n[solver]");
+        let split = Variant { split: true, ..Variant::default() };
+        let template = template(&text).unwrap();
+        let expected = text.replace("points = 64", "points = 128").replace("= 2e-4", "= 0.0001");
+        assert_eq!((template.text_of(split), template.has_split()), (expected, true));
+        let scenes = [Variant::default(), split].map(|variant| template.scene(variant).unwrap());
+        // One octave of more than seven.
+        let bands = scenes.each_ref().map(|scene| scene.fine_gradient().powi(2));
+        assert!(bands[1] < 0.97 * bands[0], "{bands:?}");
     }
 
     #[test]

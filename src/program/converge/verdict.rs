@@ -56,6 +56,9 @@ pub(super) struct Study {
     pub(super) ladder: Vec<Pair>,
     /// The finest of these with twice the length.
     pub(super) length: Option<Pair>,
+    /// The finest of these with the profile down to half the wavelength at which the waves that it lacks begin; `None`
+    /// where that cannot move.
+    pub(super) split: Option<Option<Pair>>,
     /// The finest of these with other seeds; `None` where the scene has no seed.
     pub(super) seeds: Option<Vec<Option<Pair>>>,
 }
@@ -65,6 +68,7 @@ pub(super) struct Study {
 pub(super) enum Source {
     Spacing,
     Length,
+    Split,
     Chance,
 }
 
@@ -73,6 +77,7 @@ impl Source {
         match self {
             Self::Spacing => "spacing",
             Self::Length => "length",
+            Self::Split => "split",
             Self::Chance => "chance",
         }
     }
@@ -110,6 +115,9 @@ impl Verdict {
             Open { source: Source::Spacing, shares: last_change(&study.ladder) },
             Open { source: Source::Length, shares: length(study) },
         ];
+        if let Some(split) = study.split {
+            open.push(Open { source: Source::Split, shares: split_shares(study.ladder.last(), split) });
+        }
         if let Some(seeds) = &study.seeds {
             open.push(Open { source: Source::Chance, shares: chance(study.ladder.last(), seeds) });
         }
@@ -143,6 +151,12 @@ fn last_change(ladder: &[Pair]) -> Option<Pair> {
 
 fn length(study: &Study) -> Option<Pair> {
     Some(study.length?.change_from(study.ladder.last()?).abs())
+}
+
+/// The change of friction alone: of the area in contact with the profile's waves finer ones take their part.
+fn split_shares(own: Option<&Pair>, split: Option<Pair>) -> Option<Pair> {
+    let change = split?.change_from(own?).abs();
+    Some(Pair { area: 0.0, ..change })
 }
 
 /// The standard deviation over the seeds, the scene's own included, over the mean.
@@ -179,7 +193,7 @@ mod tests {
     }
 
     fn study(ladder: &[(f64, f64)], length: (f64, f64)) -> Study {
-        Study { ladder: pairs(ladder), length: pairs(&[length]).pop(), seeds: None }
+        Study { ladder: pairs(ladder), length: pairs(&[length]).pop(), split: None, seeds: None }
     }
 
     /// An area of first order, 0.1 (1 + 0.4 2^-i): the changes are half of what was left before, and as much is left.
@@ -224,6 +238,17 @@ mod tests {
         assert!((shares.friction - 0.2).abs() < 1e-12 && shares.area < 1e-12, "{shares:?}");
         assert!(verdict.is_converged() && verdict.largest().unwrap().source == Source::Chance);
         assert!(!Verdict::new(&steady, 0.15).is_converged());
+    }
+
+    /// The area of the profile alone falls as it gets finer waves; friction has to stay.
+    #[test]
+    fn the_split_is_judged_by_friction() {
+        let of = |friction: f64| Some(pairs(&[(friction, 0.07)]).pop());
+        let steady = Study { split: of(0.48), ..study(&[(0.5, 0.1), (0.5, 0.1)], (0.5, 0.1)) };
+        assert!(Verdict::new(&steady, 0.05).is_converged());
+        let verdict = Verdict::new(&Study { split: of(0.4), ..steady.clone() }, 0.05);
+        assert!(!verdict.is_converged() && verdict.largest().unwrap().source == Source::Split);
+        assert!(!Verdict::new(&Study { split: Some(None), ..steady }, 0.05).is_converged());
     }
 
     #[test]

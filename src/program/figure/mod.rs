@@ -22,7 +22,7 @@ use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyl
 
 pub(crate) use chart::{Curve, Stroke};
 pub(crate) use ladders::{Ladder, LadderPanel, Ladders, Rung};
-pub(crate) use panels::{LinearPanel, LinearStack, Panel, ProfilePicture, SideBySide, Stacked, TimeHistory};
+pub(crate) use panels::{Below, LinearPanel, LinearStack, Panel, ProfilePicture, SideBySide, Stacked, TimeHistory};
 pub(crate) use patch::PatchHistory;
 pub(crate) use plot::{PlotError, plot_files};
 

@@ -98,6 +98,28 @@ impl SideBySide {
     }
 }
 
+/// A figure, with its title, and another one below it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Below<A, B>(pub(crate) A, pub(crate) B);
+
+impl<A: Figure, B: Figure> Figure for Below<A, B> {
+    fn size(&self) -> (u32, u32) {
+        let (upper, lower) = (self.0.size(), self.1.size());
+        (upper.0.max(lower.0), upper.1 + lower.1)
+    }
+
+    fn title(&self) -> &str {
+        self.0.title()
+    }
+
+    fn draw<C: Backend>(&self, canvas: &Canvas<C>) -> DrawResult {
+        // What the title leaves of the height is the upper figure's.
+        let (upper, lower) = canvas.split_vertically(canvas.dim_in_pixel().1 - self.1.size().1 * FINE);
+        self.0.draw(&upper)?;
+        self.1.draw(&lower)
+    }
+}
+
 /// Charts below each other over the same linear axis; each has a legend and a vertical axis of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LinearStack {

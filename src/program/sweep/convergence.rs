@@ -45,7 +45,7 @@ fn verdict(text: &str, scene: &str) -> Result<String, String> {
 mod tests {
     use super::*;
 
-    const STUDY: &str = "# asperity converge = 2\n# scene = block\n# pressure = 100000 Pa\n# speed = 0.1 m/s\n\
+    const STUDY: &str = "# asperity converge = 3\n# scene = block\n# pressure = 100000 Pa\n# speed = 0.1 m/s\n\
                          # verdict = converged: spacing leaves most open\nmasses\n";
 
     #[test]

@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# Sweeps the compound over the road at three temperatures and pressures, slides the locked wheel and draws both: all in FOLDER, by
+# default target/road.
+#
+#   scenes/road/run.sh [FOLDER]
+set -euo pipefail
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+root=$(cd "$here/../.." && pwd)
+folder=${1:-$root/target/road}
+mkdir -p "$folder"
+
+cargo build --release --locked --manifest-path "$root/Cargo.toml"
+asperity=${CARGO_TARGET_DIR:-$root/target}/release/asperity
+"$asperity" describe "$here/road.toml" --plot "$folder/law.svg"
+"$asperity" sweep "$here/road.toml" --speeds 1e-5..10/13 --pressures 1e5,3e5,1e6 --temperatures 278.15,293.15,313.15 \
+    --distance 1 --error 0.02 -o "$folder/road.csv"
+"$asperity" simulate "$here/slide.toml" -o "$folder/slide.csv" --points 2000
+"$asperity" plot "$folder/slide.csv" --y friction.coefficient --labels slide --title "Friction of the locked wheel" \
+    -o "$folder/slide.svg"
