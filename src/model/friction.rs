@@ -161,10 +161,15 @@ impl FrictionLaw {
         self.depends_on_speed().then_some(SlipCurve { law: self, fine, normal, flash })
     }
 
-    /// Friction under F_N (N) at the `speed` in the direction of slip, m/s.
+    /// Friction under F_N (N) at the `speed` in the direction of slip, m/s. On roughness below the profile `limit` is then
+    /// Coulomb's part alone and `excess` the rest, unless the mass has turned round: their sum is what counts.
     #[inline]
     pub fn slip(&self, normal: f64, speed: f64, flash: Flash) -> SlipFriction {
-        match self.slip_curve(normal, flash) {
+        let fine = self.fine.as_ref().map(|fine| {
+            let pressed = fine.under(normal);
+            (pressed, if speed < 0.0 { pressed.at_rest() } else { FineContact::default() })
+        });
+        match self.depends_on_speed().then_some(SlipCurve { law: self, fine, normal, flash }) {
             Some(curve) => curve.at(speed),
             None => SlipFriction {
                 normal,
@@ -174,6 +179,15 @@ impl FrictionLaw {
                 ..SlipFriction::default()
             },
         }
+    }
+
+    /// A correction `by` (m/s) of Newton's method at the `speed` of slip under F_N (N), as
+    /// [`SlipCurve::along_curve`] takes it; along the tangent where it is small.
+    pub fn along_curve(&self, normal: f64, flash: Flash, (speed, by): (f64, f64), weight: f64) -> f64 {
+        if by.abs() <= STRAIGHT * speed.abs() {
+            return speed + by;
+        }
+        self.slip_curve(normal, flash).map_or(speed + by, |curve| curve.along_curve(speed, by, weight))
     }
 
     /// v_c (m/s), up to which contacts on the roughness below the profile slip as at rest, at the flash temperature
@@ -439,7 +453,7 @@ impl SlipCurve<'_> {
     pub fn along_curve(&self, speed: f64, by: f64, weight: f64) -> f64 {
         let linear = speed + by;
         let constant = linear.abs() <= self.creep_speed() && speed.abs() <= self.creep_speed();
-        if constant || by.abs() <= STRAIGHT * speed.abs() || weight.is_nan() || weight <= 0.0 {
+        if constant || weight.is_nan() || weight <= 0.0 {
             return linear;
         }
         let (here, slope) = self.with_slope(speed);

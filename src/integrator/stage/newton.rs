@@ -564,12 +564,12 @@ impl StageSolver {
         for (&i, slip) in self.slips.iter().zip(&self.friction) {
             let StageFriction { friction, derivative_without } = slip;
             let mass = stage.slipping_mass(i, friction);
-            let Some(curve) = model.friction.slip_curve(friction.normal, flash.of_mass(i)) else { return largest };
             let right = &mut self.system.right[i].x;
             let per_velocity = mass.sigma * mass.q;
             let (speed, by) = (mass.sigma * mass.speed(), per_velocity * *right);
             let steepness = 1.0 + (mass.q2 * friction.by_speed / derivative_without).max(0.0);
-            let corrected = curve.along_curve(speed, by, derivative_without / mass.q2);
+            let (law, weight) = (&model.friction, derivative_without / mass.q2);
+            let corrected = law.along_curve(friction.normal, flash.of_mass(i), (speed, by), weight);
             *right = (corrected - speed) / per_velocity;
             largest = largest.max(steepness * right.abs());
         }
