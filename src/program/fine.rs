@@ -144,9 +144,8 @@ fn flash_rows(scene: &Scene, area: f64) -> Vec<String> {
     let (Some(heating), Some(temperature)) = (Heating::new(scene, area), temperature(scene)) else {
         return Vec::new();
     };
-    let title = format!(
-        "contacts after {CONTACT_LENGTH} m under {CONTACT_PRESSURE:.0e} Pa, of rubber at {temperature} K:"
-    );
+    let title =
+        format!("contacts after {CONTACT_LENGTH} m under {CONTACT_PRESSURE:.0e} Pa, of rubber at {temperature} K:");
     let row = |speed: f64| {
         let (rise, cold, warm) = heating.after(CONTACT_LENGTH, CONTACT_PRESSURE, speed);
         format!("{:<18}{rise:.1} K warmer, T/F_N {warm:.3} in place of {cold:.3}", format!("{speed} m/s"))
