@@ -90,9 +90,9 @@ struct HysteresisTable {
 }
 
 /// Speeds of a decade in the tables: cubics are then off by some 1e-5 of the functions, whose features are a decade wide.
-const PER_DECADE: f64 = 12.0;
+const PER_DECADE: f64 = 18.0;
 /// The step of ln(p/√Σ), over which each band's P_b changes within some units.
-const PRESSURE_STEP: f64 = 0.2;
+const PRESSURE_STEP: f64 = 0.14;
 /// The step of the same in the table of the error function.
 const SHARE_STEP: f64 = 0.1;
 /// The tables end where the moduli have come to their limits: this factor beyond the rates 1/τ of the material.

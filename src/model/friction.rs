@@ -75,6 +75,11 @@ impl SlipFriction {
         self.limit + self.excess
     }
 
+    /// `limit` under another F_N, N.
+    pub fn limit_under(&self, normal: f64) -> f64 {
+        self.limit + (normal - self.normal) * self.by_normal
+    }
+
     /// The tangent of T(0) + ∂T/∂F_N δF_N.
     #[inline(always)]
     pub fn tangent(&self) -> LinearFriction {
@@ -570,7 +575,7 @@ impl FrictionPower {
     ) {
         let (sigma, v) = (mode.direction(), velocity_x);
         let speed = sigma * v * contact.q;
-        self.at_rest += sigma * contact.limit * v * contact.q;
+        self.at_rest += sigma * friction.limit_under(contact.normal) * v * contact.q;
         if law.has_parts {
             self.coulomb += sigma * (law.coulomb * contact.normal) * v * contact.q;
             self.fine += friction.hysteresis * speed;

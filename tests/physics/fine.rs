@@ -27,7 +27,7 @@ fn the_law_is_that_of_the_sums() {
         let (law, fine) = (FrictionLaw::new(&scene), FineFriction::new(&scene).unwrap());
         let normal = pressure * scene.layer.element_area().unwrap();
         let contact = fine.contact(normal, speed);
-        let whole = law.limit(normal) + law.slip(normal, speed, Flash::default()).excess;
+        let whole = law.slip(normal, speed, Flash::default()).force();
         let found = [contact.hysteresis.value / normal, contact.share.value, whole];
         for (name, found, expected) in
             [("friction", found[0], friction), ("area", found[1], share), ("T", found[2], force)]

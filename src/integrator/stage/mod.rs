@@ -519,8 +519,6 @@ impl StageSolver {
                 continue;
             };
             let contact = ContactForces::without_limit(model.mass, forces, v, surface);
-            let limit = friction.limit + (contact.normal - friction.normal) * friction.by_normal;
-            let contact = ContactForces { limit, ..contact };
             rates.set_contact(model, i, mode, v, surface, &contact);
             friction_power.add(&model.friction, mode, v, &contact, friction);
             if let Some(flux) = rates.heat_flux.get_mut(i) {
