@@ -55,7 +55,7 @@ fn weight_of_force_x(model: &Model) -> f64 {
 pub struct ErrorEstimate {
     /// The error estimate over the tolerance.
     pub error: f64,
-    /// The error estimate without the energies, over the tolerance.
+    /// The error estimate without the energies and the speeds of creep, over the tolerance.
     pub motion_error: f64,
     /// The error estimate of the carrier's displacement over the tolerance, taken over the free masses. It counts only
     /// where one of them may touch.
@@ -132,7 +132,6 @@ impl ErrorTest<'_> {
             + of_velocities(&workspace.v_x, &end.velocity_x, rates.x.speed)
             + of_velocities(&workspace.v_z, &end.velocity_z, rates.z.speed)
             + square(CARRIER_WEIGHT) * in_contact
-            + self.creep_squares(model, tolerance, &workspace.v_x)
             + self.flash_squares(model, tolerance);
         // Those of the links: stiff ones as rods, Maxwell elements, and the force on the carrier.
         let mut of_forces = 0.0;
@@ -162,7 +161,8 @@ impl ErrorTest<'_> {
         let mean = |sum: f64| (sum / tolerance.masses as f64).sqrt();
         let of_bodies = if model.has_bodies() { self.body_squares(model, &carrier_error, tolerance) } else { 0.0 };
         let motion_error = mean(sum).hypot(of_bodies.sqrt()).hypot(self.tableau.force_weight * of_forces.sqrt());
-        let error = motion_error.hypot(self.tableau.energy_weight * of_energies.sqrt());
+        let creep = mean(self.creep_squares(model, tolerance, &workspace.v_x));
+        let error = motion_error.hypot(creep).hypot(self.tableau.energy_weight * of_energies.sqrt());
         ErrorEstimate { error, motion_error, carrier_error: mean(free) }
     }
 
