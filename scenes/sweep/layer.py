@@ -12,7 +12,7 @@ from fmpy.fmi2 import FMU2Slave
 
 INPUTS = ("u", "w")
 # Sampled: their means. Added up by the FMU itself: the powers are differences of these energies.
-SAMPLED = ("F_z", "friction.F_hysteresis", "friction.F_adhesion", "contact.ratio")
+SAMPLED = ("F_z", "friction.F_hysteresis", "friction.F_adhesion", "contact.ratio", "contact.area_real")
 CHANNELS = ("damper", "maxwell", "friction", "impact")
 ENERGIES = ("energy.input", *(f"dissipation.E_{channel}" for channel in CHANNELS))
 TEMPERATURE = "material.wlf.temperature"
@@ -72,10 +72,10 @@ class Layer:
             self.step(duration / samples)
             sums += self.get(SAMPLED)
         power = (self.get(ENERGIES) - before) / duration
-        load, hysteresis, adhesion, contact = sums / samples
+        load, hysteresis, adhesion, contact, area = sums / samples
         # The carrier's work is exact, whatever is between the samples.
         means = {"drag": power[0] / self.speed, "load": load, "hysteresis": -hysteresis, "adhesion": -adhesion}
-        return means | {"contact": contact} | dict(zip(CHANNELS, power[1:]))
+        return means | {"contact": contact, "area": area} | dict(zip(CHANNELS, power[1:]))
 
 
 @functools.lru_cache(maxsize=1)

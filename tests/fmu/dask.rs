@@ -49,6 +49,7 @@ fn a_sweep_over_fmus_is_the_programs() {
             ("friction_adhesion", 1e-3),
             ("mean_pressure", 2e-3),
             ("contact_ratio", 1e-2),
+            ("area_real", 1e-2),
             ("P_maxwell", 5e-3),
             ("P_friction", 5e-3),
             ("separation", 1e-2),
