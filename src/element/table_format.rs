@@ -64,12 +64,18 @@ columns! {
     FrictionStandardError: "friction_standard_error [1]", NonNegative, Ignored;
     /// Part of the friction coefficient that is hysteresis, 1.
     Hysteresis: "friction_hysteresis [1]", Any, Optional;
+    /// Part of the friction coefficient that is hysteresis of the waves that the profile lacks, 1; a part of the former.
+    FineHysteresis: "friction_fine [1]", Any, Ignored;
     /// Part of the friction coefficient that is adhesion, 1.
     Adhesion: "friction_adhesion [1]", Any, Ignored;
     /// Mean load over the window, Pa or N.
     MeanLoad: "mean_{load} [{unit}]", Positive, Ignored;
     /// Masses in contact over all masses, 1.
     ContactRatio: "contact_ratio [1]", NonNegative, Optional;
+    /// Area that touches with the roughness below the profile's, m².
+    RealArea: "area_real [m2]", NonNegative, Ignored;
+    /// Mean flash temperature of the masses in contact, K.
+    FlashMean: "flash_mean [K]", NonNegative, Ignored;
     /// Power lost in dampers, W.
     DamperPower: "P_damper [W]", NonNegative, Optional;
     /// Power lost in Maxwell elements, W.

@@ -22,7 +22,7 @@ use super::draft::TablePlace;
 use super::figure::Figure as _;
 use super::files::{FileError, check_outputs, default_output, picture_beside, print_beside, sources};
 use super::interrupt::Farewell;
-use super::sweep::{ProfileEnds, StopBounds, check_profile, relevant, steady_sliding, table_fingerprint};
+use super::sweep::{NeverSteady, StopBounds, check_can_be_steady, relevant, steady_sliding, table_fingerprint};
 use super::terminal::{self, warn};
 use crate::program::persson::{Dimension, Theory};
 use plan::{Next, Plan};
@@ -50,7 +50,7 @@ pub(crate) enum ConvergeError {
     )]
     HeightsAtMasses { path: PathBuf },
     #[error(transparent)]
-    ProfileEnds(#[from] ProfileEnds),
+    NeverSteady(#[from] NeverSteady),
     #[error("{}: expected numbers for layer.masses and layer.spacing", .path.display())]
     Unclear { path: PathBuf },
     #[error("--seeds: neither the scene's surface nor its roughness is self_affine, so nothing depends on a seed")]
@@ -84,7 +84,7 @@ pub(crate) fn converge(command: &Converge) -> Result<ExitCode, ConvergeError> {
     let output = command.output.clone().unwrap_or_else(|| default_output(&command.scene, "converge.csv"));
     let picture = picture_beside(&output, command.plot.as_ref());
     check_outputs([&output].into_iter().chain(&picture), sources(&command.scene, &scene))?;
-    check_profile(&scene)?;
+    check_can_be_steady(&scene)?;
     let place = TablePlace::new(&output)?;
     let (table, runs) = Table::open(&place.path, header(command, &scene)?, command.force)?;
     let (study, mut runs) = Work { command, template: &template, plan, table: &table, output: &output }.finish(runs)?;

@@ -57,31 +57,38 @@ pub(crate) enum SweepError {
     #[error("{}: not a study of this scene's convergence: {problem}", .path.display())]
     NotAStudy { path: PathBuf, problem: String },
     #[error(transparent)]
-    ProfileEnds(#[from] ProfileEnds),
+    NeverSteady(#[from] NeverSteady),
     #[error("{failed} of {total} points are not steady or failed: the column status in {} says why", named(.path))]
     NotSteady { failed: usize, total: usize, path: PathBuf },
 }
 
-/// The profile is too short to slide on until the means are steady.
+/// No slide of the layer could become steady.
 #[derive(Debug, thiserror::Error)]
-#[error(
-    "the profile ends {longest:.4e} m from where the layer starts, and steady sliding takes {needed:.4e} m or more: make it \
-     periodic, as `asperity surface --mirror --write` does, or --taper, and give periodic = true in [surface]"
-)]
-pub(crate) struct ProfileEnds {
-    /// How far the profile reaches from where the layer starts, m.
-    longest: f64,
-    /// The shortest way of a point, m.
-    needed: f64,
+pub(crate) enum NeverSteady {
+    /// The profile, which reaches `longest` (m) from where the layer starts, is too short for the `needed` way (m) of a
+    /// point.
+    #[error(
+        "the profile ends {longest:.4e} m from where the layer starts, and steady sliding takes {needed:.4e} m or more: make it \
+         periodic, as `asperity surface --mirror --write` does, or --taper, and give periodic = true in [surface]"
+    )]
+    ProfileEnds { longest: f64, needed: f64 },
+    #[error(
+        "material.heat: expected none for steady sliding, since contacts of a layer that slides on warm without end; leave it \
+         out, and vary material.wlf.temperature"
+    )]
+    Heats,
 }
 
-/// Refuses a profile that ends before any point could become steady.
-pub(crate) fn check_profile(scene: &Scene) -> Result<(), ProfileEnds> {
+/// Refuses a scene of which no slide could become steady.
+pub(crate) fn check_can_be_steady(scene: &Scene) -> Result<(), NeverSteady> {
+    if scene.material.as_ref().is_some_and(|material| material.heat.is_some()) {
+        return Err(NeverSteady::Heats);
+    }
     let blocks = Blocks::new(scene, 1.0);
     if blocks.has_room(MIN_BLOCKS) {
         return Ok(());
     }
-    Err(ProfileEnds { longest: blocks.longest, needed: MIN_BLOCKS * blocks.length })
+    Err(NeverSteady::ProfileEnds { longest: blocks.longest, needed: MIN_BLOCKS * blocks.length })
 }
 
 /// Computes a table or merges several.
@@ -118,7 +125,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
     let study = convergence::file(command.converged.as_ref(), path);
     let taken = sources(path, &scene).into_iter().chain(study.clone()).collect();
     check_outputs([&output].into_iter().chain(&picture), taken)?;
-    check_profile(&scene)?;
+    check_can_be_steady(&scene)?;
     let scene = relevant(scene);
     let header = TableHeader {
         fingerprint: fingerprint(&scene, command, load)?,

@@ -44,20 +44,25 @@ fn plot(table: &SweepTable) -> SideBySide {
     SideBySide { x_title: "speed in m/s".into(), y_title: "friction coefficient".into(), panels }
 }
 
-/// The friction coefficient and those of its parts that are not 0.
+/// The friction coefficient and those of its parts that are there and not 0.
 fn curves<'a>(name: &str, look: usize, rows: impl Iterator<Item = &'a StoredRow>) -> Vec<Curve> {
-    let parts = [Quantity::Friction, Quantity::Hysteresis, Quantity::Adhesion];
+    let parts = [Quantity::Friction, Quantity::Hysteresis, Quantity::Adhesion, Quantity::FineHysteresis];
     let mut points = parts.map(|_| Vec::new());
     for row in rows.map(|stored| &stored.row) {
         let values = parts.map(|part| row.value(part));
-        if let [Some(_), Some(_), Some(_)] = values {
+        if let [Some(_), Some(_), Some(_), _] = values {
             points
                 .iter_mut()
                 .zip(values)
                 .for_each(|(points, value)| points.extend(value.map(|y| (row.point.speed, y))));
         }
     }
-    let looks = [(name, Stroke::Line), ("hysteresis", Stroke::Dashed), ("adhesion", Stroke::Dotted)];
+    let looks = [
+        (name, Stroke::Line),
+        ("hysteresis", Stroke::Dashed),
+        ("adhesion", Stroke::Dotted),
+        ("of it below the profile", Stroke::Rings),
+    ];
     let curves =
         looks.into_iter().zip(points).map(|((name, stroke), points)| Curve { name: name.into(), look, stroke, points });
     curves

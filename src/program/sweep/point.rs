@@ -68,6 +68,8 @@ pub(crate) struct SteadySliding {
     pub(crate) friction_error: f64,
     /// Masses in contact over all masses, 1.
     pub(crate) contact_ratio: f64,
+    /// Area that touches with the waves that the profile lacks, m²; `None` without them.
+    real_area: Option<f64>,
     /// Standard error of that, 1.
     pub(crate) contact_error: f64,
     /// Power lost in dampers, Maxwell elements, friction and impacts, W; `None` for a channel that the scene cannot
@@ -106,6 +108,8 @@ impl SteadySliding {
 struct FrictionParts {
     whole: f64,
     hysteresis: f64,
+    /// The part of the hysteresis by the waves that the profile lacks; `None` where it lacks none that rub.
+    fine: Option<f64>,
     adhesion: f64,
 }
 
@@ -155,6 +159,8 @@ impl PointResult {
             (Quantity::Time, sliding.time),
         ];
         values.into_iter().for_each(|(quantity, value)| row.set(quantity, Some(value)));
+        row.set(Quantity::FineHysteresis, sliding.friction.fine);
+        row.set(Quantity::RealArea, sliding.real_area);
         Quantity::CHANNELS.into_iter().zip(sliding.channels).for_each(|(channel, power)| row.set(channel, power));
         row
     }
@@ -404,6 +410,7 @@ impl<'a> Search<'a> {
             friction: FrictionParts::new(means),
             friction_error: average.friction.error,
             contact_ratio: means.contact,
+            real_area: means.real_area,
             contact_error: average.contact.error,
             channels: [damper, maxwell, friction, Some(impact.unwrap_or(0.0))],
             runs: self.runs,
@@ -437,8 +444,11 @@ impl FrictionParts {
             [means.drag, means.hysteresis, means.adhesion].map(|force| force / means.load);
         let size = hysteresis.abs() + adhesion.abs();
         let share = if size > 0.0 { hysteresis.abs() / size } else { 1.0 };
-        let hysteresis = hysteresis + share * (whole - hysteresis - adhesion);
-        Self { whole, hysteresis, adhesion: whole - hysteresis }
+        let sampled = hysteresis;
+        let hysteresis = sampled + share * (whole - sampled - adhesion);
+        let scale = if sampled == 0.0 { 1.0 } else { hysteresis / sampled };
+        let fine = means.fine.map(|force| scale * force / means.load);
+        Self { whole, hysteresis, fine, adhesion: whole - hysteresis }
     }
 }
 
@@ -461,10 +471,16 @@ mod tests {
         let of = |drag, hysteresis, adhesion| {
             FrictionParts::new(&BlockMeans { drag, load: 2.0, hysteresis, adhesion, ..BlockMeans::default() })
         };
-        assert_eq!(of(1.0, 0.0, 0.98), FrictionParts { whole: 0.5, hysteresis: 0.0, adhesion: 0.5 });
-        assert_eq!(of(1.0, 0.98, 0.0), FrictionParts { whole: 0.5, hysteresis: 0.5, adhesion: 0.0 });
-        let FrictionParts { whole, hysteresis, adhesion } = of(1.0, 0.6, 0.2);
+        let parts = |whole, hysteresis, adhesion| FrictionParts { whole, hysteresis, fine: None, adhesion };
+        assert_eq!(of(1.0, 0.0, 0.98), parts(0.5, 0.0, 0.5));
+        assert_eq!(of(1.0, 0.98, 0.0), parts(0.5, 0.5, 0.0));
+        let FrictionParts { whole, hysteresis, adhesion, .. } = of(1.0, 0.6, 0.2);
         assert!((hysteresis + adhesion - whole).abs() < 1e-15 && (hysteresis / adhesion - 3.0).abs() < 1e-12);
+        // Of hysteresis that lacks a fifth in its sample the fine waves keep their share.
+        let means =
+            BlockMeans { drag: 1.0, load: 2.0, hysteresis: 0.8, fine: Some(0.4), ..BlockMeans::default() };
+        let fine = FrictionParts::new(&means).fine.unwrap();
+        assert!((fine - 0.25).abs() < 1e-15, "{fine}");
         // Nothing sampled: all that there is are slopes.
         assert_eq!(of(0.0, 0.0, 0.0), FrictionParts::default());
     }

@@ -12,7 +12,14 @@ const LONGEST_PERIOD: f64 = 20.0;
 const SAMPLES: (f64, f64) = (128.0, 2048.0);
 
 /// Sampled at evenly spaced times of a block.
-const SAMPLED: [Output; 4] = [Output::ForceZ, Output::Hysteresis, Output::Adhesion, Output::ContactRatio];
+const SAMPLED: [Output; 6] = [
+    Output::ForceZ,
+    Output::Hysteresis,
+    Output::Adhesion,
+    Output::ContactRatio,
+    Output::FineForce,
+    Output::RealArea,
+];
 /// Integrated by the run itself: a block's mean is the difference over its duration.
 const INTEGRATED: [Output; 5] =
     [Output::InputEnergy, Output::DamperEnergy, Output::MaxwellEnergy, Output::FrictionEnergy, Output::ImpactEnergy];
@@ -45,6 +52,10 @@ pub(super) struct BlockMeans {
     pub(super) adhesion: f64,
     /// Masses in contact over all masses, 1.
     pub(super) contact: f64,
+    /// The part of the hysteresis by the waves that the profile lacks, N; `None` where it lacks none that rub.
+    pub(super) fine: Option<f64>,
+    /// Area that touches with those waves, m²; `None` without them.
+    pub(super) real_area: Option<f64>,
     /// Power lost in dampers, Maxwell elements, friction and impacts, W; none for a channel that the scene cannot have.
     pub(super) power: [Option<f64>; 4],
     /// Displacement of the carrier, m.
@@ -58,13 +69,19 @@ impl BlockMeans {
     pub(super) fn mean(blocks: &[Self]) -> Self {
         let share = 1.0 / blocks.len() as f64;
         let of = |value: &dyn Fn(&Self) -> f64| share * blocks.iter().map(value).sum::<f64>();
-        let power = |i: usize| blocks[0].power[i].map(|_| of(&|means| means.power[i].unwrap_or(0.0)));
+        // What the scene has the first block has.
+        let of_some = |value: &dyn Fn(&Self) -> Option<f64>| {
+            value(&blocks[0]).map(|_| of(&|means| value(means).unwrap_or(0.0)))
+        };
+        let power = |i: usize| of_some(&|means| means.power[i]);
         Self {
             drag: of(&|means| means.drag),
             load: of(&|means| means.load),
             hysteresis: of(&|means| means.hysteresis),
             adhesion: of(&|means| means.adhesion),
             contact: of(&|means| means.contact),
+            fine: of_some(&|means| means.fine),
+            real_area: of_some(&|means| means.real_area),
             power: [0, 1, 2, 3].map(power),
             w: of(&|means| means.w),
             acceleration: of(&|means| means.acceleration),
@@ -190,9 +207,10 @@ impl Slide {
         self.slid += 1.0;
         let share = 1.0 / f64::from(self.blocks.samples);
         self.elongations.iter_mut().chain(&mut sums).for_each(|sum| *sum *= share);
+        let means = SAMPLED.map(|output| value_of(output, sampled, &sums));
         let gain = self.energies();
         let mean = |i: usize| Some((gain[i]? - before[i]?) / duration);
-        let [load, hysteresis, adhesion, contact] = [0, 1, 2, 3].map(|i| sums[i]);
+        let [load, hysteresis, adhesion, contact] = [0, 1, 2, 3].map(|i| means[i].unwrap_or(0.0));
         let (drag, power) = (mean(0).unwrap_or(0.0) / self.blocks.speed, [1, 2, 3, 4].map(mean));
         Ok(BlockMeans {
             drag,
@@ -200,6 +218,8 @@ impl Slide {
             hysteresis: -hysteresis,
             adhesion: -adhesion,
             contact,
+            fine: means[4].map(|force| -force),
+            real_area: means[5],
             power,
             w: share * w,
             acceleration: (w_rate - rate_before) / duration,
@@ -225,8 +245,7 @@ impl Slide {
     fn energies(&mut self) -> [Option<f64>; INTEGRATED.len()] {
         let mut values = vec![0.0; self.integrated.len()];
         self.simulation.evaluate(&self.integrated, &mut values);
-        let of = |output| self.integrated.iter().position(|variable| variable.output == output).map(|i| values[i]);
-        INTEGRATED.map(of)
+        INTEGRATED.map(|output| value_of(output, &self.integrated, &values))
     }
 }
 
@@ -238,6 +257,11 @@ fn rate(rate: f64) -> Path {
 fn chosen(scene: &Scene, outputs: &[Output]) -> Vec<Variable> {
     let all = variables(scene);
     outputs.iter().filter_map(|output| all.iter().find(|variable| variable.output == *output).cloned()).collect()
+}
+
+/// The value of an output among those of `variables`; `None` where they lack it.
+fn value_of(output: Output, variables: &[Variable], values: &[f64]) -> Option<f64> {
+    variables.iter().position(|variable| variable.output == output).map(|i| values[i])
 }
 
 fn add(sums: &mut [f64], values: &[f64]) {
