@@ -89,6 +89,17 @@ pub struct FrictionShares {
     pub fine: f64,
 }
 
+/// A contact that slides at a temperature that is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SlidingContact {
+    /// T, N.
+    pub friction: f64,
+    /// The part of T by the hysteresis of the waves that the profile lacks, N.
+    pub hysteresis: f64,
+    /// A_r/A, 1.
+    pub share: f64,
+}
+
 /// A law of friction that is linear in the normal force, or the tangent of another: T(0) = μ F_N + `shear`.
 #[derive(Clone, Copy, Debug)]
 pub struct LinearFriction {
@@ -169,6 +180,15 @@ impl FrictionLaw {
                 ..SlipFriction::default()
             },
         }
+    }
+
+    /// The contact under F_N (N) at the `speed` (m/s) and the flash temperature `flash`, K.
+    pub fn sliding(&self, normal: f64, speed: f64, flash: f64) -> SlidingContact {
+        let FineContact { share, hysteresis } = self.fine_contact(normal, speed, flash);
+        let shift = self.shift.map_or(1.0, |shift| shift.ratio(flash).0);
+        let of_rate = self.rate_shear.as_ref().map_or(0.0, |law| law.with_slope(shift * speed).0);
+        let friction = self.coulomb * normal + hysteresis.value + share.value * (self.shear + of_rate);
+        SlidingContact { friction, hysteresis: hysteresis.value, share: share.value }
     }
 
     /// v_c (m/s), up to which contacts on the roughness below the profile slip as at rest, at the flash temperature

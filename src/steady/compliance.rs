@@ -12,8 +12,6 @@ pub struct Compliance {
     pub compliance: Vec<Complex<f64>>,
     /// M K, Pa/m; 0 of the mean. Its real part, which stands for its inverse's, of two points a wave.
     pub stiffness: Vec<Complex<f64>>,
-    /// |M K|, Pa/m.
-    pub size: Vec<f64>,
 }
 
 impl Compliance {
@@ -28,13 +26,12 @@ impl Compliance {
         let (size, share) = (surface.size, surface.share_of_point());
         let zero = Complex::from(0.0);
         let count = size.columns() * size.ny;
-        let mut found = Self { compliance: vec![zero; count], stiffness: vec![zero; count], size: vec![0.0; count] };
+        let mut found = Self { compliance: vec![zero; count], stiffness: vec![zero; count] };
         for column in 0..size.columns() {
             let modulus = plane_modulus(material, surface.wave_number(column) * speed);
             let flexibility = 1.0 / modulus;
             let flexibility = if size.is_shortest(column) { Complex::from(flexibility.re) } else { flexibility };
             let modulus = 1.0 / flexibility;
-            let norm = modulus.norm();
             for row in 0..size.ny {
                 if (column, row) == (0, 0) {
                     continue;
@@ -42,11 +39,38 @@ impl Compliance {
                 let (stiffness, at) = (wave_stiffness(surface.magnitude(column, row)), column * size.ny + row);
                 found.compliance[at] = flexibility * (share / stiffness);
                 found.stiffness[at] = modulus * (share * stiffness);
-                found.size[at] = share * stiffness * norm;
             }
         }
         found
     }
+}
+
+/// The kernels of the power that the viscosity of the material loses, and of all that it loses, q_x |û_q|² K Im M over
+/// |p_q|², but for a constant.
+pub(super) fn viscous_losses(
+    surface: &SurfaceGrid,
+    material: &Material,
+    compliance: &Compliance,
+    speed: f64,
+) -> [Vec<f64>; 2] {
+    let (size, viscosity) = (surface.size, material.viscosity.unwrap_or(0.0) * material.shift_factor());
+    let losses = |column: usize, of_viscosity: bool| {
+        let omega = surface.wave_number(column) * speed;
+        let (storage, loss) = material.complex_modulus(omega);
+        // Two points a wave have no phase, and lose nothing.
+        let lost = if of_viscosity { omega * viscosity } else { loss };
+        if size.is_shortest(column) { 0.0 } else { omega * lost / storage.hypot(loss) }
+    };
+    [true, false].map(|of_viscosity| {
+        let waves = compliance.compliance.chunks_exact(size.ny).zip(compliance.stiffness.chunks_exact(size.ny));
+        let columns = waves.enumerate().map(|(column, waves)| (losses(column, of_viscosity), waves));
+        // |1/(M K)|² K = |1/(M K)|² |M K|/|M|
+        let kernel = columns.flat_map(|(loss, (compliance, stiffness))| {
+            let size = |(c, s): (&Complex<f64>, &Complex<f64>)| c.norm_sqr() * s.norm();
+            compliance.iter().zip(stiffness).map(size).map(move |size| loss * size).collect::<Vec<_>>()
+        });
+        kernel.collect()
+    })
 }
 
 /// M = E*/(1 - ν²) at the angular frequency ω, Pa.

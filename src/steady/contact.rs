@@ -7,7 +7,7 @@ use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use super::compliance::Compliance;
-use super::linear::{LinearSolver, gather, remove_mean};
+use super::linear::{LinearSolver, gather};
 use super::surface::SurfaceGrid;
 use super::transform::Convolution;
 use crate::math::{SplitMix64, sum};
@@ -15,14 +15,16 @@ use crate::scene::Material;
 
 /// The residual (root mean square over the contact) of the last set over the rms height.
 const ACCURACY: f64 = 1.0e-6;
-/// That of a grid from which a finer one starts, ...
-const COARSE_ACCURACY: f64 = 1.0e-3;
-/// ... and the part of the points of its set that may still be wrong.
-const COARSE_WRONG: f64 = 0.03;
 /// That of the first set of the finest grid; each set after it has a tenth.
-const FIRST_ACCURACY: f64 = 1.0e-3;
+const FIRST_ACCURACY: f64 = 1.0e-2;
+/// Those of the first and of the last set of a grid from which a finer one starts, ...
+const COARSE_ACCURACIES: (f64, f64) = (1.0e-3, 1.0e-4);
+/// ... and the part of the points of its set that may still be wrong.
+const COARSE_WRONG: f64 = 0.2;
 /// Points this part of the peak to valley below the surface come to the contact.
 const BELOW: f64 = 1.0e-7;
+/// The pressure that a point begins with as it comes to the contact, over the mean.
+const NEXT_TO_NOTHING: f64 = 1.0e-6;
 /// The most sets of a grid.
 const MOST_SETS: usize = 60;
 /// The most sets of a grid from which a finer one starts.
@@ -156,8 +158,8 @@ impl ContactSolver {
 impl Goal {
     const FINEST: Self = Self { first_accuracy: FIRST_ACCURACY, accuracy: ACCURACY, wrong: 0.0, sets: MOST_SETS };
     const COARSE: Self = Self {
-        first_accuracy: COARSE_ACCURACY,
-        accuracy: COARSE_ACCURACY,
+        first_accuracy: COARSE_ACCURACIES.0,
+        accuracy: COARSE_ACCURACIES.1,
         wrong: COARSE_WRONG,
         sets: MOST_COARSE_SETS,
     };
@@ -214,66 +216,38 @@ impl Level {
         fine
     }
 
-    /// The contact from the pressures `first` at all points, which need not be of the right mean.
-    fn solve(&mut self, compliance: &Compliance, first: Vec<f64>, pressure: f64, goal: Goal) -> Contact {
+    /// The contact from the pressures `field` (Pa) at all points, of any mean: the first set is where they are positive.
+    fn solve(&mut self, compliance: &Compliance, mut field: Vec<f64>, pressure: f64, goal: Goal) -> Contact {
         let count = self.surface.size.points();
-        let mut field = first;
-        let mut seen = HashSet::new();
-        let mut accuracy = goal.first_accuracy;
-        let mut best = Contact::nothing();
+        let (mut seen, mut accuracy) = (HashSet::new(), goal.first_accuracy);
         let mut gaps = vec![0.0; count];
-        for round in 1..=goal.sets {
-            let set: Vec<u32> = (0..count as u32).filter(|&point| field[point as usize] > 0.0).collect();
-            let mut p: Vec<f64> = set.iter().map(|&point| field[point as usize]).collect();
-            let scale = pressure * count as f64 / sum(&p);
-            p.iter_mut().for_each(|p| *p *= scale);
-            let mut residual = vec![0.0; p.len()];
-            let moved = self.linear.moved(compliance, &set, &p);
-            set.iter().zip(&mut residual).for_each(|(&point, residual)| {
-                *residual = self.surface.heights[point as usize] - moved[point as usize];
-            });
-            self.linear.solve(compliance, &set, &mut p, &mut residual, accuracy * self.rms);
-            // The gaps of all points.
-            let moved = self.linear.moved(compliance, &set, &p);
-            set.iter().zip(&mut residual).for_each(|(&point, residual)| {
-                *residual = self.surface.heights[point as usize] - moved[point as usize];
-            });
-            let separation = remove_mean(&mut residual);
-            gaps.iter_mut().zip(moved.iter().zip(&self.surface.heights)).for_each(|(gap, (moved, height))| {
-                *gap = moved + separation - height;
-            });
-            let below = -(BELOW * self.peak_to_valley).max(if accuracy > goal.accuracy { accuracy * self.rms } else { 0.0 });
-            set.iter().for_each(|&point| gaps[point as usize] = 0.0);
-            let leave = p.iter().filter(|&&p| p < 0.0).count();
+        let mut found = Contact::nothing();
+        for sets in 1..=goal.sets {
+            let points: Vec<u32> = (0..count as u32).filter(|&point| field[point as usize] > 0.0).collect();
+            let mut pressures: Vec<f64> = points.iter().map(|&point| field[point as usize]).collect();
+            let scale = pressure * count as f64 / sum(&pressures);
+            pressures.iter_mut().for_each(|p| *p *= scale);
+            let separation = self.solve_set(compliance, &points, &mut pressures, accuracy * self.rms, &mut gaps);
+
+            // Who is wrong: gaps are known as well as they were solved for.
+            let known = if accuracy > goal.accuracy { accuracy * self.rms } else { 0.0 };
+            let below = -known.max(BELOW * self.peak_to_valley);
+            let leave = pressures.iter().filter(|&&p| p < 0.0).count();
             let come = gaps.iter().filter(|&&gap| gap < below).count();
-            let wrong = leave + come;
-            if std::env::var("STEADY_TRACE").is_ok() {
-                eprintln!("  {count} round {round} set {} leave {leave} come {come} acc {accuracy:e} pairs {}", set.len(), self.linear.convolution.pairs());
-            }
-            // The next field: what is positive marks the set.
-            field.fill(0.0);
-            set.iter().zip(&p).for_each(|(&point, p)| field[point as usize] = p.max(0.0));
-            best = Contact {
-                is_full: set.len() == count,
-                points: set,
-                pressures: p,
-                separation,
-                left_over: wrong,
-                sets: round,
-            };
-            if wrong as f64 <= goal.wrong * best.points.len() as f64 && accuracy <= goal.accuracy {
+            let left_over = leave + come;
+            found = Contact { is_full: points.len() == count, points, pressures, separation, left_over, sets };
+            if left_over as f64 <= goal.wrong * found.points.len() as f64 && accuracy <= goal.accuracy {
                 break;
             }
-            let mut hasher = DefaultHasher::new();
-            best.points.hash(&mut hasher);
-            let again = wrong > 0 && !seen.insert((hasher.finish(), accuracy.to_bits()));
-            let mut random = SplitMix64::new(round as u64);
-            let mut changes = || !again || random.unit() < 0.5;
-            let least = pressure * 1e-6;
-            for (&point, p) in best.points.iter().zip(&best.pressures) {
-                if *p < 0.0 && !changes() {
-                    field[point as usize] = least;
-                }
+
+            // The next set; half of the wrong ones change where this one has been before.
+            let is_new = left_over == 0 || seen.insert((fingerprint(&found.points), accuracy.to_bits()));
+            let mut random = SplitMix64::new(sets as u64);
+            let mut changes = || is_new || random.unit() < 0.5;
+            let least = NEXT_TO_NOTHING * pressure;
+            field.fill(0.0);
+            for (&point, &p) in found.points.iter().zip(&found.pressures) {
+                field[point as usize] = if p >= 0.0 { p.max(least) } else if changes() { 0.0 } else { least };
             }
             for (value, gap) in field.iter_mut().zip(&gaps) {
                 if *gap < below && changes() {
@@ -282,6 +256,37 @@ impl Level {
             }
             accuracy = (0.1 * accuracy).max(goal.accuracy);
         }
-        best
+        found
     }
+
+    /// Solves for the pressures on a set, and writes the gaps of all points, 0 on the set; returns the separation, m.
+    fn solve_set(
+        &mut self,
+        compliance: &Compliance,
+        set: &[u32],
+        pressures: &mut [f64],
+        tolerance: f64,
+        gaps: &mut [f64],
+    ) -> f64 {
+        let heights = &self.surface.heights;
+        let mut residual = vec![0.0; set.len()];
+        let off = |moved: &[f64], residual: &mut [f64]| {
+            set.iter().zip(residual).for_each(|(&point, off)| *off = heights[point as usize] - moved[point as usize]);
+        };
+        off(self.linear.moved(compliance, set, pressures), &mut residual);
+        self.linear.solve(compliance, set, pressures, &mut residual, tolerance);
+        let moved = self.linear.moved(compliance, set, pressures);
+        off(moved, &mut residual);
+        let separation = sum(&residual) / residual.len() as f64;
+        let gap = |(moved, height): (&f64, &f64)| moved + separation - height;
+        gaps.iter_mut().zip(moved.iter().zip(heights).map(gap)).for_each(|(gap, found)| *gap = found);
+        set.iter().for_each(|&point| gaps[point as usize] = 0.0);
+        separation
+    }
+}
+
+fn fingerprint(points: &[u32]) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    points.hash(&mut hasher);
+    hasher.finish()
 }

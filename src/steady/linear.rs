@@ -6,7 +6,7 @@
 //!
 //! Without the mean over the set, d is gone; p without its part that is even over the set is looked for in the space of
 //! sum 0. There GMRES (Y. Saad, M. H. Schultz, SIAM J. Sci. Stat. Comput. 7, 1986), preconditioned from the right by
-//! |M K| on the set, needs some ten iterations whatever the grid.
+//! M K on the set, needs some ten iterations whatever the grid. (With its phase M K takes an eighth less than |M K|.)
 
 use super::compliance::Compliance;
 use super::transform::Convolution;
@@ -84,7 +84,7 @@ impl LinearSolver {
         while count < most && least_squares.residual.abs() > tolerance {
             // The direction of the pressure, by the preconditioner; and what it moves.
             scatter(set, &self.basis[count], &mut self.field);
-            self.convolution.apply(&mut self.field, &compliance.size);
+            self.convolution.apply(&mut self.field, &compliance.stiffness);
             resize(&mut self.directions, count, set.len());
             gather(set, &self.field, &mut self.directions[count]);
             remove_mean(&mut self.directions[count]);
