@@ -7,17 +7,17 @@ use crate::scene::Material;
 
 /// The factors of the waves of a grid, each with the 1/N of the transforms.
 #[derive(Clone, Debug)]
-pub struct Compliance {
+pub(super) struct Compliance {
     /// 1/(M(q_x v) K(q)), m/Pa; 0 of the mean.
-    pub compliance: Vec<Complex<f64>>,
+    pub(super) compliance: Vec<Complex<f64>>,
     /// M K, Pa/m; 0 of the mean. Its real part, which stands for its inverse's, of two points a wave.
-    pub stiffness: Vec<Complex<f64>>,
+    pub(super) stiffness: Vec<Complex<f64>>,
 }
 
 impl Compliance {
     /// That of `material` sliding at `speed` (m/s) on the grid of `surface`, where a wave of the wave number q moves it by
     /// the pressure over M K(q), `wave_stiffness` K in 1/m.
-    pub fn new(
+    pub(super) fn new(
         surface: &SurfaceGrid,
         material: &Material,
         wave_stiffness: impl Fn(f64) -> f64,

@@ -51,7 +51,7 @@ pub struct Contact {
 
 /// The solver of contacts on a surface and the coarser grids of it, with its memory.
 #[derive(Debug)]
-pub struct ContactSolver {
+pub(super) struct ContactSolver {
     /// From the finest.
     levels: Vec<Level>,
 }
@@ -76,31 +76,31 @@ struct Goal {
 
 impl ContactSolver {
     /// The solver on a surface.
-    pub fn new(surface: SurfaceGrid) -> Self {
+    pub(super) fn new(surface: SurfaceGrid) -> Self {
         let coarser = |surface: &SurfaceGrid| surface.coarser();
         let levels = std::iter::successors(Some(surface), coarser).map(Level::new).collect();
         Self { levels }
     }
 
     /// The surface.
-    pub fn surface(&self) -> &SurfaceGrid {
+    pub(super) fn surface(&self) -> &SurfaceGrid {
         &self.levels[0].surface
     }
 
     /// The transforms of the surface's grid.
-    pub fn convolution(&mut self) -> &mut Convolution {
+    pub(super) fn convolution(&mut self) -> &mut Convolution {
         &mut self.levels[0].linear.convolution
     }
 
     /// The pairs of transforms so far, those of a coarser grid by its part of the points.
-    pub fn pairs(&self) -> f64 {
+    pub(super) fn pairs(&self) -> f64 {
         let points = |level: &Level| level.surface.size.points() as f64;
         let whole = points(&self.levels[0]);
         self.levels.iter().map(|level| level.linear.convolution.pairs() as f64 * points(level) / whole).sum()
     }
 
     /// The contact of `material` under the mean `pressure` (Pa), sliding at `speed` (m/s); and its compliance.
-    pub fn solve(
+    pub(super) fn solve(
         &mut self,
         material: &Material,
         wave_stiffness: impl Fn(f64) -> f64,
@@ -132,7 +132,7 @@ impl ContactSolver {
 
     /// The change of the mean pressure with the separation at a contact whose points stay, Pa/m, under a compliance; `None`
     /// of full contact.
-    pub fn stiffness(&mut self, compliance: &Compliance, contact: &Contact) -> Option<f64> {
+    pub(super) fn stiffness(&mut self, compliance: &Compliance, contact: &Contact) -> Option<f64> {
         if contact.is_full || contact.points.len() < 2 {
             return None;
         }

@@ -11,8 +11,8 @@
 
 mod compliance;
 mod contact;
-mod fixed_point;
 mod heat;
+mod krylov;
 mod linear;
 mod slide;
 mod surface;

@@ -1,14 +1,12 @@
 //! Steady sliding under a pressure at a speed: contact, friction of its points, and the heat that it makes.
 
-use rustfft::num_complex::Complex;
-
 use super::compliance::{Compliance, viscous_losses};
 use super::contact::{Contact, ContactSolver};
-use super::fixed_point::Anderson;
 use super::heat::HeatResponse;
+use super::krylov::Gmres;
 use super::linear::{gather, scatter};
 use super::surface::SurfaceGrid;
-use crate::math::sum;
+use crate::math::{dot, sum};
 use crate::model::{FrictionLaw, SlidingContact};
 use crate::scene::{Body, Material, Scene};
 
@@ -63,8 +61,14 @@ impl SteadySlide {
 
 /// Accuracy of ϑ over its largest.
 const FLASH_ACCURACY: f64 = 1.0e-5;
-/// The most rounds for it.
-const MOST_ROUNDS: usize = 400;
+/// The most steps of Newton's method for it, and the most iterations of one.
+const MOST_STEPS: usize = 50;
+const MOST_ITERATIONS: usize = 80;
+/// The accuracy of a step over the residual.
+const STEP_ACCURACY: f64 = 0.05;
+/// The part of a step is enough that lessens the residual by this part of what it should; the least that is tried.
+const ENOUGH: f64 = 0.1;
+const LEAST_PART: f64 = 0.02;
 
 /// The solver of steady sliding on a surface, with its memory. What it finds does not depend on what it found before.
 #[derive(Debug)]
@@ -93,7 +97,12 @@ impl SlidingRubber {
     fn sliding(&self, pressure: f64, speed: f64, flash: f64) -> SlidingContact {
         let at = self.friction.sliding(pressure * self.element_area, speed, flash);
         let per_area = 1.0 / self.element_area;
-        SlidingContact { friction: per_area * at.friction, hysteresis: per_area * at.hysteresis, share: at.share }
+        SlidingContact {
+            friction: per_area * at.friction,
+            hysteresis: per_area * at.hysteresis,
+            by_flash: per_area * at.by_flash,
+            ..at
+        }
     }
 
     /// The factor of the normal stiffness of a contact that gives the tangential one: R. D. Mindlin's of a half-space; of
@@ -200,27 +209,94 @@ impl SteadySolver {
 
     /// The flash temperatures of the points in contact, K, and whether they are at their fixed point; `None` where friction
     /// heats nothing.
+    ///
+    /// Newton's method on ϑ = κ * χ T(ϑ) v/A: where a contact is so cold that friction rises with its temperature, heat
+    /// feeds itself, and the map would not contract.
     fn flash(&mut self, rubber: &SlidingRubber, speed: f64, contact: &Contact) -> (Option<Vec<f64>>, bool) {
         let Some(heat) = &rubber.heat else { return (None, true) };
-        let kernel: Vec<Complex<f64>> = heat.kernel(self.solver.surface(), speed);
-        let count = contact.points.len();
-        let (mut flash, mut image, mut power) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
+        let kernel = heat.kernel(self.solver.surface(), speed);
         let mut field = vec![0.0; self.slopes.len()];
-        let mut anderson = Anderson::new(count);
-        for _ in 0..MOST_ROUNDS {
-            for ((power, &p), &flash) in power.iter_mut().zip(&contact.pressures).zip(&flash) {
-                *power = speed * rubber.sliding(p, speed, flash).friction;
+        let convolution = self.solver.convolution();
+        let mut warmed = |power: &[f64], warmed: &mut [f64]| {
+            scatter(&contact.points, power, &mut field);
+            convolution.apply(&mut field, &kernel);
+            gather(&contact.points, &field, warmed);
+        };
+        let count = contact.points.len();
+        let mut now = FlashState::new(count);
+        now.evaluate(rubber, speed, contact, &mut warmed);
+        let (mut step, mut next, mut gmres) = (vec![0.0; count], FlashState::new(count), Gmres::default());
+        for _ in 0..MOST_STEPS {
+            if now.is_solved() {
+                return (Some(now.flash), true);
             }
-            scatter(&contact.points, &power, &mut field);
-            self.solver.convolution().apply(&mut field, &kernel);
-            gather(&contact.points, &field, &mut image);
-            let largest = image.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-            let off = flash.iter().zip(&image).fold(0.0_f64, |off, (flash, image)| off.max((flash - image).abs()));
-            if off <= FLASH_ACCURACY * largest {
-                return (Some(image), true);
+            // The step of Newton's method, by how much is left.
+            step.fill(0.0);
+            let mut residual = now.residual.clone();
+            let tolerance = STEP_ACCURACY * now.norm;
+            let mut power = vec![0.0; count];
+            gmres.solve(&mut step, &mut residual, tolerance, MOST_ITERATIONS, |from, direction, image| {
+                direction.copy_from_slice(from);
+                power.iter_mut().zip(from.iter().zip(&now.by_flash)).for_each(|(power, (from, by))| *power = by * from);
+                warmed(&power, image);
+                image.iter_mut().zip(from).for_each(|(image, from)| *image = from - *image);
+            });
+            // As much of it as lessens the residual.
+            let mut part = 1.0;
+            loop {
+                let along = now.flash.iter().zip(&step).map(|(flash, step)| flash + part * step);
+                next.flash.iter_mut().zip(along).for_each(|(flash, along)| *flash = along);
+                next.evaluate(rubber, speed, contact, &mut warmed);
+                if next.norm <= (1.0 - ENOUGH * part) * now.norm || part < LEAST_PART {
+                    break;
+                }
+                part *= 0.5;
             }
-            anderson.advance(&mut flash, &image);
+            std::mem::swap(&mut now, &mut next);
         }
-        (Some(flash), false)
+        (Some(now.flash), false)
+    }
+}
+
+/// Flash temperatures and what they lack of their fixed point.
+#[derive(Debug)]
+struct FlashState {
+    /// ϑ, K.
+    flash: Vec<f64>,
+    /// κ * χ T(ϑ) v/A - ϑ, K.
+    residual: Vec<f64>,
+    /// Its Euclidean norm.
+    norm: f64,
+    /// T v/A, W/m², and its derivative by ϑ.
+    power: Vec<f64>,
+    by_flash: Vec<f64>,
+}
+
+impl FlashState {
+    fn new(count: usize) -> Self {
+        let zeros = || vec![0.0; count];
+        Self { flash: zeros(), residual: zeros(), norm: 0.0, power: zeros(), by_flash: zeros() }
+    }
+
+    fn evaluate(
+        &mut self,
+        rubber: &SlidingRubber,
+        speed: f64,
+        contact: &Contact,
+        warmed: &mut impl FnMut(&[f64], &mut [f64]),
+    ) {
+        for (i, (&p, &flash)) in contact.pressures.iter().zip(&self.flash).enumerate() {
+            let at = rubber.sliding(p, speed, flash);
+            (self.power[i], self.by_flash[i]) = (speed * at.friction, speed * at.by_flash);
+        }
+        warmed(&self.power, &mut self.residual);
+        self.residual.iter_mut().zip(&self.flash).for_each(|(residual, flash)| *residual -= flash);
+        self.norm = dot(&self.residual, &self.residual).sqrt();
+    }
+
+    /// Whether every ϑ is known to a part of the largest.
+    fn is_solved(&self) -> bool {
+        let largest = |values: &[f64]| values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        largest(&self.residual) <= FLASH_ACCURACY * largest(&self.flash)
     }
 }
