@@ -61,14 +61,13 @@ impl SteadySlide {
 
 /// Accuracy of ϑ over its largest.
 const FLASH_ACCURACY: f64 = 1.0e-5;
-/// The most steps of Newton's method for it, and the most iterations of one.
-const MOST_STEPS: usize = 50;
-const MOST_ITERATIONS: usize = 80;
+/// The most steps for it, and the most iterations of one.
+const MOST_STEPS: usize = 400;
+const MOST_ITERATIONS: usize = 40;
 /// The accuracy of a step over the residual.
 const STEP_ACCURACY: f64 = 0.05;
-/// The part of a step is enough that lessens the residual by this part of what it should; the least that is tried.
-const ENOUGH: f64 = 0.1;
-const LEAST_PART: f64 = 0.02;
+/// Time steps are such that no contact changes by more than this in one, K.
+const USUAL_STEP: f64 = 10.0;
 
 /// The solver of steady sliding on a surface, with its memory. What it finds does not depend on what it found before.
 #[derive(Debug)]
@@ -210,8 +209,9 @@ impl SteadySolver {
     /// The flash temperatures of the points in contact, K, and whether they are at their fixed point; `None` where friction
     /// heats nothing.
     ///
-    /// Newton's method on ϑ = κ * χ T(ϑ) v/A: where a contact is so cold that friction rises with its temperature, heat
-    /// feeds itself, and the map would not contract.
+    /// Of ϑ = κ * χ T(ϑ) v/A by Newton's method with a time step δ that grows, as dϑ/dt = κ * χ T(ϑ) v/A - ϑ from ϑ = 0
+    /// comes to rest: where a contact is so cold that friction rises with its temperature, heat feeds itself, there are
+    /// several solutions, and neither the map nor Newton's method alone ends.
     fn flash(&mut self, rubber: &SlidingRubber, speed: f64, contact: &Contact) -> (Option<Vec<f64>>, bool) {
         let Some(heat) = &rubber.heat else { return (None, true) };
         let kernel = heat.kernel(self.solver.surface(), speed);
@@ -225,34 +225,25 @@ impl SteadySolver {
         let count = contact.points.len();
         let mut now = FlashState::new(count);
         now.evaluate(rubber, speed, contact, &mut warmed);
-        let (mut step, mut next, mut gmres) = (vec![0.0; count], FlashState::new(count), Gmres::default());
+        let (mut step, mut left, mut power) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
+        let (mut gmres, mut time_step) = (Gmres::default(), 1.0);
         for _ in 0..MOST_STEPS {
             if now.is_solved() {
                 return (Some(now.flash), true);
             }
-            // The step of Newton's method, by how much is left.
+            // The step by how much is left: (1/δ + 1 - κ * χ T'(ϑ) v/A) step = residual.
             step.fill(0.0);
-            let mut residual = now.residual.clone();
+            left.copy_from_slice(&now.residual);
             let tolerance = STEP_ACCURACY * now.norm;
-            let mut power = vec![0.0; count];
-            gmres.solve(&mut step, &mut residual, tolerance, MOST_ITERATIONS, |from, direction, image| {
+            gmres.solve(&mut step, &mut left, tolerance, MOST_ITERATIONS, |from, direction, image| {
                 direction.copy_from_slice(from);
                 power.iter_mut().zip(from.iter().zip(&now.by_flash)).for_each(|(power, (from, by))| *power = by * from);
                 warmed(&power, image);
-                image.iter_mut().zip(from).for_each(|(image, from)| *image = from - *image);
+                image.iter_mut().zip(from).for_each(|(image, from)| *image = (1.0 + 1.0 / time_step) * from - *image);
             });
-            // As much of it as lessens the residual.
-            let mut part = 1.0;
-            loop {
-                let along = now.flash.iter().zip(&step).map(|(flash, step)| flash + part * step);
-                next.flash.iter_mut().zip(along).for_each(|(flash, along)| *flash = along);
-                next.evaluate(rubber, speed, contact, &mut warmed);
-                if next.norm <= (1.0 - ENOUGH * part) * now.norm || part < LEAST_PART {
-                    break;
-                }
-                part *= 0.5;
-            }
-            std::mem::swap(&mut now, &mut next);
+            now.flash.iter_mut().zip(&step).for_each(|(flash, step)| *flash += step);
+            now.evaluate(rubber, speed, contact, &mut warmed);
+            time_step *= (USUAL_STEP / largest(&step)).clamp(0.3, 3.0);
         }
         (Some(now.flash), false)
     }
@@ -296,7 +287,10 @@ impl FlashState {
 
     /// Whether every ϑ is known to a part of the largest.
     fn is_solved(&self) -> bool {
-        let largest = |values: &[f64]| values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
         largest(&self.residual) <= FLASH_ACCURACY * largest(&self.flash)
     }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest, value| value.abs().max(largest))
 }
