@@ -172,7 +172,7 @@ impl Contact {
 
     /// Points in contact over all, 1.
     pub fn area(&self, surface: &SurfaceGrid) -> f64 {
-        self.points.len() as f64 * surface.share_of_point()
+        self.points.len() as f64 / surface.size.points() as f64
     }
 }
 
@@ -247,7 +247,13 @@ impl Level {
             let least = NEXT_TO_NOTHING * pressure;
             field.fill(0.0);
             for (&point, &p) in found.points.iter().zip(&found.pressures) {
-                field[point as usize] = if p >= 0.0 { p.max(least) } else if changes() { 0.0 } else { least };
+                field[point as usize] = if p >= 0.0 {
+                    p.max(least)
+                } else if changes() {
+                    0.0
+                } else {
+                    least
+                };
             }
             for (value, gap) in field.iter_mut().zip(&gaps) {
                 if *gap < below && changes() {

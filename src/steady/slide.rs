@@ -48,6 +48,8 @@ pub struct SteadySlide {
     pub normal_stiffness: Option<f64>,
     /// The same of displacements along the sliding, Pa/m.
     pub tangential_stiffness: Option<f64>,
+    /// Whether contacts have friction of their own.
+    pub has_friction: bool,
     /// Whether the flash temperature came to its fixed point.
     pub heat_converged: bool,
 }
@@ -163,6 +165,7 @@ impl SteadySolver {
             viscous_share,
             normal_stiffness,
             tangential_stiffness,
+            has_friction: rubber.has_friction,
             heat_converged,
             contact,
         }

@@ -12,14 +12,8 @@ const LONGEST_PERIOD: f64 = 20.0;
 const SAMPLES: (f64, f64) = (128.0, 2048.0);
 
 /// Sampled at evenly spaced times of a block.
-const SAMPLED: [Output; 6] = [
-    Output::ForceZ,
-    Output::Hysteresis,
-    Output::Adhesion,
-    Output::ContactRatio,
-    Output::FineForce,
-    Output::RealArea,
-];
+const SAMPLED: [Output; 6] =
+    [Output::ForceZ, Output::Hysteresis, Output::Adhesion, Output::ContactRatio, Output::FineForce, Output::RealArea];
 /// Integrated by the run itself: a block's mean is the difference over its duration.
 const INTEGRATED: [Output; 5] =
     [Output::InputEnergy, Output::DamperEnergy, Output::MaxwellEnergy, Output::FrictionEnergy, Output::ImpactEnergy];
@@ -70,9 +64,8 @@ impl BlockMeans {
         let share = 1.0 / blocks.len() as f64;
         let of = |value: &dyn Fn(&Self) -> f64| share * blocks.iter().map(value).sum::<f64>();
         // What the scene has the first block has.
-        let of_some = |value: &dyn Fn(&Self) -> Option<f64>| {
-            value(&blocks[0]).map(|_| of(&|means| value(means).unwrap_or(0.0)))
-        };
+        let of_some =
+            |value: &dyn Fn(&Self) -> Option<f64>| value(&blocks[0]).map(|_| of(&|means| value(means).unwrap_or(0.0)));
         let power = |i: usize| of_some(&|means| means.power[i]);
         Self {
             drag: of(&|means| means.drag),
