@@ -39,6 +39,8 @@ pub struct Contact {
     pub points: Vec<u32>,
     /// Their pressures, Pa.
     pub pressures: Vec<f64>,
+    /// The gaps of all points of the surface, m: 0 of those in contact.
+    pub gaps: Vec<f64>,
     /// Separation d of the mean planes, m.
     pub separation: f64,
     /// Whether all points are in contact.
@@ -167,7 +169,15 @@ impl Goal {
 
 impl Contact {
     fn nothing() -> Self {
-        Self { points: Vec::new(), pressures: Vec::new(), separation: 0.0, is_full: false, left_over: 0, sets: 0 }
+        Self {
+            points: Vec::new(),
+            pressures: Vec::new(),
+            gaps: Vec::new(),
+            separation: 0.0,
+            is_full: false,
+            left_over: 0,
+            sets: 0,
+        }
     }
 
     /// Points in contact over all, 1.
@@ -190,6 +200,7 @@ impl Level {
         p.iter_mut().for_each(|p| *p += pressure);
         p.iter().all(|&p| p > 0.0).then(|| Contact {
             points: (0..p.len() as u32).collect(),
+            gaps: vec![0.0; p.len()],
             pressures: p,
             is_full: true,
             ..Contact::nothing()
@@ -235,7 +246,8 @@ impl Level {
             let leave = pressures.iter().filter(|&&p| p < 0.0).count();
             let come = gaps.iter().filter(|&&gap| gap < below).count();
             let left_over = leave + come;
-            found = Contact { is_full: points.len() == count, points, pressures, separation, left_over, sets };
+            let is_full = points.len() == count;
+            found = Contact { points, pressures, separation, is_full, left_over, sets, ..Contact::nothing() };
             if left_over as f64 <= goal.wrong * found.points.len() as f64 && accuracy <= goal.accuracy {
                 break;
             }
@@ -262,7 +274,7 @@ impl Level {
             }
             accuracy = (0.1 * accuracy).max(goal.accuracy);
         }
-        found
+        Contact { gaps, ..found }
     }
 
     /// Solves for the pressures on a set, and writes the gaps of all points, 0 on the set; returns the separation, m.

@@ -51,6 +51,8 @@ pub(crate) enum Command {
     /// Tests whether friction and contact area depend on a scene's spacing, length and seed. Exit status 0: all within
     /// the error; 3: not all.
     Converge(Converge),
+    /// Draws where the rubber touches in steady sliding, and how hard.
+    Contact(Contact),
 }
 
 #[derive(Debug, Args)]
@@ -453,6 +455,31 @@ pub(crate) struct Sweep {
     /// Replaces an existing table instead of continuing it.
     #[arg(long)]
     pub(crate) force: bool,
+    #[command(flatten)]
+    pub(crate) set: Set,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Contact {
+    /// The scene file, in the material form with a foundation "half_space" or "layer" and a periodic surface; its excitation
+    /// and outputs are not used.
+    #[arg(value_name = "SCENE.toml")]
+    pub(crate) scene: PathBuf,
+    /// Mean pressure in Pa.
+    #[arg(long, value_name = "PASCAL", value_parser = positive, allow_negative_numbers = true)]
+    pub(crate) pressure: f64,
+    /// Sliding speed in m/s.
+    #[arg(long, value_name = "SPEED", value_parser = positive, allow_negative_numbers = true)]
+    pub(crate) speed: f64,
+    /// Points of a period along x. Default: the profile's own, or 8 to its shortest wave where they are uneven or fewer.
+    #[arg(long, value_name = "N", value_parser = count)]
+    pub(crate) points: Option<u32>,
+    /// The picture to write, as SVG or PNG according to the file name.
+    #[arg(short, long, value_name = "OUT.png", value_parser = picture())]
+    pub(crate) output: PathBuf,
+    /// A table of all points to write: x, y, height, pressure, gap.
+    #[arg(long, value_name = "OUT.csv")]
+    pub(crate) data: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) set: Set,
 }

@@ -27,12 +27,12 @@ use super::files::{
 use super::interrupt::Farewell;
 use super::terminal::{self, lines, warn};
 use load_search::{heights, rest_separation};
-pub(crate) use method::SweepMethod;
-use method::{Asked, Method, MethodError};
+pub(crate) use method::{Asked, Method, MethodError, SweepMethod};
 use point::{MIN_BLOCKS, PointResult};
 pub(crate) use point::{SMALL as SMALL_FRICTION, SteadySliding, StopBounds};
 use slide::Blocks;
 use solved::SolvedPoints;
+pub(crate) use solved::status as solved_status;
 pub(crate) use table_file::fingerprint as table_fingerprint;
 use table_file::{SweepTable, TableFile, TableFileError};
 use values::Values;

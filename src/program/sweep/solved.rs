@@ -96,7 +96,7 @@ impl SolvedPoints {
 }
 
 /// [`STEADY`], or why the values cannot be relied on.
-fn status(slide: &SteadySlide) -> String {
+pub(crate) fn status(slide: &SteadySlide) -> String {
     match slide.contact.left_over {
         0 if !slide.heat_converged => "the flash temperature does not come to rest".to_owned(),
         0 if slide.contact.is_full => "full contact".to_owned(),
