@@ -78,3 +78,31 @@ impl HeatResponse {
         columns.flat_map(|value| std::iter::repeat_n(value, size.ny)).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Heat made at the surface alone: κ(t) = 1/√(πλρc t), so κ̂(ω) = 1/√(iω λρc), at every frequency.
+    #[test]
+    fn heat_of_the_surface_warms_as_a_half_space() {
+        let text = "name = 'h'\nlayer = { foundation = 'half_space', masses = 8, spacing = 1e-4, width = 1e-2 }\n\
+                    material = { density = 1100.0, poisson_ratio = 0.49, equilibrium_modulus = 5e6, prony = [], \
+                    wlf = { c1 = 7.0, c2 = 120.0, reference_temperature = 293.0, temperature = 293.0 }, \
+                    heat = { conductivity = 0.25, capacity = 1700.0, share = 0.5 } }\n\
+                    friction = { coulomb = 0.5 }\n\
+                    surface = { kind = 'sinusoid', amplitude = 1e-5, wavelength = 1e-3, \
+                    fine = { hurst = 0.8, rms_slope = 1e-9, longest = 1e-3, shortest = 1e-4, hysteresis = false } }";
+        let scene = Scene::parse(text, "heat.toml".as_ref()).unwrap_or_else(|error| unreachable!("{error}"));
+        let Some(response) = HeatResponse::new(&scene) else { unreachable!("the scene has heat") };
+        let effusivity = (0.25_f64 * 1700.0 * 1100.0).sqrt();
+        for step in [1e-3, 1.0, 1e6] {
+            for (i, value) in response.at_multiples(step, 100).into_iter().enumerate() {
+                let omega = step * (i + 1) as f64;
+                let exact = Complex::new(0.5, -0.5) * (2.0_f64.sqrt() * 0.5 / (effusivity * omega.sqrt()));
+                // What the rule leaves out beyond its ends, e^-8.
+                assert!((value - exact).norm() < 1e-3 * exact.norm(), "{omega}: {value} for {exact}");
+            }
+        }
+    }
+}

@@ -150,3 +150,31 @@ fn resize(vectors: &mut Vec<Vec<f64>>, index: usize, length: usize) {
     }
     vectors[index].resize(length, 0.0);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A matrix that is neither symmetric nor near its diagonal, by more iterations than one cycle has, with the residual that
+    /// it says.
+    #[test]
+    fn a_linear_system_is_solved_to_the_residual_that_is_said() {
+        let n = 120;
+        let apply = |x: &[f64], y: &mut [f64]| {
+            for i in 0..n {
+                y[i] = (2.0 + 0.1 * i as f64) * x[i] - 1.5 * x[(i + 1) % n] + 0.3 * x[(i + 7) % n];
+            }
+        };
+        let right: Vec<f64> = (0..n).map(|i| ((i * i) as f64).sin()).collect();
+        let (mut x, mut residual) = (vec![0.0; n], right.clone());
+        Gmres::default().solve(&mut x, &mut residual, 1e-10, 500, |from, direction, image| {
+            direction.copy_from_slice(from);
+            apply(direction, image);
+        });
+        let mut image = vec![0.0; n];
+        apply(&x, &mut image);
+        for i in 0..n {
+            assert!((right[i] - image[i] - residual[i]).abs() < 1e-13 && residual[i].abs() <= 1e-10, "{i}");
+        }
+    }
+}

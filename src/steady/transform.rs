@@ -151,3 +151,35 @@ impl Convolution {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    /// Waves of even and odd numbers of points, shifted by the kernel e^(iq_x s) to where cosines say.
+    #[test]
+    fn a_kernel_acts_on_each_wave() {
+        for (nx, ny) in [(8, 1), (9, 1), (30, 1), (12, 10), (9, 21), (16, 5)] {
+            let size = GridSize { nx, ny };
+            let (m, k) = (3.0, if ny == 1 { 0.0 } else { -2.0 });
+            let wave = |i: usize, j: usize, shift: f64| {
+                let phase = m * (i as f64 / nx as f64 + shift) + k * j as f64 / ny as f64;
+                0.5 + (TAU * phase + 0.4).cos()
+            };
+            let field = |shift: f64| -> Vec<f64> {
+                (0..ny).flat_map(|j| (0..nx).map(move |i| (i, j))).map(|(i, j)| wave(i, j, shift)).collect()
+            };
+            let share = 1.0 / size.points() as f64;
+            let factor = |column: usize| Complex::from_polar(share, TAU * 0.1 * column as f64);
+            let kernel: Vec<_> = (0..size.columns()).flat_map(|i| std::iter::repeat_n(factor(i), ny)).collect();
+            let mut found = field(0.0);
+            Convolution::new(size).apply(&mut found, &kernel);
+            for (found, exact) in found.iter().zip(field(0.1)) {
+                // Roundings of sums of some hundred terms.
+                assert!((found - exact).abs() < 1e-14, "{nx} x {ny}: {found} for {exact}");
+            }
+        }
+    }
+}

@@ -15,7 +15,7 @@ use super::sweep::values::{Shard, Values};
 pub(crate) use values::{Condition, PlotAxis, WlfConstants, tenth};
 use values::{
     Frequencies, Tolerances, column_unit, count, fit_error, frequency, key_and_value, length, picture,
-    picture_or_table, poisson_ratio, positive, powers, seconds, seeds, share, temperature, wavelengths,
+    picture_or_table, poisson_ratio, positive, powers, seconds, seeds, share, table, temperature, wavelengths,
 };
 
 /// Simulates rubber on a rough surface and packs the simulation as an FMU.
@@ -478,7 +478,7 @@ pub(crate) struct Contact {
     #[arg(short, long, value_name = "OUT.png", value_parser = picture())]
     pub(crate) output: PathBuf,
     /// A table of all points to write: x, y, height, pressure, gap.
-    #[arg(long, value_name = "OUT.csv")]
+    #[arg(long, value_name = "OUT.csv", value_parser = table())]
     pub(crate) data: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) set: Set,
