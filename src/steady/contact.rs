@@ -30,7 +30,7 @@ const MOST_SETS: usize = 60;
 /// The most sets of a grid from which a finer one starts.
 const MOST_COARSE_SETS: usize = 6;
 /// The accuracy of the derivative by the separation.
-const DERIVATIVE_ACCURACY: f64 = 1.0e-4;
+const DERIVATIVE_ACCURACY: f64 = 1.0e-3;
 
 /// What a contact is in.
 #[derive(Clone, Debug)]

@@ -25,6 +25,9 @@ const POINTS_PER_WAVE: f64 = 8.0;
 const EVEN: f64 = 1.0e-6;
 
 impl SurfaceGrid {
+    /// The fewest points along the sliding that a surface is solved on.
+    pub const FEWEST: usize = 16;
+
     /// The surface with these heights (m), rows of `nx` along x over the periods `length` and `width` (m).
     pub fn new(size: GridSize, length: f64, width: f64, mut heights: Vec<f64>) -> Self {
         let mean = sum(&heights) / heights.len() as f64;
@@ -51,6 +54,7 @@ impl SurfaceGrid {
             // Of a number that is whole but for rounding none is added.
             (POINTS_PER_WAVE * length / shortest * (1.0 - 1e-9)).ceil()
         }) as usize;
+        let needed = needed.max(Self::FEWEST);
         if is_even && own >= needed { own } else { rounded_up(own.max(needed)) }
     }
 
@@ -99,7 +103,7 @@ impl SurfaceGrid {
     /// Every other point along both directions, with its own mean; `None` where they are few or odd.
     pub(super) fn coarser(&self) -> Option<Self> {
         let GridSize { nx, ny } = self.size;
-        let has_half = |n: usize| n.is_multiple_of(2) && n / 2 >= COARSEST;
+        let has_half = |n: usize| n.is_multiple_of(2) && n / 2 >= Self::FEWEST;
         if !has_half(nx) || (ny > 1 && !has_half(ny)) {
             return None;
         }
@@ -110,9 +114,6 @@ impl SurfaceGrid {
         Some(Self::new(size, self.length, self.width, heights))
     }
 }
-
-/// The fewest points of a row of a grid from which a finer one starts.
-const COARSEST: usize = 16;
 
 /// The next number of the form m 2^k with m from 8 to 15: fast to transform, and even many times.
 fn rounded_up(count: usize) -> usize {

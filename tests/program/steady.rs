@@ -103,10 +103,9 @@ fn a_coarse_profile_is_refined_and_full_contact_is_said() {
     // Full contact is no law that an element could use.
     assert!(!output.status.success());
     let warning = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(warning.contains("fewer than 20 points of the surface in contact"), "{warning}");
+    assert!(warning.contains("fewer than 20 points of the surface are in contact"), "{warning}");
     let text = fs::read_to_string(&table).unwrap();
-    let said =
-        "# method = steady, on 8 points to a period of the profile (8 or more to its shortest wave; the profile has 6)";
+    let said = "# method = steady, on 16 points to a period of the profile (8 or more to its shortest wave; the profile has 6)";
     assert!(text.contains(said), "{text}");
     let rows = Table::read(&table);
     assert_eq!(rows.text(1, "status"), "full contact");

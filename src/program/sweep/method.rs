@@ -23,9 +23,6 @@ pub(crate) enum Method {
     Layer,
 }
 
-/// The fewest points of a period that can be asked for.
-const FEWEST: usize = 16;
-
 /// The scene or an option does not go with the method.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum MethodError {
@@ -37,8 +34,8 @@ pub(crate) enum MethodError {
     OfTheLayer(&'static str),
     #[error("--points: expected none with --method layer, whose points are its masses")]
     OfTheSolver,
-    #[error("--points: expected at least {FEWEST}, found {0}")]
-    FewPoints(usize),
+    #[error("--points: expected at least {least}, found {found}")]
+    FewPoints { least: usize, found: usize },
 }
 
 /// What the command line says of the method.
@@ -77,8 +74,8 @@ impl Asked {
         let surface = &scene.surface;
         let (own, usual) = (surface.x().len() - 1, SurfaceGrid::points_of_profile(surface));
         let points = self.points.map_or(usual, |points| points as usize);
-        if points < FEWEST {
-            return Err(MethodError::FewPoints(points));
+        if points < SurfaceGrid::FEWEST {
+            return Err(MethodError::FewPoints { least: SurfaceGrid::FEWEST, found: points });
         }
         let which = match self.points {
             Some(_) => "as asked for".to_owned(),

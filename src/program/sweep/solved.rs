@@ -87,7 +87,7 @@ impl SolvedPoints {
             rows.filter_map(|row| Some((row, in_contact(row)?))).filter(|(_, count)| *count < FEW).collect();
         let (first, count) = few.first()?;
         Some(format!(
-            "{} points of the table have fewer than {FEW} points of the surface in contact, the first {count} at {}: give more \
+            "fewer than {FEW} points of the surface are in contact at {} of the points of the table, {count} at {}: give more \
              --points",
             few.len(),
             first.point.describe(header.load)
