@@ -114,3 +114,5 @@ pub mod patch;
 pub mod robustness;
 pub mod scene;
 pub mod simulation;
+#[cfg(feature = "program")]
+pub mod steady;

@@ -98,7 +98,7 @@ def find(fmu: Layer, settings: Settings, point: Point) -> dict:
         "friction_adhesion": friction - hysteresis,
         "mean_pressure": mean["load"] / settings.area,
         "contact_ratio": mean["contact"],
-        "area_real": mean["area"],
+        "area_real": mean["area"] / settings.area,
         **{f"P_{channel}": mean[channel] for channel in CHANNELS},
         "separation": settings.rest_separation + secant.w,
         "w": secant.w,

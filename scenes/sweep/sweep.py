@@ -36,7 +36,7 @@ COLUMNS = {
     "friction_adhesion": "1",
     "mean_pressure": "Pa",
     "contact_ratio": "1",
-    "area_real": "m2",
+    "area_real": "1",
     "flash_mean": "K",
     **{f"P_{channel}": "W" for channel in CHANNELS},
     "separation": "m",

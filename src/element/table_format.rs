@@ -72,10 +72,10 @@ columns! {
     MeanLoad: "mean_{load} [{unit}]", Positive, Ignored;
     /// Masses in contact over all masses, 1.
     ContactRatio: "contact_ratio [1]", NonNegative, Optional;
-    /// Area that touches with the roughness below the profile's, m².
-    RealArea: "area_real [m2]", NonNegative, Ignored;
-    /// Mean flash temperature of the masses in contact, K.
-    FlashMean: "flash_mean [K]", NonNegative, Ignored;
+    /// Area that touches with the roughness below the profile's over the nominal area, 1.
+    RealArea: "area_real [1]", NonNegative, Ignored;
+    /// Mean flash temperature of what is in contact, above the mean of the surface, K.
+    FlashMean: "flash_mean [K]", Any, Ignored;
     /// Power lost in dampers, W.
     DamperPower: "P_damper [W]", NonNegative, Optional;
     /// Power lost in Maxwell elements, W.
@@ -160,6 +160,8 @@ pub struct TableHeader {
 /// What the numbers of a table rest on, in words; a line of the header each, where there is something to say.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Basis {
+    /// How steady sliding was found.
+    pub method: Option<String>,
     /// What the links stand for.
     pub foundation: Option<String>,
     /// The roughness below the profile's.
@@ -175,7 +177,8 @@ pub const CONVERGED: &str = "converged";
 
 impl Basis {
     fn lines(&self) -> impl Iterator<Item = String> {
-        let named = BASIS_KEYS.into_iter().zip([&self.foundation, &self.fine, &self.convergence, &self.held]);
+        let named =
+            BASIS_KEYS.into_iter().zip([&self.method, &self.foundation, &self.fine, &self.convergence, &self.held]);
         named.filter_map(|(key, text)| Some(format!("# {key} = {}", one_line(text.as_ref()?))))
     }
 
@@ -185,7 +188,7 @@ impl Basis {
     }
 }
 
-const BASIS_KEYS: [&str; 4] = ["foundation", "fine", "convergence", "held"];
+const BASIS_KEYS: [&str; 5] = ["method", "foundation", "fine", "convergence", "held"];
 
 impl TableHeader {
     /// The lines of the header, the names of the columns included.
@@ -409,8 +412,8 @@ impl TableText {
 
     /// What the numbers rest on, as far as the table says.
     pub(super) fn basis(&self) -> Basis {
-        let [foundation, fine, convergence, held] = BASIS_KEYS.map(|key| self.header.get(key).cloned());
-        Basis { foundation, fine, convergence, held }
+        let [method, foundation, fine, convergence, held] = BASIS_KEYS.map(|key| self.header.get(key).cloned());
+        Basis { method, foundation, fine, convergence, held }
     }
 
     /// The header of a table as a sweep writes it.

@@ -142,14 +142,15 @@ impl FlashKernel {
 
 /// The parts s_b and s_a that bands and surface have in friction at p → 0, together 1.
 #[derive(Clone, Debug)]
-struct HeatParts {
+pub struct HeatParts {
     /// q_b (rad/m) and s_b.
     bands: Vec<(f64, f64)>,
     surface: f64,
 }
 
 impl HeatParts {
-    fn new(scene: &Scene, material: &Material) -> Self {
+    /// Those of a scene of this material.
+    pub fn new(scene: &Scene, material: &Material) -> Self {
         let bands = scene.fine_bands();
         let speed = SPEED_OF_PARTS.max(scene.fine_creep_speed());
         // μ_h of each band and A_r/(A p), for p → 0.
@@ -178,8 +179,8 @@ impl HeatParts {
         Self { bands, surface: surface / whole }
     }
 
-    /// G(k).
-    fn share(&self, k: f64) -> f64 {
+    /// G(k) at the wave number k (rad/m) along the depth, 1.
+    pub fn share(&self, k: f64) -> f64 {
         let band = |&(q, part): &(f64, f64)| part * 4.0 * q * q / (k * k + 4.0 * q * q);
         self.surface + self.bands.iter().map(band).sum::<f64>()
     }

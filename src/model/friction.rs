@@ -97,6 +97,19 @@ pub struct FrictionShares {
     pub fine: f64,
 }
 
+/// A contact that slides at a temperature that is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SlidingContact {
+    /// T, N.
+    pub friction: f64,
+    /// The part of T by the hysteresis of the waves that the profile lacks, N.
+    pub hysteresis: f64,
+    /// A_r/A, 1.
+    pub share: f64,
+    /// ∂T/∂ϑ, N/K.
+    pub by_flash: f64,
+}
+
 /// A law of friction that is linear in the normal force, or the tangent of another: T(0) = μ F_N + `shear`.
 #[derive(Clone, Copy, Debug)]
 pub struct LinearFriction {
@@ -193,6 +206,21 @@ impl FrictionLaw {
             return speed + by;
         }
         self.slip_curve(normal, flash).map_or(speed + by, |curve| curve.along_curve(speed, by, weight))
+    }
+
+    /// The contact under F_N (N) at the `speed` (m/s) and the flash temperature `flash`, K.
+    pub fn sliding(&self, normal: f64, speed: f64, flash: f64) -> SlidingContact {
+        let FineContact { share, hysteresis } = self.fine_contact(normal, speed, flash);
+        let (shift, by_flash) = self.shift.map_or((1.0, 0.0), |shift| shift.ratio(flash));
+        let of_rate = self.rate_shear.as_ref().map_or((0.0, 0.0), |law| law.with_slope(shift * speed));
+        let strength = self.shear + of_rate.0;
+        let by_speed = share.by_speed * strength + share.value * of_rate.1 + hysteresis.by_speed;
+        SlidingContact {
+            friction: self.coulomb * normal + hysteresis.value + share.value * strength,
+            hysteresis: hysteresis.value,
+            share: share.value,
+            by_flash: by_speed * shift * speed * by_flash,
+        }
     }
 
     /// v_c (m/s), up to which contacts on the roughness below the profile slip as at rest, at the flash temperature

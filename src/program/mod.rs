@@ -1,6 +1,7 @@
 //! The commands of the program, one module each, and what they share.
 
 mod cli;
+mod contact;
 mod converge;
 mod describe;
 mod draft;
@@ -35,6 +36,7 @@ use cli::Command;
 pub(crate) fn run(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
     match arguments.command {
         Command::Simulate(command) => run_simulate(&command)?,
+        Command::Contact(command) => contact::contact(&command)?,
         Command::Converge(command) => return Ok(converge::converge(&command)?),
         Command::Plot(command) => figure::plot_files(&command)?,
         Command::Describe(command) => run_describe(&command)?,

@@ -26,6 +26,8 @@ fn a_sweep_over_fmus_is_the_programs() {
     assert_eq!(printed.matches("steady").count(), 4, "{printed}");
     let mut command = asperity();
     command.arg("sweep").arg(example().join("block.toml")).args([
+        "--method",
+        "layer",
         "--speeds",
         "0.1..1/2",
         "--pressures",

@@ -113,7 +113,7 @@ fn slides(name: &str, speeds: &str) {
     run(asperity()
         .arg("sweep")
         .arg(&scene)
-        .args(["--speeds", speeds, "--pressures", &asked.join(",")])
+        .args(["--method", "layer", "--speeds", speeds, "--pressures", &asked.join(",")])
         .arg("-o")
         .arg(&table));
     let found = Table::read(&table);

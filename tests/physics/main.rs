@@ -25,5 +25,6 @@ mod patch;
 mod reduce;
 mod reference;
 mod rows;
+mod steady;
 mod step;
 mod tangent;

@@ -89,7 +89,11 @@ fn a_pressure_beyond_the_links_is_warned_of_once() {
     assert_eq!(warnings(&study), 1, "{study:?}");
     let sweep = |loads: &[&str]| {
         let mut command = asperity();
-        command.arg("sweep").arg(&scene).args(["--speeds", "0.1,1", "--force", "-o"]).arg(folder.join("sweep.csv"));
+        command
+            .arg("sweep")
+            .arg(&scene)
+            .args(["--method", "layer", "--speeds", "0.1,1", "--force", "-o"])
+            .arg(folder.join("sweep.csv"));
         warnings(&command.args(loads).output().unwrap())
     };
     assert_eq!(sweep(&["--pressures", "1e5,2e5"]), 1);

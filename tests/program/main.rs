@@ -27,6 +27,7 @@ mod program;
 mod report;
 mod scene_errors;
 mod seal_ring;
+mod steady;
 mod surface;
 mod sweep;
 #[path = "../common/sweeps.rs"]

@@ -10,11 +10,12 @@ use asperity::scene::{LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt};
 use clap::{ArgGroup, Args, Parser, Subcommand};
 
 use super::overrides::Setting;
+use super::sweep::SweepMethod;
 use super::sweep::values::{Shard, Values};
 pub(crate) use values::{Condition, PlotAxis, WlfConstants, tenth};
 use values::{
     Frequencies, Tolerances, column_unit, count, fit_error, frequency, key_and_value, length, picture,
-    picture_or_table, poisson_ratio, positive, powers, seconds, seeds, share, temperature, wavelengths,
+    picture_or_table, poisson_ratio, positive, powers, seconds, seeds, share, table, temperature, wavelengths,
 };
 
 /// Simulates rubber on a rough surface and packs the simulation as an FMU.
@@ -50,6 +51,8 @@ pub(crate) enum Command {
     /// Tests whether friction and contact area depend on a scene's spacing, length and seed. Exit status 0: all within
     /// the error; 3: not all.
     Converge(Converge),
+    /// Draws where the rubber touches in steady sliding, and how hard.
+    Contact(Contact),
 }
 
 #[derive(Debug, Args)]
@@ -384,8 +387,19 @@ impl Reading {
 }
 
 /// Options of a sweep that --merge does not take.
-const OF_A_SCENE: [&str; 9] =
-    ["speeds", "pressures", "forces", "temperatures", "error", "distance", "shard", "converged", "set"];
+const OF_A_SCENE: [&str; 11] = [
+    "speeds",
+    "pressures",
+    "forces",
+    "temperatures",
+    "method",
+    "points",
+    "error",
+    "distance",
+    "shard",
+    "converged",
+    "set",
+];
 
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("input").required(true)))]
@@ -412,11 +426,19 @@ pub(crate) struct Sweep {
     /// The plot to write, as SVG or PNG according to the file name. Default: the table's name with .svg.
     #[arg(long, value_name = "OUT.svg", value_parser = picture(), conflicts_with = "shard")]
     pub(crate) plot: Option<PathBuf>,
-    /// Admissible standard error of the friction coefficient, relative to it.
-    #[arg(long, value_name = "SHARE", default_value_t = 5e-3, value_parser = share)]
-    pub(crate) error: f64,
-    /// Maximum sliding distance in m for a point to become steady. Default: 100 blocks; a block is a whole number of
-    /// profile periods or layer lengths.
+    /// How steady sliding is found: by solving for it, or by letting the layer slide until it is. Default: steady where the
+    /// foundation is "half_space" or "layer" and the surface periodic and not flat; else layer.
+    #[arg(long, value_name = "METHOD", value_enum)]
+    pub(crate) method: Option<SweepMethod>,
+    /// Points of a period along x, with --method steady. Default: the profile's own, or 8 to its shortest wave where they
+    /// are uneven or fewer.
+    #[arg(long, value_name = "N", value_parser = count)]
+    pub(crate) points: Option<u32>,
+    /// Admissible standard error of the friction coefficient, relative to it, with --method layer. Default: 5e-3.
+    #[arg(long, value_name = "SHARE", value_parser = share)]
+    pub(crate) error: Option<f64>,
+    /// Maximum sliding distance in m for a point to become steady, with --method layer. Default: 100 blocks; a block is a
+    /// whole number of profile periods or layer lengths.
     #[arg(long, value_name = "METRES", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) distance: Option<f64>,
     /// Computes only share I of N of the points, I from 1 to N.
@@ -433,6 +455,31 @@ pub(crate) struct Sweep {
     /// Replaces an existing table instead of continuing it.
     #[arg(long)]
     pub(crate) force: bool,
+    #[command(flatten)]
+    pub(crate) set: Set,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Contact {
+    /// The scene file, in the material form with a foundation "half_space" or "layer" and a periodic surface; its excitation
+    /// and outputs are not used.
+    #[arg(value_name = "SCENE.toml")]
+    pub(crate) scene: PathBuf,
+    /// Mean pressure in Pa.
+    #[arg(long, value_name = "PASCAL", value_parser = positive, allow_negative_numbers = true)]
+    pub(crate) pressure: f64,
+    /// Sliding speed in m/s.
+    #[arg(long, value_name = "SPEED", value_parser = positive, allow_negative_numbers = true)]
+    pub(crate) speed: f64,
+    /// Points of a period along x. Default: the profile's own, or 8 to its shortest wave where they are uneven or fewer.
+    #[arg(long, value_name = "N", value_parser = count)]
+    pub(crate) points: Option<u32>,
+    /// The picture to write, as SVG or PNG according to the file name.
+    #[arg(short, long, value_name = "OUT.png", value_parser = picture())]
+    pub(crate) output: PathBuf,
+    /// A table of all points to write: x, y, height, pressure, gap.
+    #[arg(long, value_name = "OUT.csv", value_parser = table())]
+    pub(crate) data: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) set: Set,
 }

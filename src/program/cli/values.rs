@@ -150,6 +150,11 @@ pub(super) fn wavelengths(text: &str) -> Result<RangeInclusive<f64>, String> {
     ends(text).filter(allowed).map(|(shortest, longest)| shortest..=longest).ok_or_else(message)
 }
 
+/// A file for a table.
+pub(super) fn table() -> impl TypedValueParser<Value = PathBuf> {
+    ending_in(&["csv"], "a name that ends in .csv, or -")
+}
+
 /// A file for a plot; its name gives the format.
 pub(super) fn picture() -> impl TypedValueParser<Value = PathBuf> {
     ending_in(&["svg", "png"], "a name that ends in .svg or .png")

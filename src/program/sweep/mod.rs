@@ -3,16 +3,18 @@
 mod convergence;
 mod load_search;
 mod low_end;
+mod method;
 mod plot;
 mod point;
 mod slide;
+mod solved;
 mod steady;
 mod table_file;
 pub(super) mod values;
 
 use std::path::{Path, PathBuf};
 
-use asperity::element::{Basis, Load, OperatingPoint, SweepGrid, TableHeader};
+use asperity::element::{Basis, Load, OperatingPoint, SweepGrid, TableHeader, TableRow};
 use asperity::model::Model;
 use asperity::scene::{FineRoughness, Initial, OutputGroup, ParameterError, Path as Displacement, Phase, Scene};
 use rayon::prelude::*;
@@ -25,9 +27,12 @@ use super::files::{
 use super::interrupt::Farewell;
 use super::terminal::{self, lines, warn};
 use load_search::{heights, rest_separation};
+pub(crate) use method::{Asked, Method, MethodError, SweepMethod};
 use point::{MIN_BLOCKS, PointResult};
 pub(crate) use point::{SMALL as SMALL_FRICTION, SteadySliding, StopBounds};
 use slide::Blocks;
+use solved::SolvedPoints;
+pub(crate) use solved::status as solved_status;
 pub(crate) use table_file::fingerprint as table_fingerprint;
 use table_file::{SweepTable, TableFile, TableFileError};
 use values::Values;
@@ -58,6 +63,8 @@ pub(crate) enum SweepError {
     NotAStudy { path: PathBuf, problem: String },
     #[error(transparent)]
     NeverSteady(#[from] NeverSteady),
+    #[error(transparent)]
+    Method(#[from] MethodError),
     #[error("{failed} of {total} points are not steady or failed: the column status in {} says why", named(.path))]
     NotSteady { failed: usize, total: usize, path: PathBuf },
 }
@@ -73,8 +80,8 @@ pub(crate) enum NeverSteady {
     )]
     ProfileEnds { longest: f64, needed: f64 },
     #[error(
-        "material.heat: expected none for steady sliding, since contacts of a layer that slides on warm without end; leave it \
-         out, and vary material.wlf.temperature"
+        "material.heat: expected none for steady sliding of the layer, since contacts that slide on warm without end; leave it \
+         out and vary material.wlf.temperature, or give --method steady, which has the temperature above the surface's mean"
     )]
     Heats,
 }
@@ -116,31 +123,44 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
         return Err(SweepError::BodyAlongX);
     }
     let (load, loads) = loads(command, &scene)?;
-    if let Some(warning) = hard_pressure(&scene, load, &loads) {
-        warn(&warning);
-    }
+    let (method, of_method) = asked(command).choose(&scene)?;
+    let warning = if matches!(method, Method::Layer) { hard_pressure(&scene, load, &loads) } else { None };
+    warning.iter().for_each(|warning| warn(warning));
     let grid = SweepGrid { speeds: speeds.0.clone(), loads, temperatures: temperatures(command, &scene)? };
     let output = command.output.clone().unwrap_or_else(|| default_output(path, "sweep.csv"));
     let picture = picture(command, &output);
     let study = convergence::file(command.converged.as_ref(), path);
     let taken = sources(path, &scene).into_iter().chain(study.clone()).collect();
     check_outputs([&output].into_iter().chain(&picture), taken)?;
-    check_can_be_steady(&scene)?;
+    method.check(&scene)?;
     let scene = relevant(scene);
     let header = TableHeader {
-        fingerprint: fingerprint(&scene, command, load)?,
+        fingerprint: fingerprint(&scene, command, load, &method)?,
         scene: scene.name.clone(),
         load,
         rest_separation: separation_at_rest(&scene),
-        basis: basis(&scene, convergence::found(study.as_deref(), &scene.name)?),
+        basis: Basis { method: Some(of_method), ..basis(&scene, convergence::found(study.as_deref(), &scene.name)?) },
         grid,
         low_end: None,
     };
     let place = TablePlace::new(&output)?;
     let file = TableFile::open(&place.path, &header, command.force)?;
-    run(command, &scene, &header, &file, &output)?;
+    let solved = match method {
+        Method::Steady(surface) => Some(SolvedPoints::new(&scene, &header.grid.temperatures, surface)?),
+        Method::Layer => None,
+    };
+    let find = |point: &OperatingPoint| match &solved {
+        Some(solved) => solved.row(*point, &header),
+        None => {
+            let scene = scene_at(&scene, point);
+            point::find(&scene, point.speed, load.force(point.load), bounds(command)).row(*point, &header)
+        }
+    };
+    run(command, find, &header, &file, &output)?;
     let mut table = SweepTable { header, ..SweepTable::read(&place.path)? };
     table.sort();
+    let few = solved.and_then(|solved| solved.few_points(table.rows.iter().map(|stored| &stored.row), &table.header));
+    few.iter().for_each(|warning| warn(warning));
     table.find_low_end(&output);
     table.write(&place.path)?;
     drop(file);
@@ -153,11 +173,17 @@ fn basis(scene: &Scene, convergence: Option<String>) -> Basis {
     let foundation = scene.layer.foundation.map(|kind| kind.word().to_owned());
     let fine = scene.fine.as_ref().map(FineRoughness::describe);
     let held = scene.carrier.z.map(|body| format!("load, on a carrier of {} kg", body.mass));
-    Basis { foundation, fine, convergence, held }
+    Basis { method: None, foundation, fine, convergence, held }
 }
 
 /// Computes the points that are not done yet, on all cores.
-fn run(command: &Sweep, scene: &Scene, header: &TableHeader, file: &TableFile, output: &Path) -> Result<(), FileError> {
+fn run(
+    command: &Sweep,
+    find: impl Fn(&OperatingPoint) -> TableRow + Sync,
+    header: &TableHeader,
+    file: &TableFile,
+    output: &Path,
+) -> Result<(), FileError> {
     let in_shard = |index: usize| command.shard.is_none_or(|shard| shard.has(index));
     let points = header.grid.points().enumerate().filter(|(index, _)| in_shard(*index)).map(|(_, point)| point);
     let points: Vec<OperatingPoint> = points.collect();
@@ -168,7 +194,6 @@ fn run(command: &Sweep, scene: &Scene, header: &TableHeader, file: &TableFile, o
     bar.reset_eta();
     bar.set_message(format!("of {} points", points.len()));
     bar.enable_steady_tick(std::time::Duration::from_secs(1));
-    let bounds = StopBounds { error: command.error, distance: command.distance };
     let done = bar.clone();
     let _farewell = Farewell::new(output, move || {
         let (points, all) = (done.position(), done.length().unwrap_or_default());
@@ -176,13 +201,24 @@ fn run(command: &Sweep, scene: &Scene, header: &TableHeader, file: &TableFile, o
         format!("{points} of {all} points are done")
     });
     let work = left.par_iter().with_max_len(1).try_for_each(|point| {
-        let result = point::find(&scene_at(scene, point), point.speed, header.load.force(point.load), bounds);
-        file.add(&result.row(*point, header))?;
+        file.add(&find(point))?;
         bar.inc(1);
         Ok(())
     });
     bar.finish_and_clear();
     work
+}
+
+/// Standard error of the friction coefficient over it where none is given.
+const ERROR: f64 = 5e-3;
+
+fn bounds(command: &Sweep) -> StopBounds {
+    StopBounds { error: command.error.unwrap_or(ERROR), distance: command.distance }
+}
+
+fn asked(command: &Sweep) -> Asked {
+    let Sweep { method, points, error, distance, .. } = *command;
+    Asked { method, points, has_error: error.is_some(), has_distance: distance.is_some() }
 }
 
 /// The picture to draw; none of a shard.
@@ -277,10 +313,12 @@ fn scene_at(scene: &Scene, point: &OperatingPoint) -> Scene {
     scene
 }
 
-fn fingerprint(scene: &Scene, command: &Sweep, load: Load) -> Result<String, serde_json::Error> {
+fn fingerprint(scene: &Scene, command: &Sweep, load: Load, method: &Method) -> Result<String, serde_json::Error> {
     // The same for all temperatures: each point has its own.
     let scene = with_temperature(scene, 0.0);
-    table_file::fingerprint(&scene, &format!("{} {:?} {:?}", load.name(), command.error, command.distance))
+    let StopBounds { error, distance } = bounds(command);
+    let settings = method.settings(|| format!("{error:?} {distance:?}"));
+    table_file::fingerprint(&scene, &format!("{} {settings}", load.name()))
 }
 
 /// Steady sliding at one point, known to `bounds`; where the layer does not become steady, the status of the point.

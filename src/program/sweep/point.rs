@@ -68,9 +68,9 @@ pub(crate) struct SteadySliding {
     pub(crate) friction_error: f64,
     /// Masses in contact over all masses, 1.
     pub(crate) contact_ratio: f64,
-    /// Area that touches with the waves that the profile lacks, m²; `None` without them.
+    /// Area that touches with the waves that the profile lacks over the layer's, 1; `None` without them.
     real_area: Option<f64>,
-    /// Standard error of that, 1.
+    /// Standard error of the contact ratio, 1.
     pub(crate) contact_error: f64,
     /// Power lost in dampers, Maxwell elements, friction and impacts, W; `None` for a channel that the scene cannot
     /// have.
@@ -410,7 +410,7 @@ impl<'a> Search<'a> {
             friction: FrictionParts::new(means),
             friction_error: average.friction.error,
             contact_ratio: means.contact,
-            real_area: means.real_area,
+            real_area: means.real_area.zip(self.scene.layer.area()).map(|(real, area)| real / area),
             contact_error: average.contact.error,
             channels: [damper, maxwell, friction, Some(impact.unwrap_or(0.0))],
             runs: self.runs,

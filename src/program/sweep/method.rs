@@ -1,0 +1,118 @@
+//! How steady sliding is found: by solving for it, or by letting the layer slide until it is steady.
+
+use asperity::scene::{FoundationKind, Scene};
+use asperity::steady::SurfaceGrid;
+
+use super::NeverSteady;
+
+/// A method as the command line names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum SweepMethod {
+    /// Solves for steady sliding over one period of the surface.
+    Steady,
+    /// Lets the layer slide until its means are steady.
+    Layer,
+}
+
+/// The method of a sweep.
+#[derive(Clone, Debug)]
+pub(crate) enum Method {
+    /// Steady sliding is solved for on this surface.
+    Steady(SurfaceGrid),
+    /// The layer slides.
+    Layer,
+}
+
+/// The scene or an option does not go with the method.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum MethodError {
+    #[error("--method steady: {0}, which it does not have; give --method layer")]
+    Lacks(&'static str),
+    #[error(
+        "{0}: expected none with --method steady, whose points have no scatter and no transient; give --method layer"
+    )]
+    OfTheLayer(&'static str),
+    #[error("--points: expected none with --method layer, whose points are its masses")]
+    OfTheSolver,
+    #[error("--points: expected at least {least}, found {found}")]
+    FewPoints { least: usize, found: usize },
+}
+
+/// What the command line says of the method.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Asked {
+    pub(crate) method: Option<SweepMethod>,
+    pub(crate) points: Option<u32>,
+    pub(crate) has_error: bool,
+    pub(crate) has_distance: bool,
+}
+
+impl Asked {
+    /// The method of a sweep of `scene`, and what the table's header says of it.
+    pub(crate) fn choose(self, scene: &Scene) -> Result<(Method, String), MethodError> {
+        let reason = (self.method == Some(SweepMethod::Layer)).then_some("as asked for").or_else(|| why_layer(scene));
+        match (self.method, reason) {
+            (Some(SweepMethod::Steady), _) | (None, None) => self.steady(scene),
+            (_, reason) if self.points.is_none() => {
+                Ok((Method::Layer, format!("layer: {}", reason.unwrap_or_default())))
+            }
+            _ => Err(MethodError::OfTheSolver),
+        }
+    }
+
+    fn steady(self, scene: &Scene) -> Result<(Method, String), MethodError> {
+        let lacks = why_layer(scene)
+            .or_else(|| (!scene.layer.roughness.is_empty()).then_some("layer.roughness moves with the rubber"))
+            .or_else(|| scene.carrier.z.map(|_| "[carrier.z] is a body that moves under its load"));
+        if let Some(lacks) = lacks {
+            return Err(MethodError::Lacks(lacks));
+        }
+        let of_the_layer = [(self.has_error, "--error"), (self.has_distance, "--distance")];
+        if let Some((_, option)) = of_the_layer.into_iter().find(|(is_given, _)| *is_given) {
+            return Err(MethodError::OfTheLayer(option));
+        }
+        let surface = &scene.surface;
+        let (own, usual) = (surface.x().len() - 1, SurfaceGrid::points_of_profile(surface));
+        let points = self.points.map_or(usual, |points| points as usize);
+        if points < SurfaceGrid::FEWEST {
+            return Err(MethodError::FewPoints { least: SurfaceGrid::FEWEST, found: points });
+        }
+        let which = match self.points {
+            Some(_) => "as asked for".to_owned(),
+            None if points == own => "the profile's own".to_owned(),
+            None => format!("8 or more to its shortest wave; the profile has {own}"),
+        };
+        let header = format!("steady, on {points} points to a period of the profile ({which})");
+        Ok((Method::Steady(SurfaceGrid::of_profile(surface, points)), header))
+    }
+}
+
+/// Why a scene cannot be solved for, and the layer has to slide; `None` where it need not.
+fn why_layer(scene: &Scene) -> Option<&'static str> {
+    let heights = scene.surface.z();
+    match scene.layer.foundation {
+        None => Some("the scene is in the direct form"),
+        Some(FoundationKind::Springs) => Some("the foundation is \"springs\""),
+        _ if heights.iter().all(|height| *height == heights[0]) => Some("the surface is flat"),
+        _ if !scene.surface.is_periodic() => Some("the surface is not periodic"),
+        _ => None,
+    }
+}
+
+impl Method {
+    /// What of the settings of a sweep its points depend on.
+    pub(crate) fn settings(&self, of_layer: impl FnOnce() -> String) -> String {
+        match self {
+            Self::Steady(surface) => format!("steady {}x{}", surface.size.nx, surface.size.ny),
+            Self::Layer => of_layer(),
+        }
+    }
+
+    /// Refuses a scene that could never be steady.
+    pub(crate) fn check(&self, scene: &Scene) -> Result<(), NeverSteady> {
+        match self {
+            Self::Steady(_) => Ok(()),
+            Self::Layer => super::check_can_be_steady(scene),
+        }
+    }
+}

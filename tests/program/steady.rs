@@ -1,0 +1,163 @@
+//! `asperity sweep --method steady` and `asperity contact`: tables, what they say, and what is refused.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::common::{Table, asperity, root, run, scratch};
+
+fn reference(name: &str) -> PathBuf {
+    root().join("tests/reference").join(name)
+}
+
+fn sweep(scene: &Path, table: &Path, options: &[&str]) -> String {
+    run(asperity().arg("sweep").arg(scene).arg("-o").arg(table).args(options));
+    fs::read_to_string(table).unwrap()
+}
+
+/// What a command that fails says.
+fn refused(arguments: &[&str]) -> String {
+    let output = asperity().args(arguments).output().unwrap();
+    assert!(!output.status.success(), "{arguments:?} should fail");
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+const POINTS: [&str; 4] = ["--speeds", "1e-3,0.1,10", "--pressures", "5e4,3e5,1e6"];
+
+/// A profile of even points that are enough is solved for on them, without being asked: the table is the reference's, and its
+/// columns go together.
+#[test]
+fn a_table_is_that_of_an_independent_program() {
+    let folder = scratch("steady-table");
+    let table = folder.join("table.csv");
+    let text = sweep(&reference("steady/steady-ridges.toml"), &table, &POINTS);
+    assert!(
+        text.contains("# method = steady, on 2048 points to a period of the profile (the profile's own)"),
+        "{text}"
+    );
+    let (found, expected) = (Table::read(&table), Table::read(&reference("steady/steady-ridges.csv")));
+    assert_eq!(found.len(), expected.len());
+    let area = 2048.0 * 3.90625e-6 * 1e-2;
+    for row in 0..found.len() {
+        let value = |name: &str| found.number(row, name);
+        let at = (value("pressure"), value("speed"));
+        let same = |i: &usize| (expected.number(*i, "pressure [Pa]"), expected.number(*i, "speed [m/s]")) == at;
+        let other = (0..expected.len()).find(same).unwrap();
+        assert_eq!(found.text(row, "status"), "steady");
+        let friction = expected.number(other, "friction [1]");
+        assert!((value("friction") / friction - 1.0).abs() < 1e-3, "{at:?}");
+        assert_eq!((value("mean_pressure"), value("friction_standard_error")), (at.0, 0.0));
+        // All that is lost is the rubber's: no friction in the contacts, no viscosity.
+        let power = value("friction") * at.0 * at.1 * area;
+        assert!((value("P_maxwell") / power - 1.0).abs() < 1e-12);
+        assert!(value("tangential_stiffness") > 0.0 && value("separation") > 0.0);
+        let empty = ["P_damper", "P_friction", "P_impact", "w", "runs", "time", "area_real", "flash_mean"];
+        assert!(empty.iter().all(|name| found.text(row, name).is_empty()));
+    }
+}
+
+/// The same bits however the points are shared out, and whichever were there.
+#[test]
+fn shards_and_resumption_give_the_same_bits() {
+    let folder = scratch("steady-shards");
+    let scene = reference("steady/steady-layer.toml");
+    let options = ["--speeds", "1e-3..3/4", "--pressures", "2e5,8e5"];
+    let whole = sweep(&scene, &folder.join("whole.csv"), &options);
+    let shards = [1, 2, 3].map(|i| {
+        let shard = folder.join(format!("{i}.csv"));
+        let of = format!("{i}/3");
+        let _ = sweep(&scene, &shard, &[&options[..], &["--shard", &of]].concat());
+        shard
+    });
+    let joined = folder.join("joined.csv");
+    run(asperity().args(["sweep", "--merge"]).args(&shards).arg("-o").arg(&joined));
+    assert_eq!(fs::read_to_string(&joined).unwrap(), whole);
+    let cut = whole.trim_end().rsplit_once('\n').unwrap().0.to_owned() + "\n";
+    fs::write(&joined, cut).unwrap();
+    assert_eq!(sweep(&scene, &joined, &options), whole);
+    // Other points are another sweep.
+    let message = refused(
+        &[&["sweep", scene.to_str().unwrap(), "-o", joined.to_str().unwrap(), "--points", "2048"][..], &options[..]]
+            .concat(),
+    );
+    assert!(message.contains("another sweep"), "{message}");
+}
+
+/// A profile with too few points for its waves is refined, and the table says to how many; full contact has no stiffness.
+#[test]
+fn a_coarse_profile_is_refined_and_full_contact_is_said() {
+    let folder = scratch("steady-refined");
+    let sine = |points: u32| {
+        format!(
+            "surface={{ kind = 'sinusoid', amplitude = 5e-6, wavelength = 1e-3, points_per_wavelength = {points} }}"
+        )
+    };
+    let scene = reference("half-plane/sine.toml");
+    let scene = scene.to_str().unwrap();
+    let table = folder.join("table.csv");
+    let output = asperity()
+        .args(["sweep", scene, "--speeds", "1", "--pressures", "2e4,2.8e5", "--set", &sine(6)])
+        .arg("-o")
+        .arg(&table)
+        .output()
+        .unwrap();
+    // Full contact is no law that an element could use.
+    assert!(!output.status.success());
+    let warning = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(warning.contains("fewer than 20 points of the surface are in contact"), "{warning}");
+    let text = fs::read_to_string(&table).unwrap();
+    let said = "# method = steady, on 16 points to a period of the profile (8 or more to its shortest wave; the profile has 6)";
+    assert!(text.contains(said), "{text}");
+    let rows = Table::read(&table);
+    assert_eq!(rows.text(1, "status"), "full contact");
+    assert!(rows.text(1, "tangential_stiffness").is_empty() && rows.number(1, "separation") == 0.0);
+}
+
+/// The layer is taken where there is nothing to solve for, and the table says why; what does not go with a method is refused.
+#[test]
+fn each_method_says_what_it_is_for() {
+    let folder = scratch("steady-refused");
+    let file = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    let (scene, table) = (reference("half-plane/sine.toml"), file("table.csv"));
+    let scene = scene.to_str().unwrap();
+    let sweep = |options: &[&str]| {
+        let point = ["sweep", scene, "--speeds", "1", "--pressures", "2e4", "-o", &table];
+        refused(&[&point[..], options].concat())
+    };
+    for (options, expected) in [
+        (&["--method", "layer", "--points", "64"][..], "--points: expected none with --method layer"),
+        (&["--error", "0.01"], "--error: expected none with --method steady"),
+        (&["--distance", "1"], "--distance: expected none with --method steady"),
+        (&["--points", "4"], "--points: expected at least 16, found 4"),
+        (&["--set", "carrier.z={ mass = 1.0 }"], "[carrier.z]"),
+        (&["--method", "steady", "--set", "surface={ kind = 'flat' }"], "the surface is flat"),
+    ] {
+        let message = sweep(options);
+        assert!(message.contains(expected), "{options:?}: {message}");
+    }
+    let flat = ["sweep", scene, "--speeds", "1", "--pressures", "2e4", "--set", "surface={ kind = 'flat' }"];
+    run(asperity().args(flat).args(["--set", "friction={ coulomb = 0.3 }", "-o", &table]));
+    let text = fs::read_to_string(&table).unwrap();
+    assert!(text.contains("# method = layer: the surface is flat"), "{text}");
+}
+
+/// Pressures of the data have the mean that was asked for and stand where the gap is 0.
+#[test]
+fn a_contact_is_drawn_and_written() {
+    let folder = scratch("steady-contact");
+    let (picture, data) = (folder.join("contact.png"), folder.join("contact.csv"));
+    let said = run(asperity()
+        .arg("contact")
+        .arg(reference("steady/steady-ridges.toml"))
+        .args(["--pressure", "3e5", "--speed", "0.1", "-o"])
+        .arg(&picture)
+        .arg("--data")
+        .arg(&data));
+    assert!(said.contains("Contact     0.1636 of the area"), "{said}");
+    assert!(fs::read(&picture).unwrap().starts_with(b"\x89PNG"));
+    let rows = Table::read(&data);
+    let [pressures, gaps] = ["pressure [Pa]", "gap [m]"].map(|name| rows.column(name));
+    assert_eq!(pressures.len(), 2048);
+    // The sum of 2048 roundings.
+    assert!((pressures.iter().sum::<f64>() / 2048.0 / 3e5 - 1.0).abs() < 1e-12);
+    assert!(pressures.iter().zip(&gaps).all(|(p, gap)| (*p > 0.0) == (*gap == 0.0)));
+}
