@@ -11,7 +11,7 @@ use super::{
     Method, Missing, OutputGroup, ThirdColumn, Tilt, Unit,
 };
 
-pub(super) use patch::{AREA, COORDINATE, PATCH_ROOT, REFINE, ShapeKind};
+pub(super) use patch::{AREA, BACKING_NORMAL, BACKING_SHEAR, COORDINATE, PATCH_ROOT, REFINE, ShapeKind};
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Key {
