@@ -9,6 +9,7 @@ use super::law::{Law, LawAtSpeed};
 use super::table::Table;
 use super::table_format::Quantity;
 use crate::math::Number;
+use crate::scene::Backing;
 
 /// Width of a cell, in ln v, at most, and cells between two speeds of a table, at least.
 ///
@@ -169,11 +170,35 @@ pub struct ResampledLaw {
     temperature_number: u64,
     /// Up to this approach there is no contact at any speed, m.
     earliest_touch: f64,
+    /// What stands behind the contact, if that gives way.
+    backing: Option<SeriesBacking>,
+}
+
+/// A backing in series with the contact: the approach of the face is that of the contact and p/k_n.
+#[derive(Clone, Debug)]
+struct SeriesBacking {
+    /// p/k_n at the pressures of the table, m.
+    indentations: Vec<f64>,
+    /// 1/k_t, m/Pa.
+    shear_compliance: f64,
+}
+
+impl SeriesBacking {
+    fn new(backing: Backing, log_pressures: &[f64]) -> Self {
+        let indentations = log_pressures.iter().map(|y| y.exp() / backing.normal).collect();
+        Self { indentations, shear_compliance: 1.0 / backing.shear }
+    }
+
+    /// The tangential stiffness per area of a contact of stiffness κ and the backing.
+    #[inline(always)]
+    fn in_series<T: Number>(&self, stiffness: T) -> T {
+        stiffness / (T::constant(1.0) + stiffness.times(self.shear_compliance))
+    }
 }
 
 impl ResampledLaw {
-    /// The law of `table` at `temperature` (K), of a layer that stands for `area` (m²).
-    pub fn new(table: &Table, area: f64, temperature: f64) -> Self {
+    /// The law of `table` at `temperature` (K), of a layer that stands for `area` (m²), in series with a backing.
+    pub fn new(table: &Table, area: f64, temperature: f64, backing: Option<Backing>) -> Self {
         let law = Law::new(table, temperature);
         let curve = LawAtSpeed::new(&law, 0.0);
         let shift = (table.load.area() / area).ln();
@@ -181,10 +206,12 @@ impl ResampledLaw {
         let (bins, bin_density) = bins(&speeds);
         let (spans, pressures) = (SpeedSpan::new(&speeds), table.grid.loads.len());
         let cells = spans.iter().map(|span| span.count).sum();
+        let log_pressures: Vec<f64> = curve.points()[0].iter().map(|y| y + shift).collect();
         Self {
             temperature,
             area,
-            log_pressures: curve.points()[0].iter().map(|y| y + shift).collect(),
+            backing: backing.map(|backing| SeriesBacking::new(backing, &log_pressures)),
+            log_pressures,
             spans,
             speeds,
             bins,
@@ -307,15 +334,23 @@ impl ResampledLaw {
         }
     }
 
+    /// p/k_n of the backing at pressure `i` of the table, m; 0 without a backing.
+    #[inline(always)]
+    fn indentation(&self, i: usize) -> f64 {
+        self.backing.as_ref().map_or(0.0, |backing| backing.indentations[i])
+    }
+
     /// Takes the starts of a cell's intervals from its first and its last sample.
     fn record_starts(&mut self, cell: usize, sample: usize) {
+        let indentations = self.backing.as_ref().map(|backing| &backing.indentations);
         let [_, approaches, _] = self.curve.points();
         let count = starts_of(approaches.len());
         let kept = &mut self.interval_starts[cell * count..(cell + 1) * count];
-        for (i, approach) in approaches[1..].iter().enumerate() {
+        for (i, contact) in approaches[1..].iter().enumerate() {
+            let approach = contact + indentations.map_or(0.0, |indentations| indentations[i + 1]);
             let IntervalStarts { start, growth } = &mut kept[i / WIDTH];
             if sample == 0 {
-                start[i % WIDTH] = *approach;
+                start[i % WIDTH] = approach;
             } else {
                 growth[i % WIDTH] = approach - start[i % WIDTH];
             }
@@ -357,15 +392,58 @@ impl ResampledLaw {
     #[inline(always)]
     pub fn at_interval<T: Number>(&self, cell: &SpeedCell, i: usize, log_speed: T, approach: T) -> LawPoint<T> {
         let c = self.coefficients_at(cell.index, cell.fraction(log_speed), i);
-        let from = approach - c[0];
+        let Some(backing) = &self.backing else { return self.contact(&c, i, approach - c[0]) };
+        let indentation = backing.indentations[i];
+        let from_contact = approach - c[0];
+        let from = from_contact - T::constant(indentation);
+        let contact = if i == 0 && from.value() < 0.0 {
+            self.parabola(&c, i, root_with_backing(c[1], from_contact, indentation))
+        } else {
+            self.contact(&c, i, self.without_backing(backing, cell, i, (&c, from), log_speed.value()))
+        };
+        LawPoint { stiffness: backing.in_series(contact.stiffness), ..contact }
+    }
+
+    /// How far (m) the contact itself is beyond the start of interval `i` where with its backing it is `from` beyond
+    /// that: x in x + (p(x) - p_i)/k_n = `from`, with p_i where the interval starts.
+    #[inline(never)]
+    fn without_backing<T: Number>(
+        &self,
+        backing: &SeriesBacking,
+        cell: &SpeedCell,
+        i: usize,
+        (c, from): (&[T; 12], T),
+        log_speed: f64,
+    ) -> T {
+        let indentation = backing.indentations[i];
+        if i + 1 == self.log_pressures.len() || from.value() < 0.0 {
+            // Straight; so is the little by which rounding may lead out of an interval.
+            return from / (T::constant(1.0) + c[1].times(indentation));
+        }
+        let width = self.start(cell, i + 1, log_speed) - c[0].value();
+        let rise = backing.indentations[i + 1] - indentation;
+        let x = contact_distance(c.map(T::value), from.value(), indentation, (width, rise));
+        // One more step with derivatives gives those of x.
+        let (distance, slope) = distance_and_slope(c, T::constant(x), indentation);
+        T::constant(x) - (distance - from) / slope
+    }
+
+    /// Where interval `i` starts without a backing, m.
+    fn start(&self, cell: &SpeedCell, i: usize, log_speed: f64) -> f64 {
+        let (fraction, powers) =
+            (cell.fraction(log_speed), &self.coefficients[cell.index * self.log_pressures.len() + i]);
+        powers[0][0] + fraction * (powers[1][0] + fraction * powers[2][0])
+    }
+
+    /// The law of the contact alone, `from` (m) beyond the start of interval `i` of the coefficients `c`.
+    #[inline(always)]
+    fn contact<T: Number>(&self, c: &[T; 12], i: usize, from: T) -> LawPoint<T> {
         let y = self.log_pressures[i];
         if i + 1 == self.log_pressures.len() {
             let factor = T::constant(1.0) + from * c[1];
             LawPoint { log_pressure: T::constant(y), factor, friction: c[4], stiffness: c[8] }
         } else if from.value() < 0.0 {
-            let root = (T::constant(1.0) + (from * c[1]).times(0.5)).larger(T::constant(0.0));
-            let factor = root * root;
-            LawPoint { log_pressure: T::constant(y), factor, friction: c[4], stiffness: c[8] * factor }
+            self.parabola(c, i, (T::constant(1.0) + (from * c[1]).times(0.5)).larger(T::constant(0.0)))
         } else {
             let t = from * (c[1] + from * (c[2] + from * c[3]));
             let along = |i: usize| c[i] + t * (c[i + 1] + t * (c[i + 2] + t * c[i + 3]));
@@ -374,10 +452,18 @@ impl ResampledLaw {
         }
     }
 
+    /// The law below pressure `i` of the table: p is the square of `root` times that.
+    #[inline(always)]
+    fn parabola<T: Number>(&self, c: &[T; 12], i: usize, root: T) -> LawPoint<T> {
+        let factor = root * root;
+        let log_pressure = T::constant(self.log_pressures[i]);
+        LawPoint { log_pressure, factor, friction: c[4], stiffness: c[8] * factor }
+    }
+
     /// The approaches (m) at a speed where the contact begins and where it reaches the least pressure of the table.
     pub fn beginning<T: Number>(&self, cell: &SpeedCell, log_speed: T) -> (T, T) {
         let c = self.coefficients_at(cell.index, cell.fraction(log_speed), 0);
-        (c[0] - T::constant(2.0) / c[1], c[0])
+        (c[0] - T::constant(2.0) / c[1], c[0] + T::constant(self.indentation(0)))
     }
 
     /// The share of hysteresis in the friction coefficient, and the contact ratio, at a speed and an approach (m).
@@ -391,6 +477,56 @@ impl ResampledLaw {
         let (hysteresis, ratio) = (along(0), along(4) * point.factor.min(1.0));
         (if point.friction > 0.0 { hysteresis / point.friction } else { 0.0 }, ratio)
     }
+}
+
+/// Steps of Newton's method or halvings: either alone would need fewer.
+const MAX_STEPS: usize = 100;
+
+/// Error of an approach as a share of its interval at which [`contact_distance`] stops; the step that follows squares it.
+const STEP_TOLERANCE: f64 = 1e-7;
+
+/// r on the parabola p = p_0 r² of a contact and its backing, `from` (m) beyond where the contact without one bears p_0.
+/// The contact itself has r = 1 + x s/2 with the slope s of ln p at p_0, so the distance from the touch is
+/// 2r/s + r² p_0/k_n.
+#[inline(always)]
+fn root_with_backing<T: Number>(slope: T, from: T, indentation: f64) -> T {
+    let distance = (from + T::constant(2.0) / slope).larger(T::constant(0.0));
+    let root = (T::constant(1.0) + (slope * slope * distance).times(indentation)).sqrt();
+    slope * distance / (T::constant(1.0) + root)
+}
+
+/// x + (p(x) - p_i)/k_n in an interval with the coefficients `c` that starts with the indentation p_i/k_n (m), and its
+/// slope.
+#[inline(always)]
+fn distance_and_slope<T: Number>(c: &[T; 12], x: T, indentation: f64) -> (T, T) {
+    let growth = (x * (c[1] + x * (c[2] + x * c[3]))).exp();
+    let slope = c[1] + x * (c[2].times(2.0) + (x * c[3]).times(3.0));
+    let one = T::constant(1.0);
+    (x + (growth - one).times(indentation), one + (growth * slope).times(indentation))
+}
+
+/// x where [`distance_and_slope`] is `from`, m: by Newton's method, by halves where that would leave the bracket. Over
+/// the interval x grows by its `width` and the indentation of the backing by its `rise`.
+fn contact_distance(c: [f64; 12], from: f64, indentation: f64, (width, rise): (f64, f64)) -> f64 {
+    // Rounding may have led a little out of the interval.
+    let (mut low, mut high) = (0.0, 1.01 * width);
+    let mut x = (from * width / (width + rise)).min(high);
+    for _ in 0..MAX_STEPS {
+        let (distance, slope) = distance_and_slope(&c, x, indentation);
+        if distance < from {
+            low = x
+        } else {
+            high = x
+        }
+        let next = x - (distance - from) / slope;
+        let next = if (low..=high).contains(&next) { next } else { 0.5 * (low + high) };
+        let step = (next - x).abs();
+        x = next;
+        if step <= STEP_TOLERANCE * width {
+            break;
+        }
+    }
+    x
 }
 
 /// The polynomials that are 1 at one of 0, 1/2 and 1, and 0 at the others, by power.
@@ -456,7 +592,7 @@ mod tests {
         std::fs::write(&path, text).unwrap();
         let table = Table::load(&path).unwrap();
         std::fs::remove_file(&path).unwrap();
-        let mut law = ResampledLaw::new(&table, 1.0, 0.0);
+        let mut law = ResampledLaw::new(&table, 1.0, 0.0, None);
         for (j, speed) in speeds.iter().enumerate() {
             let log_speed = law.range().logarithm(*speed);
             let cell = law.speed_cell(log_speed);
@@ -471,7 +607,7 @@ mod tests {
         for (name, temperatures) in [("block.table.csv", [285.0, 299.0]), ("winkler.table.csv", [0.0, 0.0])] {
             let table = table(name);
             let area = table.load.area();
-            let mut found = ResampledLaw::new(&table, area, temperatures[0]);
+            let mut found = ResampledLaw::new(&table, area, temperatures[0], None);
             for temperature in temperatures {
                 found.set_temperature(temperature);
                 let law = Law::new(&table, temperature);

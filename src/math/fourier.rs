@@ -27,23 +27,55 @@ pub enum Direction {
 /// assert!((sums[0] - Complex::from(9.0)).norm() < 1e-14);
 /// ```
 pub fn fourier(values: &[Complex<f64>], direction: Direction) -> Vec<Complex<f64>> {
-    let n = values.len();
-    let chirp = chirp(n, direction);
-    let twiddles = Twiddles::new((2 * n).next_power_of_two());
-    let mut signal = twiddles.zeros();
-    signal.iter_mut().zip(values.iter().zip(&chirp)).for_each(|(padded, (value, w))| *padded = value * w);
-    let mut filter = twiddles.zeros();
-    for (i, w) in chirp.iter().enumerate() {
-        filter[i] = w.conj();
-        let length = filter.len();
-        filter[(length - i) % length] = w.conj();
+    Transform::new(values.len(), direction).of(values.iter().copied())
+}
+
+/// As [`fourier`] along both axes of values that stand line by line, `nx` in each, in place.
+pub fn fourier_2d(values: &mut [Complex<f64>], nx: usize, direction: Direction) {
+    let along_x = Transform::new(nx, direction);
+    for line in values.chunks_exact_mut(nx) {
+        let sums = along_x.of(line.iter().copied());
+        line.copy_from_slice(&sums);
     }
-    twiddles.forward(&mut signal);
-    twiddles.forward(&mut filter);
-    signal.iter_mut().zip(&filter).for_each(|(value, factor)| *value *= factor);
-    twiddles.backward(&mut signal);
-    let scale = 1.0 / signal.len() as f64;
-    signal.iter().zip(&chirp).map(|(value, w)| value * w * scale).collect()
+    let along_y = Transform::new(values.len() / nx, direction);
+    for i in 0..nx {
+        let sums = along_y.of(values.iter().skip(i).step_by(nx).copied());
+        values.iter_mut().skip(i).step_by(nx).zip(sums).for_each(|(value, sum)| *value = sum);
+    }
+}
+
+/// What transforms of the same length have in common.
+struct Transform {
+    chirp: Vec<Complex<f64>>,
+    twiddles: Twiddles,
+    /// The transform of the chirp's conjugate, cyclic.
+    filter: Vec<Complex<f64>>,
+}
+
+impl Transform {
+    fn new(count: usize, direction: Direction) -> Self {
+        let chirp = chirp(count, direction);
+        let twiddles = Twiddles::new((2 * count).next_power_of_two());
+        let mut filter = twiddles.zeros();
+        for (i, w) in chirp.iter().enumerate() {
+            filter[i] = w.conj();
+            let length = filter.len();
+            filter[(length - i) % length] = w.conj();
+        }
+        twiddles.forward(&mut filter);
+        Self { chirp, twiddles, filter }
+    }
+
+    fn of(&self, values: impl Iterator<Item = Complex<f64>>) -> Vec<Complex<f64>> {
+        let Self { chirp, twiddles, filter } = self;
+        let mut signal = twiddles.zeros();
+        signal.iter_mut().zip(values.zip(chirp)).for_each(|(padded, (value, w))| *padded = value * w);
+        twiddles.forward(&mut signal);
+        signal.iter_mut().zip(filter).for_each(|(value, factor)| *value *= factor);
+        twiddles.backward(&mut signal);
+        let scale = 1.0 / signal.len() as f64;
+        signal.iter().zip(chirp).map(|(value, w)| value * w * scale).collect()
+    }
 }
 
 /// e^(∓πi n²/N); n² is taken modulo 2N, so that no digits of the angle are lost.
@@ -136,6 +168,20 @@ mod tests {
                 // Roundings of sums of up to 100 terms of size 1.
                 assert!(difference(&fourier(&values, direction), &sums) < 3e-14, "{n}");
             }
+        }
+    }
+
+    /// A wave along both axes has one coefficient.
+    #[test]
+    fn in_two_dimensions_each_wave_has_its_place() {
+        let (nx, ny) = (6, 5);
+        let wave =
+            |at: usize| unit(2.0 * PI * (2.0 * (at % nx) as f64 / nx as f64 + 3.0 * (at / nx) as f64 / ny as f64));
+        let mut values: Vec<_> = (0..nx * ny).map(wave).collect();
+        fourier_2d(&mut values, nx, Direction::Forward);
+        for (at, value) in values.iter().enumerate() {
+            let expected = if at == 3 * nx + 2 { 30.0 } else { 0.0 };
+            assert!((value - Complex::from(expected)).norm() < 1e-12, "{at}: {value}");
         }
     }
 

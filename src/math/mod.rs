@@ -14,7 +14,7 @@ mod tridiagonal;
 mod vectors;
 
 pub use finite::not_finite;
-pub use fourier::{Direction, fourier};
+pub use fourier::{Direction, fourier, fourier_2d};
 pub use monotone::{Expansion, cubic, interval_of, monotone_slopes};
 pub use number::{Dual, Number};
 pub use quintic::{Jet, Quintic};

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::face::{Face, Points, Section, Tread};
-use crate::element::{Load, ResampledLaw, Table, TableError};
+use crate::element::{Load, Node, Quantity, ResampledLaw, Table, TableError};
 use crate::scene::{
-    Extrapolation, FaceShape, FmuOptions, Grid, NotDoubled, Parameter, ParameterError, PatchFile, PatchGroup, Problem,
-    SceneError, TableExtrapolation, Value,
+    Backing, Extrapolation, FaceShape, FmuOptions, Grid, NotDoubled, Parameter, ParameterError, PatchFile, PatchGroup,
+    Problem, SceneError, TableExtrapolation, Value,
 };
 
 /// Why a patch is refused.
@@ -54,6 +54,7 @@ pub struct Patch {
     temperature: f64,
     pub(super) table_extrapolation: TableExtrapolation,
     pub(super) refine: u32,
+    backing: Option<Backing>,
     /// How the body moves on when a master gives no rates.
     pub extrapolation: Extrapolation,
 }
@@ -83,6 +84,7 @@ impl Patch {
             face: Arc::new(face(&file)),
             table_extrapolation: file.table_extrapolation,
             refine: file.refine,
+            backing: file.backing,
             extrapolation: file.extrapolation,
             files: file.files().into(),
             table: Arc::new(table),
@@ -148,6 +150,27 @@ impl Patch {
     /// What its FMU's description says for simple importers.
     pub fn fmu_options(&self) -> FmuOptions {
         self.file.fmu
+    }
+
+    /// What stands behind every element, if that gives way.
+    pub fn backing(&self) -> Option<Backing> {
+        self.backing
+    }
+
+    /// The same elements on what does not give way.
+    pub fn without_backing(&self) -> Self {
+        Self { backing: None, ..self.clone() }
+    }
+
+    /// The largest tangential stiffness per area (Pa/m) of a contact at the largest pressure of the table, whatever its
+    /// speed and temperature.
+    pub fn contact_stiffness(&self) -> f64 {
+        let load = self.table.grid.loads.len() - 1;
+        let (temperatures, speeds) = (self.table.grid.temperatures.len().max(1), self.table.grid.speeds.len());
+        let nodes =
+            (0..temperatures).flat_map(|temperature| (0..speeds).map(move |speed| Node { temperature, load, speed }));
+        let largest = nodes.map(|node| self.table.value(Quantity::Stiffness, node)).fold(0.0, f64::max);
+        largest / self.nominal_area
     }
 
     /// The area that a layer of the table stands for, m².
@@ -225,7 +248,7 @@ impl Patch {
     }
 
     pub(super) fn law(&self) -> ResampledLaw {
-        ResampledLaw::new(&self.table, self.nominal_area, self.temperature)
+        ResampledLaw::new(&self.table, self.nominal_area, self.temperature, self.backing)
     }
 
     /// An element where `entered` cells of the tread have entered.
@@ -246,7 +269,9 @@ impl Patch {
 
     /// The parameters.
     pub fn parameters(&self) -> Vec<Parameter> {
-        vec![Parameter::TableExtrapolation, Parameter::Extrapolation, Parameter::Refine]
+        let backing = self.backing.map(|_| [Parameter::BackingNormal, Parameter::BackingShear]);
+        let others = [Parameter::TableExtrapolation, Parameter::Extrapolation, Parameter::Refine];
+        others.into_iter().chain(backing.into_iter().flatten()).collect()
     }
 
     /// The value of a parameter.
@@ -254,6 +279,8 @@ impl Patch {
         match parameter {
             Parameter::TableExtrapolation => Value::Text(self.table_extrapolation.word().into()),
             Parameter::Refine => Value::Integer(i32::try_from(self.refine).unwrap_or(i32::MAX)),
+            Parameter::BackingNormal => Value::Real(self.backing.map_or(0.0, |backing| backing.normal)),
+            Parameter::BackingShear => Value::Real(self.backing.map_or(0.0, |backing| backing.shear)),
             _ => Value::Text(self.extrapolation.word().into()),
         }
     }
@@ -267,8 +294,12 @@ impl Patch {
         let parameter = self.parameters().into_iter().find(|parameter| parameter.name() == name);
         let parameter = parameter.ok_or_else(|| ParameterError::new(name, Problem::Unknown { allowed: names() }))?;
         let text = text.trim();
-        let number = if parameter == Parameter::Refine { text.parse().ok() } else { None };
-        self.set_parameter(parameter, number.map_or_else(|| Value::Text(text.to_owned()), Value::Integer))
+        let value = match parameter {
+            Parameter::Refine => text.parse().ok().map(Value::Integer),
+            Parameter::BackingNormal | Parameter::BackingShear => text.parse().ok().map(Value::Real),
+            _ => None,
+        };
+        self.set_parameter(parameter, value.unwrap_or_else(|| Value::Text(text.to_owned())))
     }
 
     /// Gives a parameter a value.
@@ -280,6 +311,7 @@ impl Patch {
             let expected = match parameter {
                 Parameter::TableExtrapolation => "one of \"refuse\", \"hold\"",
                 Parameter::Refine => "a whole number from 1 to 1000",
+                Parameter::BackingNormal | Parameter::BackingShear => "a number above 0, of a patch with a backing",
                 _ => "one of \"linear\", \"hold\"",
             };
             let problem = Problem::Value { given: value.to_string(), expected: expected.into() };
@@ -295,6 +327,12 @@ impl Patch {
             (Parameter::Refine, &Value::Integer(refine)) => {
                 let allowed = u32::try_from(refine).ok().filter(|refine| (1..=1000).contains(refine));
                 self.refine = allowed.ok_or_else(refused)?;
+            }
+            (Parameter::BackingNormal | Parameter::BackingShear, &Value::Real(number)) => {
+                let number = parameter.check_number(number)?;
+                let backing = self.backing.as_mut().ok_or_else(refused)?;
+                let is_normal = parameter == Parameter::BackingNormal;
+                *(if is_normal { &mut backing.normal } else { &mut backing.shear }) = number;
             }
             _ => return Err(refused()),
         }

@@ -14,6 +14,7 @@ mod excitation;
 mod fine_roughness;
 mod fmu;
 mod foundation;
+mod height_map;
 mod keys;
 mod link_kind;
 mod material;
@@ -23,6 +24,7 @@ mod profile;
 mod prony_file;
 mod reader;
 mod regular_file;
+mod self_affine;
 mod spectrum;
 mod surface;
 pub mod text_table;
@@ -50,17 +52,19 @@ pub use fine_roughness::{
 };
 pub use fmu::{DependencyList, FmuOptions, IntegerType};
 pub use foundation::{Body, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};
+pub use height_map::{HeightMap, MOST_HEIGHTS};
 pub use keys::similar_keys;
 pub use link_kind::{ByLink, LinkKind};
 pub use material::{Heat, Material, PronyTerm, Wlf, complex_stiffness};
 pub use parameters::{Parameter, Value};
-pub use patch_file::{FaceShape, Grid, NotDoubled, PatchFile, PatchGroup, TableExtrapolation};
+pub use patch_file::{Backing, FaceShape, Grid, NotDoubled, PatchFile, PatchGroup, TableExtrapolation};
 pub use profile::{
     Extract, LengthUnit, LoadedProfile, Missing, ProfileOptions, ReadingNote, ThirdColumn, Tilt, UnknownWord,
 };
 pub use regular_file::{read_file, read_text};
+pub use self_affine::SelfAffine;
 pub use spectrum::{Band, PowerLaw, Spectrum};
-pub use surface::{MeanLine, SelfAffine, Surface, peak_to_valley};
+pub use surface::{MeanLine, Surface, peak_to_valley};
 pub use values::{LARGEST, LOOSEST_TOLERANCE, SMALLEST, Unit, is_possible};
 
 /// A whole scene, checked. Serialised, it is every number of it: what the scene does not name is null or empty.

@@ -28,6 +28,8 @@ pub struct PatchFile {
     pub transport: bool,
     /// The face's origin in the body's axes, m.
     pub offset: [f64; 3],
+    /// What stands behind every element, if that gives way.
+    pub backing: Option<Backing>,
     /// How the body moves when a master gives no rates.
     pub extrapolation: Extrapolation,
     /// How many times finer a step is cut than it needs to be.
@@ -59,6 +61,23 @@ pub enum FaceShape {
         /// x, y, z (m) and area (m²) of each.
         points: Vec<[f64; 4]>,
     },
+}
+
+/// What stands behind the elements of a patch and gives way in series with their contacts, such as the height of a
+/// tread block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Backing {
+    /// Stiffness along the normal per area, Pa/m.
+    pub normal: f64,
+    /// Stiffness in shear per area, Pa/m.
+    pub shear: f64,
+}
+
+impl Backing {
+    /// A block of rubber of a height (m) and a modulus (Pa), its sides free: E/H, and G/H with G = E/3.
+    pub fn block(height: f64, modulus: f64) -> Self {
+        Self { normal: modulus / height, shear: modulus / (3.0 * height) }
+    }
 }
 
 /// A grid of elements about the middle of a face.

@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use nalgebra::Complex;
 use serde::Serialize;
 
-use super::{MeanLine, Surface};
+use super::{HeightMap, MeanLine, Surface};
 use crate::math::{Direction, fourier};
 
 /// The one-sided power spectrum C(q), whose integral over q is the mean square height.
@@ -69,6 +69,24 @@ impl Spectrum {
         let scale = 2.0 / (n as f64).powi(2) / step / if periodic { 1.0 } else { 0.375 };
         let density = sums[..n / 2].iter().map(|sum| scale * sum.norm_sqr()).collect();
         Self { step, density, first: if periodic { 1 } else { 2 } }
+    }
+
+    /// The mean spectrum of the lines of a map along x, each prepared as a profile is.
+    pub fn of_lines(map: &HeightMap, periodic: bool) -> Self {
+        let length = map.spacing()[0] * map.nx() as f64;
+        let x: Vec<f64> = (0..map.nx()).map(|i| map.spacing()[0] * i as f64).collect();
+        let of_line = |j: usize| {
+            let line = MeanLine::through(&x, map.line(j));
+            let tilt = |x: f64| if periodic { map.mean() } else { line.at(x) };
+            let heights = x.iter().zip(map.line(j)).map(|(x, z)| z - tilt(*x)).collect();
+            Self::from_heights(heights, length, periodic)
+        };
+        let mut mean = of_line(0);
+        for j in 1..map.ny() {
+            mean.density.iter_mut().zip(of_line(j).density).for_each(|(sum, density)| *sum += density);
+        }
+        mean.density.iter_mut().for_each(|sum| *sum /= map.ny() as f64);
+        mean
     }
 
     /// The wave numbers (rad/m) of the reliable modes below half the points, and their mean square heights, m².

@@ -1,24 +1,24 @@
-//! The rigid surface: the data points of its profile, what they must satisfy, the lines through them; and random
-//! surfaces with a given power spectrum.
+//! The rigid surface: the data points of its profile, what they must satisfy, the lines through them.
 
-use std::f64::consts::{LN_2, PI, SQRT_2, TAU};
+use std::f64::consts::{LN_2, PI, TAU};
 use std::sync::Arc;
 
-use nalgebra::Complex;
 use serde::Serialize;
 
 use super::values::{LARGEST, SMALLEST};
-use crate::math::{Direction, Spline, SplitMix64, fourier};
+use super::{HeightMap, SelfAffine};
+use crate::math::Spline;
 
 /// The largest slope of a profile: a step of a metre from one atom to the next has less, and its square times that of
 /// the largest speed does not overflow.
-const STEEPEST: f64 = 1e12;
+pub(super) const STEEPEST: f64 = 1e12;
 
 /// Periodic ends may differ by rounding: by this part of the peak-to-valley height.
 const ROUNDING: f64 = 1.0e-12;
 
-/// The rigid profile: its data points and the spline through them, which copies share.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// The rigid profile: its data points and the spline through them, which copies share; and, where it is a line of a map,
+/// that map.
+#[derive(Clone, Debug, Serialize)]
 pub struct Surface {
     x: Vec<f64>,
     z: Vec<f64>,
@@ -27,6 +27,17 @@ pub struct Surface {
     self_affine: Option<SelfAffine>,
     #[serde(skip)]
     spline: Arc<Spline>,
+    /// Or why there is none, though it is a line of heights over x and y.
+    #[serde(skip)]
+    map: Option<Arc<Result<HeightMap, String>>>,
+}
+
+/// As profiles: an FMU carries the line alone of a map.
+impl PartialEq for Surface {
+    fn eq(&self, other: &Self) -> bool {
+        let parts = |surface: &Self| (surface.periodic, surface.self_affine);
+        self.x == other.x && self.z == other.z && parts(self) == parts(other)
+    }
 }
 
 impl Surface {
@@ -37,7 +48,7 @@ impl Surface {
     /// With fewer than two points.
     pub fn new(x: Vec<f64>, z: Vec<f64>, periodic: bool) -> Self {
         let spline = Arc::new(if periodic { Spline::periodic(&x, &z) } else { Spline::natural(&x, &z) });
-        Self { x, z, periodic, self_affine: None, spline }
+        Self { x, z, periodic, self_affine: None, spline, map: None }
     }
 
     pub(super) fn flat() -> Self {
@@ -71,6 +82,31 @@ impl Surface {
     /// The power law that it was made of; `None` for every other profile.
     pub fn self_affine(&self) -> Option<SelfAffine> {
         self.self_affine
+    }
+
+    pub(super) fn with_self_affine(self, law: SelfAffine) -> Self {
+        Self { self_affine: Some(law), ..self }
+    }
+
+    /// The map of which the profile is a line along x, periodic along both axes where the profile is.
+    pub fn map(&self) -> Option<&HeightMap> {
+        self.map.as_deref()?.as_ref().ok()
+    }
+
+    /// Why there is no map, though the profile is a line of an areal measurement: what is expected, and was found.
+    pub fn map_error(&self) -> Option<&str> {
+        self.map.as_deref()?.as_ref().err().map(String::as_str)
+    }
+
+    /// The profile as a line of a map, or of an areal measurement that is none for the reason given.
+    pub(super) fn with_map(self, map: Option<Result<HeightMap, String>>) -> Self {
+        Self { map: map.map(Arc::new), ..self }
+    }
+
+    /// The map, its middle line as the profile.
+    pub fn of_map(map: HeightMap, periodic: bool) -> Self {
+        let line = map.ny().div_ceil(2) - 1;
+        map.profile(line, periodic).with_map(Some(Ok(map)))
     }
 
     /// The cubic spline through the data points.
@@ -129,7 +165,9 @@ impl Surface {
         if self.periodic {
             heights[self.x.len() - 1] = heights[0];
         }
-        Self::new(self.x.clone(), heights, self.periodic)
+        let is_of_map = self.map.is_some();
+        let no_map = is_of_map.then(|| Err("a map as it is: smoothing and splitting are of one line".to_owned()));
+        Self::new(self.x.clone(), heights, self.periodic).with_map(no_map)
     }
 
     /// The data points, and those of as many periods beside them as reach over `margin`, m.
@@ -238,118 +276,12 @@ fn close(z: &mut [f64]) -> Result<(), PointsError> {
     Ok(())
 }
 
-/// A number of modes that is whole but for rounding is that number.
-const WHOLE: f64 = 1.0e-9;
-
-/// A periodic profile whose one-sided power spectrum is constant up to q_r = 2π/roll-off, falls as q^(-1-2H) up to
-/// q_c = 2π/cut-off and is 0 beyond.
-///
-/// It is a sum over the modes m = 1, 2, … of the wave numbers q = 2πm/length,
-///
-/// z(x) = Σ a_m cos(q x + φ_m),   a_m² ∝ the spectrum at q,   φ_m = 2π · the m-th number of [`SplitMix64`] from the
-/// seed,
-///
-/// at even points, scaled to the root mean square height. So every mode has exactly its share of the power, the same
-/// seed gives the same bits everywhere, and more points the same profile with more points; a shorter cut-off adds modes
-/// and leaves the phases of the others.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SelfAffine {
-    /// Period, m.
-    pub length: f64,
-    /// Even intervals of a period.
-    pub points: usize,
-    /// Hurst exponent H, 1.
-    pub hurst: f64,
-    /// Root mean square height over one period, about a mean of 0, m.
-    pub rms: f64,
-    /// Wavelength above which the spectrum is constant, m.
-    pub roll_off: f64,
-    /// The shortest wavelength, m.
-    pub cut_off: f64,
-    /// Seed of the random phases.
-    pub seed: u64,
-}
-
-impl SelfAffine {
-    pub(super) fn surface(&self) -> Surface {
-        let share = |i| i as f64 / self.points as f64;
-        let x = (0..=self.points).map(|i| self.length * share(i)).collect();
-        let mut z = self.heights();
-        z.push(z[0]);
-        Surface { self_affine: Some(*self), ..Surface::new(x, z, true) }
-    }
-
-    /// The heights at the points of one period, m.
-    fn heights(&self) -> Vec<f64> {
-        let sums = fourier(&self.coefficients(), Direction::Backward);
-        let mean = sums.iter().map(|sum| sum.re).sum::<f64>() / self.points as f64;
-        let mut z: Vec<f64> = sums.iter().map(|sum| sum.re - mean).collect();
-        let scale = self.rms / (z.iter().map(|z| z * z).sum::<f64>() / self.points as f64).sqrt();
-        z.iter_mut().for_each(|z| *z *= scale);
-        z
-    }
-
-    /// The coefficients of e^(2πi nm/points), but for a common factor.
-    fn coefficients(&self) -> Vec<Complex<f64>> {
-        let mut coefficients = vec![Complex::from(0.0); self.points];
-        let mut random = SplitMix64::new(self.seed);
-        for m in 1..=self.modes() {
-            let (sine, cosine) = libm::sincos(TAU * random.unit());
-            let amplitude = self.power(m).sqrt();
-            if 2 * m < self.points {
-                coefficients[m] = Complex::new(amplitude * cosine, amplitude * sine);
-                coefficients[self.points - m] = coefficients[m].conj();
-            } else {
-                // With two points a wavelength the phase is not resolved: the amplitude has the mean power of all
-                // phases.
-                coefficients[m] = Complex::from(SQRT_2 * amplitude.copysign(cosine));
-            }
-        }
-        coefficients
-    }
-
-    /// The last mode below the cut-off.
-    fn modes(&self) -> usize {
-        let modes = self.length / self.cut_off * (1.0 + WHOLE);
-        (modes as usize).min(self.points / 2)
-    }
-
-    /// The spectrum below the roll-off, m³.
-    pub(super) fn plateau(&self) -> f64 {
-        let powers: f64 = (1..=self.modes()).map(|m| self.power(m)).sum();
-        self.rms * self.rms / powers / (TAU / self.length)
-    }
-
-    /// The power of mode m over that of a mode below the roll-off.
-    fn power(&self, m: usize) -> f64 {
-        let ratio = m as f64 * self.roll_off / self.length;
-        if ratio > 1.0 { libm::pow(ratio, -1.0 - 2.0 * self.hurst) } else { 1.0 }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const ROUGH: SelfAffine =
-        SelfAffine { length: 0.1, points: 4000, hurst: 0.8, rms: 2e-5, roll_off: 5e-3, cut_off: 1e-4, seed: 7 };
-
-    /// The mean square heights of the modes, from the heights at the points.
-    fn powers(profile: &SelfAffine) -> Vec<f64> {
-        let heights: Vec<_> = profile.heights().into_iter().map(Complex::from).collect();
-        let n = profile.points as f64;
-        let sums = fourier(&heights, Direction::Forward);
-        let power = |m: usize| if 2 * m == profile.points { 1.0 } else { 2.0 } * (sums[m] / n).norm_sqr();
-        (0..=profile.points / 2).map(power).collect()
-    }
-
-    fn rms(heights: &[f64]) -> f64 {
-        (heights.iter().map(|z| z * z).sum::<f64>() / heights.len() as f64).sqrt()
-    }
-
-    /// Every mode has the power that the spectrum says: 20 modes on the plateau, then as q^(-2.6) to mode 1000, none
-    /// beyond. A wave of the cut-off is halved, one of half of it is left with 2^-4, a line stays but near its ends:
-    /// the filter's definition; 64 points a wave are exact to 1e-9 of it.
+    /// A wave of the cut-off is halved, one of half of it is left with 2^-4, a line stays but near its ends: the filter's
+    /// definition; 64 points a wave are exact to 1e-9 of it.
     #[test]
     fn smoothing_halves_the_wave_of_the_cut_off() {
         let wave = |factor: i64, smoothed: f64| {
@@ -366,110 +298,4 @@ mod tests {
         let found = line.smoothed(20.0);
         assert!((21..=79).all(|i| (found.z[i] - line.z[i]).abs() < 1e-12) && found.z[0] > 0.5);
     }
-
-    #[test]
-    fn the_spectrum_is_what_was_asked() {
-        let powers = powers(&ROUGH);
-        let formula = |m: usize| match m {
-            0 => 0.0,
-            1..=20 => 1.0,
-            21..=1000 => (m as f64 / 20.0).powf(-2.6),
-            _ => 0.0,
-        };
-        let whole: f64 = (0..=2000).map(formula).sum();
-        for (m, power) in powers.iter().enumerate() {
-            let asked = 2e-5_f64.powi(2) * formula(m) / whole;
-            // Roundings of a transform of 4000 heights, whose power is 4e-10.
-            assert!((power - asked).abs() < 1e-12 * asked + 1e-34, "{m}: {power:e} for {asked:e}");
-        }
-    }
-
-    /// The periodogram in bands, as an instrument's software would take it: within the 2 % that were asked for.
-    #[test]
-    fn bands_of_the_spectrum_have_their_power() {
-        let powers = powers(&SelfAffine { points: 1 << 14, ..ROUGH });
-        let band = |from: usize, to: usize| powers[from..to].iter().sum::<f64>() / (to - from) as f64;
-        let plateau = band(1, 21);
-        for (from, to) in [(40, 44), (100, 110), (400, 440), (900, 990)] {
-            let middle = ((from * (to - 1)) as f64).sqrt();
-            let asked = plateau * (middle / 20.0).powf(-2.6);
-            assert!((band(from, to) / asked - 1.0).abs() < 0.02, "{from} to {to}");
-        }
-    }
-
-    #[test]
-    fn the_heights_have_their_root_mean_square_about_0_and_the_ends_meet() {
-        for points in [2000, 2001, 4096, 7919] {
-            let surface = SelfAffine { points, ..ROUGH }.surface();
-            assert_eq!((surface.x.len(), surface.x[0], surface.x[points]), (points + 1, 0.0, 0.1));
-            assert!(surface.periodic && surface.z[0] == surface.z[points]);
-            let heights = &surface.z[..points];
-            // Roundings of sums of some thousand heights.
-            assert!((rms(heights) / 2e-5 - 1.0).abs() < 1e-13, "{points}");
-            assert!((heights.iter().sum::<f64>() / points as f64).abs() < 1e-18, "{points}");
-        }
-    }
-
-    /// The slope of the spline through 10 points a shortest wavelength is that of the sum of cosines.
-    #[test]
-    fn the_slope_is_that_of_the_spectrum() {
-        let profile = SelfAffine { points: 10_000, ..ROUGH };
-        let (powers, q) = (powers(&profile), |m: usize| TAU * m as f64 / 0.1);
-        let formula = powers.iter().enumerate().map(|(m, power)| power * q(m) * q(m)).sum::<f64>().sqrt();
-        let surface = profile.surface();
-        let spline = surface.spline();
-        let slopes: Vec<f64> = (0..40_000).map(|i| spline.evaluate(0.1 * i as f64 / 40_000.0).1).collect();
-        // A cubic spline is wrong by (q h)⁴/120, that is 1e-3, at the shortest wavelength.
-        assert!((rms(&slopes) / formula - 1.0).abs() < 1e-3, "{} {formula}", rms(&slopes));
-    }
-
-    /// More points are the same profile; a seed is a profile.
-    #[test]
-    fn a_seed_is_one_profile() {
-        let coarse = ROUGH.heights();
-        let fine = SelfAffine { points: 12_000, ..ROUGH }.heights();
-        let largest = coarse.iter().zip(fine.iter().step_by(3)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        // Roundings of sums of 1000 cosines.
-        assert!(largest < 1e-17, "{largest}");
-        let other = SelfAffine { seed: 8, ..ROUGH }.heights();
-        let alike: f64 = coarse.iter().zip(&other).map(|(a, b)| a * b).sum::<f64>() / (4000.0 * 4e-10);
-        // Of two profiles with independent phases; with 20 modes of most power 0.2 would be usual.
-        assert!(alike.abs() < 0.7, "{alike}");
-    }
-
-    /// Two points a wavelength are enough.
-    #[test]
-    fn the_cut_off_may_lie_where_two_points_see_it() {
-        for points in [2000, 2001] {
-            let profile = SelfAffine { points, ..ROUGH };
-            assert_eq!(profile.modes(), 1000);
-            let powers = powers(&profile);
-            let asked = powers[500] * 2_f64.powf(-2.6);
-            assert!((powers[1000] / asked - 1.0).abs() < 1e-10, "{points}");
-        }
-    }
-
-    /// The bits of a few heights and of their sum, as they come out on every platform.
-    ///
-    /// The values are those of a program of its own in Python, which sums the cosines one by one with 40 digits: this
-    /// one is right to its last digits, and the bits say that the next platform, compiler or change gives the same.
-    #[test]
-    fn a_seed_gives_the_same_bits_everywhere() {
-        let profile = SelfAffine { points: 300, length: 0.03, roll_off: 1e-2, cut_off: 3e-4, ..ROUGH };
-        let heights = profile.heights();
-        for (i, value) in PYTHON {
-            // Roundings of a transform of 300 values of size 2e-5.
-            assert!((heights[i] - value).abs() < 3e-20, "{i}: {:e} for {value:e}", heights[i]);
-        }
-        let digest = heights.iter().fold(0_u64, |digest, z| digest.rotate_left(5) ^ z.to_bits());
-        assert_eq!(digest, DIGEST, "{digest:#x}");
-    }
-
-    const PYTHON: [(usize, f64); 4] = [
-        (0, -5.518007025855965e-07),
-        (1, -1.9030598303507189e-06),
-        (150, 6.461100995468687e-06),
-        (299, 1.2072049374252627e-06),
-    ];
-    const DIGEST: u64 = 0x4ab4_bc22_f39d_1d48;
 }

@@ -118,6 +118,8 @@ pub enum Unit {
     Newton,
     /// N/m.
     NewtonPerMeter,
+    /// Pa/m.
+    PascalPerMeter,
     /// m/N.
     MeterPerNewton,
     /// 1/s.
@@ -187,6 +189,7 @@ impl Unit {
             Self::PerSecond => ("1/s", [0, 0, -1, 0]),
             Self::MeterPerNewtonSecond => ("m/(N.s)", [-1, 0, 1, 0]),
             Self::NewtonPerMeter => ("N/m", [1, 0, -2, 0]),
+            Self::PascalPerMeter => ("Pa/m", [1, -2, -2, 0]),
             Self::NewtonSecondPerMeter => ("N.s/m", [1, 0, -1, 0]),
             Self::Kelvin => ("K", [0, 0, 0, 1]),
             Self::SquareMeter => ("m2", [0, 2, 0, 0]),

@@ -420,3 +420,55 @@ fn an_fmu_has_the_spectrum_and_the_softening() {
     }
     assert!(!description.contains("surface.fine.softening") && description.contains("J/(kg.K)"));
 }
+
+/// Heights, gradient, spectrum and exponents of an isotropic map of the program's own; its matrix, mirrored, is a scene's
+/// periodic map.
+#[test]
+fn a_map_is_analysed_and_made_periodic() {
+    let folder = scratch("surface-map");
+    let [source, psd, matrix] = ["scene.toml", "psd.csv", "map.csv"].map(|name| folder.join(name));
+    let law = "kind = 'self_affine', isotropic = true, length = 4e-3, size_y = 2e-3, points = 256, hurst = 0.7, \
+               rms = 2e-5, roll_off_wavelength = 1e-3, cut_off_wavelength = 6.25e-5, seed = 5";
+    fs::write(&source, scene(law)).unwrap();
+    let found = findings(&source, &["--spectrum", psd.to_str().unwrap(), "--wavelengths", "1.25e-4..1e-3"]);
+    let map = &found["map"];
+    assert_eq!((&map["points"][0], &map["points"][1], &map["lengths"][1]), (&256.into(), &128.into(), &2e-3.into()));
+    near(&map["rms_height"], 2e-5, 1e-9);
+    // Rings hold hundreds of modes, each with the power asked for: C falls by q^-3.4.
+    let table = crate::common::Table::read(&psd);
+    let (q, density) = (table.column("q [1/m]"), table.column("C [m^4]"));
+    let at = |wavelength: f64| q.iter().position(|q| *q > TAU / wavelength).unwrap();
+    let (i, j) = (at(5e-4), at(1e-4));
+    let slope = (density[j] / density[i]).ln() / (q[j] / q[i]).ln();
+    assert!((slope + 3.4).abs() < 0.1, "{slope}");
+    // Σ q² C of the law, over all modes: 4 points of the shortest wave, whose slope a spline has to 5 %.
+    let (mut heights, mut gradients) = (0.0, 0.0);
+    for (m, n) in (-64..=64).flat_map(|m| (-32..=32).map(move |n| (m, n))).filter(|modes| *modes != (0, 0)) {
+        let waves = (f64::from(m) / 4e-3).hypot(f64::from(n) / 2e-3);
+        let power = if waves < 1.6001e4 { (waves * 1e-3).max(1.0).powf(-3.4) } else { 0.0 };
+        heights += power;
+        gradients += power * (TAU * waves).powi(2);
+    }
+    let modes = f64::sqrt(gradients / heights);
+    near(&map["rms_gradient"], 2e-5 * modes, 5e-2);
+    // Waves across a line end at the cut-off too, so that its spectrum lacks 20 % at 0.125 mm; C itself in place of the
+    // lines' spectrum would give half more.
+    for law in map["laws"].as_array().unwrap() {
+        assert!((law["hurst"].as_f64().unwrap() - 0.7).abs() < 0.2, "{law}");
+    }
+
+    fs::write(&matrix, "1e-6,2e-6,4e-6\n0,1e-6,1e-6\n3e-6,3e-6,0\n").unwrap();
+    let mirrored = folder.join("mirrored.csv");
+    let options = ["--spacing", "1e-5,2e-5", "--mirror", "--write", mirrored.to_str().unwrap()];
+    let found = findings(&matrix, &options);
+    assert_eq!((&found["map"]["points"], &found["periodic"]), (&serde_json::json!([4, 4]), &true.into()));
+    fs::write(&source, scene("kind = 'file', path = 'mirrored.csv', spacing = [1e-5, 2e-5], periodic = true")).unwrap();
+    let loaded = Scene::load(&source).unwrap();
+    let map = loaded.surface.map().unwrap();
+    assert_eq!((map.nx(), map.ny()), (4, 4));
+    // The plane is out, and the mirror image goes back.
+    assert!(map.mean().abs() < 1e-6 && (map.line(1)[1] - map.line(1)[3]).abs() < 1e-18);
+    assert!(map.line(1).iter().zip(map.line(3)).all(|(a, b)| a == b));
+    let profile = ["--spacing", "1e-5,2e-5", "--line", "1", "--mirror"];
+    assert_eq!(findings(&matrix, &profile)["points"], 5);
+}

@@ -308,19 +308,20 @@ pub(crate) struct Surface {
     #[arg(long, value_name = "WAVELENGTH", value_parser = positive, conflicts_with = "smooth")]
     pub(crate) split: Option<f64>,
     /// Writes the spectrum of the finer waves, of an isotropic surface with such lines, as two columns, q in 1/m and C
-    /// in m⁴, that a scene can use.
-    #[arg(long, value_name = "OUT.csv", requires = "split")]
+    /// in m⁴, that a scene can use; without --split the isotropic spectrum of a map.
+    #[arg(long, value_name = "OUT.csv")]
     pub(crate) spectrum: Option<PathBuf>,
     /// Makes the profile periodic: its mirror image follows it, after smoothing. Heights and slopes stay; the period is
-    /// twice the length.
+    /// twice the length. Of a map, unless --line chooses one of it: its plane is taken out, and its mirror images follow
+    /// along x and y.
     #[arg(long, conflicts_with_all = ["taper", "periodic"])]
     pub(crate) mirror: bool,
     /// Makes the profile periodic without the kinks of a mirror image: over a tenth of the length its end goes over
     /// into its beginning, by a cosine, after smoothing. The period is nine tenths of the length.
     #[arg(long, conflicts_with = "periodic")]
     pub(crate) taper: bool,
-    /// Writes the profile as read, and smoothed or made periodic, as two columns in m that a scene can use; - for
-    /// standard output.
+    /// Writes the profile as read, and smoothed or made periodic, as two columns in m that a scene can use; a map made
+    /// periodic by --mirror as a matrix of heights; - for standard output.
     #[arg(long, value_name = "OUT.csv")]
     pub(crate) write: Option<PathBuf>,
     /// Prints one JSON object in SI units, including the bands of the spectrum.

@@ -60,6 +60,7 @@ fn load(command: &Pack) -> Result<(Definition, PathBuf), PackError> {
         (Some(path), _) => {
             let patch = files::load_patch(path, &[])?;
             warn_of(&patch.table().basis);
+            patch::warn_of_missing_backing(&patch);
             Ok((patch.into(), path.clone()))
         }
         (None, Some(path)) => {

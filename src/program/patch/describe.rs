@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use asperity::patch::{MotionError, Patch, PatchRun, PatchStart, Pose};
-use asperity::scene::{Parameter, ParameterError, TableExtrapolation, Value};
+use asperity::scene::{Backing, Parameter, ParameterError, TableExtrapolation, Value};
 
 use crate::program::files::{FileError, load_patch, print};
 use crate::program::overrides::Setting;
-use crate::program::terminal::{LabelledLine, lines, rounded};
+use crate::program::terminal::{LabelledLine, lines, rounded, warn};
 
 /// `asperity describe --patch` failed.
 #[derive(Debug, thiserror::Error)]
@@ -25,12 +25,16 @@ enum LowEndError {
     Motion(#[from] MotionError),
 }
 
+/// Tangential stiffness per area, Pa/m, above which a contact is stiffer than what can stand behind it.
+const STIFF: f64 = 3e9;
+
 /// Halvings of an interval of heights.
 const HALVINGS: u32 = 50;
 
 /// Prints the summary.
 pub(crate) fn describe(path: &Path, set: &[Setting]) -> Result<(), PatchDescribeError> {
     let patch = load_patch(path, set)?;
+    warn_of_missing_backing(&patch);
     let title = ("Name", patch.name().to_owned());
     Ok(print(&lines(&[vec![title], rows(&patch)].concat()))?)
 }
@@ -45,10 +49,26 @@ pub(crate) fn rows(patch: &Patch) -> Vec<LabelledLine> {
     if patch.has_temperatures() {
         rows.push(("Temperature", format!("an input, {} K at the start", patch.temperature())));
     }
+    if let Some(Backing { normal, shear }) = patch.backing() {
+        rows.push(("Backing", format!("{normal:e} Pa/m along the normal and {shear:e} Pa/m in shear, in series")));
+    }
     rows.push(("Clear at", format!("z = {} m and above, level", patch.clear_height())));
     rows.push(("Low end", low_end(patch)));
     rows.push(("Outputs", format!("{}: {variables} variables", groups.join(", "))));
     rows
+}
+
+/// Warns where the contacts of the table are stiffer than anything of rubber that could stand behind them: a millimetre
+/// of it at G = 3 MPa.
+pub(crate) fn warn_of_missing_backing(patch: &Patch) {
+    let stiffness = patch.contact_stiffness();
+    if patch.backing().is_none() && stiffness > STIFF {
+        warn(&format!(
+            "contacts have a tangential stiffness of {} Pa/m at the table's largest pressure, and what stands behind \
+             them is left out: in rolling and where motion begins the patch is too stiff; see [patch] backing",
+            format_args!("{stiffness:.1e}")
+        ));
+    }
 }
 
 /// How much of the load lies below the table's least pressure where the largest is that of the table.

@@ -4,7 +4,7 @@ mod describe;
 mod motion;
 mod simulate;
 
-pub(crate) use describe::{describe, rows};
+pub(crate) use describe::{describe, rows, warn_of_missing_backing};
 pub(crate) use simulate::simulate;
 
 use std::path::{Path, PathBuf};

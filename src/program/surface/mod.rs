@@ -1,5 +1,6 @@
-//! `asperity surface`: analyses a profile.
+//! `asperity surface`: analyses a profile or a map.
 
+mod map;
 mod periodic;
 
 use std::path::{Path, PathBuf};
@@ -13,6 +14,7 @@ use super::files::{
     self, FileError, check_outputs, ends_in, load_without_excitation, name_of, named, print_beside, sources,
 };
 use super::terminal::{lines, note, real, warn};
+use map::MapAnalysis;
 
 /// `asperity surface` failed.
 #[derive(Debug, thiserror::Error)]
@@ -23,6 +25,8 @@ pub(crate) enum SurfaceError {
     SceneHasOptions { path: PathBuf },
     #[error("{}: --mirror and --taper make a profile periodic, and it is", .path.display())]
     AlreadyPeriodic { path: PathBuf },
+    #[error("--spectrum: expected --split, or a map, whose isotropic spectrum is written")]
+    NoSpectrum,
     #[error("--split {split:?}: expected {expected}")]
     Split { split: f64, expected: String },
     #[error("cannot be written as JSON: {0}")]
@@ -43,30 +47,69 @@ pub(crate) fn surface(command: &Surface) -> Result<(), SurfaceError> {
     };
     let removed = command.smooth.or(command.split).map(|cut_off| Removed::of(&read, &smooth, cut_off));
     let surface = match (command.mirror, command.taper) {
-        (true, _) => periodic::mirrored(&smooth),
+        (true, _) => mirrored(&smooth, command),
         (_, true) => periodic::tapered(&smooth),
         _ => smooth,
     };
     let finer_waves = finer.as_ref().map(FinerWaves::of);
     let analysis = Analysis { removed, finer: finer_waves, ..Analysis::of(&surface, command) };
+    if command.spectrum.is_some() && finer.is_none() && analysis.map.is_none() {
+        return Err(SurfaceError::NoSpectrum);
+    }
     let text = if command.json { serde_json::to_string(&analysis)? + "\n" } else { analysis.text() };
+    if let Some(expected) = surface.map_error() {
+        note(&format!("the line alone is analysed; a map would need {expected}"));
+    }
     print_beside(&command.write, &text)?;
     if let Some(path) = &command.output {
         picture(&surface, &analysis, &command.file).write(path)?;
     }
-    if let Some(path) = &command.write {
-        files::write(path, columns(&surface))?;
-        let periodic = if surface.is_periodic() { " with periodic = true" } else { "" };
+    write_surface(&surface, command)?;
+    write_spectrum(finer.as_ref(), analysis.map.as_ref(), command)
+}
+
+/// The mirror image behind the map, or behind the profile, or the line of a map that was chosen.
+fn mirrored(surface: &scene::Surface, command: &Surface) -> scene::Surface {
+    match surface.map().filter(|_| command.reading.line.is_none()) {
+        Some(map) => scene::Surface::of_map(map.mirrored(), true),
+        None => periodic::mirrored(surface),
+    }
+}
+
+/// Writes the profile; a map that was made periodic whole.
+fn write_surface(surface: &scene::Surface, command: &Surface) -> Result<(), SurfaceError> {
+    let Some(path) = &command.write else { return Ok(()) };
+    let periodic = if surface.is_periodic() { " with periodic = true" } else { "" };
+    if let Some(map) = surface.map().filter(|_| command.mirror) {
+        files::write(path, map::matrix(map))?;
+        let [dx, dy] = map.spacing();
+        let keys = format!("with spacing = [{dx:?}, {dy:?}] and periodic = true");
+        note(&format!("{} holds the map in m, for path = of a scene's surface {keys}", named(path)));
+    } else {
+        files::write(path, columns(surface))?;
         note(&format!("{} holds the profile in m, for path = of a scene's surface{periodic}", named(path)));
     }
-    if let (Some(path), Some(finer)) = (&command.spectrum, finer) {
-        files::write(path, spectrum_columns(&finer))?;
+    Ok(())
+}
+
+/// Writes the spectrum of the finer waves, or the isotropic one of a map.
+fn write_spectrum(
+    finer: Option<&RoughnessSpectrum>,
+    map: Option<&MapAnalysis>,
+    command: &Surface,
+) -> Result<(), SurfaceError> {
+    let Some(path) = &command.spectrum else { return Ok(()) };
+    if let Some(finer) = finer {
+        files::write(path, spectrum_columns(finer.points()))?;
         let [longest, shortest] = finer.wavelengths();
         note(&format!(
             "{} holds their spectrum, for fine = {{ spectrum = \"{}\", longest = {longest:.6e}, shortest = {shortest:.6e} }}",
             named(path),
             name_of(path)
         ));
+    } else if let Some(map) = map {
+        files::write(path, spectrum_columns(map.spectrum()))?;
+        note(&format!("{} holds the isotropic spectrum of the map", named(path)));
     }
     Ok(())
 }
@@ -194,6 +237,8 @@ struct Analysis {
     removed: Option<Removed>,
     #[serde(skip_serializing_if = "Option::is_none")]
     finer: Option<FinerWaves>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    map: Option<MapAnalysis>,
     law: Option<PowerLaw>,
     /// How the spectrum was computed.
     taken: String,
@@ -208,7 +253,8 @@ impl Analysis {
         let points = if statistics.is_even() { "" } else { "at even points of the spline, " };
         let window =
             if surface.is_periodic() { "over one period, as it is" } else { "without tilt, under a Hann window" };
-        Self { statistics, removed: None, finer: None, law, taken: format!("{points}{window}"), spectrum: bands }
+        let map = MapAnalysis::of(surface, command);
+        Self { statistics, removed: None, finer: None, map, law, taken: format!("{points}{window}"), spectrum: bands }
     }
 
     fn text(&self) -> String {
@@ -237,6 +283,7 @@ impl Analysis {
         }));
         rows.push(("Spectrum", format!("taken {}", self.taken)));
         rows.extend(self.law_rows().into_iter().map(|row| ("", row)));
+        rows.extend(self.map.iter().flat_map(MapAnalysis::rows));
         lines(&rows)
     }
 
@@ -277,9 +324,8 @@ fn picture(surface: &scene::Surface, analysis: &Analysis, file: &Path) -> Profil
     }
 }
 
-fn spectrum_columns(spectrum: &RoughnessSpectrum) -> String {
-    let rows: String =
-        spectrum.points().iter().map(|[q, density]| format!("{},{}\n", real(*q), real(*density))).collect();
+fn spectrum_columns(points: &[[f64; 2]]) -> String {
+    let rows: String = points.iter().map(|[q, density]| format!("{},{}\n", real(*q), real(*density))).collect();
     format!("q [1/m],C [m^4]\n{rows}")
 }
 

@@ -320,11 +320,14 @@ fn self_affine_bands(hurst: f64, rms_slope: f64, longest: f64, shortest: f64) ->
 impl SelfAffine {
     /// The law from its own cut-off down to the wavelength `shortest` (m).
     fn continued(&self, shortest: f64) -> Vec<FineBand> {
-        let at_roll_off = self.plateau() * (TAU / self.roll_off).powf(1.0 + 2.0 * self.hurst);
         let (wave_numbers, width) = middles(self.cut_off, shortest);
+        // C1 of a profile is a density of lines, C of a map is what is asked for.
+        let exponent = if self.size_y.is_some() { -2.0 } else { -1.0 } - 2.0 * self.hurst;
+        let at_roll_off = self.plateau() * (TAU / self.roll_off).powf(-exponent);
         let band = |q: f64| {
-            let of_lines = at_roll_off * q.powf(-1.0 - 2.0 * self.hurst);
-            FineBand::new(q, gradient_square(q, isotropic(q, of_lines, self.hurst), width))
+            let law = at_roll_off * q.powf(exponent);
+            let density = if self.size_y.is_some() { law } else { isotropic(q, law, self.hurst) };
+            FineBand::new(q, gradient_square(q, density, width))
         };
         wave_numbers.into_iter().map(band).collect()
     }

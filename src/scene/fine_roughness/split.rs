@@ -66,14 +66,22 @@ mod tests {
     use crate::scene::SelfAffine;
     use crate::scene::fine_roughness::spectrum::isotropic;
 
-    const ROUGH: SelfAffine =
-        SelfAffine { length: 0.1, points: 10_000, hurst: 0.8, rms: 2e-5, roll_off: 5e-3, cut_off: 2e-5, seed: 7 };
+    const ROUGH: SelfAffine = SelfAffine {
+        length: 0.1,
+        points: 10_000,
+        hurst: 0.8,
+        rms: 2e-5,
+        roll_off: 5e-3,
+        cut_off: 2e-5,
+        seed: 7,
+        size_y: None,
+    };
 
     /// Of a self-affine line, every mode of which has the power of its law: C (1 - G²), within the means over bands of
     /// a twelfth of a decade; beyond the resolution the law goes on.
     #[test]
     fn the_finer_waves_of_a_self_affine_line_have_their_law() {
-        let line = ROUGH.surface();
+        let line = ROUGH.surface(None);
         let SplitSurface { profile, finer } = line.split(1e-3).unwrap_or_else(|error| unreachable!("{error}"));
         assert_eq!(profile, line.smoothed(1e-3));
         let law = |q: f64| isotropic(q, ROUGH.plateau() * (q * ROUGH.roll_off / TAU).powf(-2.6), 0.8);
@@ -95,7 +103,7 @@ mod tests {
     /// Under a window: the gradient of a line that is not repeated, within the chance of its bands.
     #[test]
     fn the_finer_waves_of_a_line_with_ends_have_its_gradient() {
-        let whole = ROUGH.surface();
+        let whole = ROUGH.surface(None);
         let line = Surface::new(whole.x().to_vec(), whole.z().to_vec(), false);
         let finer = |line: &Surface| line.split(1e-3).map(|split| split.finer.rms_gradient()).unwrap_or_default();
         assert!((finer(&line) / finer(&whole) - 1.0).abs() < 0.02, "{} {}", finer(&line), finer(&whole));
@@ -103,7 +111,7 @@ mod tests {
 
     #[test]
     fn a_split_fits_the_line() {
-        let line = ROUGH.surface();
+        let line = ROUGH.surface(None);
         assert_eq!(line.split(0.0251).err().as_deref(), Some("at most 0.025 m, a quarter of the line"));
         let coarse = line.split(3.9e-5).err().unwrap_or_default();
         assert!(coarse.starts_with("at least 4") && coarse.ends_with(" m, four steps of the line"), "{coarse}");

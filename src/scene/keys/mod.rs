@@ -11,7 +11,7 @@ use super::{
     Method, Missing, OutputGroup, ThirdColumn, Tilt, Unit,
 };
 
-pub(super) use patch::{AREA, COORDINATE, PATCH_ROOT, REFINE, ShapeKind};
+pub(super) use patch::{AREA, BACKING_NORMAL, BACKING_SHEAR, COORDINATE, PATCH_ROOT, REFINE, ShapeKind};
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Key {
@@ -250,6 +250,8 @@ const SINUSOID: &[Key] = &[
     whole("points_per_wavelength", 4, 10_000_000, "Data points of one wavelength"),
 ];
 
+const LINE: Key = whole("line", 1, 1_000_000_000, "Line of a map along x that a layer slides over");
+
 const SELF_AFFINE: &[Key] = &[
     KIND,
     FINE,
@@ -260,6 +262,9 @@ const SELF_AFFINE: &[Key] = &[
     number("roll_off_wavelength", POSITIVE, Unit::Meter, "Wavelength above which the spectrum is constant"),
     number("cut_off_wavelength", POSITIVE, Unit::Meter, "Shortest wavelength"),
     whole("seed", 0, i64::MAX, "Seed of the random phases"),
+    key("isotropic", Allowed::Flag, "Whether the surface is a map, the same along all directions"),
+    number("size_y", POSITIVE, Unit::Meter, "Period of the map along y"),
+    LINE,
 ];
 
 const POINTS: &[Key] = &[
@@ -285,7 +290,7 @@ const FILE: &[Key] = &[
     word::<ThirdColumn>("third_column", "What a third column means"),
     key("columns", Allowed::Text(COLUMNS), "Columns of x and z, by their names or numbers"),
     key("spacing", Allowed::Numbers(POSITIVE), "Distance of points of a file without x, m"),
-    whole("line", 1, 1_000_000_000, "Line of an areal measurement"),
+    LINE,
 ];
 
 /// What `columns` holds.

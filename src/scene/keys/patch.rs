@@ -1,6 +1,6 @@
 //! The keys of a patch file.
 
-use super::{Allowed, POSITIVE, Word, words};
+use super::{Allowed, NumberRange, POSITIVE, Word, words};
 use super::{DEPENDENCIES, INPUT, INTEGERS, Key, PATH, key, number, table, whole, word};
 use crate::scene::patch_file::{MAX_ELEMENTS, PatchGroup, TableExtrapolation};
 use crate::scene::{Unit, values::ANY};
@@ -56,10 +56,26 @@ const NY: Key = whole("ny", 1, MAX_ELEMENTS, "Elements along y");
 const TRANSPORT: Key = key("transport", Allowed::Flag, "Whether a tread runs through");
 const OFFSET: Key = key("offset", Allowed::Numbers(ANY), "The face's origin in the body's axes, m");
 
-const FLAT: &[Key] = &[SHAPE, LENGTH, WIDTH, NX, NY, TRANSPORT, OFFSET];
+const BACKING: Key = table(
+    "backing",
+    &[
+        BACKING_NORMAL,
+        BACKING_SHEAR,
+        number("height", BLOCK, Unit::Meter, "Height of the block behind the contacts"),
+        number("modulus", BLOCK, Unit::Pascal, "Young's modulus of the block behind the contacts"),
+    ],
+);
+/// So that the stiffnesses of the block are positive numbers too.
+const BLOCK: NumberRange = POSITIVE.down_to(1e-9).up_to(1e20);
+pub(in crate::scene) const BACKING_NORMAL: Key =
+    number("normal", POSITIVE, Unit::PascalPerMeter, "Stiffness per area of what is behind the contacts");
+pub(in crate::scene) const BACKING_SHEAR: Key =
+    number("shear", POSITIVE, Unit::PascalPerMeter, "Stiffness in shear per area of what is behind the contacts");
+
+const FLAT: &[Key] = &[SHAPE, LENGTH, WIDTH, NX, NY, TRANSPORT, OFFSET, BACKING];
 const CYLINDER: &[Key] =
-    &[SHAPE, number("radius", POSITIVE, Unit::Meter, "Radius"), LENGTH, WIDTH, NX, NY, TRANSPORT, OFFSET];
-const POINTS: &[Key] = &[SHAPE, key("path", Allowed::Text(PATH), "File of the points"), OFFSET];
+    &[SHAPE, number("radius", POSITIVE, Unit::Meter, "Radius"), LENGTH, WIDTH, NX, NY, TRANSPORT, OFFSET, BACKING];
+const POINTS: &[Key] = &[SHAPE, key("path", Allowed::Text(PATH), "File of the points"), OFFSET, BACKING];
 
 pub(in crate::scene) const REFINE: Key =
     whole("refine", 1, 1000, "How many times finer a step is cut than it needs to be");

@@ -119,6 +119,10 @@ pub enum Parameter {
     TableExtrapolation,
     /// `solver.refine`, of a patch
     Refine,
+    /// `patch.backing.normal`
+    BackingNormal,
+    /// `patch.backing.shear`
+    BackingShear,
 }
 
 /// A parameter's value.
@@ -199,6 +203,8 @@ impl Parameter {
             Self::Extrapolation => "input.extrapolation",
             Self::TableExtrapolation => "table.extrapolation",
             Self::Refine => "solver.refine",
+            Self::BackingNormal => "patch.backing.normal",
+            Self::BackingShear => "patch.backing.shear",
         };
         name.to_owned()
     }
@@ -207,6 +213,8 @@ impl Parameter {
         match self {
             Self::TableExtrapolation => &keys::TABLE_EXTRAPOLATION,
             Self::Refine => &keys::REFINE,
+            Self::BackingNormal => &keys::BACKING_NORMAL,
+            Self::BackingShear => &keys::BACKING_SHEAR,
             _ => keys::at(&self.name()).unwrap_or(&keys::NONE),
         }
     }
@@ -235,6 +243,12 @@ impl Parameter {
             | Self::CarrierStartRate(axis) => format!("{meaning}, along {}", axis.name()),
             _ => meaning.to_owned(),
         }
+    }
+
+    /// `number`, if the parameter may have it.
+    pub(crate) fn check_number(self, number: f64) -> Result<f64, ParameterError> {
+        let is_allowed = self.key().range().is_some_and(|range| range.holds(number));
+        if is_allowed { Ok(number) } else { Err(self.refuse(Value::Real(number))) }
     }
 
     fn refuse(self, given: impl ToString) -> ParameterError {
@@ -319,7 +333,8 @@ macro_rules! field {
             RelativeTolerance => Some(&$($mut)? scene.solver.relative_tolerance),
             // They follow others until they are set: see `real` and `write_real`.
             CreepSpeed | FineCreepSpeed | AbsoluteTolerance => None,
-            Initial | CarrierInitial | Method | MaxSteps | Extrapolation | TableExtrapolation | Refine => None,
+            Initial | CarrierInitial | Method | MaxSteps | Extrapolation | TableExtrapolation | Refine | BackingNormal
+            | BackingShear => None,
         }
     }};
 }
@@ -427,9 +442,7 @@ impl Scene {
     }
 
     fn set_real(&mut self, parameter: Parameter, number: f64) -> Result<(), ParameterError> {
-        if !parameter.key().range().is_some_and(|range| range.holds(number)) {
-            return Err(parameter.refuse(Value::Real(number)));
-        }
+        parameter.check_number(number)?;
         if self.real(parameter).is_none() {
             return Err(self.unknown(&parameter.name()));
         }

@@ -1,8 +1,10 @@
 //! Heights over a grid, and the line along x that is taken of them.
 
-use super::options::{MeasuredPoints, Missing, ProfileOptions, ReadingNote};
+use super::options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ReadingNote, Tilt};
+use super::sentinels;
 use crate::scene::error::ContentError;
 use crate::scene::text_table::Unit;
+use crate::scene::{HeightMap, MOST_HEIGHTS, peak_to_valley};
 
 /// An areal measurement: lines along x, one after the other along y.
 #[derive(Debug)]
@@ -29,6 +31,11 @@ impl Areal {
         Self { kind, x: positions(0), y: positions(1), heights, x_unit: None, unit: None, notes: Vec::new() }
     }
 
+    /// Lines at these positions along y with points at these along x.
+    pub(super) fn at(kind: &'static str, x: Vec<f64>, y: Vec<f64>, heights: Vec<f64>) -> Self {
+        Self { kind, x, y, heights, x_unit: None, unit: None, notes: Vec::new() }
+    }
+
     /// Points on a grid in any order of lines; each line with all its points, one after the other along x or along y.
     pub(super) fn of_points(raw: MeasuredPoints, y: &[f64]) -> Result<Self, ContentError> {
         let (x_values, y_values) = (sorted(&raw.x), sorted(y));
@@ -47,9 +54,10 @@ impl Areal {
         Ok(Self { kind: "a map of points", x: x_values, y: y_values, heights, x_unit, unit, notes: raw.notes })
     }
 
-    /// The line that `options` choose, or the middle one.
-    pub(super) fn line(self, options: &ProfileOptions) -> Result<MeasuredPoints, ContentError> {
-        let lines = self.y.len();
+    /// The line that `options` choose, or the middle one. That of a periodic map is closed by its first height, unless
+    /// the map's edges repeat each other.
+    pub(super) fn line(&self, options: &ProfileOptions) -> Result<MeasuredPoints, ContentError> {
+        let (width, lines) = (self.x.len(), self.y.len());
         let line = match options.line {
             Some(line) if line <= lines => line,
             Some(line) => {
@@ -58,22 +66,137 @@ impl Areal {
             }
             None => lines.div_ceil(2),
         };
-        let mut notes = self.notes;
+        let mut notes = self.notes.clone();
         notes.push(line_note(self.kind, line, lines, options.line.is_some()));
-        let width = self.x.len();
-        let z = self.heights[(line - 1) * width..line * width].to_vec();
+        let here = (line - 1) * width..line * width;
+        // A period has no ends to leave out: its gaps are filled as those of the map are.
+        let filled = (options.periodic && options.missing == Missing::Fill).then(|| self.known_heights(Missing::Fill));
+        let filled = filled.and_then(Result::ok);
+        let heights = filled.as_ref().unwrap_or(&self.heights);
+        let (mut x, mut z) = (self.x.clone(), heights[here].to_vec());
+        let is_open = options.periodic && width > 2 && !repeat_their_start(heights, width);
+        if let Some(step) = even_step(&self.x).filter(|_| is_open) {
+            x.push(x[width - 1] + step);
+            z.push(z[0]);
+        }
         let units = [self.x_unit, self.unit];
         let is_spaced = !options.spacing.is_empty();
-        let raw = MeasuredPoints { x: self.x, z, units, is_spaced, notes, ..MeasuredPoints::default() };
+        let raw = MeasuredPoints { x, z, units, is_spaced, notes, ..MeasuredPoints::default() };
         match raw.z.iter().position(|z| z.is_nan()).filter(|_| options.missing == Missing::Refuse) {
             Some(i) => Err(raw.refuse(i, "z", "missing", "a height, or missing = \"fill\" where heights are missing")),
             None => Ok(raw),
         }
     }
+
+    /// The map, or why there is none; nothing of a single line.
+    pub(super) fn map(&self, options: &ProfileOptions) -> Option<Result<HeightMap, String>> {
+        (self.x.len() > 1 && self.y.len() > 1).then(|| self.whole(options))
+    }
+
+    fn whole(&self, options: &ProfileOptions) -> Result<HeightMap, String> {
+        // Positions and heights in metres.
+        let unit =
+            |given: Option<LengthUnit>, own: Option<Unit>| given.map(LengthUnit::unit).or(own).unwrap_or(Unit::ONE);
+        let x_unit = if options.spacing.is_empty() { unit(options.x_unit, self.x_unit) } else { Unit::ONE };
+        let z_unit = unit(options.z_unit, self.unit);
+        let step = |axis: &str, positions: &[f64]| {
+            even_step(positions).map(|step| x_unit.to_si(step)).ok_or_else(|| format!("even steps along {axis}"))
+        };
+        let spacing = [step("x", &self.x)?, step("y", &self.y)?];
+        let (nx, ny) = (self.x.len(), self.y.len());
+        if self.heights.len() > MOST_HEIGHTS {
+            return Err(format!("a map of up to {MOST_HEIGHTS} heights, not {nx} by {ny}"));
+        }
+        let mut heights = self.known_heights(options.missing)?;
+        heights.iter_mut().for_each(|z| *z = z_unit.to_si(*z));
+        // Lines follow each other in +y.
+        if spacing[1] < 0.0 {
+            heights = heights.chunks_exact(nx).rev().flatten().copied().collect();
+        }
+        let map = HeightMap::new(nx, spacing.map(f64::abs), heights);
+        let map = match (options.periodic, options.tilt) {
+            (true, _) => map.without_repetition(),
+            (false, Tilt::Remove) => map.without_plane(),
+            (false, Tilt::Keep) => map,
+        };
+        map.check()?;
+        Ok(map)
+    }
+
+    /// All heights, as they stand in the file; what is missing is filled along its line, or refused.
+    fn known_heights(&self, missing: Missing) -> Result<Vec<f64>, String> {
+        let mut all = MeasuredPoints { z: self.heights.clone(), ..MeasuredPoints::default() };
+        // Numbers that stand for no height are gaps too; they are counted below.
+        sentinels::take_out(&mut all, Missing::Fill).map_err(|error| error.problem.about(&error.key))?;
+        let (mut heights, nx) = (all.z, self.x.len());
+        let Some(first) = heights.iter().position(|z| z.is_nan()) else { return Ok(heights) };
+        if missing == Missing::Refuse {
+            let count = heights.iter().filter(|z| z.is_nan()).count();
+            let (line, point) = (first / nx + 1, first % nx + 1);
+            return Err(format!(
+                "a height at each point, or missing = \"fill\": {count} are missing, the first in line {line}, point {point}"
+            ));
+        }
+        let mut is_whole = true;
+        for line in heights.chunks_exact_mut(nx) {
+            is_whole &= fill_evenly(line);
+        }
+        if is_whole {
+            return Ok(heights);
+        }
+        // Lines without any height are filled from those beside them.
+        for i in 0..nx {
+            let mut column: Vec<f64> = heights.iter().skip(i).step_by(nx).copied().collect();
+            if !fill_evenly(&mut column) {
+                return Err("heights, not gaps alone".to_owned());
+            }
+            heights.iter_mut().skip(i).step_by(nx).zip(column).for_each(|(z, filled)| *z = filled);
+        }
+        Ok(heights)
+    }
+}
+
+/// Largest difference of a position from an even one, as a share of the step: positions are rounded.
+const EVEN: f64 = 1e-3;
+/// Edges that repeat each other may differ by this part of the peak-to-valley height.
+const ROUNDING: f64 = 1e-12;
+
+/// Whether lines of `width` heights all end at the height they start from, as far as these are known.
+fn repeat_their_start(heights: &[f64], width: usize) -> bool {
+    let known: Vec<f64> = heights.iter().copied().filter(|z| !z.is_nan()).collect();
+    let tolerance = ROUNDING * peak_to_valley(&known);
+    let differs = |line: &[f64]| (line[width - 1] - line[0]).abs() > tolerance;
+    !heights.chunks_exact(width).any(differs)
+}
+
+/// The step of even positions, with its sign.
+fn even_step(positions: &[f64]) -> Option<f64> {
+    let (first, last) = (*positions.first()?, *positions.last()?);
+    let step = (last - first) / (positions.len() - 1) as f64;
+    let is_even = |(i, x): (usize, &f64)| (x - first - step * i as f64).abs() <= EVEN * step.abs();
+    (step != 0.0 && positions.iter().enumerate().all(is_even)).then_some(step)
+}
+
+/// Puts gaps on the straight line between the known heights beside them, and those at an end at the height of the
+/// nearest; `false` where none is known.
+fn fill_evenly(heights: &mut [f64]) -> bool {
+    let known: Vec<usize> = (0..heights.len()).filter(|&i| !heights[i].is_nan()).collect();
+    let (Some(&first), Some(&last)) = (known.first(), known.last()) else { return false };
+    let (at_first, at_last) = (heights[first], heights[last]);
+    heights[..first].fill(at_first);
+    heights[last + 1..].fill(at_last);
+    for ends in known.windows(2) {
+        let (from, to) = (heights[ends[0]], heights[ends[1]]);
+        let count = (ends[1] - ends[0]) as f64;
+        for i in ends[0] + 1..ends[1] {
+            heights[i] = from + (i - ends[0]) as f64 / count * (to - from);
+        }
+    }
+    true
 }
 
 /// Says which line was taken.
-pub(super) fn line_note(kind: &str, line: usize, lines: usize, is_chosen: bool) -> ReadingNote {
+pub(in crate::scene) fn line_note(kind: &str, line: usize, lines: usize, is_chosen: bool) -> ReadingNote {
     let assumed = lines > 1 && !is_chosen;
     let which = if assumed { ", the middle one: `line` takes another" } else { "" };
     ReadingNote { text: format!("{kind}: line {line} of {lines} along x{which}"), assumed }

@@ -21,8 +21,10 @@ mod tests;
 use std::io;
 use std::path::{Path, PathBuf};
 
+pub(super) use areal::line_note;
 pub use options::{LengthUnit, Missing, ProfileOptions, ReadingNote, ThirdColumn, Tilt, UnknownWord};
 
+use super::HeightMap;
 use super::error::{ContentError, SceneError};
 use super::regular_file::read_file;
 use super::surface::{Coordinate, Surface, check_points, remove_tilt};
@@ -125,18 +127,19 @@ fn parse(bytes: &[u8], options: &ProfileOptions, is_extract: bool) -> Result<Par
         let Content::Profile(raw) = read_text(bytes, &of_text)? else { return Err(no_profile()) };
         return finish(MeasuredPoints { is_spaced: !options.spacing.is_empty(), ..raw }, options);
     }
-    let raw = match read_instrument(bytes, options) {
-        Some(raw) => raw?,
+    let (raw, map) = match read_instrument(bytes, options) {
+        Some(read) => read?,
         None => match read_text(bytes, options)? {
-            Content::Map(areal) => areal.line(options)?,
             Content::Profile(raw) => {
                 check_line(options)?;
                 return finish(raw, options);
             }
+            map => map.line(options)?,
         },
     };
     let text = text::write(&raw.x, &raw.z);
-    Ok(Parsed { extract: Some(text), ..finish(raw, options)? })
+    let parsed = finish(raw, options)?;
+    Ok(Parsed { extract: Some(text), surface: parsed.surface.with_map(map), ..parsed })
 }
 
 fn read_text(bytes: &[u8], options: &ProfileOptions) -> Result<Content, ContentError> {
@@ -155,14 +158,17 @@ fn check_line(options: &ProfileOptions) -> Result<(), ContentError> {
     Err(ContentError::value(None, "line", &line.to_string(), expected))
 }
 
+/// The line that `options` choose, and the map that it is taken of, or why there is none.
+type LineOfMap = (MeasuredPoints, Option<Result<HeightMap, String>>);
+
 /// The points of a file that is no text of columns; `None` of text.
 #[cfg(feature = "instruments")]
-fn read_instrument(bytes: &[u8], options: &ProfileOptions) -> Option<Result<MeasuredPoints, ContentError>> {
+fn read_instrument(bytes: &[u8], options: &ProfileOptions) -> Option<Result<LineOfMap, ContentError>> {
     if bytes.starts_with(b"PK\x03\x04") { Some(x3p::read(bytes, options)) } else { instruments::read(bytes, options) }
 }
 
 #[cfg(not(feature = "instruments"))]
-fn read_instrument(bytes: &[u8], _: &ProfileOptions) -> Option<Result<MeasuredPoints, ContentError>> {
+fn read_instrument(bytes: &[u8], _: &ProfileOptions) -> Option<Result<LineOfMap, ContentError>> {
     let expected = "text: this library was built without the reader of X3P files (feature instruments)";
     let is_archive = bytes.starts_with(b"PK\x03\x04");
     is_archive.then(|| Err(ContentError::value(None, "", "a zip archive", expected)))

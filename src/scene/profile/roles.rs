@@ -20,6 +20,9 @@ pub(super) struct Roles {
 }
 
 impl Roles {
+    /// Of points in space.
+    pub(super) const XYZ: Self = Self { x: Some(0), y: Some(1), z: 2, mark: None };
+
     /// By `columns`, or by the names, or the first two columns of a file that has no others.
     pub(super) fn choose(
         block: &Block<'_>,

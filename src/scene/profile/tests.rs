@@ -341,3 +341,63 @@ fn what_was_assumed_is_said() {
     assert_eq!(assumed("0,1\n1,2"), 2, "names and units");
     assert_eq!(assumed("x [mm],depth [mm]\n0,1\n1,2"), 1);
 }
+
+fn surface(text: &str, options: &ProfileOptions) -> Surface {
+    parse(text.as_bytes(), options, false).unwrap_or_else(|error| unreachable!("{error:?}")).surface
+}
+
+fn spaced() -> ProfileOptions {
+    ProfileOptions { spacing: vec![1e-5, 2e-5], ..options() }
+}
+
+/// Each row is a line along x, rows follow in +y; a period goes on from the last point to the first one.
+#[test]
+fn a_matrix_is_a_map() {
+    let text = "1,2,3,1\n4,5,6,1\n7,8,9,1\n";
+    let found = surface(text, &spaced());
+    let map = found.map().unwrap_or_else(|| unreachable!("{:?}", found.map_error()));
+    assert_eq!((map.nx(), map.ny(), map.spacing(), map.line(2)), (4, 3, [1e-5, 2e-5], &[7.0, 8.0, 9.0, 1.0][..]));
+    assert_eq!((found.x().len(), found.z()), (4, &[4.0, 5.0, 6.0, 1.0][..]));
+    let periodic = ProfileOptions { periodic: true, line: Some(1), ..spaced() };
+    let found = surface(text, &periodic);
+    assert_eq!((found.x()[4], found.z()), (4e-5, &[1.0, 2.0, 3.0, 1.0, 1.0][..]));
+    assert_eq!(found.map().map(HeightMap::nx), Some(4));
+    // The edges of one period that both stand there.
+    let found = surface("1,2,3,1\n4,5,6,4\n1,2,3,1\n", &periodic);
+    assert_eq!(found.z(), [1.0, 2.0, 3.0, 1.0]);
+    assert_eq!(found.map().map(|map| (map.nx(), map.ny())), Some((3, 2)));
+}
+
+/// In any order of lines, with names and units or without; y may fall.
+#[test]
+fn points_on_a_grid_need_no_names() {
+    let named = "x [mm];y [mm];z [um]\n0;1;4\n1;1;5\n0;0;1\n1;0;2\n0;2;7\n1;2;8\n";
+    let found = surface(named, &options());
+    let map = found.map().unwrap_or_else(|| unreachable!("{:?}", found.map_error()));
+    assert_eq!((map.nx(), map.ny(), map.spacing()), (2, 3, [1e-3, 1e-3]));
+    assert!((map.line(2)[1] - 8e-6).abs() < 1e-18);
+    let bare = "0 0 1\n1 0 2\n0 2 3\n1 2 4\n";
+    assert_eq!(surface(bare, &options()).map().map(HeightMap::spacing), Some([1.0, 2.0]));
+    assert!(refused(b"0 0 1\n1 0 2\n0 2 3\n", &options()).1.starts_with("columns = 3: expected two"));
+    let uneven = surface("x,y,z\n0,0,1\n1,0,2\n3,0,2\n0,1,3\n1,1,4\n3,1,3\n", &options());
+    assert_eq!((uneven.map().is_none(), uneven.map_error()), (true, Some("even steps along x")));
+}
+
+/// On the straight line between their neighbours in a line, the nearest at its ends; a line without any, from those
+/// beside it.
+#[test]
+fn gaps_of_a_map_are_refused_or_filled() {
+    let text = "nan,2,nan,4\nnan,nan,nan,nan\n1,1,3,nan\n";
+    let line = ProfileOptions { line: Some(3), ..spaced() };
+    let (_, message) = refused(text.as_bytes(), &line);
+    assert!(message.starts_with("z[4] = missing"), "{message}");
+    let whole_line = surface("nan,2,3\n1,1,3\n", &ProfileOptions { line: Some(2), ..spaced() });
+    let error = whole_line.map_error().unwrap_or_default();
+    assert!(error.contains("missing = \"fill\": 1 are missing, the first in line 1, point 1"), "{error}");
+    let fill = ProfileOptions { missing: Missing::Fill, ..line };
+    let filled = surface(text, &fill);
+    let map = filled.map().unwrap_or_else(|| unreachable!("{:?}", filled.map_error()));
+    assert_eq!(map.heights(), [2.0, 2.0, 3.0, 4.0, 1.5, 1.5, 3.0, 3.5, 1.0, 1.0, 3.0, 3.0]);
+    // A period has no ends.
+    assert_eq!(surface(text, &ProfileOptions { periodic: true, ..fill }).z(), [1.0, 1.0, 3.0, 3.0, 1.0]);
+}

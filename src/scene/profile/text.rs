@@ -3,6 +3,7 @@
 
 use std::fmt::Write as _;
 
+use super::LineOfMap;
 use super::areal::Areal;
 use super::header::{Header, VOCABULARY, cut, note};
 use super::options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ReadingNote, ThirdColumn};
@@ -12,11 +13,21 @@ use crate::scene::error::ContentError;
 use crate::scene::text_table::{Block, Heading, NumberStyle, Separator, is_missing, number};
 use crate::scene::values::ANY;
 
-/// What a text holds.
+/// What a file holds.
 #[derive(Debug)]
 pub(super) enum Content {
     Profile(MeasuredPoints),
     Map(Areal),
+}
+
+impl Content {
+    /// The profile, or the line of the map that `options` choose.
+    pub(super) fn line(self, options: &ProfileOptions) -> Result<LineOfMap, ContentError> {
+        match self {
+            Self::Profile(raw) => Ok((raw, None)),
+            Self::Map(areal) => Ok((areal.line(options)?, areal.map(options))),
+        }
+    }
 }
 
 /// Reads the points and what the header says of them.
@@ -30,11 +41,24 @@ pub(super) fn read(text: &str, options: &ProfileOptions) -> Result<Content, Cont
     if is_matrix(block, &header, options) {
         return matrix(text, block, &header, options).map(Content::Map);
     }
-    let roles = Roles::choose(block, &header, options)?;
-    let mut reader = PointsReader::new(block, roles, options);
-    reader.raw.units = header.units((roles.x, roles.z), options, &mut reader.raw)?;
-    reader.add_lines(&text[block.start..], block.first)?;
-    reader.finish(&header)
+    let read_as = |roles: Roles| {
+        let mut reader = PointsReader::new(block, roles, options);
+        reader.raw.units = header.units((roles.x, roles.z), options, &mut reader.raw)?;
+        reader.add_lines(&text[block.start..], block.first)?;
+        reader.finish(&header)
+    };
+    let is_unnamed = header.names.is_empty() && header.headings.is_empty();
+    let may_be_points =
+        is_unnamed && block.columns == 3 && options.third_column.is_none() && options.columns.is_empty();
+    match Roles::choose(block, &header, options) {
+        Ok(roles) => read_as(roles),
+        // Three columns without names that make a grid can be nothing else.
+        Err(error) if may_be_points => match read_as(Roles::XYZ) {
+            Ok(Content::Map(areal)) => Ok(Content::Map(areal)),
+            _ => Err(error),
+        },
+        Err(error) => Err(error),
+    }
 }
 
 /// One column of numbers with decimal commas, which look like two columns: below a single name that is known.

@@ -7,7 +7,7 @@ use super::table::{Entry, Result, Source, TableReader};
 use super::{read_input, read_name, surface};
 use crate::scene::error::ContentError;
 use crate::scene::keys::{AREA, COORDINATE, Form, Key, PATCH_ROOT, ShapeKind};
-use crate::scene::patch_file::{FaceShape, Grid, MAX_ELEMENTS, PatchFile, PatchGroup, TableExtrapolation};
+use crate::scene::patch_file::{Backing, FaceShape, Grid, MAX_ELEMENTS, PatchFile, PatchGroup, TableExtrapolation};
 use crate::scene::text_table::{self, Dimension, Heading, Row, Unit, Words, decode};
 use crate::scene::{FmuOptions, SceneError, read_file, read_text};
 
@@ -51,7 +51,7 @@ impl PatchFile {
         let path = surface::read_path(&table.required("path")?)?;
         let table_extrapolation = table.optional_choice("extrapolation")?.unwrap_or(TableExtrapolation::Hold);
         table.finish()?;
-        let (shape, transport, offset) = read_face(&root.required("patch")?)?;
+        let (shape, transport, offset, backing) = read_face(&root.required("patch")?)?;
         let extrapolation = root.optional_table("input", read_input)?.unwrap_or_default();
         let refine = root.optional_table("solver", |table| table.optional_whole("refine"))?.flatten().unwrap_or(1);
         let fmu = root.optional_table("fmu", |table| Ok((read_outputs(table)?, super::read_fmu_options(table)?)))?;
@@ -66,6 +66,7 @@ impl PatchFile {
             shape,
             transport,
             offset,
+            backing,
             extrapolation,
             refine: u32::try_from(refine).unwrap_or(1),
             outputs,
@@ -75,7 +76,7 @@ impl PatchFile {
     }
 }
 
-fn read_face(entry: &Entry<'_>) -> Result<(FaceShape, bool, [f64; 3])> {
+fn read_face(entry: &Entry<'_>) -> Result<(FaceShape, bool, [f64; 3], Option<Backing>)> {
     let mut table = entry.open()?;
     let kind = table.required("shape")?.choice::<ShapeKind>()?;
     table.use_keys(kind.keys())?;
@@ -86,8 +87,17 @@ fn read_face(entry: &Entry<'_>) -> Result<(FaceShape, bool, [f64; 3])> {
     };
     let transport = kind != ShapeKind::Points && table.flag("transport")?;
     let offset = table.entry("offset").map(|entry| read_offset(&entry)).transpose()?.unwrap_or_default();
+    let backing = table.optional_table("backing", read_backing)?;
     table.finish()?;
-    Ok((shape, transport, offset))
+    Ok((shape, transport, offset, backing))
+}
+
+/// By its stiffnesses, or by its height and modulus.
+fn read_backing(table: &mut TableReader<'_>) -> Result<Backing> {
+    if table.has("height") || table.has("modulus") {
+        return Ok(Backing::block(table.number("height")?, table.number("modulus")?));
+    }
+    Ok(Backing { normal: table.number("normal")?, shear: table.number("shear")? })
 }
 
 fn read_grid(table: &mut TableReader<'_>) -> Result<Grid> {

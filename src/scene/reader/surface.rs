@@ -6,8 +6,8 @@ use super::table::{Entry, Result, TableReader};
 use crate::scene::error::ContentError;
 use crate::scene::keys::{PATH, SurfaceKind};
 use crate::scene::profile::{self, Extract, ProfileOptions, ReadFailure, ReadingNote, Tilt};
-use crate::scene::surface::{Coordinate, SelfAffine, check_points};
-use crate::scene::{Layer, Surface, read_file as read_bytes, warnings};
+use crate::scene::surface::{Coordinate, check_points};
+use crate::scene::{Layer, MOST_HEIGHTS, SelfAffine, Surface, read_file as read_bytes, warnings};
 
 /// A number of points that is whole but for rounding is that number.
 const ROUNDING: f64 = 1.0e-9;
@@ -65,7 +65,7 @@ pub(super) fn read(entry: &Entry<'_>, found: &mut Found) -> Result<Surface> {
     let surface = match kind {
         SurfaceKind::Flat => Surface::flat(),
         SurfaceKind::Sinusoid => read_sinusoid(&mut table)?,
-        SurfaceKind::SelfAffine => read_self_affine(&mut table)?,
+        SurfaceKind::SelfAffine => read_self_affine(&mut table, found)?,
         SurfaceKind::Points => read_points(&mut table)?,
         SurfaceKind::File => read_file(&mut table, found)?,
     };
@@ -83,7 +83,7 @@ fn read_sinusoid(table: &mut TableReader<'_>) -> Result<Surface> {
     Ok(Surface::sinusoid(amplitude, wavelength, points))
 }
 
-fn read_self_affine(table: &mut TableReader<'_>) -> Result<Surface> {
+fn read_self_affine(table: &mut TableReader<'_>, found: &mut Found) -> Result<Surface> {
     let length = table.number("length")?;
     let points = table.required("points")?;
     let count = points.whole()?;
@@ -103,8 +103,42 @@ fn read_self_affine(table: &mut TableReader<'_>) -> Result<Surface> {
     if (count as f64) < least {
         return Err(points.refuse(format_args!("at least {least}: two points for each cut_off_wavelength")));
     }
-    let points = usize::try_from(count).unwrap_or(usize::MAX);
-    Ok(SelfAffine { length, points, hurst, rms, roll_off, cut_off, seed: seed.unsigned_abs() }.surface())
+    let point_count = usize::try_from(count).unwrap_or(usize::MAX);
+    let (seed, size_y) = (seed.unsigned_abs(), read_size_y(table, length)?);
+    let law = SelfAffine { length, points: point_count, hurst, rms, roll_off, cut_off, seed, size_y };
+    let Some(size_y) = size_y else { return Ok(law.surface(None)) };
+
+    // A map: as fine along y, and no larger than there is memory for.
+    let lines = law.lines(size_y);
+    if point_count.saturating_mul(lines) > MOST_HEIGHTS {
+        return Err(points.refuse(format_args!("up to {MOST_HEIGHTS} points of a map; it has {lines} lines")));
+    }
+    if ((lines as f64) / size_y) * cut_off < 2.0 * (1.0 - ROUNDING) {
+        return Err(points.refuse("two lines of the map along y too for each cut_off_wavelength"));
+    }
+    let chosen = table.entry("line");
+    let line = chosen.as_ref().map(|entry| entry.whole()).transpose()?.and_then(|line| usize::try_from(line).ok());
+    match chosen.filter(|_| line.is_some_and(|line| line > lines)) {
+        Some(entry) => Err(entry.refuse(format_args!("a whole number from 1 to {lines}"))),
+        None => {
+            let taken = line.unwrap_or(lines.div_ceil(2));
+            found.notes.push(profile::line_note("an isotropic surface", taken, lines, line.is_some()));
+            Ok(law.surface(line))
+        }
+    }
+}
+
+/// The period of an isotropic surface along y, m: as given, or the length; `None` of one that is not isotropic.
+fn read_size_y(table: &mut TableReader<'_>, length: f64) -> Result<Option<f64>> {
+    if !table.flag("isotropic")? {
+        return match (table.entry("size_y"), table.entry("line")) {
+            (Some(entry), _) | (None, Some(entry)) => {
+                Err(entry.refuse("no such key without isotropic = true: the surface is the same all along y"))
+            }
+            (None, None) => Ok(None),
+        };
+    }
+    Ok(Some(table.optional_number("size_y")?.unwrap_or(length)))
 }
 
 fn read_points(table: &mut TableReader<'_>) -> Result<Surface> {

@@ -248,6 +248,23 @@ fn parameters_out_of_range_are_refused() {
     assert_eq!(fmu.set_text(fmu.reference("table.extrapolation"), "guess"), ERROR);
 }
 
+/// A softer backing, set before the start, bears less.
+#[test]
+fn the_stiffnesses_of_a_backing_are_parameters() {
+    let backed = WHEEL.replace("transport = true", "transport = true\nbacking = { height = 8e-3, modulus = 6e6 }");
+    let force = |normal: f64| {
+        let fmu = fmu(&backed);
+        assert_eq!(fmu.set_real("patch.backing.normal", normal), OK);
+        assert_eq!((fmu.setup(0.0), fmu.enter()), (OK, OK));
+        give(&fmu, POSE, RATES);
+        assert_eq!(fmu.exit(), OK);
+        fmu.real("force.z")
+    };
+    let (soft, stiff) = (force(1e8), force(1e15));
+    assert!(0.0 < soft && soft < 0.9 * stiff, "{soft} {stiff}");
+    assert_eq!(fmu(&backed).set_real("patch.backing.shear", -1.0), ERROR);
+}
+
 /// An angle that is no number, a turn beyond the parts of a step.
 #[test]
 fn impossible_steps_leave_the_patch_as_it_was() {
@@ -272,6 +289,12 @@ fn a_patch_file_names_what_is_wrong() {
         ("radius = 0.3", "radius = -1.0", "p.toml:7: patch.radius = -1.0: expected a number from"),
         ("length = 0.0144", "length = 1.0", "p.toml:8: patch.length = 1.0: expected a number < 0.94"),
         ("nx = 6", "nx = 1000000", "p.toml:11: patch.ny = 2: expected nx ny up to 1000000"),
+        ("nx = 6", "nx = 6\nbacking = { normal = 1e9 }", "p.toml:11: patch.backing.shear: missing"),
+        (
+            "nx = 6",
+            "nx = 6\nbacking = { height = 1e-3, modulus = 6e6, shear = 1e9 }",
+            "p.toml:11: patch.backing.shear: unknown; allowed: height, modulus",
+        ),
         ("nx = 6", "nz = 6", "p.toml:10: patch.nz: unknown; allowed: shape, radius"),
         (
             "path = \"block",

@@ -21,7 +21,7 @@ const PRESSURE: f64 = 199_648.95;
 const GROUPS: &str =
     "[fmu]\noutputs = [\"forces\", \"dissipation\", \"contact\", \"friction\", \"energy\", \"tangent\"]\n";
 
-fn folder(name: &str) -> PathBuf {
+pub(super) fn folder(name: &str) -> PathBuf {
     let folder = scratch(&format!("patch-{name}"));
     for table in [WINKLER, "block.table.csv"] {
         fs::copy(root().join("tests/reference/patch").join(table), folder.join(table)).unwrap();
@@ -44,7 +44,7 @@ fn points(name: &str, table: &str, points: &[[f64; 4]]) -> Patch {
     Patch::parse(&text, &folder.join("patch.toml")).unwrap()
 }
 
-fn run_at(patch: &Patch, pose: [f64; 6], rates: [f64; 6], transport_speed: f64) -> PatchRun {
+pub(super) fn run_at(patch: &Patch, pose: [f64; 6], rates: [f64; 6], transport_speed: f64) -> PatchRun {
     let start = PatchStart {
         time: 0.0,
         pose: Pose::from_coordinates(pose),
@@ -55,18 +55,18 @@ fn run_at(patch: &Patch, pose: [f64; 6], rates: [f64; 6], transport_speed: f64) 
     PatchRun::new(patch, &start).unwrap()
 }
 
-fn go(run: &mut PatchRun, patch: &Patch, duration: f64, rates: [f64; 6], transport_speed: f64) {
+pub(super) fn go(run: &mut PatchRun, patch: &Patch, duration: f64, rates: [f64; 6], transport_speed: f64) {
     run.advance(&PatchMotion { duration, rates, transport_speed, temperature: patch.temperature() }).unwrap();
 }
 
-fn value(run: &mut PatchRun, patch: &Patch, output: PatchOutput) -> f64 {
+pub(super) fn value(run: &mut PatchRun, patch: &Patch, output: PatchOutput) -> f64 {
     let variables: Vec<_> = patch.variables().into_iter().filter(|variable| variable.output == output).collect();
     let mut values = [f64::NAN];
     run.evaluate(&variables, &mut values);
     values[0]
 }
 
-fn wrench(run: &mut PatchRun, patch: &Patch) -> [f64; 6] {
+pub(super) fn wrench(run: &mut PatchRun, patch: &Patch) -> [f64; 6] {
     std::array::from_fn(|i| value(run, patch, if i < 3 { PatchOutput::Force(i) } else { PatchOutput::Moment(i - 3) }))
 }
 

@@ -25,6 +25,8 @@ enum Elements {
         columns: usize,
         rows: usize,
         transport: bool,
+        /// Whether it stands on what gives way.
+        backing: bool,
     },
 }
 
@@ -55,10 +57,16 @@ fn points() -> impl Strategy<Value = Points> {
 
 fn elements() -> impl Strategy<Value = Elements> {
     let radius = option::of(prop_oneof![Just(0.02), Just(0.3)]);
-    let grid = (radius, 1..5_usize, 1..4_usize, any::<bool>());
+    let grid = (radius, 1..5_usize, 1..4_usize, any::<[bool; 2]>());
     prop_oneof![
         points().prop_map(Elements::Single),
-        grid.prop_map(|(radius, columns, rows, transport)| Elements::Grid { radius, columns, rows, transport }),
+        grid.prop_map(|(radius, columns, rows, [transport, backing])| Elements::Grid {
+            radius,
+            columns,
+            rows,
+            transport,
+            backing
+        }),
     ]
 }
 
@@ -98,12 +106,14 @@ impl Elements {
                 fs::write(folder.join("points.csv"), format!("x,y,z,area\n{text}")).unwrap();
                 "shape = 'points'\npath = 'points.csv'".to_owned()
             }
-            Self::Grid { radius, columns, rows, transport } => {
+            Self::Grid { radius, columns, rows, transport, backing } => {
                 // The pose's point is on the face, whatever the radius.
                 let shape =
                     radius.map_or("'flat'".into(), |r| format!("'cylinder'\nradius = {r}\noffset = [0, 0, {r}]"));
+                let backing = if *backing { "backing = { normal = 7.5e9, shear = 2.5e9 }" } else { "" };
                 format!(
-                    "shape = {shape}\nlength = 1e-3\nwidth = 2e-3\nnx = {columns}\nny = {rows}\ntransport = {transport}"
+                    "shape = {shape}\nlength = 1e-3\nwidth = 2e-3\nnx = {columns}\nny = {rows}\ntransport = \
+                     {transport}\n{backing}"
                 )
             }
         };

@@ -1,5 +1,6 @@
 //! The contact patch: exact results, given cases, what must hold of random patches, and extreme ones.
 
+mod backing;
 mod exact;
 mod extreme;
 mod invariants;

@@ -119,6 +119,36 @@ fn self_affine_surfaces_that_cannot_be() {
     assert_eq!(missing, "scene.toml:14: surface.points: missing; expected a whole number from 4 to 4000000");
 }
 
+/// As many lines along y as are as far apart as the points along x.
+#[test]
+fn isotropic_surfaces_that_cannot_be() {
+    let folder = Folder::new("isotropic");
+    let with = |keys: &str| self_affine("seed", &format!("7\n{keys}"));
+    folder.write("scene.toml", &with("isotropic = true\nsize_y = 0.05\nline = 1000"));
+    let scene = asperity::scene::Scene::load(&folder.0.join("scene.toml")).unwrap();
+    let map = scene.surface.map().unwrap();
+    assert_eq!((map.nx(), map.ny(), map.line(999)), (2000, 1000, &scene.surface.z()[..2000]));
+    let alone = "expected no such key without isotropic = true: the surface is the same all along y";
+    let cases = [
+        ("size_y = 0.05", format!("surface.size_y = 0.05: {alone}")),
+        ("isotropic = false\nline = 1", format!("surface.line = 1: {alone}")),
+        ("isotropic = 1", "surface.isotropic = 1: expected true or false".into()),
+        ("isotropic = true\nsize_y = 0", "surface.size_y = 0: expected a number from 1e-30 to 1e30".into()),
+        (
+            "isotropic = true\nsize_y = 1",
+            "surface.points = 2000: expected up to 16777216 points of a map; it has".into(),
+        ),
+        (
+            "isotropic = true\nsize_y = 0.05\nline = 1001",
+            "surface.line = 1001: expected a whole number from 1 to 1000".into(),
+        ),
+    ];
+    for (keys, message) in cases {
+        let refusal = folder.refusal(&with(keys));
+        assert!(refusal.contains(&message), "{refusal}\n{message}");
+    }
+}
+
 #[test]
 fn options_of_files_that_cannot_be() {
     let folder = Folder::new("file-options");

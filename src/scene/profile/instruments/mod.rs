@@ -1,6 +1,6 @@
 //! Files of instruments and of road descriptions that are no tables of text: known by how they begin.
 //!
-//! Of each a line along x is read. Files of other makers are refused by their names, with what to do.
+//! Files of other makers are refused by their names, with what to do.
 
 mod binary;
 mod crg;
@@ -12,35 +12,28 @@ mod sur;
 #[cfg(test)]
 mod tests;
 
+use super::LineOfMap;
 use super::areal::Areal;
 use super::options::{MeasuredPoints, ProfileOptions};
+use super::text::Content;
 use crate::scene::error::ContentError;
 use crate::scene::text_table::{Dimension, Unit};
 
 /// The points of a file that is one of these; `None` of any other.
-pub(super) fn read(bytes: &[u8], options: &ProfileOptions) -> Option<Result<MeasuredPoints, ContentError>> {
+pub(super) fn read(bytes: &[u8], options: &ProfileOptions) -> Option<Result<LineOfMap, ContentError>> {
     type Read = fn(&[u8], &ProfileOptions) -> Result<Content, ContentError>;
     let readers: [(bool, Read); 6] = [
-        (sdf::is_sdf(bytes), |bytes, _| sdf::read(bytes).map(Content::Areal)),
-        (sur::is_sur(bytes), |bytes, _| sur::read(bytes).map(Content::Areal)),
-        (crg::is_crg(bytes), |bytes, _| crg::read(bytes).map(Content::Areal)),
+        (sdf::is_sdf(bytes), |bytes, _| sdf::read(bytes).map(Content::Map)),
+        (sur::is_sur(bytes), |bytes, _| sur::read(bytes).map(Content::Map)),
+        (crg::is_crg(bytes), |bytes, _| crg::read(bytes).map(Content::Map)),
         (erd::is_erd(bytes), |bytes, options| erd::read(bytes, options).map(Content::Profile)),
-        (gwyddion::is_text(bytes), |bytes, _| gwyddion::read(bytes).map(Content::Areal)),
-        (plu::is_plu(bytes), |bytes, _| plu::read(bytes).map(Content::Areal)),
+        (gwyddion::is_text(bytes), |bytes, _| gwyddion::read(bytes).map(Content::Map)),
+        (plu::is_plu(bytes), |bytes, _| plu::read(bytes).map(Content::Map)),
     ];
     if let Some((_, read)) = readers.into_iter().find(|(is_it, _)| *is_it) {
-        return Some(read(bytes, options).and_then(|content| match content {
-            Content::Areal(areal) => areal.line(options),
-            Content::Profile(points) => Ok(points),
-        }));
+        return Some(read(bytes, options).and_then(|content| content.line(options)));
     }
     foreign(bytes).map(Err)
-}
-
-#[derive(Debug)]
-enum Content {
-    Areal(Areal),
-    Profile(MeasuredPoints),
 }
 
 /// The most heights of a file.

@@ -7,7 +7,7 @@ fn options() -> ProfileOptions {
 
 fn points(bytes: &[u8], options: &ProfileOptions) -> Vec<(f64, f64)> {
     let raw = read(bytes, options).unwrap_or_else(|| unreachable!("no such file"));
-    let raw = raw.unwrap_or_else(|error| unreachable!("{error:?}"));
+    let (raw, _) = raw.unwrap_or_else(|error| unreachable!("{error:?}"));
     let to_metres = |values: &[f64], axis: usize| -> Vec<f64> {
         values.iter().map(|value| raw.units[axis].map_or(*value, |unit| unit.to_si(*value))).collect()
     };

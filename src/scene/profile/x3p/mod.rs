@@ -1,6 +1,6 @@
 //! ISO 5436-2 (ISO 25178-72) files: a zip archive with `main.xml` and, beside it, the heights as binary data.
 //!
-//! A profile or one line of an areal measurement along x is taken. The standard's unit is the metre. Read as the
+//! A profile, or an areal measurement and one line of it along x, is taken. The standard's unit is the metre. Read as the
 //! reference implementation openGPS does: x = offset + increment · index on an incremental axis, of which nothing is
 //! stored, and value · increment + offset on an absolute one; of a point's coordinates x, y, z the absolute ones stand
 //! one after the other, little endian, x runs fastest. Sizes are bounded before anything is kept.
@@ -15,30 +15,38 @@ use std::ops::Range;
 
 use md5::{Digest, Md5};
 
-use super::areal::line_note;
+use super::LineOfMap;
+use super::areal::{Areal, line_note};
 use super::options::{MeasuredPoints, Missing, ProfileOptions};
+use crate::scene::MOST_HEIGHTS;
 use crate::scene::error::ContentError;
 use crate::scene::values::ANY;
 use document::{Archive, Document, MatrixSize, missing, unreadable};
 
+/// What the file is, for messages.
+const KIND: &str = "an X3P file";
 const CHUNK: usize = 1 << 16;
 
-/// Reads the line that `options` choose.
-pub(super) fn read(bytes: &[u8], options: &ProfileOptions) -> Result<MeasuredPoints, ContentError> {
+/// Reads the line that `options` choose, and the map that it is taken of, or why there is none.
+pub(super) fn read(bytes: &[u8], options: &ProfileOptions) -> Result<LineOfMap, ContentError> {
     let mut archive = Archive::open(bytes)?;
     let document = Document::parse(&archive.main()?)?;
     let size = MatrixSize::new(&document)?;
     let line = size.choose(options.line)?;
-    let [x, z] = if document.is_inline() {
-        inline(&document, &size, line)?
-    } else {
-        binary(&document, &size, line, &mut archive)?
-    };
-    let notes = vec![line_note("an X3P file", line + 1, size.rows, options.line.is_some())];
+    let axes = Axes::read(&document)?;
+    if let Some([x, y]) = axes.positions(&size).filter(|_| size.rows > 1 && size.count() <= MOST_HEIGHTS) {
+        let [_, heights] = points(&document, &size, 0..size.rows, &mut archive)?;
+        let areal = Areal::at(KIND, x, y, heights);
+        return Ok((areal.line(options)?, areal.map(options)));
+    }
+    let [x, z] = points(&document, &size, line..line + 1, &mut archive)?;
+    let notes = vec![line_note(KIND, line + 1, size.rows, options.line.is_some())];
     let raw = MeasuredPoints { x, z, notes, ..MeasuredPoints::default() };
+    let map = (size.rows > 1)
+        .then(|| Err(format!("a map of up to {MOST_HEIGHTS} points, its axes x and y incremental (AxisType I)")));
     match raw.z.iter().position(|z| z.is_nan()).filter(|_| options.missing == Missing::Refuse) {
         Some(i) => Err(raw.refuse(i, "z", "missing", "a height, or missing = \"fill\" where heights are missing")),
-        None => Ok(raw),
+        None => Ok((raw, map)),
     }
 }
 
@@ -64,29 +72,40 @@ enum NumberType {
 
 struct Axes([CoordinateAxis; 3]);
 
-/// The x and the heights of a line whose points stand in the document; a missing height is NaN.
-fn inline(document: &Document, size: &MatrixSize, line: usize) -> Result<[Vec<f64>; 2], ContentError> {
+/// The x and the heights of the points of some lines; a missing height is NaN.
+fn points(
+    document: &Document,
+    size: &MatrixSize,
+    lines: Range<usize>,
+    archive: &mut Archive<'_>,
+) -> Result<[Vec<f64>; 2], ContentError> {
+    if document.is_inline() { inline(document, size, lines) } else { binary(document, size, lines, archive) }
+}
+
+/// As [`points`], which stand in the document.
+fn inline(document: &Document, size: &MatrixSize, lines: Range<usize>) -> Result<[Vec<f64>; 2], ContentError> {
     let axes = Axes::read(document)?;
     let found = document.points().count();
     if found != size.count() {
         let expected = format!("{}, as many as MatrixDimension says", size.count());
         return Err(ContentError::value(None, "DataList", &format!("{found} points"), &expected));
     }
-    let points = document.points().skip(line * size.columns).take(size.columns);
-    axes.line(points.enumerate().map(|(i, point)| axes.written(i, point)))
+    let points = document.points().skip(lines.start * size.columns).take(lines.len() * size.columns);
+    axes.line(points.enumerate().map(|(i, point)| axes.written(i % size.columns, point)))
 }
 
-/// As [`inline`], from the binary file of an archive.
+/// As [`points`], from the binary file of an archive.
 fn binary(
     document: &Document,
     size: &MatrixSize,
-    line: usize,
+    lines: Range<usize>,
     archive: &mut Archive<'_>,
 ) -> Result<[Vec<f64>; 2], ContentError> {
     let axes = Axes::read(document)?;
     let bytes = axes.bytes();
     let part = LinkedFile { link: "PointDataLink", checksum: "MD5ChecksumPointData", length: size.count() * bytes };
-    let kept = line * size.columns * bytes..(line + 1) * size.columns * bytes;
+    let first = lines.start * size.columns;
+    let kept = first * bytes..lines.end * size.columns * bytes;
     let data = part.read(document, archive, kept)?.ok_or_else(|| missing("DataLink.PointDataLink"))?;
     let part =
         LinkedFile { link: "ValidPointsLink", checksum: "MD5ChecksumValidPoints", length: size.count().div_ceil(8) };
@@ -94,8 +113,8 @@ fn binary(
     // The first point is the lowest bit of the first byte.
     let bit = |i: usize| mask.as_ref().is_none_or(|mask| mask[i / 8] >> (i % 8) & 1 == 1);
     axes.line(data.chunks_exact(bytes).enumerate().map(|(i, point)| {
-        let (x, z) = axes.stored(i, point);
-        Ok((x, if bit(line * size.columns + i) { z } else { f64::NAN }))
+        let (x, z) = axes.stored(i % size.columns, point);
+        Ok((x, if bit(first + i) { z } else { f64::NAN }))
     }))
 }
 
@@ -107,6 +126,14 @@ impl Axes {
             return Err(ContentError::value(None, "CZ.AxisType", "I", "A: absolute heights"));
         }
         Ok(Self([x, y, z]))
+    }
+
+    /// Where points of a line stand along x, and lines along y, where both follow from their numbers.
+    fn positions(&self, size: &MatrixSize) -> Option<[Vec<f64>; 2]> {
+        let [x, y, _] = self.0;
+        let of = |axis: CoordinateAxis, count: usize| (0..count).map(|i| axis.coordinate(i as f64)).collect();
+        let incremental = x.stored_as.is_none() && y.stored_as.is_none();
+        incremental.then(|| [of(x, size.columns), of(y, size.rows)])
     }
 
     fn bytes(&self) -> usize {

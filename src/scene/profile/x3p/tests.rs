@@ -87,14 +87,14 @@ impl File {
 
     fn line(&self, line: usize) -> MeasuredPoints {
         let options = ProfileOptions { line: Some(line), missing: Missing::Fill, ..ProfileOptions::default() };
-        read(&self.archive(), &options).unwrap_or_else(|error| unreachable!("{error:?}"))
+        read(&self.archive(), &options).unwrap_or_else(|error| unreachable!("{error:?}")).0
     }
 
     fn refusal(&self, line: Option<usize>) -> String {
         let options = ProfileOptions { line, ..ProfileOptions::default() };
         match read(&self.archive(), &options) {
             Err(error) => error.problem.about(&error.key),
-            Ok(raw) => unreachable!("accepted as {raw:?}"),
+            Ok(read) => unreachable!("accepted as {read:?}"),
         }
     }
 }
@@ -178,13 +178,29 @@ fn an_absolute_axis_is_read() {
     assert_eq!((raw.x, raw.z), (vec![0.0, 0.5, 2.0], vec![1e-6, 2e-6, 0.0]));
 }
 
+/// All lines, in metres; gaps are refused or filled along their line; axes that are stored make no map.
+#[test]
+fn an_areal_file_is_a_map() {
+    let read_map = |file: &File, missing| {
+        let options = ProfileOptions { missing, ..ProfileOptions::default() };
+        read(&file.archive(), &options).unwrap().1.unwrap()
+    };
+    let map = read_map(&file(), Missing::Refuse).unwrap();
+    assert_eq!((map.nx(), map.ny(), map.heights()), (4, 3, &HEIGHTS[..]));
+    assert!(map.spacing().iter().all(|step| (step / 5e-7 - 1.0).abs() < 1e-12));
+    let gap = File { mask: Some(vec![0b1111_1101, 0b1111_1111]), ..file() };
+    let refusal = read_map(&gap, Missing::Refuse).unwrap_err();
+    assert!(refusal.contains("1 are missing, the first in line 1, point 2"), "{refusal}");
+    assert!((read_map(&gap, Missing::Fill).unwrap().heights()[1] - 1e-6).abs() < 1e-18);
+}
+
 #[test]
 fn a_line_must_be_there() {
     let middle = read(&file().archive(), &ProfileOptions { missing: Missing::Fill, ..ProfileOptions::default() });
-    assert!(middle.is_ok_and(|raw| raw.z == file().line(2).z), "none chosen");
+    assert!(middle.is_ok_and(|(raw, _)| raw.z == file().line(2).z), "none chosen");
     assert_eq!(file().refusal(Some(4)), "line = 4: expected a whole number from 1 to 3, the lines that there are");
     let profile = File { size: ["12", "1", "1"], ..file() };
-    assert_eq!(read(&profile.archive(), &ProfileOptions::default()).unwrap().z, HEIGHTS);
+    assert_eq!(read(&profile.archive(), &ProfileOptions::default()).unwrap().0.z, HEIGHTS);
 }
 
 #[test]
