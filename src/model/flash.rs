@@ -12,7 +12,7 @@ use std::f64::consts::{LN_10, PI, SQRT_2};
 
 use crate::scene::{FineBand, Material, Scene, Wlf};
 
-/// χ κ(t) as Σ_j w_j e^(-t/t_j), from [`SHORTEST`] to [`LONGEST`].
+/// χ κ(t) as Σ_j w_j e^(-t/t_j), from 1 µs to 100 s.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlashKernel {
     /// w_j, K m²/J, and t_j, s, from the longest.
