@@ -64,6 +64,12 @@ fn place(surface: &SurfaceGrid, point: usize) -> [f64; 2] {
     [surface.length * part(point % nx, nx), surface.width * part(point / nx, ny)]
 }
 
+/// The points of the middle line along x.
+fn line(surface: &SurfaceGrid) -> std::ops::Range<usize> {
+    let (nx, middle) = (surface.size.nx, surface.size.ny / 2);
+    middle * nx..(middle + 1) * nx
+}
+
 /// A table of all points.
 fn data(surface: &SurfaceGrid, slide: &SteadySlide, pressures: &[f64]) -> String {
     let mut text = "x [m],y [m],height [m],pressure [Pa],gap [m]\n".to_owned();
@@ -77,13 +83,13 @@ fn data(surface: &SurfaceGrid, slide: &SteadySlide, pressures: &[f64]) -> String
     text
 }
 
-/// The profile with the rubber's surface above it, and the pressure below.
+/// The profile, or the middle line of a map, with the rubber's surface above it, and the pressure below.
 fn picture(surface: &SurfaceGrid, slide: &SteadySlide, pressures: &[f64]) -> LinearStack {
     let curve = |name: &str, look: usize, values: &dyn Fn(usize) -> f64| Curve {
         name: name.to_owned(),
         look,
         stroke: Stroke::Line,
-        points: (0..surface.size.nx).map(|point| (place(surface, point)[0], values(point))).collect(),
+        points: line(surface).map(|point| (place(surface, point)[0], values(point))).collect(),
     };
     let rubber = |point: usize| surface.heights[point] + slide.contact.gaps[point];
     LinearStack {

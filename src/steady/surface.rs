@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::transform::{Convolution, GridSize};
 use crate::math::sum;
-use crate::scene::{Spectrum, Surface};
+use crate::scene::{HeightMap, Spectrum, Surface};
 
 /// Heights on an even grid over one period, without their mean.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +41,12 @@ impl SurfaceGrid {
         let (first, length) = (x[0], x[x.len() - 1] - x[0]);
         let height = |i: usize| spline.evaluate(first + length * (i as f64 / points as f64)).0;
         Self::new(GridSize { nx: points, ny: 1 }, length, 0.0, (0..points).map(height).collect())
+    }
+
+    /// One period of a map of heights, which is periodic, at its own points.
+    pub fn of_map(map: &HeightMap) -> Self {
+        let (size, [dx, dy]) = (GridSize { nx: map.nx(), ny: map.ny() }, map.spacing());
+        Self::new(size, dx * size.nx as f64, dy * size.ny as f64, map.heights().to_vec())
     }
 
     /// As many points of a profile as it has itself, where they are even and enough for its shortest wave; else as many as

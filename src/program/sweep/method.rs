@@ -1,6 +1,6 @@
 //! How steady sliding is found: by solving for it, or by letting the layer slide until it is steady.
 
-use asperity::scene::{FoundationKind, Scene};
+use asperity::scene::{FoundationKind, HeightMap, Scene};
 use asperity::steady::SurfaceGrid;
 
 use super::NeverSteady;
@@ -34,6 +34,12 @@ pub(crate) enum MethodError {
     OfTheLayer(&'static str),
     #[error("--points: expected none with --method layer, whose points are its masses")]
     OfTheSolver,
+    #[error("--points: expected none with a map of heights, which is solved on its own points")]
+    OfTheMap,
+    #[error("surface: {0}; give --method layer for the line of it that the layer slides on")]
+    NoMap(String),
+    #[error("surface: expected a map of at least {least} points along x and y, found {found:?}")]
+    SmallMap { least: usize, found: [usize; 2] },
     #[error("--points: expected at least {least}, found {found}")]
     FewPoints { least: usize, found: usize },
 }
@@ -72,6 +78,12 @@ impl Asked {
             return Err(MethodError::OfTheLayer(option));
         }
         let surface = &scene.surface;
+        if let Some(problem) = surface.map_error() {
+            return Err(MethodError::NoMap(problem.to_string()));
+        }
+        if let Some(map) = surface.map() {
+            return self.steady_on_map(scene, map);
+        }
         let (own, usual) = (surface.x().len() - 1, SurfaceGrid::points_of_profile(surface));
         let points = self.points.map_or(usual, |points| points as usize);
         if points < SurfaceGrid::FEWEST {
@@ -84,6 +96,23 @@ impl Asked {
         };
         let header = format!("steady, on {points} points to a period of the profile ({which})");
         Ok((Method::Steady(SurfaceGrid::of_profile(surface, points)), header))
+    }
+
+    fn steady_on_map(self, scene: &Scene, map: &HeightMap) -> Result<(Method, String), MethodError> {
+        if self.points.is_some() {
+            return Err(MethodError::OfTheMap);
+        }
+        let (size, least) = ([map.nx(), map.ny()], SurfaceGrid::FEWEST);
+        if size.iter().any(|&count| count < least) {
+            return Err(MethodError::SmallMap { least, found: size });
+        }
+        if scene.material.as_ref().is_some_and(|material| material.equilibrium_modulus == 0.0) {
+            return Err(MethodError::Lacks(
+                "material.equilibrium_modulus = 0 leaves waves across the sliding no stiffness",
+            ));
+        }
+        let header = format!("steady, on the map's own {} x {} points", size[0], size[1]);
+        Ok((Method::Steady(SurfaceGrid::of_map(map)), header))
     }
 }
 
@@ -103,6 +132,8 @@ impl Method {
     /// What of the settings of a sweep its points depend on.
     pub(crate) fn settings(&self, of_layer: impl FnOnce() -> String) -> String {
         match self {
+            // A scene knows the profile, not the map that it is a line of.
+            Self::Steady(surface) if surface.size.ny > 1 => format!("steady map {:?}", surface),
             Self::Steady(surface) => format!("steady {}x{}", surface.size.nx, surface.size.ny),
             Self::Layer => of_layer(),
         }
