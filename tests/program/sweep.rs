@@ -305,6 +305,8 @@ fn two_maxima_move_with_the_temperature() {
             "4e5",
             "--temperatures",
             temperature,
+            "--method",
+            "layer",
             "--error",
             "5e-3",
             "--distance",
