@@ -32,6 +32,7 @@ impl Areal {
     }
 
     /// Lines at these positions along y with points at these along x.
+    #[cfg(feature = "instruments")]
     pub(super) fn at(kind: &'static str, x: Vec<f64>, y: Vec<f64>, heights: Vec<f64>) -> Self {
         Self { kind, x, y, heights, x_unit: None, unit: None, notes: Vec::new() }
     }
