@@ -13,8 +13,8 @@ mkdir -p "$folder"
 cargo build --release --locked --manifest-path "$root/Cargo.toml"
 asperity=${CARGO_TARGET_DIR:-$root/target}/release/asperity
 "$asperity" describe "$here/road.toml" --plot "$folder/law.svg"
-"$asperity" sweep "$here/road.toml" --speeds 1e-5..10/13 --pressures 1e5,3e5,1e6 --temperatures 278.15,293.15,313.15 \
-    --distance 1 --error 0.02 -o "$folder/road.csv"
+"$asperity" sweep "$here/road.toml" --speeds 1e-5..10/25 --pressures 1e5,3e5,1e6 --temperatures 278.15,293.15,313.15 \
+    -o "$folder/road.csv" --plot "$folder/sweep.svg"
 "$asperity" simulate "$here/slide.toml" -o "$folder/warm.csv" --points 400
 # As if no heat reached the rubber.
 "$asperity" simulate "$here/slide.toml" --set material.heat.share=1e-9 -o "$folder/cold.csv" --points 400
