@@ -76,7 +76,8 @@
 //! | H, B, A = B Δx | `Layer::thickness`, `width`, `element_area()` | m, m² | material form |
 //! | K(q), M = E/(1 - ν²) | `Body::normal()`, `tangential()`, `Material::plane_modulus()` | 1/m, Pa | stiffness of a surface against a wave over the plane modulus |
 //! | α, β, ℓ | `Foundation::normal`, `tangential`, `depth` | 1/m, m, m | links and mass fitted to a body |
-//! | A_r, h'_s, M_c | `RealAreaLaw`, `FineRoughness` | m², 1, Pa | area that touches below the profile's resolution, the gradient there, and the modulus it meets |
+//! | A_r, μ_h, h'_b | `FineFriction`, `FineBand::gradient_square` | m², 1, 1 | area that touches below the profile's resolution, friction by hysteresis there, and the gradient of a band of waves |
+//! | ϑ, κ | `State::flash()`, `FlashKernel` | K, K m²/J | flash temperature of a contact, and its response to heat |
 //! | a_T | `Material::shift_factor()` | 1 | shift of all times with temperature (Williams, Landel and Ferry) |
 //! | E', E'' | `Material::complex_modulus()` | Pa | storage and loss modulus (2) |
 //! | f_x,i, f_z,i | `Forces::on_mass_x`, `on_mass_z` | N | forces of the links on mass i (3), (4) |

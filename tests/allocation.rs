@@ -132,6 +132,21 @@ fn rattling() -> (Simulation, Vec<Variable>, Vec<f64>) {
     (simulation, variables, values)
 }
 
+/// The allocations that so many `swings` make with all outputs evaluated at rows within them, and the outputs at their end.
+fn swing(scene: &Scene, simulation: &mut Simulation, swings: usize) -> (usize, Vec<Variable>, Vec<f64>) {
+    let variables = variables(scene);
+    let mut values = vec![0.0; variables.len()];
+    let times: [f64; 11] = std::array::from_fn(|i| 1e-5 * i as f64);
+    let count = allocations(|| {
+        for _ in 0..swings {
+            let row = |_: f64, now: &Snapshot<'_>| now.evaluate(&variables, &mut values);
+            simulation.advance_observed(&SWING, None, &times, row).unwrap();
+        }
+    });
+    simulation.evaluate(&variables, &mut values);
+    (count, variables, values)
+}
+
 fn value(variables: &[Variable], values: &[f64], name: &str) -> f64 {
     values[variables.iter().position(|variable| variable.name == name).unwrap()]
 }
@@ -144,16 +159,7 @@ fn other_methods_allocate_nothing() {
         let scene = Scene::parse(&text, FilePath::new("rattle.toml")).unwrap();
         let mut simulation = Simulation::new(&scene, &Start { w: -5e-6, ..Start::default() }).unwrap();
         simulation.advance(&SWING).unwrap();
-        let variables = variables(&scene);
-        let mut values = vec![0.0; variables.len()];
-        let times: [f64; 11] = std::array::from_fn(|i| 1e-5 * i as f64);
-        let count = allocations(|| {
-            for _ in 0..40 {
-                let row = |_: f64, now: &Snapshot<'_>| now.evaluate(&variables, &mut values);
-                simulation.advance_observed(&SWING, None, &times, row).unwrap();
-            }
-        });
-        simulation.evaluate(&variables, &mut values);
+        let (count, variables, values) = swing(&scene, &mut simulation, 40);
         assert_eq!(count, 0, "{method}");
         assert!(value(&variables, &values, "solver.events") > 200.0, "a lively run");
     }
@@ -187,16 +193,7 @@ fn heated_contacts_allocate_nothing() {
         let scene = Scene::parse(&text, FilePath::new("warm.toml")).unwrap();
         let mut simulation = Simulation::new(&scene, &Start { w: -5e-6, ..Start::default() }).unwrap();
         simulation.advance(&SWING).unwrap();
-        let variables = variables(&scene);
-        let mut values = vec![0.0; variables.len()];
-        let times: [f64; 11] = std::array::from_fn(|i| 1e-5 * i as f64);
-        let count = allocations(|| {
-            for _ in 0..4 {
-                let row = |_: f64, now: &Snapshot<'_>| now.evaluate(&variables, &mut values);
-                simulation.advance_observed(&SWING, None, &times, row).unwrap();
-            }
-        });
-        simulation.evaluate(&variables, &mut values);
+        let (count, variables, values) = swing(&scene, &mut simulation, 4);
         assert_eq!(count, 0, "{method}");
         assert!(value(&variables, &values, "contact.flash_largest") > 0.0, "{method} warms");
     }
@@ -329,16 +326,7 @@ fn steps_of_some_masses_allocate_nothing() {
     let text = RATTLE.replace("masses = 20", "masses = 200") + "\n[solver]\nrelative_tolerance = 2e-4";
     let scene = Scene::parse(&text, FilePath::new("rattle.toml")).unwrap();
     let mut simulation = Simulation::new(&scene, &Start { w: -5e-6, ..Start::default() }).unwrap();
-    let variables = variables(&scene);
-    let mut values = vec![0.0; variables.len()];
-    let times: [f64; 11] = std::array::from_fn(|i| 1e-5 * i as f64);
-    let count = allocations(|| {
-        for _ in 0..4 {
-            let row = |_: f64, now: &Snapshot<'_>| now.evaluate(&variables, &mut values);
-            simulation.advance_observed(&SWING, None, &times, row).unwrap();
-        }
-    });
-    simulation.evaluate(&variables, &mut values);
+    let (count, variables, values) = swing(&scene, &mut simulation, 4);
     let [steps, events] = ["solver.steps", "solver.events"].map(|name| value(&variables, &values, name));
     assert_eq!(count, 0);
     assert!(events > 5.0 * steps, "{events} mode changes in {steps} steps");

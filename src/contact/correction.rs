@@ -24,9 +24,9 @@
 use super::laws::{collision, decide_mode};
 use crate::integrator::{OpenEnd, Parabolas, StageValues, TimeSpan, Tolerance};
 use crate::math::{Bounds, bracketed_root};
-use crate::model::Flash;
-use crate::model::{Carrier, CarrierPoint, ChannelEnergies, LinkKind, Mode, Model, SlipCurve, State, SurfacePoint};
-
+use crate::model::{
+    Carrier, CarrierPoint, ChannelEnergies, Flash, LinkKind, Mode, Model, SlipCurve, State, SurfacePoint,
+};
 use crate::scene::{Axis, ByAxis};
 
 /// Weight of the late instants of mode changes in the error of a step of a layer of one mass. It falls with the root of

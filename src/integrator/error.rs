@@ -33,8 +33,9 @@ const WEIGHT_OF_FORCE_X: f64 = 4.0;
 /// The relative error of the speed of a mass that slips on roughness below the profile, in relative tolerances, where modes
 /// are held and in steps of time-stepping.
 ///
-/// Recommended 3 to 30 and 30 to 300. A mass that breaks loose where friction falls with the speed passes the decades from its creep speed
-/// on by growth, and comes late by as much as its speed errs there; the tolerance of velocities is far above these.
+/// Recommended 3 to 30 and 30 to 300. A mass that breaks loose where friction falls with the speed passes the decades from
+/// its creep speed on by growth, and comes late by as much as its speed errs there; the tolerance of velocities is far above
+/// these.
 const CREEP_SLACK: [f64; 2] = [10.0, 100.0];
 
 /// The change of temperature, K, over which friction changes by a part of itself.

@@ -1,4 +1,4 @@
-//! The flash temperatures over one step, condensed as the Maxwell elements are (docs/theory.md, section 2).
+//! The flash temperatures over one step, condensed as the Maxwell elements are (docs/theory.md, section 14).
 //!
 //! The flux Q = F_T v_t/A that friction makes is a polynomial in time through its values at the stages: within the step
 //! that of the velocities (see `interpolation`), up to an inner stage a parabola at most. Each term of the kernel follows
@@ -34,6 +34,8 @@ pub(super) struct Heat {
     error: Weights,
     /// By mass, the part of ϑ at the implicit stages that the start has left, one after another, K.
     left: Vec<f64>,
+    /// The rise of the temperature over the step under a flux of 1 W/m², K m²/W.
+    rise: f64,
 }
 
 /// What ϑ_j at one time of a step consists of.
@@ -79,6 +81,7 @@ impl Heat {
             sums: [Weights::default(); MAX_STAGES],
             error: Weights::default(),
             left: vec![0.0; tableau.last() * masses],
+            rise: 0.0,
             terms,
         }
     }
@@ -107,6 +110,7 @@ impl Heat {
             add(&mut self.sums[last], 1.0, &self.ends[n].flux);
         }
         add(&mut self.error, -1.0, &self.sums[last]);
+        self.rise = self.terms.iter().map(|term| term.rise(h)).sum();
     }
 
     /// The weights of one `term` at the fraction `theta` of the step.
@@ -138,8 +142,7 @@ impl Heat {
         }
         let left = std::iter::once((1.0, &self.left[(i - 1) * masses..i * masses]));
         weighted_sum(&mut flash.known, left.chain(weighted(&weights[..i], stages.iter().map(heat_flux))));
-        let rise: f64 = self.terms.iter().map(|term| term.weight * term.time * -(-self.h / term.time).exp_m1()).sum();
-        (flash.gain, flash.rise) = (weights[i] * flash.per_area, rise / weights[i]);
+        (flash.gain, flash.rise) = (weights[i] * flash.per_area, self.rise / weights[i]);
         let latest = flash.known.iter().zip(&stages[i - 1].heat_flux);
         flash.guess.iter_mut().zip(latest).for_each(|(guess, (known, flux))| *guess = known + weights[i] * flux);
     }

@@ -228,7 +228,7 @@ impl Sensitivity {
         TangentsOf { force: ByAxis::from_fn(|axis| self.forces.on_carrier(axis)), body: self.start.bodies }
     }
 
-    /// Computes the variation of the forces of the links at the start of the step.
+    /// Computes the variation of the forces of the links for that of the state in `start`.
     fn evaluate_forces(&mut self, model: &Model, carrier: &CarrierVariation) {
         let start = &self.start;
         for i in 0..model.masses() {

@@ -30,6 +30,13 @@ pub struct FlashTerm {
     pub time: f64,
 }
 
+impl FlashTerm {
+    /// Its part of the rise of the temperature under a constant flux of 1 W/m² over a `time` (s), K m²/W.
+    pub fn rise(&self, time: f64) -> f64 {
+        self.weight * self.time * -(-time / self.time).exp_m1()
+    }
+}
+
 /// The flash temperature ϑ of a contact with the friction T at the speed v_t, as this makes it: ϑ = `known` + `gain` T v_t.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Flash {
@@ -136,7 +143,7 @@ impl FlashKernel {
 
     /// The rise of the temperature under a constant flux of 1 W/m² over a time (s), K m²/W.
     pub fn rise(&self, time: f64) -> f64 {
-        self.terms.iter().map(|term| term.weight * term.time * -(-time / term.time).exp_m1()).sum()
+        self.terms.iter().map(|term| term.rise(time)).sum()
     }
 }
 

@@ -61,6 +61,8 @@ pub struct SlipFriction {
     pub by_speed: f64,
     /// The part of T by the hysteresis of the waves that the profile lacks, N.
     pub hysteresis: f64,
+    /// A_r/A, 1.
+    pub share: f64,
     /// ϑ, K.
     pub flash: f64,
     /// ∂T/∂ϑ by a change of the known part of ϑ, N/K.
@@ -95,19 +97,6 @@ pub struct FrictionShares {
     pub shear: f64,
     /// The hysteresis of the waves that the profile lacks.
     pub fine: f64,
-}
-
-/// A contact that slides at a temperature that is known.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SlidingContact {
-    /// T, N.
-    pub friction: f64,
-    /// The part of T by the hysteresis of the waves that the profile lacks, N.
-    pub hysteresis: f64,
-    /// A_r/A, 1.
-    pub share: f64,
-    /// ∂T/∂ϑ, N/K.
-    pub by_flash: f64,
 }
 
 /// A law of friction that is linear in the normal force, or the tangent of another: T(0) = μ F_N + `shear`.
@@ -189,13 +178,17 @@ impl FrictionLaw {
         });
         match self.depends_on_speed().then_some(SlipCurve { law: self, fine, normal, flash }) {
             Some(curve) => curve.at(speed),
-            None => SlipFriction {
-                normal,
-                limit: self.limit(normal),
-                by_normal: self.coulomb + self.shear * self.fine_contact(normal, speed, flash.known).share.by_normal,
-                flash: flash.known,
-                ..SlipFriction::default()
-            },
+            None => {
+                let share = self.fine_contact(normal, speed, flash.known).share;
+                SlipFriction {
+                    normal,
+                    limit: self.limit(normal),
+                    by_normal: self.coulomb + self.shear * share.by_normal,
+                    share: share.value,
+                    flash: flash.known,
+                    ..SlipFriction::default()
+                }
+            }
         }
     }
 
@@ -206,21 +199,6 @@ impl FrictionLaw {
             return speed + by;
         }
         self.slip_curve(normal, flash).map_or(speed + by, |curve| curve.along_curve(speed, by, weight))
-    }
-
-    /// The contact under F_N (N) at the `speed` (m/s) and the flash temperature `flash`, K.
-    pub fn sliding(&self, normal: f64, speed: f64, flash: f64) -> SlidingContact {
-        let FineContact { share, hysteresis } = self.fine_contact(normal, speed, flash);
-        let (shift, by_flash) = self.shift.map_or((1.0, 0.0), |shift| shift.ratio(flash));
-        let of_rate = self.rate_shear.as_ref().map_or((0.0, 0.0), |law| law.with_slope(shift * speed));
-        let strength = self.shear + of_rate.0;
-        let by_speed = share.by_speed * strength + share.value * of_rate.1 + hysteresis.by_speed;
-        SlidingContact {
-            friction: self.coulomb * normal + hysteresis.value + share.value * strength,
-            hysteresis: hysteresis.value,
-            share: share.value,
-            by_flash: by_speed * shift * speed * by_flash,
-        }
     }
 
     /// v_c (m/s), up to which contacts on the roughness below the profile slip as at rest, at the flash temperature
@@ -418,6 +396,7 @@ impl SlipCurve<'_> {
                 by_normal: law.coulomb,
                 excess: of_rate.0,
                 by_speed: of_rate.1,
+                share: 1.0,
                 ..SlipFriction::default()
             };
         };
@@ -432,6 +411,7 @@ impl SlipCurve<'_> {
             excess: sign * (of_area + (hysteresis.value - at_rest.hysteresis.value)),
             by_speed: share.by_speed * sign * force + share.value * of_rate.1 + sign * hysteresis.by_speed,
             hysteresis: hysteresis.value,
+            share: share.value,
             ..SlipFriction::default()
         }
     }

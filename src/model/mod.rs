@@ -22,9 +22,7 @@ pub use energy::{BoundaryPowers, ChannelEnergies, Powers, elastic_energy, kineti
 pub use fine_friction::{ContactQuantity, FineContact, FineFriction, PressedContact};
 pub use flash::{Flash, FlashKernel, FlashTerm, HeatParts, SpeedShift};
 pub use forces::{Forces, LinkLaw, LinkMotion, MaxwellRow};
-pub use friction::{
-    FrictionLaw, FrictionPower, FrictionShares, LinearFriction, RateShearLaw, SlidingContact, SlipCurve, SlipFriction,
-};
+pub use friction::{FrictionLaw, FrictionPower, FrictionShares, LinearFriction, RateShearLaw, SlipCurve, SlipFriction};
 pub use reduction::{Reduction, Replaced, Replacement};
 pub use state::{Mode, State};
 pub use tangents::{Tangents, TangentsOf};

@@ -9,10 +9,9 @@ use std::cell::{Cell, OnceCell, RefCell};
 
 use super::{Counters, Energies, Monitored, Variable};
 use crate::integrator::InterpolatedLayer;
-use crate::model::Flash;
 use crate::model::{
-    BodyEnergy, Carrier, CarrierPoint, ContactForces, FineContact, Forces, FrictionShares, LinkKind, MaxwellRow, Mode,
-    Model, Powers, State, Tangents, elastic_energy, kinetic_energy,
+    BodyEnergy, Carrier, CarrierPoint, ContactForces, FineContact, Flash, Forces, FrictionShares, LinkKind, MaxwellRow,
+    Mode, Model, Powers, State, Tangents, elastic_energy, kinetic_energy,
 };
 use crate::scene::{Axis, ByAxis};
 

@@ -52,11 +52,10 @@ fn softening(scene: &Scene) -> Option<String> {
 }
 
 fn gradients(scene: &Scene) -> String {
-    let bands = scene.fine_bands();
     // An isotropic surface is √2 times as steep as its lines.
     let slopes = Spectrum::new(&scene.surface).modes().fold(0.0, |sum, (q, square)| sum + q * q * square);
-    let height = bands.iter().map(|band| band.gradient_square / (band.wave_number * band.wave_number)).sum::<f64>();
-    let height = if bands.is_empty() { String::new() } else { format!(", rms height {} m", number(height.sqrt())) };
+    let has_bands = !scene.fine_bands().is_empty();
+    let height = if has_bands { format!(", rms height {} m", number(scene.fine_height())) } else { String::new() };
     format!(
         "rms gradient {} below the profile{height}; {} of the profile, as of a line on an isotropic surface",
         number(scene.fine_gradient()),

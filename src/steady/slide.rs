@@ -7,7 +7,7 @@ use super::krylov::Gmres;
 use super::linear::{gather, scatter};
 use super::surface::SurfaceGrid;
 use crate::math::{dot, sum};
-use crate::model::{FrictionLaw, SlidingContact};
+use crate::model::{Flash, FrictionLaw};
 use crate::scene::{Body, Material, Scene};
 
 /// Rubber at a temperature: what slides. It serves every surface, speed and pressure.
@@ -23,6 +23,19 @@ pub struct SlidingRubber {
     has_friction: bool,
     /// Whether waves that the profile lacks rub, and whether there are any.
     has_fine: (bool, bool),
+}
+
+/// A contact of a point, per area of the surface.
+#[derive(Clone, Copy, Debug, Default)]
+struct SlidingContact {
+    /// T/A, Pa.
+    friction: f64,
+    /// The part of that by the waves that the surface lacks, Pa.
+    hysteresis: f64,
+    /// A_r/A, 1.
+    share: f64,
+    /// ∂(T/A)/∂ϑ, Pa/K.
+    by_flash: f64,
 }
 
 /// Steady sliding at one speed and pressure. Forces are over the mean pressure times the area of the whole surface.
@@ -94,15 +107,15 @@ impl SlidingRubber {
         })
     }
 
-    /// Friction per area (Pa) and its parts under a pressure, Pa.
+    /// What a contact under a pressure (Pa) does at a speed (m/s) and a flash temperature, K.
     fn sliding(&self, pressure: f64, speed: f64, flash: f64) -> SlidingContact {
-        let at = self.friction.sliding(pressure * self.element_area, speed, flash);
+        let at = self.friction.slip(pressure * self.element_area, speed, Flash::held(flash));
         let per_area = 1.0 / self.element_area;
         SlidingContact {
-            friction: per_area * at.friction,
+            friction: per_area * at.force(),
             hysteresis: per_area * at.hysteresis,
+            share: at.share,
             by_flash: per_area * at.by_flash,
-            ..at
         }
     }
 

@@ -59,7 +59,7 @@ impl Scene {
         (beyond > ALIASED).then(|| {
             format!(
                 "waves below the spacing: {:.1} % of the slopes' power is in wavelengths below twice layer.spacing = {:?} m, \
-                 which the masses see as longer ones: smooth the profile, and give the waves to friction.real_area",
+                 which the masses see as longer ones: smooth the profile, and give the waves to surface.fine",
                 100.0 * beyond,
                 self.layer.spacing
             )
