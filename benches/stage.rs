@@ -122,32 +122,39 @@ fn print_ratios() {
     }
 }
 
-/// A layer of a compound that slips, pressed, over waves that its profile lacks or not.
-fn compound(masses: usize, keys: &str, fine: &str) -> String {
+/// A layer of a compound that slips on a rough profile, with a friction law, over waves that the profile lacks or not.
+fn compound(masses: usize, keys: &str, fine: &str, shear: &str) -> String {
+    let elements: String = (0..10).map(|i| format!("{{ modulus = 4e6, relaxation_time = 1e-{} }},", 1 + i)).collect();
     format!(
-        "name = 'w'\nlayer = {{ masses = {masses}, spacing = 2e-4, width = 1e-2, thickness = 1e-2 }}\n\
-         surface = {{ kind = 'flat'{fine} }}\nfriction = {{ coulomb = 0.2, shear_strength = 5e5 }}\n\
-         [material]\ndensity = 1100.0\npoisson_ratio = 0.49\nequilibrium_modulus = 5e6\nprony = [\
-         {{ modulus = 2e6, relaxation_time = 1e-2 }}, {{ modulus = 8e6, relaxation_time = 1e-4 }}, \
-         {{ modulus = 4e7, relaxation_time = 1e-6 }}]\n{keys}\n"
+        "name = 'w'\nlayer = {{ masses = {masses}, spacing = 2e-4, width = 1e-2, foundation = 'half_space' }}\n\
+         surface = {{ kind = 'self_affine', length = 0.2, points = 2000, hurst = 0.8, rms = 2e-5, seed = 1, \
+         roll_off_wavelength = 1e-2, cut_off_wavelength = 2e-3{fine} }}\nfriction = {{ coulomb = 0.2, {shear} }}\n\
+         [material]\ndensity = 1100.0\npoisson_ratio = 0.49\nequilibrium_modulus = 5e6\nprony = [{elements}]\n{keys}\n"
     )
 }
 
-/// Stages with and without the roughness below the profile, and with its heat, in turns: ns a mass and stage.
+/// Stages with the roughness below the profile, and with its heat, beside those without it, under a constant shear
+/// strength and one that depends on the speed as the bands do, in turns: ns a mass and stage.
 fn print_fine() {
     const W: f64 = -2e-4;
     const FINE: &str = ", fine = { hurst = 0.8, rms_slope = 1.2, longest = 2e-3, shortest = 5e-6 }";
     const HEAT: &str = "wlf = { c1 = 8.0, c2 = 120.0, reference_temperature = 293.15, temperature = 303.15 }\n\
         heat = { conductivity = 0.25, capacity = 1700.0 }";
+    const SHEARS: [(&str, &str); 2] = [
+        ("constant shear", "shear_strength = 5e5"),
+        ("rate_shear", "rate_shear = { strength = 5e5, reference_speed = 1.0, sharpness = 0.1 }"),
+    ];
     println!("\none stage of a slipping layer with the roughness below the profile over one without, ns a mass");
-    println!("{:>8} {:<16} {:>8} {:>8} {:>6}", "k", "", "with", "without", "ratio");
+    println!("{:>8} {:<16} {:<16} {:>8} {:>8} {:>6}", "k", "", "over", "with", "without", "ratio");
     for masses in [100, 1000] {
         for (name, keys) in [("bands", ""), ("bands and heat", HEAT)] {
-            let mut with = Stages::of(&compound(masses, keys, FINE), Mode::Forward, W);
-            let mut without = Stages::of(&compound(masses, "", ""), Mode::Forward, W);
-            let times = side_by_side([&mut || with.run(), &mut || without.run()], Duration::from_secs(2));
-            let [with, without] = times.shortest.map(|time| 1e9 * time / (masses * IMPLICIT) as f64);
-            println!("{masses:>8} {name:<16} {with:>8.1} {without:>8.1} {:>6.2}", times.ratio);
+            for (shear_name, shear) in SHEARS {
+                let mut with = Stages::of(&compound(masses, keys, FINE, shear), Mode::Forward, W);
+                let mut without = Stages::of(&compound(masses, "", "", shear), Mode::Forward, W);
+                let times = side_by_side([&mut || with.run(), &mut || without.run()], Duration::from_secs(2));
+                let [with, without] = times.shortest.map(|time| 1e9 * time / (masses * IMPLICIT) as f64);
+                println!("{masses:>8} {name:<16} {shear_name:<16} {with:>8.1} {without:>8.1} {:>6.2}", times.ratio);
+            }
         }
     }
 }

@@ -1,9 +1,10 @@
 //! `asperity describe`: summarises a scene.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use asperity::fmi::FmuModel;
-use asperity::model::{Model, Reduction, Replaced, Replacement};
+use asperity::model::{Flash, FrictionLaw, Model, Reduction, Replaced, Replacement};
 use asperity::outputs::variables;
 use asperity::scene::{
     Axis, CarrierBody, CarrierInitial, Extrapolation, Force, Friction, Initial, Input, Layer, Link, LinkKind, Material,
@@ -226,7 +227,37 @@ fn friction(scene: &Scene) -> Vec<LabelledLine> {
         None => format!("shear_force  {}", or_left_out(friction.shear_force, " N a mass in contact")),
     };
     let rate_shear = scene.rate_shear().map_or_else(|| LEFT_OUT.into(), |law| rate_shear_text(&law));
-    labelled("Friction", [coulomb, shear, format!("rate_shear   {rate_shear}")])
+    let mut rows = vec![coulomb, shear, format!("rate_shear   {rate_shear}")];
+    rows.extend(falling_friction(scene));
+    labelled("Friction", rows)
+}
+
+/// Where friction falls over the speed, at which the masses of a layer may stick and slip one by one; nothing where it
+/// does not.
+fn falling_friction(scene: &Scene) -> Option<String> {
+    /// Pressure of a contact, Pa.
+    const PRESSURE: f64 = 3e5;
+    /// Speeds are 10^(i/PER_DECADE) m/s.
+    const PER_DECADE: i32 = 10;
+    const EXPONENTS: Range<i32> = -6 * PER_DECADE..2 * PER_DECADE;
+    /// A smaller fall over a decade is damped away.
+    const LEAST_FALL: f64 = 0.01;
+
+    let law = FrictionLaw::new(scene);
+    let normal = scene.layer.element_area().map_or(0.0, |area| PRESSURE * area);
+    let speed = |exponent: i32| 10.0_f64.powf(f64::from(exponent) / f64::from(PER_DECADE));
+    let friction = |exponent: i32| law.slip(normal, speed(exponent), Flash::held(0.0)).force();
+    let fall = |at: i32| f64::from(PER_DECADE) * (1.0 - friction(at + 1) / friction(at));
+    let falls: Vec<(i32, f64)> = EXPONENTS.map(|at| (at, fall(at))).filter(|&(_, fall)| fall > LEAST_FALL).collect();
+    let steepest = falls.iter().map(|&(_, fall)| fall).fold(0.0, f64::max);
+    let (&(first, _), &(last, _)) = (falls.first()?, falls.last()?);
+    let to = if last + 1 == EXPONENTS.end { String::new() } else { format!(" to {:.1e} m/s", speed(last + 1)) };
+    Some(format!(
+        "falls over the speed from {:.1e} m/s{to}, by up to {:.0} % a decade: masses may stick and slip one by one there, in \
+         many steps",
+        speed(first),
+        100.0 * steepest
+    ))
 }
 
 /// The law of the contacts, for a material at its temperature.
