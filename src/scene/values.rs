@@ -1,6 +1,9 @@
 //! Values of keys and parameters: ranges of numbers, words to choose from, units.
 
+use std::f64::consts::TAU;
 use std::fmt;
+
+use super::text_table::{Dimension, quantity};
 
 /// The largest size of a number in SI units that a scene, a carrier or a master may give: m, s, N/m or any other.
 ///
@@ -142,6 +145,8 @@ pub enum Unit {
     WattPerMeterKelvin,
     /// J/(kg K).
     JoulePerKilogramKelvin,
+    /// Hz.
+    Hertz,
     /// J.
     Joule,
     /// W.
@@ -157,6 +162,38 @@ pub enum Unit {
 }
 
 impl Unit {
+    /// What tables and texts with units call the quantity; `None` where they have none.
+    fn dimension(self) -> Option<Dimension> {
+        Some(match self {
+            Self::One => Dimension::Number,
+            Self::Meter => Dimension::Length,
+            Self::Second => Dimension::Time,
+            Self::MeterPerSecond => Dimension::Speed,
+            Self::Kilogram => Dimension::Mass,
+            Self::Newton => Dimension::Force,
+            Self::NewtonPerMeter => Dimension::Stiffness,
+            Self::Kelvin => Dimension::Temperature,
+            Self::SquareMeter => Dimension::Area,
+            Self::KilogramPerCubicMeter => Dimension::Density,
+            Self::Pascal => Dimension::Pressure,
+            Self::Hertz => Dimension::Frequency,
+            Self::Radian => Dimension::Angle,
+            _ => return None,
+        })
+    }
+
+    /// The number of a text such as `8 MPa`, in this unit; `None` where the text is no number with a unit of this
+    /// quantity behind it.
+    pub(super) fn read(self, text: &str) -> Option<f64> {
+        let (number, unit) = quantity(text, self.dimension()?)?;
+        unit.map(|_| if self == Self::Hertz { number / TAU } else { number })
+    }
+
+    /// The units that [`read`](Self::read) knows, for messages; empty where there is none.
+    pub(super) fn readable(self) -> String {
+        self.dimension().map(Dimension::units).unwrap_or_default()
+    }
+
     /// The unit's name in the model description.
     pub fn name(self) -> &'static str {
         self.definition().0
@@ -198,6 +235,7 @@ impl Unit {
             Self::PascalSecond => ("Pa.s", [1, -1, -1, 0]),
             Self::WattPerMeterKelvin => ("W/(m.K)", [1, 1, -3, -1]),
             Self::JoulePerKilogramKelvin => ("J/(kg.K)", [0, 2, -2, -1]),
+            Self::Hertz => ("Hz", [0, 0, -1, 0]),
             Self::Joule => ("J", [1, 2, -2, 0]),
             Self::Watt => ("W", [1, 2, -3, 0]),
             Self::Radian => ("rad", [0, 0, 0, 0]),

@@ -60,6 +60,30 @@ pub(super) fn short_roughness(layer: &Layer, roughness: &Surface) -> Option<Stri
     })
 }
 
+/// Numbers that are probably meant in another unit, of a layer of rubber on a road or a machine.
+pub(super) fn other_units(scene: &Scene) -> Vec<String> {
+    /// Below and above these no rubber is found, and no layer of it.
+    const LENGTHS: (f64, f64) = (1e-10, 10.0);
+    const DENSITIES: (f64, f64) = (50.0, 3e4);
+    const GLASSY_MODULI: (f64, f64) = (1e3, 1e13);
+    let Some(material) = &scene.material else { return Vec::new() };
+    let glassy = material.equilibrium_modulus + material.prony.iter().map(|term| term.modulus).sum::<f64>();
+    let lengths = "lengths are in m, \"25 µm\" being 25e-6";
+    let checked = [
+        ("layer.spacing", Some(scene.layer.spacing), LENGTHS, lengths),
+        ("layer.thickness", scene.layer.thickness, LENGTHS, lengths),
+        ("layer.width", scene.layer.width, LENGTHS, lengths),
+        ("material.density", Some(material.density), DENSITIES, "it is in kg/m³, \"1.1 g/cm³\" being 1100"),
+        ("the glassy modulus", Some(glassy), GLASSY_MODULI, "moduli are in Pa, \"8 MPa\" being 8e6"),
+    ];
+    let unlikely = |(name, value, (least, most), unit): (&str, Option<f64>, (f64, f64), &str)| {
+        let value = value.filter(|&value| value > 0.0 && !(least..=most).contains(&value))?;
+        let far = if value < least { "small" } else { "large" };
+        Some(format!("{name} = {value:?} is very {far}, perhaps in another unit: {unit}"))
+    };
+    checked.into_iter().filter_map(unlikely).collect()
+}
+
 /// Temperatures that are probably meant in °C.
 pub(super) fn cold_temperatures(material: &Material) -> Option<String> {
     let wlf = material.wlf?;

@@ -15,7 +15,7 @@ use super::sweep::values::{Shard, Values};
 pub(crate) use values::{Condition, PlotAxis, WlfConstants, tenth};
 use values::{
     Frequencies, Tolerances, column_unit, count, fit_error, frequency, key_and_value, length, picture,
-    picture_or_table, poisson_ratio, positive, powers, seconds, seeds, share, table, temperature, wavelengths,
+    picture_or_table, poisson_ratio, powers, pressure, seconds, seeds, share, speed, table, temperature, wavelengths,
 };
 
 /// Simulates rubber on a rough surface and packs the simulation as an FMU.
@@ -301,11 +301,11 @@ pub(crate) struct Surface {
     pub(crate) output: Option<PathBuf>,
     /// Smooths the profile: a Gaussian filter (ISO 16610-21) that halves waves of this length in m and takes away
     /// shorter ones.
-    #[arg(long, value_name = "WAVELENGTH", value_parser = positive)]
+    #[arg(long, value_name = "WAVELENGTH", value_parser = length)]
     pub(crate) smooth: Option<f64>,
     /// Splits the profile at this wavelength in m: smooths it as --smooth does, and takes the spectrum of the finer
     /// waves, from the whole of it, for the key fine of a scene's surface.
-    #[arg(long, value_name = "WAVELENGTH", value_parser = positive, conflicts_with = "smooth")]
+    #[arg(long, value_name = "WAVELENGTH", value_parser = length, conflicts_with = "smooth")]
     pub(crate) split: Option<f64>,
     /// Writes the spectrum of the finer waves, of an isotropic surface with such lines, as two columns, q in 1/m and C
     /// in m⁴, that a scene can use; without --split the isotropic spectrum of a map.
@@ -409,16 +409,16 @@ pub(crate) struct Sweep {
     #[arg(value_name = "SCENE.toml", group = "input")]
     pub(crate) scene: Option<PathBuf>,
     /// Speeds in m/s: a..b/n for n values evenly spaced in the logarithm, a list, or both, separated by commas.
-    #[arg(long, value_name = "VALUES", value_parser = Values::in_logarithm, required_unless_present = "merge")]
+    #[arg(long, value_name = "VALUES", value_parser = Values::speeds, required_unless_present = "merge")]
     pub(crate) speeds: Option<Values>,
     /// Mean pressures in Pa, in the format of --speeds. Requires a scene in the material form.
-    #[arg(long, value_name = "VALUES", value_parser = Values::in_logarithm, conflicts_with = "forces")]
+    #[arg(long, value_name = "VALUES", value_parser = Values::pressures, conflicts_with = "forces")]
     pub(crate) pressures: Option<Values>,
     /// Mean normal forces F_z of the whole layer in N, in place of pressures. Works with either form of scene.
-    #[arg(long, value_name = "VALUES", value_parser = Values::in_logarithm)]
+    #[arg(long, value_name = "VALUES", value_parser = Values::forces)]
     pub(crate) forces: Option<Values>,
     /// Temperatures in K: a..b/n for n evenly spaced values. Default: the scene's temperature.
-    #[arg(long, value_name = "VALUES", value_parser = Values::in_value)]
+    #[arg(long, value_name = "VALUES", value_parser = Values::temperatures)]
     pub(crate) temperatures: Option<Values>,
     /// The table to write, - for standard output; an existing table of the same sweep is continued. Default: the
     /// scene's file name with .sweep.csv.
@@ -440,7 +440,7 @@ pub(crate) struct Sweep {
     pub(crate) error: Option<f64>,
     /// Maximum sliding distance in m for a point to become steady, with --method layer. Default: 100 blocks; a block is a
     /// whole number of profile periods or layer lengths.
-    #[arg(long, value_name = "METRES", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
     pub(crate) distance: Option<f64>,
     /// Computes only share I of N of the points, I from 1 to N.
     #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
@@ -467,10 +467,10 @@ pub(crate) struct Contact {
     #[arg(value_name = "SCENE.toml")]
     pub(crate) scene: PathBuf,
     /// Mean pressure in Pa.
-    #[arg(long, value_name = "PASCAL", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "PRESSURE", value_parser = pressure, allow_negative_numbers = true)]
     pub(crate) pressure: f64,
     /// Sliding speed in m/s.
-    #[arg(long, value_name = "SPEED", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SPEED", value_parser = speed, allow_negative_numbers = true)]
     pub(crate) speed: f64,
     /// Points of a period along x. Default: the profile's own, or 8 to its shortest wave where they are uneven or fewer.
     #[arg(long, value_name = "N", value_parser = count)]
@@ -491,10 +491,10 @@ pub(crate) struct Converge {
     #[arg(value_name = "SCENE.toml")]
     pub(crate) scene: PathBuf,
     /// Mean pressure in Pa.
-    #[arg(long, value_name = "PASCAL", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "PRESSURE", value_parser = pressure, allow_negative_numbers = true)]
     pub(crate) pressure: f64,
     /// Sliding speed in m/s.
-    #[arg(long, value_name = "SPEED", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SPEED", value_parser = speed, allow_negative_numbers = true)]
     pub(crate) speed: f64,
     /// Admissible change of friction and area, as a share of them, with the spacing halved, the length doubled or
     /// another seed.
@@ -515,7 +515,7 @@ pub(crate) struct Converge {
     pub(crate) plot: Option<PathBuf>,
     /// Maximum sliding distance in m for a run to become steady. Default: 100 blocks; a block is a whole number of
     /// profile periods or layer lengths.
-    #[arg(long, value_name = "METRES", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
     pub(crate) distance: Option<f64>,
     /// Replaces an existing table instead of continuing it.
     #[arg(long)]

@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use asperity::scene::Wlf;
-use asperity::scene::text_table::{Dimension, Unit};
+use asperity::scene::text_table::{Dimension, Unit, quantity};
 use clap::builder::{PathBufValueParser, TypedValueParser};
 
 use crate::program::files::{ends_in, is_standard_output};
@@ -81,20 +81,30 @@ fn number(text: &str, allowed: impl Fn(&f64) -> bool, expected: &str) -> Result<
     text.trim().parse().ok().filter(allowed).ok_or_else(|| format!("expected {expected}"))
 }
 
-pub(super) fn positive(text: &str) -> Result<f64, String> {
-    number(text, |number| *number > 0.0 && number.is_finite(), "a number above 0")
+/// A number above 0 in SI units, or in the unit behind it.
+fn above_zero(text: &str, dimension: Dimension) -> Option<f64> {
+    quantity(text, dimension).map(|(number, _)| number).filter(|number| *number > 0.0)
+}
+
+/// A pressure above 0, in Pa or in the unit behind it.
+pub(super) fn pressure(text: &str) -> Result<f64, String> {
+    above_zero(text, Dimension::Pressure).ok_or_else(|| "expected a number above 0, such as 2e5 (in Pa) or 2bar".into())
+}
+
+/// A speed above 0, in m/s or in the unit behind it.
+pub(super) fn speed(text: &str) -> Result<f64, String> {
+    above_zero(text, Dimension::Speed)
+        .ok_or_else(|| "expected a number above 0, such as 0.1 (in m/s) or 100mm/s".into())
 }
 
 /// A length above 0, in m or in the unit behind it.
 pub(super) fn length(text: &str) -> Result<f64, String> {
-    quantity(text, Dimension::Length)
-        .filter(|length| *length > 0.0)
-        .ok_or_else(|| "expected a length above 0, such as 5e-5 (in m) or 0.05mm".into())
+    above_zero(text, Dimension::Length).ok_or_else(|| "expected a length above 0, such as 5e-5 (in m) or 0.05mm".into())
 }
 
 /// A frequency above 0 in rad/s, or in the unit behind it.
 pub(super) fn frequency(text: &str) -> Result<f64, String> {
-    let found = quantity(text, Dimension::Frequency).filter(|frequency| (1e-30..=1e30).contains(frequency));
+    let found = above_zero(text, Dimension::Frequency).filter(|frequency| (1e-30..=1e30).contains(frequency));
     found.ok_or_else(|| "expected a frequency above 0, such as 10Hz, or 62.8 in rad/s".into())
 }
 
@@ -110,18 +120,6 @@ pub(super) fn column_unit(text: &str) -> Result<(String, Unit), String> {
         .ok_or_else(|| "expected COLUMN=UNIT with a known unit, such as 'Temperature=°C'".into())
 }
 
-/// A number with or without a unit, in SI units.
-fn quantity(text: &str, dimension: Dimension) -> Option<f64> {
-    let text = text.trim();
-    let is_digit = |letter: char| letter.is_ascii_digit() || "+-.".contains(letter);
-    let end = text.rfind(is_digit).map_or(0, |end| end + 1);
-    let unit = match text[end..].trim() {
-        "" => Unit::si(dimension),
-        unit => Unit::parse(unit).filter(|unit| unit.is_of(dimension))?,
-    };
-    Some(unit.to_si(text[..end].parse().ok()?)).filter(|value| value.is_finite())
-}
-
 pub(super) fn share(text: &str) -> Result<f64, String> {
     number(text, |share| *share > 0.0 && *share <= 1.0, "a share above 0, up to 1, such as 5e-3")
 }
@@ -131,7 +129,8 @@ pub(super) fn fit_error(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn temperature(text: &str) -> Result<f64, String> {
-    number(text, |kelvin| *kelvin > 0.0 && kelvin.is_finite(), "a temperature above 0 K, such as 293.15")
+    let found = above_zero(text, Dimension::Temperature);
+    found.ok_or_else(|| "expected a temperature above 0 K, such as 293.15 (in K) or 20°C".into())
 }
 
 pub(super) fn seconds(text: &str) -> Result<f64, String> {

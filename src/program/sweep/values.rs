@@ -1,5 +1,8 @@
 //! The values of a sweep and its shards as the command line gives them.
 
+use asperity::scene::is_possible;
+use asperity::scene::text_table::{Dimension, Unit, quantity};
+
 use crate::program::terminal::rounded;
 
 /// Values of a quantity, rising, each once.
@@ -19,19 +22,31 @@ const MOST: usize = 10_000;
 const DIGITS: usize = 6;
 
 impl Values {
-    /// Speeds, pressures or forces: `1e-4..10/20` is 20 values evenly spaced in the logarithm, ends included; also a
-    /// list, or both separated by commas.
-    pub(crate) fn in_logarithm(text: &str) -> Result<Self, String> {
-        Self::parse(text, Spacing::Logarithmic)
+    /// Speeds, in m/s or with their unit: `1e-4..10/20` is 20 values evenly spaced in the logarithm, ends included;
+    /// also a list, or both separated by commas.
+    pub(crate) fn speeds(text: &str) -> Result<Self, String> {
+        Self::parse(text, Spacing::Logarithmic, Dimension::Speed)
     }
 
-    /// Temperatures: `273..313/3` is 3 evenly spaced values.
-    pub(crate) fn in_value(text: &str) -> Result<Self, String> {
-        Self::parse(text, Spacing::Linear)
+    /// Pressures, in Pa or with their unit, as [`speeds`](Self::speeds).
+    pub(crate) fn pressures(text: &str) -> Result<Self, String> {
+        Self::parse(text, Spacing::Logarithmic, Dimension::Pressure)
     }
 
-    fn parse(text: &str, spacing: Spacing) -> Result<Self, String> {
-        let parts: Result<Vec<Vec<f64>>, String> = text.split(',').map(|part| values(part.trim(), spacing)).collect();
+    /// Forces, in N or with their unit, as [`speeds`](Self::speeds).
+    pub(crate) fn forces(text: &str) -> Result<Self, String> {
+        Self::parse(text, Spacing::Logarithmic, Dimension::Force)
+    }
+
+    /// Temperatures, in K or with their unit: `273..313/3` is 3 evenly spaced values.
+    pub(crate) fn temperatures(text: &str) -> Result<Self, String> {
+        Self::parse(text, Spacing::Linear, Dimension::Temperature)
+    }
+
+    fn parse(text: &str, spacing: Spacing, dimension: Dimension) -> Result<Self, String> {
+        let mut numbers = Numbers { dimension, with_unit: None };
+        let parts: Result<Vec<Vec<f64>>, String> =
+            text.split(',').map(|part| values(part.trim(), spacing, &mut numbers)).collect();
         let mut all = parts?.concat();
         all.sort_by(f64::total_cmp);
         all.dedup();
@@ -39,10 +54,10 @@ impl Values {
     }
 }
 
-fn values(part: &str, spacing: Spacing) -> Result<Vec<f64>, String> {
-    let Some((low, rest)) = part.split_once("..") else { return Ok(vec![number(part)?]) };
-    let (high, count) = rest.split_once('/').ok_or_else(|| wrong(part, "a..b/n, such as 1e-4..10/20"))?;
-    let (low, high) = (number(low)?, number(high)?);
+fn values(part: &str, spacing: Spacing, numbers: &mut Numbers) -> Result<Vec<f64>, String> {
+    let Some((low, rest)) = part.split_once("..") else { return Ok(vec![numbers.read(part)?]) };
+    let (high, count) = rest.rsplit_once('/').ok_or_else(|| wrong(part, "a..b/n, such as 1e-4..10/20"))?;
+    let (low, high) = (numbers.read(low)?, numbers.read(high)?);
     let count: usize = count.trim().parse().map_err(|_| wrong(count, "a whole number of values"))?;
     if low >= high || !(2..=MOST).contains(&count) {
         return Err(wrong(part, &format!("a..b/n with a < b and 2 to {MOST} values")));
@@ -57,9 +72,29 @@ fn values(part: &str, spacing: Spacing) -> Result<Vec<f64>, String> {
     Ok((0..count).map(at).collect())
 }
 
-fn number(text: &str) -> Result<f64, String> {
-    let number = text.trim().parse().ok().filter(|&number| asperity::scene::is_possible(number) && number > 0.0);
-    number.ok_or_else(|| wrong(text, "a positive number"))
+/// Reads the numbers of an option, all of them with units or none.
+struct Numbers {
+    dimension: Dimension,
+    with_unit: Option<bool>,
+}
+
+impl Numbers {
+    fn read(&mut self, text: &str) -> Result<f64, String> {
+        let found = quantity(text, self.dimension).filter(|&(number, _)| is_possible(number) && number > 0.0);
+        let (number, unit) = found.ok_or_else(|| wrong(text, &self.expected()))?;
+        match *self.with_unit.get_or_insert(unit.is_some()) == unit.is_some() {
+            true => Ok(number),
+            false => Err(wrong(text, "a unit behind each number or behind none")),
+        }
+    }
+
+    fn expected(&self) -> String {
+        format!(
+            "a positive number in {}, or with its unit, one of {}",
+            Unit::si(self.dimension),
+            self.dimension.units()
+        )
+    }
 }
 
 fn wrong(found: &str, expected: &str) -> String {
@@ -95,10 +130,13 @@ mod tests {
 
     #[test]
     fn values_are_lists_ranges_or_both() {
-        let logarithm = |text| Values::in_logarithm(text).unwrap().0;
+        let logarithm = |text| Values::speeds(text).unwrap().0;
         assert_eq!(logarithm("1e-4..10/6"), [1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0]);
         assert_eq!(logarithm("2, 1,1..100/3,0.5"), [0.5, 1.0, 2.0, 10.0, 100.0]);
-        assert_eq!(Values::in_value("273.15..313.15/3").unwrap().0, [273.15, 293.15, 313.15]);
+        assert_eq!(Values::temperatures("273.15..313.15/3").unwrap().0, [273.15, 293.15, 313.15]);
+        assert_eq!(Values::temperatures("0 °C, 20°C").unwrap().0, [273.15, 293.15]);
+        assert_eq!(Values::pressures("1bar..4bar/3, 8 bar").unwrap().0, [1e5, 2e5, 4e5, 8e5]);
+        assert_eq!(logarithm("1mm/s..1m/s/4"), [1e-3, 1e-2, 0.1, 1.0]);
         let even = logarithm("1e-2..10/20");
         // Rounded to six digits.
         let ratio = 10_f64.powf(3.0 / 19.0);
@@ -118,8 +156,10 @@ mod tests {
             ("2..1/3", "a < b"),
             ("1..2/1", "2 to"),
             ("1..2/x", "a whole number"),
+            ("1..2 mm/s/3", "behind each number or behind none"),
+            ("1 bar", "one of m/s, mm/s, km/h"),
         ] {
-            let message = Values::in_logarithm(text).unwrap_err();
+            let message = Values::speeds(text).unwrap_err();
             assert!(message.contains(part), "{text}: {message}");
         }
     }

@@ -60,6 +60,10 @@ const fn number(name: &'static str, range: NumberRange, unit: Unit, meaning: &'s
     Key { unit, ..key(name, Allowed::Number(range), meaning) }
 }
 
+const fn numbers(name: &'static str, range: NumberRange, unit: Unit, meaning: &'static str) -> Key {
+    Key { unit, ..key(name, Allowed::Numbers(range), meaning) }
+}
+
 const fn whole(name: &'static str, low: i64, high: i64, meaning: &'static str) -> Key {
     key(name, Allowed::Whole(WholeRange { low, high }), meaning)
 }
@@ -270,8 +274,8 @@ const SELF_AFFINE: &[Key] = &[
 const POINTS: &[Key] = &[
     KIND,
     FINE,
-    key("x", Allowed::Numbers(ANY), "Positions of the data points, m"),
-    key("z", Allowed::Numbers(ANY), "Heights of the data points, m"),
+    numbers("x", ANY, Unit::Meter, "Positions of the data points"),
+    numbers("z", ANY, Unit::Meter, "Heights of the data points"),
     PERIODIC,
 ];
 
@@ -289,7 +293,7 @@ const FILE: &[Key] = &[
     word::<Tilt>("tilt", "What becomes of the profile's tilt"),
     word::<ThirdColumn>("third_column", "What a third column means"),
     key("columns", Allowed::Text(COLUMNS), "Columns of x and z, by their names or numbers"),
-    key("spacing", Allowed::Numbers(POSITIVE), "Distance of points of a file without x, m"),
+    numbers("spacing", POSITIVE, Unit::Meter, "Distance of points of a file without x"),
     LINE,
 ];
 
@@ -419,21 +423,14 @@ const PHASE: &[Key] = &[
     number("until_pressure", ANY, Unit::Pascal, "Mean pressure that ends the phase").material(),
 ];
 
-// A frequency is in Hz, which no parameter has.
-const SINE: &[Key] = &[
-    number("amplitude", ANY, Unit::Meter, "Amplitude"),
-    key("frequency", Allowed::Number(NOT_NEGATIVE), "Frequency, Hz"),
-];
+const SINE: &[Key] =
+    &[number("amplitude", ANY, Unit::Meter, "Amplitude"), number("frequency", NOT_NEGATIVE, Unit::Hertz, "Frequency")];
 
-const FORCE_SINE: &[Key] = &[
-    number("amplitude", ANY, Unit::Newton, "Amplitude"),
-    key("frequency", Allowed::Number(NOT_NEGATIVE), "Frequency, Hz"),
-];
+const FORCE_SINE: &[Key] =
+    &[number("amplitude", ANY, Unit::Newton, "Amplitude"), number("frequency", NOT_NEGATIVE, Unit::Hertz, "Frequency")];
 
-const PRESSURE_SINE: &[Key] = &[
-    number("amplitude", ANY, Unit::Pascal, "Amplitude"),
-    key("frequency", Allowed::Number(NOT_NEGATIVE), "Frequency, Hz"),
-];
+const PRESSURE_SINE: &[Key] =
+    &[number("amplitude", ANY, Unit::Pascal, "Amplitude"), number("frequency", NOT_NEGATIVE, Unit::Hertz, "Frequency")];
 
 /// The parameter that an element from a table has beside those of a scene.
 pub(super) const TABLE_EXTRAPOLATION: Key = key(

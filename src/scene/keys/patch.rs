@@ -1,7 +1,7 @@
 //! The keys of a patch file.
 
 use super::{Allowed, NumberRange, POSITIVE, Word, words};
-use super::{DEPENDENCIES, INPUT, INTEGERS, Key, PATH, key, number, table, whole, word};
+use super::{DEPENDENCIES, INPUT, INTEGERS, Key, PATH, key, number, numbers, table, whole, word};
 use crate::scene::patch_file::{MAX_ELEMENTS, PatchGroup, TableExtrapolation};
 use crate::scene::{Unit, values::ANY};
 
@@ -54,7 +54,7 @@ const WIDTH: Key = number("width", POSITIVE, Unit::Meter, "Width along y");
 const NX: Key = whole("nx", 1, MAX_ELEMENTS, "Elements along x");
 const NY: Key = whole("ny", 1, MAX_ELEMENTS, "Elements along y");
 const TRANSPORT: Key = key("transport", Allowed::Flag, "Whether a tread runs through");
-const OFFSET: Key = key("offset", Allowed::Numbers(ANY), "The face's origin in the body's axes, m");
+const OFFSET: Key = numbers("offset", ANY, Unit::Meter, "The face's origin in the body's axes");
 
 const BACKING: Key = table(
     "backing",

@@ -103,7 +103,8 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
     let temperature = scene.material.as_ref().and_then(|material| material.wlf).map(|wlf| wlf.temperature);
     let cold_contacts = temperature.and_then(|temperature| scene.cold_contacts(temperature));
     let of_contacts = scene.fine_warnings().into_iter().chain(cold_contacts);
-    let of_scene = scene.short_profile().into_iter().chain(cold).chain(scene.foundation_warnings());
+    let of_scene = warnings::other_units(&scene).into_iter().chain(scene.short_profile()).chain(cold);
+    let of_scene = of_scene.chain(scene.foundation_warnings());
     let warnings: Vec<String> = of_scene.chain(of_contacts).collect();
     scene.warnings.extend(warnings);
     if let (Err(error), Some(entry)) = (scene.check_equilibrium(scene.first_load()), carrier_entry) {

@@ -8,7 +8,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::scene::error::{Location, Problem, SceneError};
 use crate::scene::keys::{self, Allowed, Form, Key};
-use crate::scene::values::{Word, words};
+use crate::scene::values::{NumberRange, Word, words};
 
 pub(super) type Result<T> = std::result::Result<T, SceneError>;
 
@@ -112,7 +112,21 @@ impl<'a> Entry<'a> {
 
     pub(super) fn number(&self) -> Result<f64> {
         let Allowed::Number(range) = self.key.allowed else { return Err(self.refuse_type()) };
-        number(self.value).filter(|&number| range.holds(number)).ok_or_else(|| self.refuse(range))
+        self.number_of(self.value).filter(|&number| range.holds(number)).ok_or_else(|| self.refuse_number(range))
+    }
+
+    /// A number, in SI units or with a unit behind it: a text.
+    fn number_of(&self, value: &DeValue<'_>) -> Option<f64> {
+        number(value).or_else(|| self.key.unit.read(value.as_str()?))
+    }
+
+    /// Refuses the value for not being a number of the range; of a text the units are named, too.
+    fn refuse_number(&self, range: NumberRange) -> SceneError {
+        let units = self.key.unit.readable();
+        match self.is_text() && !units.is_empty() {
+            true => self.refuse(format_args!("{range}, in SI units or as a text with its unit, one of {units}")),
+            false => self.refuse(range),
+        }
     }
 
     pub(super) fn whole(&self) -> Result<i64> {
@@ -140,19 +154,19 @@ impl<'a> Entry<'a> {
         let Allowed::Numbers(range) = self.key.allowed else { return Err(self.refuse_type()) };
         let values = self.value.as_array().ok_or_else(|| self.refuse_type())?;
         let read = |(i, value): (usize, &Spanned<DeValue<'_>>)| {
-            number(value.get_ref()).filter(|&number| range.holds(number)).ok_or(i)
+            self.number_of(value.get_ref()).filter(|&number| range.holds(number)).ok_or(i)
         };
         let numbers: std::result::Result<_, usize> = values.iter().enumerate().map(read).collect();
-        numbers.map_err(|i| self.element(i).unwrap_or_else(|| self.clone()).refuse(range))
+        numbers.map_err(|i| self.element(i).unwrap_or_else(|| self.clone()).refuse_number(range))
     }
 
     /// The numbers of an array, or a single number without one.
     pub(super) fn number_or_numbers(&self) -> Result<Vec<f64>> {
         let Allowed::Numbers(range) = self.key.allowed else { return Err(self.refuse_type()) };
-        match number(self.value) {
+        match self.number_of(self.value) {
             Some(number) if range.holds(number) => Ok(vec![number]),
-            Some(_) => Err(self.refuse(range)),
-            None => self.numbers(),
+            None if !self.is_text() => self.numbers(),
+            _ => Err(self.refuse_number(range)),
         }
     }
 

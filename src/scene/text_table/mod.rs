@@ -13,7 +13,7 @@ use std::iter;
 
 pub use blocks::{Block, Head, Line, MISSING, MixedDecimals, NumberStyle, Separator, is_missing, number};
 pub use headings::{Heading, HeadingUnit, Words, plain, words};
-pub use units::{Dimension, Unit};
+pub use units::{Dimension, Unit, quantity};
 
 use super::Problem;
 

@@ -26,6 +26,12 @@ pub enum Dimension {
     Speed,
     /// N.
     Force,
+    /// kg.
+    Mass,
+    /// kg/m³.
+    Density,
+    /// N/m.
+    Stiffness,
     /// rad/m.
     WaveNumber,
     /// m³: of the power spectrum of lines.
@@ -139,6 +145,9 @@ impl Dimension {
             Self::Angle => "rad",
             Self::Speed => "m/s",
             Self::Force => "N",
+            Self::Mass => "kg",
+            Self::Density => "kg/m³",
+            Self::Stiffness => "N/m",
             Self::WaveNumber => "1/m",
             Self::LineSpectrum => "m³",
             Self::SurfaceSpectrum => "m⁴",
@@ -158,6 +167,20 @@ impl Dimension {
     }
 }
 
+/// The number of a text that has a number and, behind it, a unit; in SI units, and `None` beside it where there is no
+/// unit. `None` where the text is anything else, or the unit is one of another quantity.
+pub fn quantity(text: &str, dimension: Dimension) -> Option<(f64, Option<Unit>)> {
+    let text = text.trim();
+    // What is left of a number and a unit begins with the unit, but for exponents: 1e3 and 5 eV.
+    let end = (1..=text.len()).rev().find(|&end| text.is_char_boundary(end) && text[..end].parse::<f64>().is_ok())?;
+    let unit = match text[end..].trim() {
+        "" => None,
+        unit => Some(Unit::parse(unit).filter(|unit| unit.is_of(dimension))?),
+    };
+    let number = unit.unwrap_or(Unit::si(dimension)).to_si(text[..end].parse().ok()?);
+    number.is_finite().then_some((number, unit))
+}
+
 impl fmt::Display for Unit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name)
@@ -174,8 +197,8 @@ const FAHRENHEIT: f64 = 459.67 * 5.0 / 9.0;
 /// The units and their spellings, without blanks, dots and multiplication signs.
 const UNITS: &[(Unit, &[&str])] = &{
     use Dimension::{
-        Angle, Area, Force, Frequency, Length, LineSpectrum, Number, Pressure, Rate, Speed, SurfaceSpectrum,
-        Temperature, Time, WaveNumber,
+        Angle, Area, Density, Force, Frequency, Length, LineSpectrum, Mass, Number, Pressure, Rate, Speed, Stiffness,
+        SurfaceSpectrum, Temperature, Time, WaveNumber,
     };
     [
         (Unit::si(Length), &["m", "meter", "meters", "metre", "metres"] as &[&str]),
@@ -236,6 +259,12 @@ const UNITS: &[(Unit, &[&str])] = &{
         (Unit::part("km/h", Speed, 3.6), &["km/h", "kph"]),
         (Unit::si(Force), &["N", "newton"]),
         (Unit::new("kN", Force, 1e3), &["kN"]),
+        (Unit::si(Mass), &["kg"]),
+        (Unit::part("g", Mass, 1e3), &["g"]),
+        (Unit::si(Density), &["kg/m3"]),
+        (Unit::new("g/cm³", Density, 1e3), &["g/cm3", "g/ml"]),
+        (Unit::si(Stiffness), &["N/m"]),
+        (Unit::new("N/mm", Stiffness, 1e3), &["N/mm", "kN/m"]),
         (Unit::si(WaveNumber), &["1/m", "m-1", "rad/m", "radm-1"]),
         (Unit::new("1/cm", WaveNumber, 1e2), &["1/cm", "cm-1", "rad/cm", "radcm-1"]),
         (Unit::new("1/mm", WaveNumber, 1e3), &["1/mm", "mm-1", "rad/mm", "radmm-1"]),
@@ -308,6 +337,20 @@ mod tests {
         // 68 °F are 20 °C, but for rounding.
         assert!(Unit::parse("°F").is_some_and(|unit| (unit.to_si(68.0) - 293.15).abs() < 1e-12));
         assert!(Unit::parse("mm").is_some_and(|unit| unit.to_si(2.5) == 0.0025));
+    }
+
+    #[test]
+    fn quantities_are_numbers_with_their_units() {
+        let si = |text, dimension| quantity(text, dimension).map(|(number, unit)| (number, unit.is_some()));
+        assert_eq!(si("2 bar", Dimension::Pressure), Some((2e5, true)));
+        assert_eq!(si("25µm", Dimension::Length), Some((2.5e-5, true)));
+        assert_eq!(si("1e-3", Dimension::Length), Some((1e-3, false)));
+        assert_eq!(si("60 °C", Dimension::Temperature), Some((333.15, true)));
+        assert_eq!(si("-5.5e1 N/mm", Dimension::Stiffness), Some((-5.5e4, true)));
+        for (text, dimension) in [("2 bar", Dimension::Length), ("bar", Dimension::Pressure), ("", Dimension::Number)] {
+            assert_eq!(si(text, dimension), None, "{text}");
+        }
+        assert_eq!([si("inf m", Dimension::Length), si("2 2 m", Dimension::Length)], [None, None]);
     }
 
     #[test]
