@@ -393,7 +393,29 @@ fn excitation(scene: &Scene) -> Vec<LabelledLine> {
     if scene.excitation.is_empty() {
         return vec![("Excitation", LEFT_OUT.into())];
     }
-    labelled("Excitation", scene.excitation.iter().enumerate().map(|(i, phase)| phase_text(i + 1, phase)))
+    let same_file = |a: &Phase, b: &Phase| a.is_row && b.is_row;
+    let parts = scene.excitation.chunk_by(same_file).enumerate();
+    labelled("Excitation", parts.map(|(i, phases)| phases_text(i + 1, phases)))
+}
+
+/// A phase, or all those from row to row of a motion file.
+fn phases_text(number_of: usize, phases: &[Phase]) -> String {
+    match phases {
+        [phase] => phase_text(number_of, phase),
+        _ => {
+            let duration: f64 = phases.iter().map(|phase| phase.duration).sum();
+            let [u, w] = [|phase: &Phase| phase.u.rate, |phase: &Phase| phase.w.rate].map(|rate| {
+                let changes = phases.iter().map(|phase| rate(phase) * phase.duration);
+                let (mut at, mut range) = (0.0, (0.0_f64, 0.0_f64));
+                for change in changes {
+                    at += change;
+                    range = (range.0.min(at), range.1.max(at));
+                }
+                format!("{} to {} m", number(range.0), number(range.1))
+            });
+            format!("{number_of}  {} s in {} rows from files, u {u}, w {w}", number(duration), phases.len())
+        }
+    }
 }
 
 fn phase_text(number_of: usize, phase: &Phase) -> String {

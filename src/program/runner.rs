@@ -158,7 +158,8 @@ impl Runner {
         if duration <= 0.0 {
             return Ok(0.0);
         }
-        let times: Vec<f64> = self.rows.times(duration).collect();
+        let rows = if phase.is_row { Rows::PerPhase(1) } else { self.rows };
+        let times: Vec<f64> = rows.times(duration).collect();
         let start = self.carrier;
         let observe = |s: f64, snapshot: &Snapshot<'_>| observe(start.after(&motion, s), snapshot);
         self.simulation.advance_observed(&Motion { duration, ..motion }, None, &times, observe)?;

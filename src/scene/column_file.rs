@@ -16,9 +16,11 @@ pub(super) struct ColumnFile<Q: 'static, const N: usize> {
     pub(super) expected: &'static str,
 }
 
-/// A column that a file must have.
+/// A column of a file.
 #[derive(Debug)]
 pub(super) struct Column<Q: 'static> {
+    /// Whether a file must have it; files without names have these alone.
+    pub(super) required: bool,
     /// What it may hold; the first where the file has no names, and it alone where it names no unit.
     pub(super) quantities: &'static [Q],
     /// Its name in messages.
@@ -32,9 +34,9 @@ pub(super) struct Column<Q: 'static> {
 /// The numbers of a file.
 #[derive(Debug)]
 pub(super) struct Columns<Q, const N: usize> {
-    /// What each column holds.
-    pub(super) quantities: [Q; N],
-    /// The rows, in SI units; at least two.
+    /// What each column holds; `None` of those that the file does not have.
+    pub(super) quantities: [Option<Q>; N],
+    /// The rows, in SI units; at least two. 0 in columns that the file does not have.
     pub(super) rows: Vec<[f64; N]>,
     /// How they were read.
     pub(super) notes: Vec<ReadingNote>,
@@ -69,24 +71,27 @@ impl<Q: Copy + PartialEq, const N: usize> ColumnFile<Q, N> {
             self.named(block, &head, &mut notes)?
         };
         let rows = self.rows(block, &text, &places)?;
-        Ok(Columns { quantities: places.map(|place| place.quantity), rows, notes })
+        Ok(Columns { quantities: places.map(|place| Some(place?.quantity)), rows, notes })
     }
 
-    /// The columns by their names, each once.
+    /// The columns by their names, each at most once.
     fn named(
         &self,
         block: &Block<'_>,
         head: &Head<'_>,
         notes: &mut Vec<ReadingNote>,
-    ) -> Result<[Place<Q>; N], ContentError> {
+    ) -> Result<[Option<Place<Q>>; N], ContentError> {
         let headings = head.headings(self.vocabulary);
-        let mut places = self.in_order();
+        let mut places = [None; N];
         for (place, column) in places.iter_mut().zip(&self.columns) {
             let is_it = |heading: &Heading<Q>| column.quantities.contains(&heading.quantity);
             let found: Vec<_> = (0..)
                 .zip(&headings)
                 .filter_map(|(i, heading)| Some((i, heading.as_ref().filter(|h| is_it(h))?)))
                 .collect();
+            if found.is_empty() && !column.required {
+                continue;
+            }
             let &[(index, heading)] = &found[..] else {
                 let given = format!("`{}`", shortened(&head.names.join(", ")));
                 return Err(ContentError::value(head.line, "columns", &given, self.expected));
@@ -100,20 +105,22 @@ impl<Q: Copy + PartialEq, const N: usize> ColumnFile<Q, N> {
                 return Err(ContentError::value(head.line, column.name, head.names[index].trim(), &expected));
             }
             let (unit, note) = column.unit(block, head, index, heading)?;
-            *place = Place { index, quantity: heading.quantity, unit };
+            *place = Some(Place { index, quantity: heading.quantity, unit });
             notes.push(note);
         }
         Ok(places)
     }
 
-    /// The columns in their order, in SI units.
-    fn unnamed(&self, block: &Block<'_>, notes: &mut Vec<ReadingNote>) -> Result<[Place<Q>; N], ContentError> {
-        if block.columns != N {
-            let expected = format!("{}; without names {N} columns in this order", self.expected);
+    /// The required columns in their order, in SI units.
+    fn unnamed(&self, block: &Block<'_>, notes: &mut Vec<ReadingNote>) -> Result<[Option<Place<Q>>; N], ContentError> {
+        let required = self.columns.iter().filter(|column| column.required).count();
+        if block.columns != required {
+            let expected = format!("{}; without names {required} columns in this order", self.expected);
             return Err(ContentError::value(Some(block.first), "columns", &block.columns.to_string(), &expected));
         }
         let places = self.in_order();
-        for (place, column) in places.iter().zip(&self.columns) {
+        for (place, column) in places.iter().zip(&self.columns).filter_map(|(place, column)| Some(((*place)?, column)))
+        {
             check_stated(block, place.unit.dimension, column.name, None)?;
             let (meaning, unit, number) = (column.meaning, place.unit, place.index + 1);
             let text = format!("no names: column {number} is taken as {meaning} in {unit}");
@@ -122,22 +129,30 @@ impl<Q: Copy + PartialEq, const N: usize> ColumnFile<Q, N> {
         Ok(places)
     }
 
-    fn in_order(&self) -> [Place<Q>; N] {
-        std::array::from_fn(|index| {
-            let quantity = self.columns[index].quantities[0];
+    fn in_order(&self) -> [Option<Place<Q>>; N] {
+        let mut next = 0..;
+        self.columns.each_ref().map(|column| {
+            let index = if column.required { next.next()? } else { return None };
+            let quantity = column.quantities[0];
             let dimension =
                 self.vocabulary.iter().find(|words| words.quantity == quantity).map(|words| words.dimension);
-            Place { index, quantity, unit: Unit::si(dimension.unwrap_or(Dimension::Number)) }
+            Some(Place { index, quantity, unit: Unit::si(dimension.unwrap_or(Dimension::Number)) })
         })
     }
 
-    fn rows(&self, block: &Block<'_>, text: &str, places: &[Place<Q>; N]) -> Result<Vec<[f64; N]>, ContentError> {
+    fn rows(
+        &self,
+        block: &Block<'_>,
+        text: &str,
+        places: &[Option<Place<Q>>; N],
+    ) -> Result<Vec<[f64; N]>, ContentError> {
         let mut style = NumberStyle::of(block);
         let mut rows: Vec<[f64; N]> = Vec::with_capacity(block.rows);
         for (line, row) in block.lines(text) {
             let fields = block.separator.split(row);
             let mut numbers = [0.0; N];
             for ((number, place), column) in numbers.iter_mut().zip(places).zip(&self.columns) {
+                let Some(place) = place else { continue };
                 let field = fields.get(place.index).map_or("", |field| field);
                 *number = column.read(&mut style, line, field, place.unit)?;
             }

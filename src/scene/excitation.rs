@@ -28,6 +28,9 @@ pub struct Phase {
     pub until_force: Option<f64>,
     /// The phase ends when F_z over the layer's area rises to this pressure, Pa; in the material form alone.
     pub until_pressure: Option<f64>,
+    /// Whether it goes from one row of a motion file to the next; results then have the row's end alone.
+    #[serde(skip)]
+    pub is_row: bool,
 }
 
 impl Phase {

@@ -18,6 +18,7 @@ mod height_map;
 mod keys;
 mod link_kind;
 mod material;
+mod motion_file;
 mod parameters;
 mod patch_file;
 mod profile;

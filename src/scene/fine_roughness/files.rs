@@ -79,8 +79,15 @@ const SPECTRUM: ColumnFile<OfSpectrum, 2> = ColumnFile {
         ),
     ],
     columns: [
-        Column { quantities: &[OfSpectrum::WaveNumber], name: "q", meaning: "wave numbers", range: POSITIVE },
         Column {
+            required: true,
+            quantities: &[OfSpectrum::WaveNumber],
+            name: "q",
+            meaning: "wave numbers",
+            range: POSITIVE,
+        },
+        Column {
+            required: true,
             quantities: &[OfSpectrum::Surface, OfSpectrum::Lines],
             name: "C",
             meaning: "power spectrum",
@@ -96,7 +103,7 @@ pub(in crate::scene) fn read_spectrum(
     convention: Convention,
 ) -> Result<(RoughnessSpectrum, Vec<ReadingNote>), ContentError> {
     let mut file = SPECTRUM.read(bytes)?;
-    let is_of_lines = file.quantities[1] == OfSpectrum::Lines;
+    let is_of_lines = file.quantities[1] == Some(OfSpectrum::Lines);
     let divisor = match (convention, is_of_lines) {
         (Convention::Persson, _) => 1.0,
         (Convention::ContactEngineering, true) => PI,
@@ -137,14 +144,21 @@ const STRAIN_SWEEP: ColumnFile<OfStrain, 3> = ColumnFile {
         ),
     ],
     columns: [
-        Column { quantities: &[OfStrain::Strain], name: "strain", meaning: "strains", range: POSITIVE },
+        Column { required: true, quantities: &[OfStrain::Strain], name: "strain", meaning: "strains", range: POSITIVE },
         Column {
+            required: true,
             quantities: &[OfStrain::Storage],
             name: "storage",
             meaning: "factors on the storage modulus",
             range: POSITIVE.up_to(1.0),
         },
-        Column { quantities: &[OfStrain::Loss], name: "loss", meaning: "factors on the loss modulus", range: POSITIVE },
+        Column {
+            required: true,
+            quantities: &[OfStrain::Loss],
+            name: "loss",
+            meaning: "factors on the loss modulus",
+            range: POSITIVE,
+        },
     ],
     expected: "strain [1] or [%], and the factors on both moduli: storage, loss",
 };

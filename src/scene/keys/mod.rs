@@ -404,6 +404,7 @@ const INTEGERS: Key = word::<IntegerType>("integers", "Type of the outputs that 
 const DEPENDENCIES: Key = word::<DependencyList>("dependencies", "Dependencies of outputs on inputs that are listed");
 
 const PHASE: &[Key] = &[
+    key("file", Allowed::Text(PATH), "File of the motion, with columns time, u and w, in place of the other keys"),
     number("duration", POSITIVE, Unit::Second, "Duration"),
     number("u_rate", ANY, Unit::MeterPerSecond, "Rate of u"),
     number("w_rate", ANY, Unit::MeterPerSecond, "Rate of w"),

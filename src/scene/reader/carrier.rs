@@ -1,6 +1,8 @@
 //! `[carrier]`, and the phases of `[[excitation]]`, whose keys depend on it.
 
+use super::surface::{Found, read_path};
 use super::table::{Result, TableReader};
+use crate::scene::motion_file;
 use crate::scene::{Axis, CarrierBodies, CarrierBody, CarrierInitial, Force, Path, Phase, Wlf};
 
 pub(super) fn read(table: &mut TableReader<'_>) -> Result<CarrierBodies> {
@@ -63,8 +65,23 @@ const PULL: ForceKeys = ForceKeys { axis: Axis::X, start: "pull", rate: "pull_ra
 const PRESSURE: ForceKeys =
     ForceKeys { axis: Axis::Z, start: "pressure", rate: "pressure_rate", sine: "pressure_sine" };
 
+/// The phases of a table of the excitation: itself, or those between the rows of the file that it names.
+pub(super) fn read_phases(
+    table: &mut TableReader<'_>,
+    carrier: &CarrierBodies,
+    temperature: TemperatureInput<'_>,
+    found: &mut Found,
+) -> Result<Vec<Phase>> {
+    let Some(entry) = table.entry("file") else { return Ok(vec![read_phase(table, carrier, temperature)?]) };
+    let phases = found.read_file(&entry, &read_path(&entry)?, motion_file::read_motion)?;
+    match phases.iter().find_map(|phase| motion_file::obstacle(phase, carrier, temperature)) {
+        Some(expected) => Err(entry.refuse(format_args!("a file with {expected}"))),
+        None => Ok(phases),
+    }
+}
+
 /// One phase of the motion of a carrier that is a body along the axes of `carrier`.
-pub(super) fn read_phase(
+fn read_phase(
     table: &mut TableReader<'_>,
     carrier: &CarrierBodies,
     temperature: TemperatureInput<'_>,
@@ -84,6 +101,7 @@ pub(super) fn read_phase(
         temperature: read_temperature(table, temperature)?,
         until_force: table.optional_number("until_force")?,
         until_pressure: table.optional_number("until_pressure")?,
+        is_row: false,
     })
 }
 

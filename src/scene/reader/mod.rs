@@ -73,8 +73,9 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
     let read_fmu = |table: &mut TableReader<'_>| Ok((read_outputs(table, &carrier)?, read_fmu_options(table)?));
     let fmu = root.optional_table("fmu", read_fmu)?;
     let (outputs, fmu) = fmu.unwrap_or_else(|| (default_outputs(), FmuOptions::default()));
+    let temperature = wlf.filter(|_| temperature_input);
     let excitation =
-        root.tables("excitation", |table| carrier::read_phase(table, &carrier, wlf.filter(|_| temperature_input)))?;
+        root.tables("excitation", |table| carrier::read_phases(table, &carrier, temperature, &mut found))?.concat();
     root.finish()?;
     let Found { files, extracts, warnings, notes } = found;
     let foundation = material.as_ref().and_then(|material| Foundation::new(&layer, material, &surface));

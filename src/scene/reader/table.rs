@@ -201,8 +201,8 @@ impl<'a> Entry<'a> {
     }
 
     /// What `read` makes of each table of the array.
-    pub(super) fn tables<T>(&self, read: impl Fn(&mut TableReader<'a>) -> Result<T>) -> Result<Vec<T>> {
-        self.elements()?.iter().map(|entry| entry.table(&read)).collect()
+    pub(super) fn tables<T>(&self, mut read: impl FnMut(&mut TableReader<'a>) -> Result<T>) -> Result<Vec<T>> {
+        self.elements()?.iter().map(|entry| entry.table(&mut read)).collect()
     }
 }
 
@@ -346,7 +346,7 @@ impl<'a> TableReader<'a> {
     pub(super) fn tables<T>(
         &mut self,
         name: &'static str,
-        read: impl Fn(&mut TableReader<'a>) -> Result<T>,
+        read: impl FnMut(&mut TableReader<'a>) -> Result<T>,
     ) -> Result<Vec<T>> {
         self.entry(name).map_or_else(|| Ok(Vec::new()), |entry| entry.tables(read))
     }

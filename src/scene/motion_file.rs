@@ -1,0 +1,123 @@
+//! Files of a motion that was measured or comes from another program: displacements, loads and temperature over time,
+//! linear between the rows.
+
+use super::carrier::{CarrierBodies, CarrierBody};
+use super::column_file::{Column, ColumnFile, Columns};
+use super::error::ContentError;
+use super::excitation::{Force, Path, Phase};
+use super::material::Wlf;
+use super::profile::ReadingNote;
+use super::text_table::{Dimension, Words};
+use super::values::{ANY, POSITIVE};
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum OfMotion {
+    Time,
+    U,
+    W,
+    Load,
+    Pull,
+    Pressure,
+    Temperature,
+}
+
+const fn column(quantity: &'static [OfMotion], name: &'static str, meaning: &'static str) -> Column<OfMotion> {
+    Column { required: false, quantities: quantity, name, meaning, range: ANY }
+}
+
+const MOTION: ColumnFile<OfMotion, 7> = ColumnFile {
+    vocabulary: &[
+        Words::new(OfMotion::Time, Dimension::Time, &["time", "t", "zeit"], &[]),
+        Words::new(OfMotion::U, Dimension::Length, &["u", "x"], &["displacement", "carrier"]),
+        Words::new(OfMotion::W, Dimension::Length, &["w", "z"], &["displacement", "carrier"]),
+        Words::new(OfMotion::Load, Dimension::Force, &["load", "f_z", "fz"], &["normal", "force"]),
+        Words::new(OfMotion::Pull, Dimension::Force, &["pull"], &["tangential", "force"]),
+        Words::new(OfMotion::Pressure, Dimension::Pressure, &["pressure"], &["mean"]),
+        Words::new(OfMotion::Temperature, Dimension::Temperature, &["temperature", "temp"], &[]),
+    ],
+    columns: [
+        Column { required: true, ..column(&[OfMotion::Time], "time", "times") },
+        Column { required: true, ..column(&[OfMotion::U], "u", "displacements u") },
+        Column { required: true, ..column(&[OfMotion::W], "w", "displacements w") },
+        column(&[OfMotion::Load], "load", "loads"),
+        column(&[OfMotion::Pull], "pull", "tangential forces"),
+        column(&[OfMotion::Pressure], "pressure", "pressures"),
+        Column { range: POSITIVE, ..column(&[OfMotion::Temperature], "temperature", "temperatures") },
+    ],
+    expected: "time, u and w, and of a body along an axis, which has no u or w but by its drive, load, pressure or pull; \
+               temperature where it is an input",
+};
+
+/// The phases between the rows of a file. u and w count from the first row: the carrier moves from where it stands.
+///
+/// A temperature is held from row to row.
+pub(super) fn read_motion(bytes: &[u8]) -> Result<(Vec<Phase>, Vec<ReadingNote>), ContentError> {
+    let Columns { quantities, rows, mut notes } = MOTION.read(bytes)?;
+    let first = rows.first().copied().unwrap_or_default();
+    if first[1..3] != [0.0, 0.0] {
+        let text = format!("u and w count from the first row, {:?} m and {:?} m", first[1], first[2]);
+        notes.push(ReadingNote { text, assumed: true });
+    }
+    let phase = |rows: &[[f64; 7]]| {
+        let ([here, there], duration) = ([rows[0], rows[1]], rows[1][0] - rows[0][0]);
+        let rate = |column: usize| (there[column] - here[column]) / duration;
+        let path = |column: usize| Path { rate: rate(column), ..Path::default() };
+        let force =
+            |column: usize| quantities[column].map(|_| Force { start: Some(here[column]), change: path(column) });
+        Phase {
+            duration,
+            u: path(1),
+            w: path(2),
+            load: force(3),
+            pull: force(4),
+            pressure: force(5),
+            temperature: quantities[6].map(|_| here[6]),
+            is_row: true,
+            ..Phase::default()
+        }
+    };
+    Ok((rows.windows(2).map(phase).collect(), notes))
+}
+
+/// What a file must not have for a carrier whose bodies are these, with `material.wlf` where the temperature is an input.
+pub(super) fn obstacle(phase: &Phase, carrier: &CarrierBodies, temperature: Option<&Wlf>) -> Option<&'static str> {
+    let [body_x, body_z] = [&carrier.x, &carrier.z];
+    let is_free = |body: &Option<CarrierBody>| body.as_ref().is_some_and(|body| !body.has_drive());
+    let fits = |kelvin: f64| temperature.is_some_and(|wlf| Wlf { temperature: kelvin, ..*wlf }.check().is_ok());
+    let has_normal = phase.load.is_some() || phase.pressure.is_some();
+    match () {
+        () if phase.pressure.is_some() && phase.load.is_some() => Some("no load beside pressure"),
+        () if has_normal && body_z.is_none() => Some("no load and no pressure without [carrier.z]"),
+        () if phase.pull.is_some() && body_x.is_none() => Some("no pull without [carrier.x]"),
+        () if phase.u.rate != 0.0 && is_free(body_x) => Some("no change of u with [carrier.x] that has no drive"),
+        () if phase.w.rate != 0.0 && is_free(body_z) => Some("no change of w with [carrier.z] that has no drive"),
+        () if phase.temperature.is_some_and(|kelvin| !fits(kelvin)) => {
+            Some("no temperature without temperature = true in [input], nor one beyond the pole of WLF's equation")
+        }
+        () => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_ends_of_straight_motions() {
+        let text = "time [ms], u [mm], w [µm], load [N]\n0, 1, 0, 5\n2, 1.5, -40, 5\n3, 1.5, -40, 6\n";
+        let (phases, notes) = read_motion(text.as_bytes()).unwrap();
+        let close = |a: f64, b: f64| (a - b).abs() <= 1e-12 * b.abs();
+        assert!(phases.len() == 2 && close(phases[0].duration, 2e-3) && close(phases[0].u.rate, 0.25));
+        assert!(close(phases[0].w.rate, -0.02) && phases[1].w.rate == 0.0 && phases[1].pull.is_none());
+        let load = phases[1].load.unwrap();
+        assert!(load.start == Some(5.0) && close(load.change.rate, 1e3));
+        assert!(notes.iter().any(|note| note.text.contains("first row")), "{notes:?}");
+    }
+
+    #[test]
+    fn files_that_are_no_motion_are_refused() {
+        for text in ["time, u\n0, 1\n1, 2\n", "time, u, w\n0, 1, 2\n0, 1, 2\n", "time, u, w\n0, 1, x\n1, 1, 2\n", ""] {
+            assert!(read_motion(text.as_bytes()).is_err(), "{text}");
+        }
+    }
+}
