@@ -210,6 +210,27 @@ pub fn variable(output: Output) -> Option<Variable> {
     row.layer_output().map(|output| Variable::for_layer(row, output))
 }
 
+/// An output that a scene can have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OutputEntry {
+    /// The output group that it belongs to.
+    pub group: OutputGroup,
+    /// Its name; of a quantity of single masses the part behind `element[i].`.
+    pub name: &'static str,
+    /// The unit of its values.
+    pub unit: Unit,
+    /// What it is, in a few words.
+    pub description: &'static str,
+}
+
+/// All outputs, in the order of the result files.
+pub fn catalogue() -> impl Iterator<Item = OutputEntry> {
+    TABLE.iter().map(|row| {
+        let OutputRow { group, name, unit, description, .. } = *row;
+        OutputEntry { group, name, unit, description }
+    })
+}
+
 /// The unit of the output variable called `name`, whatever the scene; `None` for a name that no scene can have.
 pub fn unit_of(name: &str) -> Option<Unit> {
     let (name, of_mass) = name.split_once("].").map_or((name, false), |(_, field)| (field, true));

@@ -18,6 +18,7 @@ mod overrides;
 mod pack;
 mod patch;
 mod persson;
+mod reference;
 mod report;
 mod result_file;
 mod runner;
@@ -43,6 +44,9 @@ pub(crate) fn run(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         Command::Pack(command) => pack::pack(&command)?,
         Command::Fit(command) => return Ok(fit::fit(&command)?),
         Command::Material(command) => material::material(&command)?,
+        Command::Reference => reference::reference()?,
+        Command::Completions(command) => reference::completions(&command)?,
+        Command::Manual(command) => reference::manual(&command)?,
         Command::Report(command) => report::report(&command)?,
         Command::Surface(command) => surface::surface(&command)?,
         Command::Sweep(command) => sweep::sweep(&command)?,

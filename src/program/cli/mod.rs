@@ -53,6 +53,27 @@ pub(crate) enum Command {
     Converge(Converge),
     /// Draws where the rubber touches in steady sliding, and how hard.
     Contact(Contact),
+    /// Prints what completes commands and options in a shell: asperity completions bash >>
+    /// ~/.local/share/bash-completion/completions/asperity.
+    Completions(Completions),
+    /// Writes the manual pages, one for each command.
+    Manual(Manual),
+    /// Prints all keys of scenes and patches, all outputs and options, as Markdown: docs/reference.md.
+    #[command(hide = true)]
+    Reference,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Completions {
+    /// The shell.
+    pub(crate) shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Manual {
+    /// The folder to write the pages to; it is created if it does not exist.
+    #[arg(short, long, value_name = "FOLDER")]
+    pub(crate) output: PathBuf,
 }
 
 #[derive(Debug, Args)]

@@ -471,6 +471,67 @@ pub(super) fn is_similar(given: &str, name: &str) -> bool {
     end_of_path || strsim::levenshtein(given, name) <= 1 + given.chars().count() / 8
 }
 
+/// A key of a file, for a list of all keys.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeyEntry {
+    /// Its name with those of the tables around it; `[]` behind a table that may be repeated.
+    pub path: String,
+    /// What it may hold.
+    pub allowed: String,
+    /// The unit of a number.
+    pub unit: Unit,
+    /// What it means; empty of a table.
+    pub meaning: &'static str,
+    /// Whether it belongs to scenes with a material alone (`Some(true)`), or to those without (`Some(false)`).
+    pub of_material: Option<bool>,
+}
+
+/// All keys of a scene.
+pub fn scene_keys() -> Vec<KeyEntry> {
+    entries("", ROOT)
+}
+
+/// All keys of a patch.
+pub fn patch_keys() -> Vec<KeyEntry> {
+    let mut keys = entries("", PATCH_ROOT);
+    let faces = ShapeKind::WORDS.iter().flat_map(|(_, kind)| entries("patch.", kind.keys()));
+    let at = keys.iter().position(|key| key.path == "patch.shape").map_or(keys.len(), |at| at + 1);
+    let new: Vec<KeyEntry> = faces.filter(|key| key.path != "patch.shape").collect();
+    keys.splice(at..at, new);
+    without_repeats(keys)
+}
+
+fn entries(start: &str, keys: &[Key]) -> Vec<KeyEntry> {
+    let with_those_below = |key: &Key| {
+        let path = format!("{start}{}", key.name);
+        let of_material = key.form.map(|form| form == Form::Material);
+        let own = KeyEntry {
+            path: path.clone(),
+            allowed: key.allowed.to_string(),
+            unit: key.unit,
+            meaning: key.meaning,
+            of_material,
+        };
+        let below = match key.allowed {
+            Allowed::Table(keys) => entries(&format!("{path}."), keys),
+            Allowed::Tables(keys, _) => entries(&format!("{path}[]."), keys),
+            // Both surfaces have the same keys.
+            Allowed::Surface if key.name == "surface" => {
+                SurfaceKind::WORDS.iter().flat_map(|(_, kind)| entries(&format!("{path}."), kind.keys())).collect()
+            }
+            _ => Vec::new(),
+        };
+        std::iter::once(own).chain(below)
+    };
+    without_repeats(keys.iter().flat_map(with_those_below).collect())
+}
+
+/// The keys, each once though several kinds of a table have it.
+fn without_repeats(keys: Vec<KeyEntry>) -> Vec<KeyEntry> {
+    let mut seen = std::collections::HashSet::new();
+    keys.into_iter().filter(|key| seen.insert(key.path.clone())).collect()
+}
+
 /// The paths of `keys` and of those below them.
 fn paths(start: &str, keys: &[Key]) -> Vec<String> {
     let below = |key: &Key| {
