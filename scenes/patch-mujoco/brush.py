@@ -1,15 +1,17 @@
-"""The brush model in closed form, on the parabola of pressure of a cylinder on springs, and a wheel that brakes on it."""
+"""The wheel's contact in closed form, on its backing alone: how far it is pressed in, how long it is, how it rolls."""
 
 import math
 
-from tread import FRICTION, SLOPE, STIFFNESS
-
 RADIUS, WIDTH = 0.3, 0.2
+# Pa/m: the backing of tread.toml.
+NORMAL, SHEAR = 5e7, 8e7
+# m: between the mean planes of tread and road under 1.5 bar, of tread.table.csv.
+SEPARATION = 1.4e-4
 
 
 def approach(load):
-    """How far (m) the cylinder is pressed in under a load (N): the springs bear 4/3 k B a d, with a^2 = 2 R d."""
-    return (3 * load / (4 * SLOPE * WIDTH * math.sqrt(2 * RADIUS))) ** (2 / 3)
+    """How far (m) the backing is pressed in under a load (N): it bears 4/3 k B a d, with a^2 = 2 R d."""
+    return (3 * load / (4 * NORMAL * WIDTH * math.sqrt(2 * RADIUS))) ** (2 / 3)
 
 
 def rolling_radius(load):
@@ -17,23 +19,9 @@ def rolling_radius(load):
     return RADIUS - approach(load) / 3
 
 
-def force(slip, load):
-    """The force (N) of a braked tread; the slip is the speed over the ground over that of the rolling tread, from 0."""
+def force(slip, load, friction):
+    """The force (N) of a braked tread of one friction coefficient, after it has run through: the slip is the speed over the
+    ground over that of the rolling tread, from 0."""
     half_squared = 2 * RADIUS * approach(load)
-    q = min(1.0, 2 * STIFFNESS * half_squared * WIDTH * slip / (3 * FRICTION * load))
-    return FRICTION * load * (3 * q - 3 * q * q + q**3)
-
-
-def stop(mass, inertia, load, speed, brake, h=2e-5):
-    """The rows (time, way, speed, tread's speed) of a stop on the model's steady forces, brake the torque over time."""
-    time, way, tread, radius = 0.0, 0.0, speed, rolling_radius(load)
-    rows = [(time, way, speed, tread)]
-    while speed > 0:
-        slip = (speed - tread) / tread if tread > 0 else math.inf
-        pull = math.copysign(force(abs(slip), load), slip)
-        speed -= h * pull / mass
-        # A brake holds a wheel that stands.
-        tread = max(tread + h * radius * (radius * pull - brake(time)) / inertia, 0.0)
-        way, time = way + h * speed, time + h
-        rows.append((time, way, speed, tread))
-    return rows
+    q = min(1.0, 2 * SHEAR * half_squared * WIDTH * slip / (3 * friction * load))
+    return friction * load * (3 * q - 3 * q * q + q**3)

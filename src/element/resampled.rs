@@ -28,7 +28,7 @@ const MAX_WIDTH_OF_PLANES: f64 = 0.06;
 /// than their tolerance at the table's points; and how many there are at most.
 const MAX_DISTANCE: f64 = 2.0;
 const PLANE_TOLERANCE: f64 = 1e-3;
-const MAX_PLANES: f64 = 1000.0;
+const MAX_PLANES: f64 = 400.0;
 
 /// Most bins in which the place of a speed among those of the table is looked up.
 const MAX_BINS: f64 = 1e5;
