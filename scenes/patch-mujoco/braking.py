@@ -52,16 +52,16 @@ class Wheel:
         self.data.joint("x").qvel[0] = SPEED
         self.data.joint("z").qpos[0] = brush.RADIUS + brush.SEPARATION - brush.approach(LOAD)
         self.lost_by_brake = self.lost_by_damper = 0.0
-        self.brake()
-        self.lost_by_brake = 0.0
+        self.spin = SPEED / brush.rolling_radius(LOAD)
+        self.data.joint("spin").qvel[0] = self.spin
         mujoco.mj_forward(self.model, self.data)
 
     def brake(self):
-        """Gives the hinge the speed that the slip wants, and counts what that takes of the wheel's turning."""
-        spin, speed = self.data.joint("spin").qvel, self.data.joint("x").qvel[0]
-        before = spin[0]
-        spin[0] = (1 - slip(self.data.time, self.most)) * speed / brush.rolling_radius(LOAD)
-        self.lost_by_brake += 0.5 * INERTIA * (before**2 - spin[0] ** 2)
+        """Gives the hinge the speed that the slip wants, and counts the work of the torque that this takes."""
+        hinge, speed, before = self.data.joint("spin").qvel, self.data.joint("x").qvel[0], self.spin
+        self.spin = (1 - slip(self.data.time, self.most)) * speed / brush.rolling_radius(LOAD)
+        self.lost_by_brake += INERTIA * (hinge[0] - self.spin) * 0.5 * (before + self.spin)
+        hinge[0] = self.spin
 
     def step(self, loads):
         """A step under the patch's forces: the wrench acts on the carrier, at its centre, and the tread's force on the wheel."""

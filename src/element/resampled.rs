@@ -797,6 +797,32 @@ mod tests {
         }
     }
 
+    /// p and μp of elements of any temperature, within 1e-3 of those of the table at that temperature.
+    #[test]
+    fn between_planes_it_is_the_law_of_the_table() {
+        let table = table("block.table.csv");
+        let area = table.load.area();
+        let mut found = ResampledLaw::of_warm_elements(&table, area, 284.0, None);
+        for rise in [-5.0, 0.0, 3.7, 9.9, 14.2, 30.0] {
+            let law = Law::new(&table, (284.0_f64 + rise).clamp(283.15, 303.15));
+            for step in 0..150 {
+                let speed = (1e-4_f64.ln() + 0.1 * f64::from(step)).exp();
+                let curve = LawAtSpeed::new(&law, speed);
+                let place = found.place(speed, rise);
+                for i in 1..40 {
+                    let approach = curve.touch + (curve.closest() - curve.touch) * f64::from(i) / 36.0;
+                    let exact = curve.at(approach);
+                    let point = found.at_place(&place, approach);
+                    let (normal, limit) = (point.pressure * area, point.pressure * point.friction * area);
+                    // Below the least pressure in shares of that.
+                    let scale = |value: f64| 1e-3 * value.max(table.load.force(table.grid.loads[0]));
+                    assert!((normal - exact.normal.value).abs() < scale(exact.normal.value), "{rise} {speed} {i}");
+                    assert!((limit - exact.limit.value).abs() < scale(exact.limit.value), "{rise} {speed} {i}");
+                }
+            }
+        }
+    }
+
     /// p, μ and κ at speeds and approaches all over the table and beyond, at temperatures between its own.
     #[test]
     fn it_is_the_law_of_the_table() {

@@ -309,14 +309,13 @@ fn beyond_the_table_s_temperatures_the_law_is_held() {
 #[test]
 fn a_table_of_one_temperature_is_refused() {
     let folder = folder("heat-refused");
-    for (name, temperatures) in [("one", &[293.15][..])] {
-        fs::write(folder.join(format!("{name}.csv")), table(temperatures, 1e9, |_| 0.9)).unwrap();
-        let error =
-            Patch::parse(&text(&format!("{name}.csv"), &format!("{ONE}\n{}", heat(0.3)), 1), &folder.join("p.toml"));
-        let error = error.unwrap_err().to_string();
-        assert!(
-            error.contains("p.toml:11: patch.heat = a table of 1: expected a table of two temperatures"),
-            "{error}"
-        );
+    fs::write(folder.join("one.csv"), table(&[TEMPERATURE], 1e9, |_| 0.9)).unwrap();
+    for (table, found) in [("one.csv", "a table of 1"), ("winkler.table.csv", "a table without temperatures")] {
+        let text = text(table, &format!("{ONE}\n{}", heat(0.3)), 1);
+        // Bare springs have no temperature to begin with either.
+        let text = if table == "one.csv" { text } else { text.replace("temperature = 293.15", "") };
+        let error = Patch::parse(&text, &folder.join("p.toml")).unwrap_err().to_string();
+        let expected = format!("p.toml:11: patch.heat = {found}: expected a table of two temperatures or more");
+        assert!(error.contains(&expected), "{error}");
     }
 }
