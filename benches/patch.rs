@@ -1,8 +1,9 @@
 //! The time of a step of a patch by element and part, beside the bare loops of its arithmetic in C.
 //!
 //! The patch turns, rolls and slides so that every element bears, its law is looked up at both ends of each step, and
-//! most slip: what `common/patch_cost.c` does. Beside it, on a table of several temperatures, the same patch warms. That is compiled with the C compiler `cc` where there is one, with the
-//! instructions that this processor has, and run side by side; the least of several runs counts.
+//! most slip: what `common/patch_cost.c` does. That is compiled with the C compiler `cc` where there is one, with the
+//! instructions that this processor has, and run side by side; the least of several runs counts. On a table of several
+//! temperatures the same patch runs with heat and without.
 #![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout, reason = "a bench may fail and prints")]
 
 use std::fmt::Write as _;

@@ -1,5 +1,5 @@
-"""Brakes a wheel in MuJoCo, whose only contact is the patch, from 5 m/s until it stands: at 10 % of slip and locked, with the
-heat of slip and without, with two communication steps.
+"""Brakes a wheel in MuJoCo, whose only contact is the patch, from 5 m/s until it stands: at 10 % of slip and locked,
+with the heat of slip and without, with two communication steps.
 
     braking.py FOLDER
 
@@ -14,7 +14,7 @@ from pathlib import Path
 import matplotlib
 import mujoco
 
-import brush
+import contact
 from patch import OUTPUTS, Patch
 
 matplotlib.use("Agg")
@@ -50,23 +50,23 @@ class Wheel:
         self.model.opt.timestep = h
         self.data = mujoco.MjData(self.model)
         self.data.joint("x").qvel[0] = SPEED
-        self.data.joint("z").qpos[0] = brush.RADIUS + brush.SEPARATION - brush.approach(LOAD)
+        self.data.joint("z").qpos[0] = contact.RADIUS + contact.SEPARATION - contact.approach(LOAD)
         self.lost_by_brake = self.lost_by_damper = 0.0
-        self.spin = SPEED / brush.rolling_radius(LOAD)
+        self.spin = SPEED / contact.rolling_radius(LOAD)
         self.data.joint("spin").qvel[0] = self.spin
         mujoco.mj_forward(self.model, self.data)
 
     def brake(self):
         """Gives the hinge the speed that the slip wants, and counts the work of the torque that this takes."""
         hinge, speed, before = self.data.joint("spin").qvel, self.data.joint("x").qvel[0], self.spin
-        self.spin = (1 - slip(self.data.time, self.most)) * speed / brush.rolling_radius(LOAD)
+        self.spin = (1 - slip(self.data.time, self.most)) * speed / contact.rolling_radius(LOAD)
         self.lost_by_brake += INERTIA * (hinge[0] - self.spin) * 0.5 * (before + self.spin)
         hinge[0] = self.spin
 
     def step(self, loads):
-        """A step under the patch's forces: the wrench acts on the carrier, at its centre, and the tread's force on the wheel."""
+        """A step under the patch's forces: the wrench on the carrier, at its centre, and the tread's force on the wheel."""
         self.data.body("carrier").xfrc_applied[:] = [loads[name] for name in OUTPUTS[:6]]
-        self.data.joint("spin").qfrc_applied[0] = brush.RADIUS * loads["transport.force"]
+        self.data.joint("spin").qfrc_applied[0] = contact.RADIUS * loads["transport.force"]
         mujoco.mj_step(self.model, self.data)
         self.lost_by_damper -= self.model.opt.timestep * float(self.data.qfrc_damper @ self.data.qvel)
         self.brake()
@@ -76,19 +76,19 @@ class Wheel:
     def pose(self):
         """What the patch takes: the carrier's pose and the speed of the tread."""
         x, y, z = self.data.body("carrier").xpos
-        return [x, y, z, 0.0, 0.0, 0.0, brush.RADIUS * self.data.joint("spin").qvel[0]]
+        return [x, y, z, 0.0, 0.0, 0.0, contact.RADIUS * self.data.joint("spin").qvel[0]]
 
     def row(self, loads):
         """Of the result file."""
         speed, spin = self.data.joint("x").qvel[0], self.data.joint("spin").qvel[0]
-        tread = brush.rolling_radius(LOAD) * spin
+        tread = contact.rolling_radius(LOAD) * spin
         kinetic = 0.5 * MASS * speed**2 + 0.5 * INERTIA * spin**2 + 0.5 * MASS * self.data.joint("z").qvel[0] ** 2
         lost = (self.lost_by_brake, self.lost_by_damper, kinetic)
         return [self.data.time, self.data.joint("x").qpos[0], speed, tread, *loads.values(), *lost]
 
 
 def stop(fmu, h, most, share):
-    """The rows of a stop. MuJoCo goes first, by a half-implicit step; the patch follows it straight to where it has gone."""
+    """The rows of a stop. MuJoCo goes first, by a half-implicit step; the patch follows straight to where it has gone."""
     wheel = Wheel(h, most)
     start = wheel.pose()
     patch = Patch(fmu, start, {"patch.heat.share": share})
@@ -124,7 +124,8 @@ def friction(rows):
 
 
 def draw(path, stops):
-    figure, ((over_way, over_speed), (speeds, temperatures)) = pyplot.subplots(2, 2, figsize=(11, 8), layout="constrained")
+    figure, axes = pyplot.subplots(2, 2, figsize=(11, 8), layout="constrained")
+    ((over_way, over_speed), (speeds, temperatures)) = axes
     labels = {"slip": "10 % slip", "locked": "locked", "warm": "with heat", "cold": "without"}
     for (brake, heat), rows in stops.items():
         style = {"color": "C0" if brake == "slip" else "C3", "linestyle": "-" if heat == "warm" else "--"}
@@ -139,7 +140,7 @@ def draw(path, stops):
     over_speed.set(xlabel="speed in m/s", ylabel="friction, -force.x over force.z", ylim=(0, 1))
     speeds.set(xlabel="time in s", ylabel="speed in m/s")
     temperatures.set(xlabel="way in m", ylabel="mean temperature of the tread in contact in °C")
-    for axis in figure.axes:
+    for axis in axes.flat:
         axis.legend(fontsize="small")
         axis.grid(alpha=0.3)
     figure.savefig(path)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Sweeps the tread's table where it is not there, builds the FMU, brakes the wheel on it in MuJoCo and draws it: all but the
-# table in FOLDER, by default target/patch-mujoco.
+# Sweeps the tread's table where it is not there, builds the FMU, brakes the wheel on it in MuJoCo and draws it: all but
+# the table in FOLDER, by default target/patch-mujoco.
 #
 #   scenes/patch-mujoco/run.sh [FOLDER]
 set -euo pipefail

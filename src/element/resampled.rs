@@ -215,7 +215,7 @@ impl Planes {
     /// Those of a table of several temperatures, with so many cells each.
     fn new(table: &Table, law: &Law, cells: usize) -> Option<Self> {
         let [first, .., last] = *table.grid.temperatures.as_slice() else { return None };
-        // A straight line between two points of a parabola is off by its second derivative times their distance² over 8.
+        // A straight line over a parabola is off by its second derivative times the distance² over 8.
         let distance = (8.0 * PLANE_TOLERANCE / law.bend_over_temperature()).sqrt().min(MAX_DISTANCE);
         let steps = ((last - first) / distance).ceil().clamp(1.0, MAX_PLANES - 1.0);
         Some(Self { first, distance: (last - first) / steps, count: steps as usize + 1, cells })

@@ -18,7 +18,7 @@ pub(super) const MAX_CHANGE: f64 = 5.0;
 pub(super) struct StepHeat {
     /// χκ.
     pub(super) kernel: [FlashTerm; SURFACE_TERMS],
-    /// The least and the largest ϑ at which the law changes with it, K: those of the table's first and last temperature.
+    /// The least and the largest ϑ at which the law changes, K: those of the table's first and last temperature.
     pub(super) range: (f64, f64),
 }
 

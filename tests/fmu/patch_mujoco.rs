@@ -1,4 +1,4 @@
-//! The example scenes/patch-mujoco: a wheel in MuJoCo that brakes on a contact patch and nothing else, which slip warms.
+//! The example scenes/patch-mujoco: a wheel in MuJoCo that brakes on a contact patch alone, which slip warms.
 
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
@@ -95,8 +95,8 @@ fn a_locked_tread_warms_by_what_it_loses() {
     assert!(((last[3] - TEMPERATURE) / expected - 1.0).abs() < 2e-2, "{} {expected}", last[3] - TEMPERATURE);
 }
 
-/// Cold, a locked wheel has the friction that the table has at its speed; at 10 % of slip that at a tenth of it, but for
-/// the cells that do not slip yet.
+/// Cold, a locked wheel has the friction that the table has at its speed; at 10 % of slip that at a tenth of it, but
+/// for the cells that do not slip yet.
 #[test]
 fn a_cold_wheel_has_the_friction_of_the_table() {
     let table = Table::read(&root().join("scenes/patch-mujoco/tread.table.csv"));
@@ -119,7 +119,7 @@ fn a_cold_wheel_has_the_friction_of_the_table() {
     }
 }
 
-/// What the wheel had is lost in the patch, the brake and the damper; forces that are held over a step err by first order.
+/// What the wheel had is lost in the patch, the brake and the damper; forces held over a step err by first order.
 #[test]
 fn the_energy_goes_into_patch_and_brake() {
     let defect = |name: &str| {

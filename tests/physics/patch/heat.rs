@@ -175,8 +175,8 @@ fn a_share_of_nearly_nothing_is_no_heat() {
     }
 }
 
-/// Tangents go through the heat of the step: of a tilted face that slides and turns, in several parts, against difference
-/// quotients.
+/// Tangents go through the heat of the step: of a tilted face that slides and turns, in several parts, against
+/// difference quotients.
 #[test]
 fn tangents_are_difference_quotients() {
     let content = table(&temperatures(), 1.5e9, falling);
