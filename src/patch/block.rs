@@ -4,6 +4,7 @@
 use super::contact_times::{Endpoint, advance_in_segments, half_turn, size};
 use super::face::{Face, TreadColumn};
 use super::heat::{self, BlockHeat, StepHeat};
+use super::lanes::{BLOCK, Lanes};
 use super::motion::{BodyKinematics, PoseMotion, Substep, Substeps, TreadMotion};
 use crate::element::{ResampledLaw, Segment, SpeedCell, SpringLaw, advance, apply_jump};
 use crate::math::Number;
@@ -17,14 +18,8 @@ pub(super) enum ElementMode {
     Sticking = 2,
 }
 
-/// Elements of a block.
-pub(super) const BLOCK: usize = 64;
-
 /// e^½: an element whose pressure changes by a larger factor in a substep is advanced in segments of its own.
 const MAX_RATIO: f64 = 1.648_721_270_700_128_2;
-
-/// Values of the elements of a block.
-pub(super) type Lanes<T> = [T; BLOCK];
 
 /// The motion of the face and of its tread through a step.
 #[derive(Clone, Copy, Debug)]

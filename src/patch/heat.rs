@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::block::{BLOCK, Lanes};
+use super::lanes::{BLOCK, Lanes};
 use crate::math::Number;
 use crate::model::{FlashTerm, SURFACE_TERMS};
 
