@@ -2,7 +2,8 @@
 //!
 //! The patch turns, rolls and slides so that every element bears, its law is looked up at both ends of each step, and
 //! most slip: what `common/patch_cost.c` does. That is compiled with the C compiler `cc` where there is one, with the
-//! instructions that this processor has, and run side by side; the least of several runs counts.
+//! instructions that this processor has, and run side by side; the least of several runs counts. On a table of several
+//! temperatures the same patch runs with heat and without.
 #![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout, reason = "a bench may fail and prints")]
 
 use std::fmt::Write as _;
@@ -18,23 +19,35 @@ const RUNS: usize = 7;
 const STEPS: u32 = 60;
 const H: f64 = 1e-3;
 
-/// 24 speeds from 0.1 mm/s to 10 m/s, 8 pressures from 50 kPa to 1.6 MPa.
-fn table() -> String {
+/// 24 speeds from 0.1 mm/s to 10 m/s, 8 pressures from 50 kPa to 1.6 MPa, and these temperatures (K), where there are.
+fn table(temperatures: &[f64]) -> String {
     let mut text = "# asperity sweep = 1\n# scene = bench\n# nominal_area = 1 m2\n# rest_separation = 0 m\n\
                     speed [m/s],pressure [Pa],temperature [K],status,friction [1],separation [m],\
                     tangential_stiffness [N/m]\n"
         .to_owned();
+    let columns: Vec<(String, f64)> = match temperatures {
+        [] => vec![(String::new(), 1.0)],
+        _ => temperatures.iter().map(|kelvin| (kelvin.to_string(), (-5e-3 * (kelvin - 293.0)).exp())).collect(),
+    };
+    for (kelvin, softer) in columns {
+        rows(&mut text, &kelvin, softer);
+    }
+    text
+}
+
+/// The points at a temperature, of friction multiplied with a factor.
+fn rows(text: &mut String, kelvin: &str, softer: f64) {
     for j in 0..24 {
         let x = 1e-4_f64.ln() + f64::from(j) * 1e5_f64.ln() / 23.0;
         for i in 0..8 {
             let h = f64::from(i) * 32_f64.ln() / 7.0;
             let approach = 6e-6 * h * (1.0 - 0.03 * h) - 1e-7 * x - 4e-9 * x * x;
-            let friction = 0.8 + 0.2 * (0.5 * x).sin() - 0.02 * f64::from(i);
+            let friction = softer * (0.8 + 0.2 * (0.5 * x).sin() - 0.02 * f64::from(i));
             let (speed, pressure, stiffness) = (x.exp(), 5e4 * h.exp(), 5e8 * (0.7 * h).exp());
-            writeln!(text, "{speed:e},{pressure:e},,steady,{friction:e},{:e},{stiffness:e}", -approach).unwrap();
+            writeln!(text, "{speed:e},{pressure:e},{kelvin},steady,{friction:e},{:e},{stiffness:e}", -approach)
+                .unwrap();
         }
     }
-    text
 }
 
 fn folder() -> PathBuf {
@@ -48,26 +61,31 @@ fn pose(k: f64) -> [f64; 6] {
     [1e-3 * (0.03 * k).sin() / 0.03, 2e-4 * k, z, 5e-5 * (0.07 * k).sin(), 0.0, 0.01 * (0.02 * k).sin()]
 }
 
-/// Seconds an element and step, of the processor and of the clock, of a patch raised by `lift` (m).
-fn patch_times(side: usize, tread: bool, lift: f64) -> [f64; 2] {
+/// What warms.
+const HEAT: &str = ", heat = { conductivity = 0.25, capacity = 1700.0, density = 1100.0, share = 0.3 }";
+
+/// Seconds an element and step, of the processor and of the clock, of a patch raised by `lift` (m), on a table of
+/// several temperatures or of none and with more keys of `[patch]`.
+fn patch_times(side: usize, tread: bool, lift: f64, (temperatures, keys): (&[f64], &str)) -> [f64; 2] {
     let folder = folder();
-    fs::write(folder.join("table.csv"), table()).unwrap();
+    fs::write(folder.join("table.csv"), table(temperatures)).unwrap();
     let length = 1e-3 * side as f64;
     let text = format!(
         "name = \"bench\"\ntable = {{ path = \"table.csv\" }}\npatch = {{ shape = \"flat\", length = {length}, width = \
-         {length}, nx = {side}, ny = {side}, transport = {tread} }}\n[fmu]\noutputs = [\"forces\", \"dissipation\"]"
+         {length}, nx = {side}, ny = {side}, transport = {tread}{keys} }}\n[fmu]\noutputs = [\"forces\", \"dissipation\"]"
     );
     let patch = Patch::parse(&text, &folder.join("patch.toml")).unwrap();
     let pose = |k: f64| {
         let [x, y, z, roll, pitch, yaw] = pose(k);
         [x, y, z + lift, roll, pitch, yaw]
     };
-    let start = PatchStart { pose: Pose::from_coordinates(pose(0.0)), ..PatchStart::default() };
+    let temperature = patch.temperature();
+    let start = PatchStart { pose: Pose::from_coordinates(pose(0.0)), temperature, ..PatchStart::default() };
     let mut run = PatchRun::new(&patch, &start).unwrap();
     let motions = |k: u32| {
         let (from, to) = (pose(f64::from(k)), pose(f64::from(k + 1)));
         let rates = std::array::from_fn(|i| (to[i] - from[i]) / H);
-        PatchMotion { duration: H, rates, transport_speed: 0.0, temperature: 0.0 }
+        PatchMotion { duration: H, rates, transport_speed: 0.0, temperature }
     };
     // The law's intervals are computed as they are met.
     (0..STEPS).for_each(|k| run.advance(&motions(k)).unwrap());
@@ -77,8 +95,12 @@ fn patch_times(side: usize, tread: bool, lift: f64) -> [f64; 2] {
 }
 
 fn patch_time(side: usize, tread: bool) -> f64 {
-    patch_times(side, tread, 0.0)[0]
+    patch_times(side, tread, 0.0, COLD)[0]
 }
+
+/// No temperatures, no heat.
+const COLD: (&[f64], &str) = (&[], "");
+const TEMPERATURES: &[f64] = &[273.0, 283.0, 293.0, 313.0, 333.0, 373.0];
 
 /// The bare loops' seconds an element and step; `None` without a C compiler.
 fn floor_time(side: usize) -> Option<f64> {
@@ -113,9 +135,15 @@ fn main() {
     }
     println!("{:.1} ns an element and part, {:.1} with a tread", 1e9 * own, 1e9 * own_tread);
     println!("{:.1} ns in the bare loops: {:.2} of them", 1e9 * floor, own / floor);
-    println!("{:.1} ns where nothing touches", 1e9 * patch_times(side, false, 1e-3)[0]);
+    println!("{:.1} ns where nothing touches", 1e9 * patch_times(side, false, 1e-3, COLD)[0]);
+    let least = |keys: &str| {
+        let times = (0..RUNS).map(|_| patch_times(side, false, 0.0, (TEMPERATURES, keys))[0]);
+        times.fold(f64::INFINITY, f64::min)
+    };
+    let (cold, warm) = (least(""), least(HEAT));
+    println!("{:.1} ns with heat: {:.2} of those without", 1e9 * warm, warm / cold);
     // Large enough for several threads.
-    let [work, time] = patch_times(4 * side, false, 0.0);
+    let [work, time] = patch_times(4 * side, false, 0.0, COLD);
     println!("{:.1} ns with {} times the elements: by the clock {:.2} of that", 1e9 * work, 16, time / work);
     let _ = fs::remove_dir_all(folder());
 }

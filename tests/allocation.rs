@@ -254,10 +254,11 @@ fn memory_reckoned_is_memory_taken() {
 fn memory_reckoned_of_a_patch_is_memory_taken() {
     const FACTOR: usize = 8;
     let folder = FilePath::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch");
-    for outputs in ["forces", "elements", "tangent"] {
+    let heat = "heat = { conductivity = 0.25, capacity = 1700.0, density = 1100.0, share = 0.3 }";
+    for (outputs, more) in [("forces", ""), ("elements", ""), ("tangent", ""), ("forces", heat), ("elements", heat)] {
         let text = format!(
             "name = 'pad'\ntable = {{ path = 'block.table.csv' }}\n[patch]\nshape = 'flat'\nlength = 0.01\nwidth = 0.01\n\
-             nx = 200\nny = 200\n[fmu]\noutputs = ['{outputs}']"
+             nx = 200\nny = 200\n{more}\n[fmu]\noutputs = ['{outputs}']"
         );
         let model = Definition::from(Patch::parse(&text, &folder.join("patch.toml")).unwrap());
         let inputs = Inputs::default();
@@ -342,14 +343,23 @@ fn a_refused_motion_allocates_nothing() {
 /// Steps of a rolling patch that touches, lifts, slides and is warmed, and all outputs after each.
 #[test]
 fn a_patch_allocates_nothing() {
-    let text = r#"
+    let heat = "heat = { conductivity = 0.25, capacity = 1700.0, density = 1100.0, share = 0.3 }";
+    for more in ["", &format!(", {heat}")] {
+        patch_allocates_nothing(more);
+    }
+}
+
+fn patch_allocates_nothing(more: &str) {
+    let text = format!(
+        r#"
 name = "wheel"
-table = { path = "block.table.csv" }
-patch = { shape = "cylinder", radius = 0.3, length = 0.0144, width = 0.01, nx = 24, ny = 4, transport = true }
-fmu = { outputs = ["forces", "dissipation", "contact", "friction", "energy", "tangent", "elements"] }
-"#;
+table = {{ path = "block.table.csv" }}
+patch = {{ shape = "cylinder", radius = 0.3, length = 0.0144, width = 0.01, nx = 24, ny = 4, transport = true{more} }}
+fmu = {{ outputs = ["forces", "dissipation", "contact", "friction", "energy", "tangent", "elements"] }}
+"#
+    );
     let folder = FilePath::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch");
-    let patch = Patch::parse(text, &folder.join("patch.toml")).unwrap();
+    let patch = Patch::parse(&text, &folder.join("patch.toml")).unwrap();
     let pose = Pose { place: [0.0, 0.0, 0.29999], angles: [0.0; 3] };
     let start = PatchStart { pose, temperature: 290.0, ..PatchStart::default() };
     let mut run = PatchRun::new(&patch, &start).unwrap();

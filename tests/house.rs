@@ -17,7 +17,7 @@ const ROOMS: [(&str, &[&str]); 12] = [
     ("simulation", &["math", "scene", "model", "integrator", "contact", "outputs"]),
     ("robustness", &["scene", "simulation"]),
     ("element", &["math", "scene", "model", "outputs", "simulation"]),
-    ("patch", &["math", "scene", "outputs", "element"]),
+    ("patch", &["math", "scene", "model", "outputs", "element"]),
     ("fmi", &["math", "scene", "model", "integrator", "contact", "outputs", "simulation", "element", "patch"]),
 ];
 

@@ -1,100 +1,104 @@
-"""Brakes a wheel in MuJoCo, whose only contact is the patch, until it stands; with two communication steps.
+"""Brakes a wheel in MuJoCo, whose only contact is the patch, from 5 m/s until it stands: at 10 % of slip and locked,
+with the heat of slip and without, with two communication steps.
 
     braking.py FOLDER
 
-FOLDER has tread.fmu. It gets braking-STEP.csv, braking.csv (the stops side by side) and braking.svg.
+FOLDER has tread.fmu. It gets BRAKE-HEAT-STEP.csv, braking.csv (the stops side by side) and braking.svg.
 """
 
 import csv
+import itertools
 import sys
 from pathlib import Path
 
 import matplotlib
 import mujoco
 
-import brush
+import contact
 from patch import OUTPUTS, Patch
 
 matplotlib.use("Agg")
 from matplotlib import pyplot  # noqa: E402
 
 STEPS = (2e-3, 5e-4)
-# s: between the rows that are drawn.
-DRAWN = 8e-3
-SPEED, MASS, INERTIA, GRAVITY = 15.0, 300.0, 1.0, 9.81
+SPEED, MASS, INERTIA, GRAVITY = 5.0, 300.0, 1.0, 9.81
 LOAD = MASS * GRAVITY
+# By how much slower than the carrier the brake lets the tread run, as a share of the carrier's speed.
+BRAKES = {"slip": 0.1, "locked": 1.0}
+# The part of what slip loses that warms the tread; next to none of it.
+HEATS = {"warm": 0.05, "cold": 1e-9}
+# s: the wheel rolls freely, then the brake comes on evenly.
+FREE, ON = 0.05, 0.1
 # s: by then it stands.
-LONGEST = 5.0
-# s, N m: the brake comes on evenly, holds, comes on more and locks the wheel.
-BRAKE = ((0.1, 0.0), (0.3, 600.0), (0.8, 600.0), (0.9, 1200.0))
-COLUMNS = ("time", "x", "speed", "tread", "slip", *OUTPUTS, "E_brake", "E_damper", "E_kinetic", "brush")
+LONGEST = 3.0
+# m: this way the wheel has slid where friction is compared.
+COMPARED = 1.0
+COLUMNS = ("time", "x", "speed", "tread", *OUTPUTS, "E_brake", "E_damper", "E_kinetic")
 
 
-def brake(time):
-    """The torque of the brake."""
-    for (t0, a), (t1, b) in zip(BRAKE, BRAKE[1:]):
-        if time < t1:
-            return a + (b - a) * max(time - t0, 0.0) / (t1 - t0)
-    return BRAKE[-1][1]
-
-
-def pose(data):
-    """What the patch takes: the carrier's pose and the speed of the tread."""
-    x, y, z = data.body("carrier").xpos
-    return [x, y, z, 0.0, 0.0, 0.0, brush.RADIUS * data.joint("spin").qvel[0]]
+def slip(time, most):
+    """What the brake holds: an anti-lock system, or blocked."""
+    return most * min(max((time - FREE) / (ON - FREE), 0.0), 1.0)
 
 
 class Wheel:
-    """The wheel in MuJoCo, rolling freely at the height at which springs bear it."""
+    """The wheel in MuJoCo, rolling freely at the height at which it is borne."""
 
-    def __init__(self, h):
+    def __init__(self, h, most):
+        self.most = most
         self.model = mujoco.MjModel.from_xml_path(str(Path(__file__).with_name("wheel.xml")))
         self.model.opt.timestep = h
         self.data = mujoco.MjData(self.model)
         self.data.joint("x").qvel[0] = SPEED
-        self.data.joint("z").qpos[0] = brush.RADIUS - brush.approach(LOAD)
-        self.data.joint("spin").qvel[0] = SPEED / brush.rolling_radius(LOAD)
-        mujoco.mj_forward(self.model, self.data)
+        self.data.joint("z").qpos[0] = contact.RADIUS + contact.SEPARATION - contact.approach(LOAD)
         self.lost_by_brake = self.lost_by_damper = 0.0
+        self.spin = SPEED / contact.rolling_radius(LOAD)
+        self.data.joint("spin").qvel[0] = self.spin
+        mujoco.mj_forward(self.model, self.data)
+
+    def brake(self):
+        """Gives the hinge the speed that the slip wants, and counts the work of the torque that this takes."""
+        hinge, speed, before = self.data.joint("spin").qvel, self.data.joint("x").qvel[0], self.spin
+        self.spin = (1 - slip(self.data.time, self.most)) * speed / contact.rolling_radius(LOAD)
+        self.lost_by_brake += INERTIA * (hinge[0] - self.spin) * 0.5 * (before + self.spin)
+        hinge[0] = self.spin
 
     def step(self, loads):
-        """A step under the patch's forces: the wrench acts on the carrier, at its centre, and the tread's force on the wheel."""
+        """A step under the patch's forces: the wrench on the carrier, at its centre, and the tread's force on the wheel."""
         self.data.body("carrier").xfrc_applied[:] = [loads[name] for name in OUTPUTS[:6]]
-        self.data.joint("spin").qfrc_applied[0] = brush.RADIUS * loads["transport.force"]
-        # Dry friction in the hinge.
-        spin = self.model.joint("spin").dofadr[0]
-        self.model.dof_frictionloss[spin] = brake(self.data.time)
+        self.data.joint("spin").qfrc_applied[0] = contact.RADIUS * loads["transport.force"]
         mujoco.mj_step(self.model, self.data)
-        h = self.model.opt.timestep
-        self.lost_by_brake -= h * self.data.qfrc_constraint[spin] * self.data.qvel[spin]
-        self.lost_by_damper -= h * float(self.data.qfrc_damper @ self.data.qvel)
+        self.lost_by_damper -= self.model.opt.timestep * float(self.data.qfrc_damper @ self.data.qvel)
+        self.brake()
         # Positions that belong to where the joints are now.
         mujoco.mj_kinematics(self.model, self.data)
+
+    def pose(self):
+        """What the patch takes: the carrier's pose and the speed of the tread."""
+        x, y, z = self.data.body("carrier").xpos
+        return [x, y, z, 0.0, 0.0, 0.0, contact.RADIUS * self.data.joint("spin").qvel[0]]
 
     def row(self, loads):
         """Of the result file."""
         speed, spin = self.data.joint("x").qvel[0], self.data.joint("spin").qvel[0]
-        tread = brush.rolling_radius(LOAD) * spin
+        tread = contact.rolling_radius(LOAD) * spin
         kinetic = 0.5 * MASS * speed**2 + 0.5 * INERTIA * spin**2 + 0.5 * MASS * self.data.joint("z").qvel[0] ** 2
-        # With the tread at rest the slip is as large as one likes.
-        slip = (speed - tread) / tread if tread > 1e-3 * SPEED else float("inf")
-        closed = brush.force(max(slip, 0.0), loads["force.z"])
         lost = (self.lost_by_brake, self.lost_by_damper, kinetic)
-        return [self.data.time, self.data.joint("x").qpos[0], speed, tread, slip, *loads.values(), *lost, closed]
+        return [self.data.time, self.data.joint("x").qpos[0], speed, tread, *loads.values(), *lost]
 
 
-def stop(fmu, h):
-    """The rows of a stop. MuJoCo goes first, by a half-implicit step; the patch follows it straight to where it has gone."""
-    wheel = Wheel(h)
-    start = pose(wheel.data)
-    patch = Patch(fmu, start)
+def stop(fmu, h, most, share):
+    """The rows of a stop. MuJoCo goes first, by a half-implicit step; the patch follows straight to where it has gone."""
+    wheel = Wheel(h, most)
+    start = wheel.pose()
+    patch = Patch(fmu, start, {"patch.heat.share": share})
     try:
         loads = patch.values()
         rows = [wheel.row(loads)]
         while wheel.data.joint("x").qvel[0] > 0 and wheel.data.time < LONGEST:
             time = wheel.data.time
             wheel.step(loads)
-            end = pose(wheel.data)
+            end = wheel.pose()
             patch.follow(time, h, start, end)
             start, loads = end, patch.values()
             rows.append(wheel.row(loads))
@@ -107,7 +111,7 @@ def write(path, names, rows):
     with open(path, "w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(names)
-        writer.writerows([repr(float(value)) for value in row] for row in rows)
+        writer.writerows([value if isinstance(value, str) else repr(float(value)) for value in row] for row in rows)
 
 
 def column(rows, name):
@@ -115,27 +119,27 @@ def column(rows, name):
     return [row[index] for row in rows]
 
 
-def draw(path, stops, closed):
+def friction(rows):
+    return [-x / z for x, z in zip(column(rows, "force.x"), column(rows, "force.z"))]
+
+
+def draw(path, stops):
     figure, axes = pyplot.subplots(2, 2, figsize=(11, 8), layout="constrained")
-    ((speeds, slips), (forces, law)) = axes
-    for h, every in stops.items():
-        rows = every[:: round(DRAWN / h)]
-        time, label = column(rows, "time"), f"patch, {1e3 * h:g} ms"
-        speeds.plot(time, column(rows, "speed"), label=f"carrier: {label}")
-        speeds.plot(time, column(rows, "tread"), label=f"tread: {label}")
-        slips.plot(time, column(rows, "slip"), label=label)
-        forces.plot(time, [-value for value in column(rows, "force.x")], label=f"-force.x: {label}")
-        forces.plot(time, column(rows, "force.z"), label=f"force.z: {label}")
-        law.plot(column(rows, "slip"), [-value for value in column(rows, "force.x")], ".", markersize=3, label=label)
-    closed = closed[::400]
-    speeds.plot([row[0] for row in closed], [row[2] for row in closed], "k--", label="brush model")
-    speeds.plot([row[0] for row in closed], [row[3] for row in closed], "k--")
-    grid = [0.15 * i / 200 for i in range(201)]
-    law.plot(grid, [brush.force(slip, LOAD) for slip in grid], "k--", label="brush model, even load")
-    slips.set(xlabel="time in s", ylabel="slip", ylim=(-0.01, 0.2))
+    ((over_way, over_speed), (speeds, temperatures)) = axes
+    labels = {"slip": "10 % slip", "locked": "locked", "warm": "with heat", "cold": "without"}
+    for (brake, heat), rows in stops.items():
+        style = {"color": "C0" if brake == "slip" else "C3", "linestyle": "-" if heat == "warm" else "--"}
+        style["label"] = f"{labels[brake]}, {labels[heat]}"
+        way, speed = column(rows, "x"), column(rows, "speed")
+        over_way.plot(way, friction(rows), **style)
+        over_speed.plot(speed, friction(rows), **style)
+        speeds.plot(column(rows, "time"), speed, **style)
+        celsius = [kelvin - 273.15 for kelvin in column(rows, "contact.temperature_mean")]
+        temperatures.plot(way, celsius, **style)
+    over_way.set(xlabel="way in m", ylabel="friction, -force.x over force.z", ylim=(0, 1))
+    over_speed.set(xlabel="speed in m/s", ylabel="friction, -force.x over force.z", ylim=(0, 1))
     speeds.set(xlabel="time in s", ylabel="speed in m/s")
-    forces.set(xlabel="time in s", ylabel="force in N")
-    law.set(xlabel="slip", ylabel="braking force in N", xlim=(-0.005, 0.15))
+    temperatures.set(xlabel="way in m", ylabel="mean temperature of the tread in contact in °C")
     for axis in axes.flat:
         axis.legend(fontsize="small")
         axis.grid(alpha=0.3)
@@ -146,17 +150,20 @@ def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     folder = Path(sys.argv[1])
-    stops = {h: stop(folder / "tread.fmu", h) for h in STEPS}
-    closed = brush.stop(MASS, INERTIA, LOAD, SPEED, brake)
-    table = []
-    for h, rows in stops.items():
-        write(folder / f"braking-{1e3 * h:g}ms.csv", COLUMNS, rows)
-        table.append([h, rows[-1][0], rows[-1][1]])
-    table.append([0.0, closed[-1][0], closed[-1][1]])
-    write(folder / "braking.csv", ("step", "time", "distance"), table)
-    for h, time, distance in table:
-        print(f"{f'{1e3 * h:g} ms' if h else 'brush model':12} stands after {time:.4f} s and {distance:.4f} m")
-    draw(folder / "braking.svg", stops, closed)
+    table, fine = [], {}
+    for (brake, most), (heat, share), h in itertools.product(BRAKES.items(), HEATS.items(), STEPS):
+        rows = stop(folder / "tread.fmu", h, most, share)
+        write(folder / f"{brake}-{heat}-{1e3 * h:g}ms.csv", COLUMNS, rows)
+        compared = friction(rows)[next(i for i, way in enumerate(column(rows, "x")) if way > COMPARED)]
+        warmest = max(column(rows, "contact.temperature_largest")) - 273.15
+        table.append([brake, heat, h, rows[-1][0], rows[-1][1], compared, warmest])
+        fine[brake, heat] = rows
+        print(
+            f"{brake:6} {heat} {1e3 * h:3g} ms: stands after {rows[-1][0]:.4f} s and {rows[-1][1]:.4f} m, "
+            f"friction {compared:.3f} after {COMPARED:g} m, {warmest:.1f} °C at most"
+        )
+    write(folder / "braking.csv", ("brake", "heat", "step", "time", "distance", "friction", "warmest"), table)
+    draw(folder / "braking.svg", fine)
 
 
 if __name__ == "__main__":

@@ -8,13 +8,14 @@ from fmpy.fmi2 import FMU2Slave
 POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 INPUTS = (*POSE, "transport.speed")
 WRENCH = ("force.x", "force.y", "force.z", "moment.x", "moment.y", "moment.z")
-OUTPUTS = (*WRENCH, "transport.force", "E_diss")
+CONTACT = ("contact.nominal_area", "contact.temperature_largest", "contact.temperature_mean")
+OUTPUTS = (*WRENCH, "transport.force", "E_diss", *CONTACT)
 
 
 class Patch:
-    """An FMU, unpacked, instantiated and initialised."""
+    """An FMU, unpacked, instantiated with parameters and initialised."""
 
-    def __init__(self, path, start):
+    def __init__(self, path, start, parameters):
         description = fmpy.read_model_description(path)
         references = {variable.name: variable.valueReference for variable in description.modelVariables}
         self.inputs, self.outputs = ([references[name] for name in names] for names in (INPUTS, OUTPUTS))
@@ -26,6 +27,7 @@ class Patch:
             instanceName="patch",
         )
         self.fmu.instantiate()
+        self.fmu.setReal([references[name] for name in parameters], list(parameters.values()))
         self.fmu.setupExperiment(startTime=0.0)
         self.fmu.enterInitializationMode()
         self.fmu.setReal(self.inputs, start)

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Builds the FMU of the tread, brakes the wheel on it in MuJoCo and draws it: all in FOLDER, by default target/patch-mujoco.
+# Sweeps the tread's table where it is not there, builds the FMU, brakes the wheel on it in MuJoCo and draws it: all but
+# the table in FOLDER, by default target/patch-mujoco.
 #
 #   scenes/patch-mujoco/run.sh [FOLDER]
 set -euo pipefail
@@ -14,6 +15,9 @@ python=$("$root/tests/python/environment.sh" "$folder/venv" "$here/requirements.
 cargo build --release --locked --bin asperity --manifest-path "$root/Cargo.toml"
 cargo rustc --release --locked --lib --no-default-features --crate-type cdylib --manifest-path "$root/Cargo.toml"
 asperity=${CARGO_TARGET_DIR:-$root/target}/release/asperity
+"$asperity" sweep "$here/road.toml" --speeds 1e-3..10/13 --pressures 5e3,2e4,5e4,1e5,2e5,4e5 \
+    --temperatures 293.15,308.15,323.15,343.15,363.15,393.15 --points 4096 -o "$here/tread.table.csv" \
+    --plot "$folder/sweep.svg"
 "$asperity" pack --patch "$here/tread.toml" -o "$folder/tread.fmu"
 "$python" -B "$here/braking.py" "$folder"
 echo "$folder/braking.svg"

@@ -36,6 +36,19 @@ impl Series {
         Self { values, slopes }
     }
 
+    /// The largest second derivative of the cubic over interval `i` of `x`: it is straight, largest at an end.
+    fn bend(&self, x: &[f64], i: usize) -> f64 {
+        let h = x[i + 1] - x[i];
+        let secant = (self.values[i + 1] - self.values[i]) / h;
+        let (before, after) = (self.slopes[i], self.slopes[i + 1]);
+        (6.0 * secant - 4.0 * before - 2.0 * after).abs().max((6.0 * secant - 2.0 * before - 4.0 * after).abs()) / h
+    }
+
+    /// The smaller of the values at the ends of interval `i`.
+    fn least(&self, i: usize) -> f64 {
+        self.values[i].min(self.values[i + 1])
+    }
+
     /// The value at `at`, between two of `x`, and how it changes there.
     fn at(&self, x: &[f64], i: usize, at: f64) -> Expansion {
         cubic(x, &self.values, &self.slopes, i, at)
@@ -108,6 +121,31 @@ impl Law {
                 monotone_slopes(speeds, &row.values, &mut row.slopes);
             }
         }
+    }
+
+    /// The largest second derivative with the temperature of ln p at a separation, or of ln μ, at the table's points,
+    /// 1/K²; 0 where it has one temperature.
+    pub(super) fn bend_over_temperature(&self) -> f64 {
+        let (temperatures, speeds) = (&self.temperatures, self.speeds.len());
+        let cells = |quantity: Quantity| self.over_temperature[quantity as usize].as_deref().unwrap_or_default();
+        let (friction, differences) = (cells(Quantity::Friction), cells(Quantity::Separation));
+        let mut largest = 0.0_f64;
+        for i in 0..temperatures.len().saturating_sub(1) {
+            let of_friction = friction.iter().map(|cell| cell.bend(temperatures, i) / cell.least(i).abs());
+            largest = of_friction.filter(|bend| bend.is_finite()).fold(largest, f64::max);
+            for speed in 0..speeds {
+                // From the largest pressure, where the separation is a value, down its differences add up.
+                let mut bend_of_separation = 0.0;
+                for load in (0..self.pressures.len()).rev() {
+                    bend_of_separation += differences[load * speeds + speed].bend(temperatures, i);
+                    let from = load.min(self.pressures.len() - 2);
+                    let slope =
+                        (self.pressures[from + 1] - self.pressures[from]) / differences[from * speeds + speed].least(i);
+                    largest = largest.max(slope * bend_of_separation);
+                }
+            }
+        }
+        largest
     }
 
     /// Approaches (m) at which there is no contact at any speed reach up to here.

@@ -23,7 +23,7 @@ pub use grid::{Load, OperatingPoint, SweepGrid};
 pub use law::{LeftOut, left_out};
 pub use low_end::LowEnd;
 pub use point_contact::{PointContact, dependencies, variables};
-pub use resampled::{LawPoint, ResampledLaw, SpeedCell, SpeedRange};
+pub use resampled::{ElementLaw, LawPlace, LawPoint, ResampledLaw, SpeedCell, SpeedRange};
 pub use run::{Element, ElementError, ElementState, RestoreError};
 pub(crate) use spring::{Advanced, Segment, SpringLaw, advance, apply_jump};
 pub use table::{Node, Table};

@@ -4,6 +4,9 @@
 //! [`LawAtSpeed`]; the coefficients of its cubics over the approach and over ln p are interpolated by parabolas of ln
 //! v. So an evaluation takes one logarithm, one exponential and polynomials, no division. Cells are computed when they
 //! are first needed at a temperature.
+//!
+//! Where each element has a temperature of its own, the law is kept at several temperatures, planes, and is linear
+//! between two of them: p, μp and κ at an approach. Cells of a plane are computed when they are first met.
 
 use super::law::{Law, LawAtSpeed};
 use super::table::Table;
@@ -17,6 +20,15 @@ use crate::scene::Backing;
 /// slopes along the pressure have a corner where they leave 0.
 const MAX_WIDTH: f64 = 0.006;
 const MIN_CELLS: f64 = 8.0;
+/// Where there are several planes, between which the law is met to 1e-3, ten times that: each plane takes memory, and
+/// time when it is met.
+const MAX_WIDTH_OF_PLANES: f64 = 0.06;
+
+/// Distance of planes, K, at most; closer where the table bends with the temperature so that p and μp would err by more
+/// than their tolerance at the table's points; and how many there are at most.
+const MAX_DISTANCE: f64 = 2.0;
+const PLANE_TOLERANCE: f64 = 1e-3;
+const MAX_PLANES: f64 = 400.0;
 
 /// Most bins in which the place of a speed among those of the table is looked up.
 const MAX_BINS: f64 = 1e5;
@@ -45,6 +57,51 @@ impl<T: Number> LawPoint<T> {
     #[inline(always)]
     pub fn pressure(&self) -> T {
         self.log_pressure.exp() * self.factor
+    }
+}
+
+/// The law of an element, of numbers or of numbers with their derivatives.
+#[derive(Clone, Copy, Debug)]
+pub struct ElementLaw<T> {
+    /// p, Pa.
+    pub pressure: T,
+    /// Friction coefficient, 1.
+    pub friction: T,
+    /// Tangential stiffness per area, N/m³.
+    pub stiffness: T,
+}
+
+impl<T: Number> ElementLaw<T> {
+    /// p, μp and κ a fraction of the way to those of another.
+    #[inline(always)]
+    fn towards(&self, other: &Self, fraction: T) -> Self {
+        let straight = |from: T, to: T| from + (to - from) * fraction;
+        let pressure = straight(self.pressure, other.pressure);
+        let limit = straight(self.pressure * self.friction, other.pressure * other.friction);
+        let bears = pressure.value() > 0.0;
+        Self {
+            pressure,
+            friction: (limit / pressure.or(bears, T::constant(1.0))).or(bears, self.friction),
+            stiffness: straight(self.stiffness, other.stiffness),
+        }
+    }
+}
+
+/// Where a speed and a temperature lie in the law.
+#[derive(Clone, Copy, Debug)]
+pub struct LawPlace<T> {
+    /// ln v, v in m/s, limited to the speeds of the table.
+    log_speed: T,
+    cell: SpeedCell,
+    /// Between two planes: the cell in the other, and the fraction of the way to it.
+    next: Option<(SpeedCell, T)>,
+}
+
+impl LawPlace<f64> {
+    /// The place of numbers with derivatives, which are 0.
+    pub fn constant<T: Number>(&self) -> LawPlace<T> {
+        let next = self.next.map(|(cell, fraction)| (cell, T::constant(fraction)));
+        LawPlace { log_speed: T::constant(self.log_speed), cell: self.cell, next }
     }
 }
 
@@ -101,11 +158,11 @@ struct SpeedSpan {
 }
 
 impl SpeedSpan {
-    /// The spans of a table; a table of one speed has one without width.
-    fn new(speeds: &[f64]) -> Vec<Self> {
+    /// The spans of a table, with cells of this width at most; a table of one speed has one without width.
+    fn new(speeds: &[f64], max_width: f64) -> Vec<Self> {
         let mut first = 0;
         let mut span = |start: f64, end: f64| {
-            let count = ((end - start) / MAX_WIDTH).ceil().max(MIN_CELLS);
+            let count = ((end - start) / max_width).ceil().max(MIN_CELLS);
             let width = (end - start) / count;
             let density = if width > 0.0 { 1.0 / width } else { 0.0 };
             let count = count as usize;
@@ -142,12 +199,42 @@ impl SpeedRange {
     }
 }
 
-/// The precomputed law of a table at one temperature.
+/// Temperatures at which a law is kept, evenly from the first of its table to the last.
+#[derive(Clone, Copy, Debug)]
+struct Planes {
+    /// The least, K.
+    first: f64,
+    /// From one to the next, K.
+    distance: f64,
+    count: usize,
+    /// Cells of a plane.
+    cells: usize,
+}
+
+impl Planes {
+    /// Those of a table of several temperatures, with so many cells each.
+    fn new(table: &Table, law: &Law, cells: usize) -> Option<Self> {
+        let [first, .., last] = *table.grid.temperatures.as_slice() else { return None };
+        // A straight line over a parabola is off by its second derivative times the distance² over 8.
+        let distance = (8.0 * PLANE_TOLERANCE / law.bend_over_temperature()).sqrt().min(MAX_DISTANCE);
+        let steps = ((last - first) / distance).ceil().clamp(1.0, MAX_PLANES - 1.0);
+        Some(Self { first, distance: (last - first) / steps, count: steps as usize + 1, cells })
+    }
+
+    fn temperature(&self, plane: usize) -> f64 {
+        self.first + self.distance * plane as f64
+    }
+}
+
+/// The precomputed law of a table at one temperature, or at all that elements of their own temperatures may have.
 #[derive(Clone, Debug)]
 pub struct ResampledLaw {
+    /// At the temperature of the cell computed last, or at that set.
     law: Law,
     curve: LawAtSpeed,
     temperature: f64,
+    /// Where elements have temperatures of their own.
+    planes: Option<Planes>,
     /// The area that a layer stands for, m².
     area: f64,
     /// ln p at the pressures, p in Pa.
@@ -199,13 +286,29 @@ impl SeriesBacking {
 impl ResampledLaw {
     /// The law of `table` at `temperature` (K), of a layer that stands for `area` (m²), in series with a backing.
     pub fn new(table: &Table, area: f64, temperature: f64, backing: Option<Backing>) -> Self {
-        let law = Law::new(table, temperature);
+        Self::with_planes(table, area, temperature, backing, false)
+    }
+
+    /// As [`new`](Self::new), of a table of several temperatures and of elements that are warmer than `temperature`.
+    pub fn of_warm_elements(table: &Table, area: f64, temperature: f64, backing: Option<Backing>) -> Self {
+        Self::with_planes(table, area, temperature, backing, true)
+    }
+
+    fn with_planes(table: &Table, area: f64, temperature: f64, backing: Option<Backing>, has_planes: bool) -> Self {
+        let mut law = Law::new(table, temperature);
         let curve = LawAtSpeed::new(&law, 0.0);
         let shift = (table.load.area() / area).ln();
         let speeds = law.speeds().to_vec();
         let (bins, bin_density) = bins(&speeds);
-        let (spans, pressures) = (SpeedSpan::new(&speeds), table.grid.loads.len());
-        let cells = spans.iter().map(|span| span.count).sum();
+        let width = if has_planes { MAX_WIDTH_OF_PLANES } else { MAX_WIDTH };
+        let (spans, pressures) = (SpeedSpan::new(&speeds, width), table.grid.loads.len());
+        let cells_of_plane: usize = spans.iter().map(|span| span.count).sum();
+        let planes = if has_planes { Planes::new(table, &law, cells_of_plane) } else { None };
+        let cells = cells_of_plane * planes.map_or(1, |planes| planes.count);
+        let earliest_touch = match planes {
+            Some(planes) => earliest_touch(&mut law, &planes),
+            None => law.earliest_touch(),
+        };
         let log_pressures: Vec<f64> = curve.points()[0].iter().map(|y| y + shift).collect();
         Self {
             temperature,
@@ -221,16 +324,20 @@ impl ResampledLaw {
             shares: vec![[[0.0; 8]; SAMPLES]; cells * pressures],
             computed: vec![0; cells],
             temperature_number: 1,
-            earliest_touch: law.earliest_touch(),
+            earliest_touch,
+            planes,
             law,
             curve,
         }
     }
 
-    /// Memory in bytes that the law of `table` takes.
-    pub fn memory(table: &Table) -> usize {
+    /// Memory in bytes that the law of `table` takes, of elements that are warmer or not.
+    pub fn memory(table: &Table, is_warm: bool) -> usize {
         let speeds: Vec<f64> = table.grid.speeds.iter().map(|speed| speed.ln()).collect();
-        let cells: usize = SpeedSpan::new(&speeds).iter().map(|span| span.count).sum();
+        let width = if is_warm { MAX_WIDTH_OF_PLANES } else { MAX_WIDTH };
+        let cells: usize = SpeedSpan::new(&speeds, width).iter().map(|span| span.count).sum();
+        let planes = if is_warm { Planes::new(table, &Law::new(table, 0.0), cells) } else { None };
+        let cells = cells * planes.map_or(1, |planes| planes.count);
         let pressures = table.grid.loads.len();
         let at_pressure = size_of::<Coefficients>() + size_of::<ShareCoefficients>();
         let starts = starts_of(pressures) * size_of::<IntervalStarts>();
@@ -240,6 +347,12 @@ impl ResampledLaw {
     /// As [`earliest_touch`](Self::earliest_touch), of `table` at `temperature` (K).
     pub fn earliest_touch_of(table: &Table, temperature: f64) -> f64 {
         Law::new(table, temperature).earliest_touch()
+    }
+
+    /// Whether elements have temperatures of their own.
+    #[inline(always)]
+    pub fn has_planes(&self) -> bool {
+        self.planes.is_some()
     }
 
     /// The temperature, K.
@@ -253,6 +366,9 @@ impl ResampledLaw {
             return;
         }
         self.temperature = kelvin;
+        if self.planes.is_some() {
+            return;
+        }
         self.law.set_temperature(kelvin);
         self.curve.invalidate_speed();
         self.temperature_number += 1;
@@ -267,6 +383,11 @@ impl ResampledLaw {
     /// The largest speed of the table, m/s.
     pub fn largest_speed(&self) -> f64 {
         self.law.speed_range.1
+    }
+
+    /// The least pressure of the table, Pa.
+    pub fn least_pressure(&self) -> f64 {
+        self.log_pressures[0].exp()
     }
 
     /// The largest pressure of the table, Pa.
@@ -284,6 +405,41 @@ impl ResampledLaw {
     /// The cell of a [logarithm of a speed](SpeedRange::logarithm), computed if it was not yet.
     #[inline(always)]
     pub fn speed_cell(&mut self, log_speed: f64) -> SpeedCell {
+        let cell = self.find_cell(log_speed);
+        self.compute_once(&cell);
+        cell
+    }
+
+    /// The cells of a logarithm of a speed in the planes below and above an element that is warmer by `rise` (K), and
+    /// the fraction of the way from the one to the other.
+    #[inline(always)]
+    pub fn cells_between_planes<T: Number>(&mut self, log_speed: f64, rise: T) -> Option<([SpeedCell; 2], T)> {
+        let Planes { first, distance, count, cells } = self.planes?;
+        let from_first = (rise + T::constant(self.temperature - first)).times(1.0 / distance);
+        // Beyond the temperatures of the table the law is that of its end.
+        let from_first = from_first.larger(T::constant(0.0)).smaller(T::constant((count - 1) as f64));
+        let plane = (from_first.value() as u32 as usize).min(count - 2);
+        let mut below = self.find_cell(log_speed);
+        below.index += plane * cells;
+        let above = SpeedCell { index: below.index + cells, ..below };
+        self.compute_once(&below);
+        self.compute_once(&above);
+        Some(([below, above], from_first - T::constant(plane as f64)))
+    }
+
+    /// The place of a speed (m/s) in the law, of an element that is warmer by `rise` (K).
+    #[inline(always)]
+    pub fn place<T: Number>(&mut self, speed: T, rise: T) -> LawPlace<T> {
+        let log_speed = self.range().logarithm(speed);
+        match self.cells_between_planes(log_speed.value(), rise) {
+            Some(([cell, next], fraction)) => LawPlace { log_speed, cell, next: Some((next, fraction)) },
+            None => LawPlace { log_speed, cell: self.speed_cell(log_speed.value()), next: None },
+        }
+    }
+
+    /// The cell of a logarithm of a speed, in the first plane.
+    #[inline(always)]
+    fn find_cell(&self, log_speed: f64) -> SpeedCell {
         let bin = ((log_speed - self.speeds[0]) * self.bin_density) as u32 as usize;
         let mut below = self.bins[bin.min(self.bins.len() - 1)] as usize;
         while log_speed >= self.spans[below].end && below + 1 < self.spans.len() {
@@ -291,16 +447,23 @@ impl ResampledLaw {
         }
         let SpeedSpan { start, density, width, first, count, .. } = self.spans[below];
         let i = (((log_speed - start) * density) as u32 as usize).min(count - 1);
-        let cell = SpeedCell { index: first + i, start: start + i as f64 * width, density };
+        SpeedCell { index: first + i, start: start + i as f64 * width, density }
+    }
+
+    #[inline(always)]
+    fn compute_once(&mut self, cell: &SpeedCell) {
         if self.computed[cell.index] != self.temperature_number {
-            self.compute(&cell);
+            self.compute(cell);
         }
-        cell
     }
 
     /// Computes the coefficients of a cell.
     #[cold]
     fn compute(&mut self, cell: &SpeedCell) {
+        if let Some(planes) = self.planes {
+            self.law.set_temperature(planes.temperature(cell.index / planes.cells));
+            self.curve.invalidate_speed();
+        }
         let width = if cell.density > 0.0 { 1.0 / cell.density } else { 0.0 };
         let pressures = self.log_pressures.len();
         let rows = cell.index * pressures..(cell.index + 1) * pressures;
@@ -388,6 +551,17 @@ impl ResampledLaw {
         self.at_interval(cell, self.pressure_interval(cell, log_speed.value(), approach.value()), log_speed, approach)
     }
 
+    /// The law at a place and an approach (m).
+    #[inline(always)]
+    pub fn at_place<T: Number>(&self, place: &LawPlace<T>, approach: T) -> ElementLaw<T> {
+        let at = |cell: &SpeedCell| {
+            let point = self.at(cell, place.log_speed, approach);
+            ElementLaw { pressure: point.pressure(), friction: point.friction, stiffness: point.stiffness }
+        };
+        let here = at(&place.cell);
+        place.next.map_or(here, |(next, fraction)| here.towards(&at(&next), fraction))
+    }
+
     /// The law where the [`pressure_interval`](Self::pressure_interval), `i`, is known.
     #[inline(always)]
     pub fn at_interval<T: Number>(&self, cell: &SpeedCell, i: usize, log_speed: T, approach: T) -> LawPoint<T> {
@@ -460,14 +634,27 @@ impl ResampledLaw {
         LawPoint { log_pressure, factor, friction: c[4], stiffness: c[8] * factor }
     }
 
-    /// The approaches (m) at a speed where the contact begins and where it reaches the least pressure of the table.
-    pub fn beginning<T: Number>(&self, cell: &SpeedCell, log_speed: T) -> (T, T) {
-        let c = self.coefficients_at(cell.index, cell.fraction(log_speed), 0);
-        (c[0] - T::constant(2.0) / c[1], c[0] + T::constant(self.indentation(0)))
+    /// The approaches (m) at a place where the contact begins and where it reaches the least pressure of the table.
+    pub fn beginning<T: Number>(&self, place: &LawPlace<T>) -> (T, T) {
+        let at = |cell: &SpeedCell| {
+            let c = self.coefficients_at(cell.index, cell.fraction(place.log_speed), 0);
+            (c[0] - T::constant(2.0) / c[1], c[0] + T::constant(self.indentation(0)))
+        };
+        let here = at(&place.cell);
+        let Some((next, fraction)) = place.next else { return here };
+        let there = at(&next);
+        (here.0 + (there.0 - here.0) * fraction, here.1 + (there.1 - here.1) * fraction)
     }
 
-    /// The share of hysteresis in the friction coefficient, and the contact ratio, at a speed and an approach (m).
-    pub fn shares(&self, cell: &SpeedCell, log_speed: f64, approach: f64) -> (f64, f64) {
+    /// The share of hysteresis in the friction coefficient, and the contact ratio, at a place and an approach (m).
+    pub fn shares(&self, place: &LawPlace<f64>, approach: f64) -> (f64, f64) {
+        let here = self.shares_in(&place.cell, place.log_speed, approach);
+        let Some((next, fraction)) = place.next else { return here };
+        let there = self.shares_in(&next, place.log_speed, approach);
+        (here.0 + (there.0 - here.0) * fraction, here.1 + (there.1 - here.1) * fraction)
+    }
+
+    fn shares_in(&self, cell: &SpeedCell, log_speed: f64, approach: f64) -> (f64, f64) {
         let (fraction, i) = (cell.fraction(log_speed), self.pressure_interval(cell, log_speed, approach));
         let point = self.at_interval(cell, i, log_speed, approach);
         let t = point.log_pressure - self.log_pressures[i];
@@ -477,6 +664,15 @@ impl ResampledLaw {
         let (hysteresis, ratio) = (along(0), along(4) * point.factor.min(1.0));
         (if point.friction > 0.0 { hysteresis / point.friction } else { 0.0 }, ratio)
     }
+}
+
+/// Up to this approach (m) there is no contact at any speed and any plane's temperature.
+fn earliest_touch(law: &mut Law, planes: &Planes) -> f64 {
+    let touch = |plane: usize| {
+        law.set_temperature(planes.temperature(plane));
+        law.earliest_touch()
+    };
+    (0..planes.count).map(touch).fold(f64::INFINITY, f64::min)
 }
 
 /// Steps of Newton's method or halvings: either alone would need fewer.
@@ -598,6 +794,32 @@ mod tests {
             let cell = law.speed_cell(log_speed);
             let friction = law.at(&cell, log_speed, -1.5e-5).friction;
             assert!((friction - 0.5 - 0.1 * j as f64).abs() < 1e-6, "{speed}: {friction}");
+        }
+    }
+
+    /// p and μp of elements of any temperature, within 1e-3 of those of the table at that temperature.
+    #[test]
+    fn between_planes_it_is_the_law_of_the_table() {
+        let table = table("block.table.csv");
+        let area = table.load.area();
+        let mut found = ResampledLaw::of_warm_elements(&table, area, 284.0, None);
+        for rise in [-5.0, 0.0, 3.7, 9.9, 14.2, 30.0] {
+            let law = Law::new(&table, (284.0_f64 + rise).clamp(283.15, 303.15));
+            for step in 0..150 {
+                let speed = (1e-4_f64.ln() + 0.1 * f64::from(step)).exp();
+                let curve = LawAtSpeed::new(&law, speed);
+                let place = found.place(speed, rise);
+                for i in 1..40 {
+                    let approach = curve.touch + (curve.closest() - curve.touch) * f64::from(i) / 36.0;
+                    let exact = curve.at(approach);
+                    let point = found.at_place(&place, approach);
+                    let (normal, limit) = (point.pressure * area, point.pressure * point.friction * area);
+                    // Below the least pressure in shares of that.
+                    let scale = |value: f64| 1e-3 * value.max(table.load.force(table.grid.loads[0]));
+                    assert!((normal - exact.normal.value).abs() < scale(exact.normal.value), "{rise} {speed} {i}");
+                    assert!((limit - exact.limit.value).abs() < scale(exact.limit.value), "{rise} {speed} {i}");
+                }
+            }
         }
     }
 

@@ -49,7 +49,7 @@ pub(crate) struct Advanced<T> {
     /// Whether it slips there.
     pub(crate) slips: bool,
     /// Energy lost by slip, J.
-    pub(crate) slip: f64,
+    pub(crate) slip: T,
     /// Energy lost with contacts that were released, J.
     pub(crate) release: f64,
 }
@@ -143,7 +143,7 @@ pub(crate) fn advance<T: Number>(force: [T; 2], segment: &Segment<T>) -> Advance
     // The energies lost.
     let along = travel + mean * whole.times(0.5).ln() - (l1 - radius);
     let limit = begin.limit + (end.limit - begin.limit) * t;
-    let by_slip = 0.5 * (limit + end.limit).value() * along.value();
+    let by_slip = (limit + end.limit).times(0.5) * along;
     let (x, y) = (slipped[0].or(slips, tx), slipped[1].or(slips, ty));
     let (k_0, k_1, k_m) = (begin.stiffness.value(), end.stiffness.value(), middle.value());
     let (before, after) = ((ex * ex + ey * ey).value(), (x * x + y * y).value());
@@ -152,7 +152,7 @@ pub(crate) fn advance<T: Number>(force: [T; 2], segment: &Segment<T>) -> Advance
     let (share_0, share_1) = (share(k_0), share(k_1));
     let release = 0.25 * (k_1 - k_0).abs() * (before * share_0 + after * share_1);
     let force = [(k_b * x).or(slips, stuck[0]), (k_b * y).or(slips, stuck[1])];
-    Advanced { force, slips, slip: if slips && by_slip > 0.0 { by_slip } else { 0.0 }, release }
+    Advanced { force, slips, slip: by_slip.or(slips && by_slip.value() > 0.0, T::constant(0.0)), release }
 }
 
 /// The fraction of a displacement after which |e| reaches the radius, which grows straight from `radius` by `growth`.

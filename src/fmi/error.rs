@@ -131,9 +131,11 @@ impl Error {
                 | SimulationError::StepTooSmall { .. },
             ) => Status::Discard,
             Self::Element(ElementError::Pressure { within: true, .. }) => Status::Discard,
-            Self::Motion(MotionError::TooManySubsteps { .. } | MotionError::BeyondTable { within: true, .. }) => {
-                Status::Discard
-            }
+            Self::Motion(
+                MotionError::TooManySubsteps { .. }
+                | MotionError::BeyondTable { within: true, .. }
+                | MotionError::ElementTooWarm { within: true, .. },
+            ) => Status::Discard,
             Self::TooFar { .. } | Self::NoSuchStatus => Status::Discard,
             Self::Panic(_) => Status::Fatal,
             _ => Status::Error,

@@ -89,15 +89,19 @@ impl FmuModel for Patch {
     }
 
     fn memory(&self) -> usize {
-        /// Of an element's variables, four with their names in two places; and of all others.
-        const VARIABLES: usize = 4 * 512;
+        /// Of a variable of an element, with its names in two places; and of all others.
+        const VARIABLE: usize = 512;
         const OTHERS: usize = 1 << 16;
-        let of_element = if self.groups().contains(&PatchGroup::Elements) { VARIABLES } else { 0 };
+        let variables = if self.heat().is_some() { 5 } else { 4 };
+        let of_element = if self.groups().contains(&PatchGroup::Elements) { VARIABLE * variables } else { 0 };
         OTHERS + of_element * self.count() + self.run_memory()
     }
 
     fn state_memory(&self) -> usize {
-        (1 << 12) + 32 * self.count()
+        /// Of a spring, and of its heat.
+        const SPRING: usize = 32;
+        const HEAT: usize = 80;
+        (1 << 12) + (SPRING + if self.heat().is_some() { HEAT } else { 0 }) * self.count()
     }
 
     fn options(&self) -> FmuOptions {

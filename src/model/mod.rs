@@ -20,7 +20,7 @@ pub use contact::ContactForces;
 pub use end_forces::EndForces;
 pub use energy::{BoundaryPowers, ChannelEnergies, Powers, elastic_energy, kinetic_energy, vertical_spring_energy_at};
 pub use fine_friction::{ContactQuantity, FineContact, FineFriction, PressedContact};
-pub use flash::{Flash, FlashKernel, FlashTerm, HeatParts, SpeedShift};
+pub use flash::{Flash, FlashKernel, FlashTerm, HeatParts, SURFACE_TERMS, SpeedShift, surface_kernel};
 pub use forces::{Forces, LinkLaw, LinkMotion, MaxwellRow};
 pub use friction::{FrictionLaw, FrictionPower, FrictionShares, LinearFriction, RateShearLaw, SlipCurve, SlipFriction};
 pub use reduction::{Reduction, Replaced, Replacement};

@@ -3,6 +3,8 @@
 
 use super::contact_times::{Endpoint, advance_in_segments, half_turn, size};
 use super::face::{Face, TreadColumn};
+use super::heat::{self, BlockHeat, StepHeat};
+use super::lanes::{BLOCK, Lanes};
 use super::motion::{BodyKinematics, PoseMotion, Substep, Substeps, TreadMotion};
 use crate::element::{ResampledLaw, Segment, SpeedCell, SpringLaw, advance, apply_jump};
 use crate::math::Number;
@@ -16,13 +18,8 @@ pub(super) enum ElementMode {
     Sticking = 2,
 }
 
-/// Elements of a block.
-pub(super) const BLOCK: usize = 64;
-
 /// e^½: an element whose pressure changes by a larger factor in a substep is advanced in segments of its own.
 const MAX_RATIO: f64 = 1.648_721_270_700_128_2;
-
-type Lanes<T> = [T; BLOCK];
 
 /// The motion of the face and of its tread through a step.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +30,8 @@ pub(super) struct FaceMotion<'a, T> {
     pub(super) substeps: Substeps,
     /// The speed at which the tread runs, m/s.
     pub(super) tread_speed: f64,
+    /// Where slip warms the elements.
+    pub(super) heat: Option<StepHeat>,
 }
 
 /// The elements that a step takes in, by their indices before it.
@@ -59,6 +58,19 @@ pub(super) struct Sums<T> {
     pub(super) release: f64,
     /// The first element found beyond the table.
     pub(super) beyond: Option<BeyondTable>,
+    /// The first element found warmer than the table.
+    pub(super) too_warm: Option<TooWarm>,
+}
+
+/// An element that is warmer than the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TooWarm {
+    /// Its index, as elements are counted at that instant.
+    pub(super) element: usize,
+    /// When: the fraction of the step.
+    pub(super) fraction: f64,
+    /// By how much it is warmer than the temperature given, K.
+    pub(super) rise: f64,
 }
 
 /// An element beyond the table.
@@ -109,7 +121,7 @@ impl<T> FaceMotion<'_, T> {
 impl<T: Number> Sums<T> {
     pub(super) fn zero() -> Self {
         let zero = T::constant(0.0);
-        Self { wrench: [zero; 6], transport: zero, slip: 0.0, release: 0.0, beyond: None }
+        Self { wrench: [zero; 6], transport: zero, slip: 0.0, release: 0.0, beyond: None, too_warm: None }
     }
 
     /// Adds those of elements that follow.
@@ -123,12 +135,15 @@ impl<T: Number> Sums<T> {
         if further.beyond.is_some_and(|theirs| self.beyond.is_none_or(|own| theirs.fraction < own.fraction)) {
             self.beyond = further.beyond;
         }
+        if further.too_warm.is_some_and(|theirs| self.too_warm.is_none_or(|own| theirs.fraction < own.fraction)) {
+            self.too_warm = further.too_warm;
+        }
     }
 
     /// The sums without their derivatives.
     pub(super) fn values(&self) -> Sums<f64> {
-        let Self { wrench, transport, slip, release, beyond } = *self;
-        Sums { wrench: wrench.map(T::value), transport: transport.value(), slip, release, beyond }
+        let Self { wrench, transport, slip, release, beyond, too_warm } = *self;
+        Sums { wrench: wrench.map(T::value), transport: transport.value(), slip, release, beyond, too_warm }
     }
 }
 
@@ -153,6 +168,8 @@ struct BlockContacts<T> {
     velocity: [Lanes<T>; 2],
     /// ln v, v in m/s, limited to the speeds of the table.
     log_speed: Lanes<T>,
+    /// How much warmer than the temperature given the law is, K.
+    rise: Lanes<T>,
     /// Whether no element can be in contact: then the pressure, the limit and the stiffness are 0.
     is_free: bool,
     /// Pressure, Pa.
@@ -180,6 +197,10 @@ pub(super) struct Block<T> {
     begin: Box<BlockContacts<T>>,
     /// At the end of the substep, or at the instant last evaluated.
     end: Box<BlockContacts<T>>,
+    /// Where slip warms the elements: how warm they are.
+    pub(super) heat: BlockHeat<T>,
+    /// Energy lost in the part by slip, J.
+    part_slip: Lanes<T>,
     /// 1 for those that slip, else 0.
     slips: Lanes<f64>,
     /// Energy lost in the step by slip, J.
@@ -201,6 +222,7 @@ impl<T: Number> BlockContacts<T> {
             approach: zero,
             velocity: [zero; 2],
             log_speed: zero,
+            rise: zero,
             is_free: true,
             pressure: zero,
             limit: zero,
@@ -273,10 +295,20 @@ impl<T: Number> BlockContacts<T> {
         for i in 0..BLOCK {
             self.log_speed[i] = range.logarithm(size([self.velocity[0][i], self.velocity[1][i]]));
         }
-        let (mut cells, mut intervals) = ([SpeedCell::default(); BLOCK], [0; BLOCK]);
+        if law.has_planes() {
+            return self.look_up_between_planes(law);
+        }
+        let mut cells = [SpeedCell::default(); BLOCK];
         for i in 0..BLOCK {
             cells[i] = law.speed_cell(self.log_speed[i].value());
         }
+        self.look_up_in(law, &cells);
+    }
+
+    /// Looks the law up in these cells.
+    #[inline(always)]
+    fn look_up_in(&mut self, law: &ResampledLaw, cells: &[SpeedCell; BLOCK]) {
+        let mut intervals = [0; BLOCK];
         for i in 0..BLOCK {
             intervals[i] = law.pressure_interval(&cells[i], self.log_speed[i].value(), self.approach[i].value());
         }
@@ -292,6 +324,26 @@ impl<T: Number> BlockContacts<T> {
             self.pressure[i] = pressure;
             self.limit[i] = (pressure * friction[i]).times(self.area[i]);
             self.stiffness[i] = self.stiffness[i].times(self.area[i]);
+        }
+    }
+
+    /// Looks the law up where every element has its temperature: straight between the planes below and above it.
+    #[inline(always)]
+    fn look_up_between_planes(&mut self, law: &mut ResampledLaw) {
+        let (mut below, mut above) = ([SpeedCell::default(); BLOCK], [SpeedCell::default(); BLOCK]);
+        let mut fraction = [T::constant(0.0); BLOCK];
+        for i in 0..BLOCK {
+            if let Some((cells, way)) = law.cells_between_planes(self.log_speed[i].value(), self.rise[i]) {
+                (below[i], above[i], fraction[i]) = (cells[0], cells[1], way);
+            }
+        }
+        self.look_up_in(law, &above);
+        let (pressure, limit, stiffness) = (self.pressure, self.limit, self.stiffness);
+        self.look_up_in(law, &below);
+        for i in 0..BLOCK {
+            self.pressure[i] = self.pressure[i] + (pressure[i] - self.pressure[i]) * fraction[i];
+            self.limit[i] = self.limit[i] + (limit[i] - self.limit[i]) * fraction[i];
+            self.stiffness[i] = self.stiffness[i] + (stiffness[i] - self.stiffness[i]) * fraction[i];
         }
     }
 
@@ -311,6 +363,7 @@ impl<T: Number> BlockContacts<T> {
             approach: self.approach[i],
             velocity: [self.velocity[0][i], self.velocity[1][i]],
             area: self.area[i],
+            rise: self.rise[i],
         }
     }
 }
@@ -326,6 +379,8 @@ impl<T: Number> Block<T> {
             mode: [0; BLOCK],
             begin: Box::new(BlockContacts::new()),
             end: Box::new(BlockContacts::new()),
+            heat: BlockHeat::new(),
+            part_slip: zero,
             slips: [0.0; BLOCK],
             slip: [0.0; BLOCK],
             release: [0.0; BLOCK],
@@ -333,11 +388,12 @@ impl<T: Number> Block<T> {
     }
 
     /// Makes it the block of the `count` elements from `start` on, as they are counted in the step, with no springs
-    /// yet.
+    /// yet and cold.
     pub(super) fn reset(&mut self, start: usize, count: usize) {
         (self.start, self.count) = (start, count);
         let zero = [T::constant(0.0); BLOCK];
         (self.force, self.stiffness) = ([zero; 2], zero);
+        self.heat.reset();
         self.slips = [0.0; BLOCK];
         (self.slip, self.release) = ([0.0; BLOCK], [0.0; BLOCK]);
         for contacts in [&mut self.begin, &mut self.end] {
@@ -364,14 +420,104 @@ impl<T: Number> Block<T> {
                 self.check_table(step, law, substep.begin, sums);
                 is_evaluated = true;
             }
-            let next = step.body.at(substep.end);
-            std::mem::swap(&mut self.begin, &mut self.end);
-            self.evaluate_at(step, law, &next, substep.end);
-            self.advance_springs(step, law, (&now, &next), substep.length());
+            now = match step.heat {
+                Some(heat) => self.advance_warming(step, &heat, law, now, substep, sums),
+                None => self.advance_part(step, law, &now, substep),
+            };
             self.check_table(step, law, substep.end, sums);
-            now = next;
         }
         self.add_up(step, sums);
+    }
+
+    /// Takes the elements through a part, from the body as it is `now`; returns it at the end.
+    #[inline(always)]
+    fn advance_part(
+        &mut self,
+        step: &FaceMotion<'_, T>,
+        law: &mut ResampledLaw,
+        now: &BodyKinematics<T>,
+        part: Substep,
+    ) -> BodyKinematics<T> {
+        let next = step.body.at(part.end);
+        std::mem::swap(&mut self.begin, &mut self.end);
+        self.evaluate_at(step, law, &next, part.end);
+        self.advance_springs(step, law, (now, &next), part.length());
+        next
+    }
+
+    /// Takes the elements and their temperatures through a substep, in parts so short that these change by little.
+    #[inline(always)]
+    fn advance_warming(
+        &mut self,
+        step: &FaceMotion<'_, T>,
+        heat: &StepHeat,
+        law: &mut ResampledLaw,
+        mut now: BodyKinematics<T>,
+        substep: Substep,
+        sums: &mut Sums<T>,
+    ) -> BodyKinematics<T> {
+        let (mut begin, mut length) = (substep.begin, substep.length());
+        while begin < substep.end {
+            let end = if begin + length < substep.end { begin + length } else { substep.end };
+            let part = Substep { begin, end };
+            // The law follows the temperatures at which the part begins.
+            let before = (self.force, self.stiffness, self.slips, self.slip, self.release, self.heat.of_law);
+            let rise = heat::total(&self.heat.parts);
+            self.heat.of_law = rise;
+            let next = self.advance_part(step, law, &now, part);
+            let warmed = self.warmed(heat, part.length() * step.body.duration);
+            // Too long a part is done again, half as long.
+            if self.warms_too_much(heat, &rise, &heat::total(&warmed)) && length > SHORTEST_PART * substep.length() {
+                std::mem::swap(&mut self.begin, &mut self.end);
+                (self.force, self.stiffness, self.slips, self.slip, self.release, self.heat.of_law) = before;
+                length *= 0.5;
+                continue;
+            }
+            self.heat.parts = warmed;
+            self.check_temperatures(step, heat, end, sums);
+            (now, begin) = (next, end);
+            length *= 2.0;
+        }
+        now
+    }
+
+    /// The temperatures after the part just done, by their terms.
+    #[inline(always)]
+    fn warmed(&mut self, heat: &StepHeat, duration: f64) -> heat::Rises<T> {
+        let mut area = self.begin.area;
+        for i in 0..BLOCK {
+            area[i] = 0.5 * (area[i] + self.end.area[i]);
+        }
+        self.heat.after(heat, duration, &self.part_slip, &area)
+    }
+
+    /// Whether the temperature of an element in contact changes too much for one part, within those of the table.
+    #[inline(always)]
+    fn warms_too_much(&self, heat: &StepHeat, before: &Lanes<T>, after: &Lanes<T>) -> bool {
+        let (low, high) = heat.range;
+        let within = |rise: T| rise.value().max(low).min(high);
+        let mut found = false;
+        for i in 0..BLOCK {
+            let bears = self.begin.stiffness[i].value() + self.end.stiffness[i].value() > 0.0;
+            found |= bears & ((within(after[i]) - within(before[i])).abs() > heat::MAX_CHANGE);
+        }
+        found
+    }
+
+    /// Records the first element in contact that is warmer than the table, after a fraction of the step.
+    #[inline(always)]
+    fn check_temperatures(&self, step: &FaceMotion<'_, T>, heat: &StepHeat, fraction: f64, sums: &mut Sums<T>) {
+        if self.end.is_free || sums.too_warm.is_some_and(|warm| warm.fraction <= fraction) {
+            return;
+        }
+        let rises = heat::total(&self.heat.parts);
+        let most = heat.range.1 * (1.0 + ROUNDING);
+        let too_warm = |i: usize| {
+            let rise = rises[i].value();
+            let element = step.index_at(self.start + i, fraction);
+            (self.end.stiffness[i].value() > 0.0 && rise > most).then_some(TooWarm { element, fraction, rise })
+        };
+        sums.too_warm = (0..self.count).find_map(too_warm).or(sums.too_warm);
     }
 
     /// Gives the springs, relaxed, the stiffness of their contacts at the start of a step.
@@ -394,6 +540,7 @@ impl<T: Number> Block<T> {
         let is_tread = matches!(step.face, Face::Tread(_));
         self.end.set_positions(step, self.start, self.count, step.tread.entered_at(fraction));
         self.end.set_motion(now, is_tread.then_some(step.tread_speed));
+        self.end.rise = self.heat.of_law;
         self.end.is_free = self.end.is_clear(law);
         if self.end.is_free { self.end.clear() } else { self.end.look_up(law) }
     }
@@ -407,15 +554,16 @@ impl<T: Number> Block<T> {
         (now, next): (&BodyKinematics<T>, &BodyKinematics<T>),
         length: f64,
     ) {
+        self.part_slip = [T::constant(0.0); BLOCK];
         if self.begin.is_free && self.end.is_free && self.stiffness.iter().all(|k| k.value() == 0.0) {
             return;
         }
         // All elements as if their pressures changed in one segment.
         let displacement = self.displacements(step, (now, next), length);
-        let Self { force, stiffness, slips, slip, release, begin, end, count, .. } = self;
+        let Self { force, stiffness, slips, part_slip, slip, release, begin, end, count, .. } = self;
         apply_jumps(force, stiffness, release, begin);
         let before = *force;
-        advance_all(force, slips, (slip, release), (begin, end), &displacement);
+        advance_all(force, slips, (part_slip, release), (begin, end), &displacement);
         // Those whose pressure changes by too large a factor once more, in segments.
         for i in 0..*count {
             if needs_segments(begin.pressure[i].value(), end.pressure[i].value()) {
@@ -424,9 +572,12 @@ impl<T: Number> Block<T> {
                 let advanced = advance_in_segments(law, [before[0][i], before[1][i]], ends, displacement);
                 (force[0][i], force[1][i]) = (advanced.force[0], advanced.force[1]);
                 slips[i] = if advanced.slips { 1.0 } else { 0.0 };
-                slip[i] += advanced.slip;
+                part_slip[i] = advanced.slip;
                 release[i] += advanced.release;
             }
+        }
+        for i in 0..BLOCK {
+            slip[i] += part_slip[i].value();
         }
         *stiffness = end.stiffness;
     }
@@ -561,7 +712,7 @@ fn apply_jumps<T: Number>(
 fn advance_all<T: Number>(
     force: &mut [Lanes<T>; 2],
     slips: &mut Lanes<f64>,
-    (slip, release): (&mut Lanes<f64>, &mut Lanes<f64>),
+    (slip, release): (&mut Lanes<T>, &mut Lanes<f64>),
     (begin, end): (&BlockContacts<T>, &BlockContacts<T>),
     displacement: &[Lanes<T>; 2],
 ) {
@@ -578,12 +729,15 @@ fn advance_all<T: Number>(
         let kept = if needs_segments(begin.pressure[i].value(), end.pressure[i].value()) { 0.0 } else { 1.0 };
         (force[0][i], force[1][i]) = (advanced.force[0], advanced.force[1]);
         slips[i] = if advanced.slips { 1.0 } else { 0.0 };
-        slip[i] += kept * advanced.slip;
+        slip[i] = advanced.slip.times(kept);
         release[i] += kept * advanced.release;
     }
 }
 
-/// Share of the table's speeds and pressures by which an element may exceed them: rounding.
+/// Share of a substep below which it is not cut further for heat.
+const SHORTEST_PART: f64 = 1e-9;
+
+/// Share of the table's speeds, pressures and temperatures by which an element may exceed them: rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// Whether an element is advanced in segments of its own in a substep with these pressures at its beginning and end.

@@ -1,7 +1,7 @@
 //! An element whose pressure changes much in a substep: it is cut where the element touches or lifts and where it is at
 //! the least pressure of the table, and each stretch between two cuts is divided into segments.
 
-use crate::element::{Advanced, ResampledLaw, Segment, SpringLaw, advance, apply_jump};
+use crate::element::{Advanced, ElementLaw, ResampledLaw, Segment, SpringLaw, advance, apply_jump};
 use crate::math::Number;
 
 /// Segments of a stretch, at least.
@@ -20,6 +20,8 @@ pub(super) struct Endpoint<T> {
     pub(super) velocity: [T; 2],
     /// Its area, m².
     pub(super) area: f64,
+    /// How much warmer than the temperature given its law is, K.
+    pub(super) rise: T,
 }
 
 /// An element between two endpoints, after a fraction of the substep.
@@ -39,7 +41,7 @@ pub(super) fn advance_in_segments<T: Number>(
 ) -> Advanced<T> {
     let cuts = cuts(law, begin, end);
     let mut here = between(law, begin, end, T::constant(0.0));
-    let mut advanced = Advanced { force, slips: false, slip: 0.0, release: 0.0 };
+    let mut advanced = Advanced { force, slips: false, slip: T::constant(0.0), release: 0.0 };
     for cut in cuts {
         if cut.value() <= here.fraction.value() {
             continue;
@@ -75,9 +77,8 @@ pub(super) fn advance_in_segments<T: Number>(
 /// table, in their order, and 1.
 fn cuts<T: Number>(law: &mut ResampledLaw, begin: &Endpoint<T>, end: &Endpoint<T>) -> [T; 3] {
     let mut beginning = |end: &Endpoint<T>| {
-        let speed = law.range().logarithm(size(end.velocity));
-        let cell = law.speed_cell(speed.value());
-        let (touch, least) = law.beginning(&cell, speed);
+        let place = law.place(size(end.velocity), end.rise);
+        let (touch, least) = law.beginning(&place);
         (end.approach - touch, end.approach - least)
     };
     let (before, after) = (beginning(begin), beginning(end));
@@ -99,11 +100,9 @@ fn between<T: Number>(law: &mut ResampledLaw, begin: &Endpoint<T>, end: &Endpoin
     let straight = |from: T, to: T| from + (to - from) * fraction;
     let velocity = [0, 1].map(|i| straight(begin.velocity[i], end.velocity[i]));
     let area = straight(T::constant(begin.area), T::constant(end.area));
-    let speed = law.range().logarithm(size(velocity));
-    let cell = law.speed_cell(speed.value());
-    let point = law.at(&cell, speed, straight(begin.approach, end.approach));
-    let pressure = point.pressure();
-    let law = SpringLaw { stiffness: area * point.stiffness, limit: area * pressure * point.friction };
+    let place = law.place(size(velocity), straight(begin.rise, end.rise));
+    let ElementLaw { pressure, friction, stiffness } = law.at_place(&place, straight(begin.approach, end.approach));
+    let law = SpringLaw { stiffness: area * stiffness, limit: area * pressure * friction };
     Between { fraction, velocity, pressure: pressure.value(), law }
 }
 

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use super::face::{Face, Points, Section, Tread};
 use crate::element::{Load, Node, Quantity, ResampledLaw, Table, TableError};
 use crate::scene::{
-    Backing, Extrapolation, FaceShape, FmuOptions, Grid, NotDoubled, Parameter, ParameterError, PatchFile, PatchGroup,
-    Problem, SceneError, TableExtrapolation, Value,
+    Backing, Extrapolation, FaceHeat, FaceShape, FmuOptions, Grid, NotDoubled, Parameter, ParameterError, PatchFile,
+    PatchGroup, Problem, SceneError, TableExtrapolation, Value,
 };
 
 /// Why a patch is refused.
@@ -55,9 +55,20 @@ pub struct Patch {
     pub(super) table_extrapolation: TableExtrapolation,
     pub(super) refine: u32,
     backing: Option<Backing>,
+    heat: Option<FaceHeat>,
     /// How the body moves on when a master gives no rates.
     pub extrapolation: Extrapolation,
 }
+
+/// Parameters that are numbers, of a backing and of heat.
+const REALS: [Parameter; 6] = [
+    Parameter::BackingNormal,
+    Parameter::BackingShear,
+    Parameter::FaceConductivity,
+    Parameter::FaceCapacity,
+    Parameter::FaceDensity,
+    Parameter::FaceShare,
+];
 
 impl Patch {
     /// Reads the patch file at `path` and the files that it names.
@@ -81,6 +92,7 @@ impl Patch {
         Ok(Self {
             nominal_area: nominal_area(&file, &table)?,
             temperature: temperature(&file, &table)?,
+            heat: heat(&file, &table)?,
             face: Arc::new(face(&file)),
             table_extrapolation: file.table_extrapolation,
             refine: file.refine,
@@ -131,8 +143,13 @@ impl Patch {
     /// The temperature (K) of the law where `kelvin` is given: that of the table's end beyond it. `None` where the
     /// table has one temperature at most.
     pub(super) fn held_temperature(&self, kelvin: f64) -> Option<f64> {
-        match self.table.grid.temperatures.as_slice() {
-            [low, .., high] => Some(kelvin.max(*low).min(*high)),
+        self.temperatures().map(|(low, high)| kelvin.max(low).min(high))
+    }
+
+    /// The first and the last temperature of the table, K, of several.
+    pub(super) fn temperatures(&self) -> Option<(f64, f64)> {
+        match *self.table.grid.temperatures.as_slice() {
+            [low, .., high] => Some((low, high)),
             _ => None,
         }
     }
@@ -157,9 +174,14 @@ impl Patch {
         self.backing
     }
 
-    /// The same elements on what does not give way.
-    pub fn without_backing(&self) -> Self {
-        Self { backing: None, ..self.clone() }
+    /// How slip warms the elements, if it does.
+    pub fn heat(&self) -> Option<FaceHeat> {
+        self.heat
+    }
+
+    /// The same contacts on what does not give way, as warm as the ground.
+    pub fn contacts_alone(&self) -> Self {
+        Self { backing: None, heat: None, ..self.clone() }
     }
 
     /// The largest tangential stiffness per area (Pa/m) of a contact at the largest pressure of the table, whatever its
@@ -248,7 +270,8 @@ impl Patch {
     }
 
     pub(super) fn law(&self) -> ResampledLaw {
-        ResampledLaw::new(&self.table, self.nominal_area, self.temperature, self.backing)
+        let law = if self.heat.is_some() { ResampledLaw::of_warm_elements } else { ResampledLaw::new };
+        law(&self.table, self.nominal_area, self.temperature, self.backing)
     }
 
     /// An element where `entered` cells of the tread have entered.
@@ -269,9 +292,32 @@ impl Patch {
 
     /// The parameters.
     pub fn parameters(&self) -> Vec<Parameter> {
-        let backing = self.backing.map(|_| [Parameter::BackingNormal, Parameter::BackingShear]);
         let others = [Parameter::TableExtrapolation, Parameter::Extrapolation, Parameter::Refine];
-        others.into_iter().chain(backing.into_iter().flatten()).collect()
+        let reals = REALS.into_iter().filter(|&parameter| self.real(parameter).is_some());
+        others.into_iter().chain(reals).collect()
+    }
+
+    /// The value of a Real parameter, if the patch has it.
+    fn real(&self, parameter: Parameter) -> Option<f64> {
+        let (mut backing, mut heat) = (self.backing, self.heat);
+        Self::real_of(&mut backing, &mut heat, parameter).copied()
+    }
+
+    fn real_of<'a>(
+        backing: &'a mut Option<Backing>,
+        heat: &'a mut Option<FaceHeat>,
+        parameter: Parameter,
+    ) -> Option<&'a mut f64> {
+        let (backing, heat) = (backing.as_mut(), heat.as_mut());
+        match parameter {
+            Parameter::BackingNormal => backing.map(|backing| &mut backing.normal),
+            Parameter::BackingShear => backing.map(|backing| &mut backing.shear),
+            Parameter::FaceConductivity => heat.map(|heat| &mut heat.conductivity),
+            Parameter::FaceCapacity => heat.map(|heat| &mut heat.capacity),
+            Parameter::FaceDensity => heat.map(|heat| &mut heat.density),
+            Parameter::FaceShare => heat.map(|heat| &mut heat.share),
+            _ => None,
+        }
     }
 
     /// The value of a parameter.
@@ -279,9 +325,8 @@ impl Patch {
         match parameter {
             Parameter::TableExtrapolation => Value::Text(self.table_extrapolation.word().into()),
             Parameter::Refine => Value::Integer(i32::try_from(self.refine).unwrap_or(i32::MAX)),
-            Parameter::BackingNormal => Value::Real(self.backing.map_or(0.0, |backing| backing.normal)),
-            Parameter::BackingShear => Value::Real(self.backing.map_or(0.0, |backing| backing.shear)),
-            _ => Value::Text(self.extrapolation.word().into()),
+            Parameter::Extrapolation => Value::Text(self.extrapolation.word().into()),
+            _ => Value::Real(self.real(parameter).unwrap_or(0.0)),
         }
     }
 
@@ -296,7 +341,7 @@ impl Patch {
         let text = text.trim();
         let value = match parameter {
             Parameter::Refine => text.parse().ok().map(Value::Integer),
-            Parameter::BackingNormal | Parameter::BackingShear => text.parse().ok().map(Value::Real),
+            _ if REALS.contains(&parameter) => text.parse().ok().map(Value::Real),
             _ => None,
         };
         self.set_parameter(parameter, value.unwrap_or_else(|| Value::Text(text.to_owned())))
@@ -311,7 +356,7 @@ impl Patch {
             let expected = match parameter {
                 Parameter::TableExtrapolation => "one of \"refuse\", \"hold\"",
                 Parameter::Refine => "a whole number from 1 to 1000",
-                Parameter::BackingNormal | Parameter::BackingShear => "a number above 0, of a patch with a backing",
+                _ if REALS.contains(&parameter) => "a number above 0, of a patch with a backing, or with heat",
                 _ => "one of \"linear\", \"hold\"",
             };
             let problem = Problem::Value { given: value.to_string(), expected: expected.into() };
@@ -328,16 +373,20 @@ impl Patch {
                 let allowed = u32::try_from(refine).ok().filter(|refine| (1..=1000).contains(refine));
                 self.refine = allowed.ok_or_else(refused)?;
             }
-            (Parameter::BackingNormal | Parameter::BackingShear, &Value::Real(number)) => {
+            (_, &Value::Real(number)) if REALS.contains(&parameter) => {
                 let number = parameter.check_number(number)?;
-                let backing = self.backing.as_mut().ok_or_else(refused)?;
-                let is_normal = parameter == Parameter::BackingNormal;
-                *(if is_normal { &mut backing.normal } else { &mut backing.shear }) = number;
+                *Self::real_of(&mut self.backing, &mut self.heat, parameter).ok_or_else(refused)? = number;
             }
             _ => return Err(refused()),
         }
         Ok(())
     }
+}
+
+/// Slip that warms the elements takes a table that says what their temperature does.
+fn heat(file: &PatchFile, table: &Table) -> Result<Option<FaceHeat>, PatchError> {
+    let temperatures = table.grid.temperatures.len();
+    if file.heat.is_some() && temperatures < 2 { Err(file.refuse_heat(temperatures).into()) } else { Ok(file.heat) }
 }
 
 /// A table of pressures says the area itself, one of forces does not.

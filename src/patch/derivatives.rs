@@ -1,7 +1,7 @@
 //! How a run's outputs change at once, its states and modes held: as the body is displaced, or as it moves on.
 //!
 //! The spring of an element that sticks follows the face, and where its stiffness falls, loses its share; one that
-//! slips stays at its limit. The pressure follows the approach, arms turn with the body.
+//! slips stays at its limit. The pressure follows the approach, arms turn with the body; temperatures stay.
 
 use super::block::ElementMode;
 use super::contact_times::size;
@@ -9,8 +9,8 @@ use super::definition::ElementSite;
 use super::face::Face;
 use super::motion::{BodyKinematics, PoseMotion};
 use super::run::PatchRun;
-use super::state::Totals;
 use super::variables::{PatchOutput, PatchVariable};
+use crate::element::LawPlace;
 use crate::math::{Dual, Number};
 
 type Rate = Dual<1>;
@@ -91,22 +91,22 @@ impl PatchRun {
         let mut changes = Changes::zero();
         for i in 0..self.patch.count() {
             // The element's law at the approach as it changes.
-            let here = self.element_contact(i, &totals, &now);
+            let here = self.element_contact(i, &totals, &now, self.springs.rise_of_law(i));
             let element = self.moving_element(i, shift, &shifted);
             let approach = -(shifted.height + element.arm[2]);
-            let point = self.law.at(&here.cell, rate(here.log_speed, 0.0), approach);
-            let normal = point.pressure() * element.area;
+            let law = self.law.at_place(&here.place.constant(), approach);
+            let normal = law.pressure * element.area;
             if normal.value <= 0.0 {
                 continue;
             }
             // Its spring, and what both add to the sums.
-            let (limit, stiffness) = (normal * point.friction, point.stiffness * element.area);
+            let (limit, stiffness) = (normal * law.friction, law.stiffness * element.area);
             let force = self.force(i, limit, stiffness, element.displacement);
-            let (hysteresis, ratio) = self.shares(i, &totals, &now, approach);
+            let (hysteresis, ratio) = self.shares(&here.place, approach);
             changes.add(&element, force, normal);
             let tangential = size(force);
             changes.real_area = changes.real_area + ratio * element.area;
-            changes.pressure = changes.pressure.larger(point.pressure());
+            changes.pressure = changes.pressure.larger(law.pressure);
             changes.tangential = changes.tangential + tangential;
             changes.hysteresis = changes.hysteresis + tangential * hysteresis;
             changes.elastic = changes.elastic + (tangential * tangential / stiffness).times(0.5);
@@ -160,11 +160,10 @@ impl PatchRun {
     }
 
     /// Hysteresis' share of the friction coefficient and the contact ratio, as they change with the approach.
-    fn shares(&mut self, i: usize, totals: &Totals, now: &BodyKinematics<f64>, approach: Rate) -> (Rate, Rate) {
-        let here = self.element_contact(i, totals, now);
+    fn shares(&self, place: &LawPlace<f64>, approach: Rate) -> (Rate, Rate) {
         // Of smooth cubics over some µm.
         let step = 1e-6 * (approach.value - self.law.earliest_touch()).abs().max(1e-9);
-        let at = |shift: f64| self.law.shares(&here.cell, here.log_speed, approach.value + shift);
+        let at = |shift: f64| self.law.shares(place, approach.value + shift);
         let (before, middle, after) = (at(-step), at(0.0), at(step));
         let slope = |from: f64, to: f64| (to - from) / (2.0 * step) * approach.slopes[0];
         (rate(middle.0, slope(before.0, after.0)), rate(middle.1, slope(before.1, after.1)))

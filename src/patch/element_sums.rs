@@ -6,7 +6,7 @@ use super::face::Face;
 use super::motion::{BodyKinematics, PoseMotion};
 use super::run::PatchRun;
 use super::state::{PatchState, RestoreError, Totals};
-use crate::element::{LawPoint, SpeedCell};
+use crate::element::{ElementLaw, LawPlace};
 use crate::math::Number;
 
 /// Share of a limit by which a restored force may exceed it: rounding.
@@ -21,12 +21,10 @@ pub(super) struct ElementContact<T> {
     pub(super) velocity: [T; 2],
     /// How far it is below the plane z = 0, m.
     pub(super) approach: T,
-    /// ln v, v in m/s, limited to the speeds of the table.
-    pub(super) log_speed: T,
-    /// The cell of the law in which the speed lies.
-    pub(super) cell: SpeedCell,
-    /// The law at its speed and approach.
-    pub(super) point: LawPoint<T>,
+    /// Where its speed and its temperature lie in the law.
+    pub(super) place: LawPlace<T>,
+    /// The law there, at its approach.
+    pub(super) law: ElementLaw<T>,
     /// The pressure on it, Pa.
     pub(super) pressure: T,
 }
@@ -56,6 +54,10 @@ pub(super) struct ElementSums {
     pub(super) hysteresis: f64,
     /// The energy stored in the springs, J.
     pub(super) elastic: f64,
+    /// By how much the warmest of those that bear is warmer than the temperature given, K.
+    pub(super) warmest: f64,
+    /// Of those that bear, Σ Aϑ with the rise ϑ of the temperature, m² K.
+    pub(super) warmth: f64,
 }
 
 impl Totals {
@@ -66,12 +68,13 @@ impl Totals {
 }
 
 impl PatchRun {
-    /// Element `i` at an instant with the tread where `totals` say.
+    /// Element `i` at an instant with the tread where `totals` say, its law warmer by `rise` (K).
     pub(super) fn element_contact<T: Number>(
         &mut self,
         i: usize,
         totals: &Totals,
         now: &BodyKinematics<T>,
+        rise: f64,
     ) -> ElementContact<T> {
         let ElementSite { place, area, direction } = self.patch.element(i, totals.place);
         let arm = now.turned(place);
@@ -81,10 +84,9 @@ impl PatchRun {
             velocity = [0, 1].map(|axis| velocity[axis] - along[axis].times(totals.tread_speed));
         }
         let approach = -(now.height + arm[2]);
-        let log_speed = self.law.range().logarithm(size(velocity));
-        let cell = self.law.speed_cell(log_speed.value());
-        let point = self.law.at(&cell, log_speed, approach);
-        ElementContact { area, velocity, approach, log_speed, cell, point, pressure: point.pressure() }
+        let place = self.law.place(size(velocity), T::constant(rise));
+        let law = self.law.at_place(&place, approach);
+        ElementContact { area, velocity, approach, place, law, pressure: law.pressure }
     }
 
     /// Whether the pressure on an element is above the largest of the table.
@@ -102,14 +104,15 @@ impl PatchRun {
     pub(super) fn element_sums(&mut self) -> ElementSums {
         let (totals, now) = (self.totals, self.totals.instant());
         let (pressure, speed) = (self.law.largest_pressure(), self.law.largest_speed());
+        let least = self.law.least_pressure();
         let mut sums = ElementSums::default();
         for i in 0..self.patch.count() {
-            let here = self.element_contact(i, &totals, &now);
+            let here = self.element_contact(i, &totals, &now, self.springs.rise_of_law(i));
             let normal = here.pressure * here.area;
             if normal <= 0.0 {
                 continue;
             }
-            let (hysteresis, ratio) = self.law.shares(&here.cell, here.log_speed, here.approach);
+            let (hysteresis, ratio) = self.law.shares(&here.place, here.approach);
             let tangential = self.springs.x[i].hypot(self.springs.y[i]);
             let is_beyond = here.pressure > pressure || here.velocity[0].hypot(here.velocity[1]) > speed;
             sums.count += 1;
@@ -119,10 +122,12 @@ impl PatchRun {
             sums.pressure = sums.pressure.max(here.pressure);
             sums.normal += normal;
             sums.beyond += if is_beyond { normal } else { 0.0 };
-            sums.below += if here.point.factor < 1.0 { normal } else { 0.0 };
+            sums.below += if here.pressure < least { normal } else { 0.0 };
             sums.tangential += tangential;
             sums.hysteresis += tangential * hysteresis;
             sums.elastic += 0.5 * tangential * tangential / self.springs.stiffness[i];
+            sums.warmest = sums.warmest.max(self.springs.rise(i));
+            sums.warmth += here.area * self.springs.rise(i);
         }
         sums
     }
@@ -130,7 +135,7 @@ impl PatchRun {
     /// The pressure on element `i` now, Pa.
     pub(super) fn pressure_on(&mut self, i: usize) -> f64 {
         let (totals, now) = (self.totals, self.totals.instant());
-        let here = self.element_contact(i, &totals, &now);
+        let here = self.element_contact(i, &totals, &now, self.springs.rise_of_law(i));
         if here.area > 0.0 { here.pressure } else { 0.0 }
     }
 
@@ -145,8 +150,8 @@ impl PatchRun {
     pub(super) fn check_limits(&mut self, saved: &PatchState) -> Result<(), RestoreError> {
         let now = saved.totals.instant();
         for i in 0..self.patch.count() {
-            let here = self.element_contact(i, &saved.totals, &now);
-            let limit = here.area * here.pressure * here.point.friction;
+            let here = self.element_contact(i, &saved.totals, &now, saved.springs.rise_of_law(i));
+            let limit = here.area * here.pressure * here.law.friction;
             let force = saved.springs.x[i].hypot(saved.springs.y[i]);
             let is_held = force == 0.0 || saved.springs.stiffness[i] > 0.0;
             if force.is_nan() || force > limit * (1.0 + ROUNDING) || !is_held {

@@ -112,7 +112,7 @@ impl PatchRun {
         totals: &Totals,
         now: &BodyKinematics<f64>,
     ) -> FaceElement {
-        let here = self.element_contact(i, totals, now);
+        let here = self.element_contact(i, totals, now, self.springs.rise_of_law(i));
         let (place, size, directions) = self.laid_out(layout, i, totals, here.area);
         let force = if here.area > 0.0 { [self.springs.x[i], self.springs.y[i]] } else { [0.0; 2] };
         let traction = directions.map(|direction| {

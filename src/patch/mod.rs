@@ -9,6 +9,8 @@
 //! | `motion` | motion of the body and of the tread over a step, its substeps |
 //! | `face` | where elements sit |
 //! | `contact_times` | an element that touches or lifts |
+//! | `lanes` | elements of a block, side by side |
+//! | `heat` | elements that slip warms |
 //! | `block` | a step of a block of elements |
 //! | `worker_pool` | a step of all blocks, by several threads |
 //! | `definition` | a patch: face, table, parameters |
@@ -26,6 +28,8 @@ mod derivatives;
 mod element_sums;
 mod face;
 mod face_layout;
+mod heat;
+mod lanes;
 mod motion;
 mod run;
 mod state;

@@ -1,8 +1,9 @@
 //! A run of a patch: steps over all its elements.
 
-use super::block::{BeyondTable, Block, FaceMotion, Sums};
+use super::block::{BeyondTable, Block, FaceMotion, Sums, TooWarm};
 use super::definition::Patch;
 use super::face::Face;
+use super::heat::{ElementHeat, StepHeat};
 use super::motion::{PoseMotion, Substeps, TreadMotion};
 use super::state::{
     MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError, Springs, Totals, check_duration, max_substeps,
@@ -10,7 +11,8 @@ use super::state::{
 use super::worker_pool::{WorkerPool, threads};
 use crate::element::ResampledLaw;
 use crate::math::Dual;
-use crate::scene::TableExtrapolation;
+use crate::model::{FlashTerm, SURFACE_TERMS, surface_kernel};
+use crate::scene::{FaceHeat, TableExtrapolation};
 
 /// What `table.extrapolation = "hold"` does.
 const HELD: &str =
@@ -28,9 +30,11 @@ pub struct PatchRun {
     /// Changes of the wrench with the targets of the last step, where they are asked for.
     pub(super) tangents: Option<Box<[[f64; 6]; 6]>>,
     workers: Workers,
+    /// How losses by slip warm the elements, where they do.
+    kernel: Option<[FlashTerm; SURFACE_TERMS]>,
     /// By [`Excess`], whether it has warned of it: no part of a state, so that a step that is repeated does not warn
     /// again.
-    warned: [bool; 2],
+    warned: [bool; 3],
     /// Those not taken yet.
     warnings: Vec<String>,
 }
@@ -40,6 +44,7 @@ pub struct PatchRun {
 enum Excess {
     Temperature,
     Element,
+    ElementTemperature,
 }
 
 /// Who does the steps, with derivatives where tangents are asked for.
@@ -55,9 +60,11 @@ impl Patch {
         /// Two springs.
         const ELEMENT: usize = 64;
         /// Of a thread's block, and of all sums.
-        const BLOCK: usize = 1 << 17;
+        const BLOCK: usize = 1 << 18;
         let laws = threads(self.work()).max(1);
-        BLOCK + laws * (BLOCK + ResampledLaw::memory(self.table())) + ELEMENT * self.count()
+        let is_warm = self.heat().is_some();
+        let element = ELEMENT + if is_warm { 2 * size_of::<ElementHeat>() } else { 0 };
+        BLOCK + laws * (BLOCK + ResampledLaw::memory(self.table(), is_warm)) + element * self.count()
     }
 
     /// Elements times parts of a step, at least.
@@ -91,16 +98,17 @@ impl PatchRun {
     fn at(patch: &Patch, temperature: f64) -> Self {
         let tangents = patch.has_tangents();
         let mut law = patch.law();
-        if let Some(held) = patch.held_temperature(temperature) {
-            law.set_temperature(held);
-        }
+        set_temperature(patch, &mut law, temperature);
         let work = patch.work();
         let workers = if tangents {
             Workers::Tangent(WorkerPool::new(work, &law))
         } else {
             Workers::Plain(WorkerPool::new(work, &law))
         };
-        let springs = Springs::new(patch.count());
+        let springs = Springs::new(patch.count(), patch.heat().is_some());
+        let kernel = patch.heat().map(|FaceHeat { conductivity, capacity, density, share }| {
+            surface_kernel(share, conductivity, density * capacity)
+        });
         Self {
             law,
             totals: Totals::default(),
@@ -108,7 +116,8 @@ impl PatchRun {
             springs,
             tangents: tangents.then(|| Box::new([[0.0; 6]; 6])),
             workers,
-            warned: [false; 2],
+            kernel,
+            warned: [false; 3],
             warnings: Vec::new(),
             patch: patch.clone(),
         }
@@ -121,7 +130,7 @@ impl PatchRun {
         // The springs are evaluated at the start alone: of the motion only its rates count.
         let body = PoseMotion { start: self.totals.pose.coordinates(), change: rates, duration: 1.0 };
         let face = &self.patch.face;
-        let step = FaceMotion { face, body, tread, substeps: Substeps::new(tread, 0.0, 1), tread_speed };
+        let step = FaceMotion { face, body, tread, substeps: Substeps::new(tread, 0.0, 1), tread_speed, heat: None };
         let springs = (&self.springs, &mut self.next);
         let sums = WorkerPool::with_threads(1, &self.law).work(&step, &mut self.law, springs, |block, law, sums| {
             block.initialize(&step, law, sums);
@@ -129,7 +138,7 @@ impl PatchRun {
         let mut reached = self.totals;
         reached.add(&sums, 0.0);
         reached.check(None)?;
-        self.check_table(reached.temperature, sums.beyond, |_| time)?;
+        self.check_table(reached.temperature, &sums, |_| time)?;
         self.springs.clone_from(&self.next);
         self.totals = reached;
         Ok(())
@@ -186,11 +195,12 @@ impl PatchRun {
 
         // Advance the springs of all elements, block by block.
         self.set_temperature(temperature);
+        let heat = self.step_heat(temperature);
         let Self { patch, law, springs, next, workers, .. } = self;
         let face = &*patch.face;
         let (sums, tangents) = match workers {
             Workers::Plain(pool) => {
-                let step = FaceMotion { face, body, tread, substeps, tread_speed };
+                let step = FaceMotion { face, body, tread, substeps, tread_speed, heat };
                 let widest = pulp::Arch::new();
                 let sums = pool.work(&step, law, (springs, next), |block, law, sums| {
                     widest.dispatch(Advance { block, step: &step, law, sums });
@@ -200,7 +210,7 @@ impl PatchRun {
             Workers::Tangent(pool) => {
                 let body =
                     PoseMotion { start, change: std::array::from_fn(|i| Dual::variable(change[i], i)), duration };
-                let step = FaceMotion { face, body, tread, substeps, tread_speed };
+                let step = FaceMotion { face, body, tread, substeps, tread_speed, heat };
                 let advance = |block: &mut Block<_>, law: &mut _, sums: &mut _| block.advance(&step, law, sums);
                 let sums = pool.work(&step, law, (springs, next), advance);
                 (sums.values(), Some(sums.wrench.map(|load| load.slopes)))
@@ -217,7 +227,7 @@ impl PatchRun {
         reached.place = (tread.entered_at(1.0) - tread.whole_cells()).min(1.0_f64.next_down());
         let checked = reached.check(tangents.as_ref());
         if let Err(error) =
-            checked.and_then(|()| self.check_table(temperature, sums.beyond, |fraction| time + fraction * duration))
+            checked.and_then(|()| self.check_table(temperature, &sums, |fraction| time + fraction * duration))
         {
             self.set_temperature(temperature_before);
             return Err(error);
@@ -231,9 +241,13 @@ impl PatchRun {
     }
 
     fn set_temperature(&mut self, kelvin: f64) {
-        if let Some(held) = self.patch.held_temperature(kelvin) {
-            self.law.set_temperature(held);
-        }
+        set_temperature(&self.patch, &mut self.law, kelvin);
+    }
+
+    /// What a step at a temperature (K) has to know of heat.
+    fn step_heat(&self, kelvin: f64) -> Option<StepHeat> {
+        let (low, high) = self.patch.temperatures()?;
+        self.kernel.map(|kernel| StepHeat { kernel, range: ((low - kelvin).max(0.0), (high - kelvin).max(0.0)) })
     }
 
     /// The tread going on by a length (m).
@@ -246,17 +260,17 @@ impl PatchRun {
 
     /// Refuses a temperature (K) or an element beyond the table, or warns of the first; `time_at` is the time (s) after
     /// a fraction of the step.
-    fn check_table(
-        &mut self,
-        kelvin: f64,
-        beyond: Option<BeyondTable>,
-        time_at: impl Fn(f64) -> f64,
-    ) -> Result<(), MotionError> {
+    fn check_table(&mut self, kelvin: f64, sums: &Sums<f64>, time_at: impl Fn(f64) -> f64) -> Result<(), MotionError> {
         if self.patch.held_temperature(kelvin).is_some_and(|held| held != kelvin) {
             let error = |_: &Patch| MotionError::TemperatureBeyondTable { time: time_at(0.0), kelvin };
             self.refuse_or_warn(Excess::Temperature, error)?;
+        } else if let Some(TooWarm { element, fraction, rise }) = sums.too_warm {
+            self.refuse_or_warn(Excess::ElementTemperature, |patch| {
+                let (element, time) = (patch.element_name(element), time_at(fraction));
+                MotionError::ElementTooWarm { element, time, kelvin: kelvin + rise, within: fraction > 0.0 }
+            })?;
         }
-        let Some(BeyondTable { element, fraction, pressure, speed }) = beyond else { return Ok(()) };
+        let Some(BeyondTable { element, fraction, pressure, speed }) = sums.beyond else { return Ok(()) };
         self.refuse_or_warn(Excess::Element, |patch| {
             let (element, time) = (patch.element_name(element), time_at(fraction));
             MotionError::BeyondTable { element, time, pressure, speed, within: fraction > 0.0 }
@@ -321,6 +335,14 @@ impl PatchRun {
         if let (Some(own), Some(saved)) = (&mut self.tangents, &saved.tangents) {
             **own = **saved;
         }
+    }
+}
+
+/// Gives a law of a table of several temperatures this one, K.
+fn set_temperature(patch: &Patch, law: &mut ResampledLaw, kelvin: f64) {
+    if let Some(held) = patch.held_temperature(kelvin) {
+        // Of warm elements the sum of it and their rise is held.
+        law.set_temperature(if law.has_planes() { kelvin } else { held });
     }
 }
 

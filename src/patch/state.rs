@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::block::{Block, ElementMode, Sums};
 use super::definition::Patch;
+use super::heat::ElementHeat;
 use super::motion::PoseMotion;
 use crate::math::{Number, not_finite};
 use crate::scene::{SMALLEST, is_possible};
@@ -123,6 +124,18 @@ pub enum MotionError {
         /// The temperature, K.
         kelvin: f64,
     },
+    /// Slip has warmed an element beyond the table.
+    #[error("{element} is warmer than the table at t = {time} s: {kelvin} K")]
+    ElementTooWarm {
+        /// Its name, as its variables have it.
+        element: String,
+        /// The time, s.
+        time: f64,
+        /// Its temperature, K.
+        kelvin: f64,
+        /// Whether a shorter step may end before.
+        within: bool,
+    },
 }
 
 /// Why a run cannot be continued from a saved state.
@@ -157,12 +170,14 @@ pub(super) struct Springs {
     pub(super) stiffness: Vec<f64>,
     /// By the numbers of [`ElementMode`].
     pub(super) mode: Vec<u8>,
+    /// Where slip warms the elements.
+    pub(super) heat: Vec<ElementHeat>,
 }
 
 impl Clone for Springs {
     fn clone(&self) -> Self {
-        let Self { x, y, stiffness, mode } = self;
-        Self { x: x.clone(), y: y.clone(), stiffness: stiffness.clone(), mode: mode.clone() }
+        let Self { x, y, stiffness, mode, heat } = self;
+        Self { x: x.clone(), y: y.clone(), stiffness: stiffness.clone(), mode: mode.clone(), heat: heat.clone() }
     }
 
     /// Into the arrays that there are; the derived one would replace them.
@@ -171,6 +186,7 @@ impl Clone for Springs {
         self.y.clone_from(&other.y);
         self.stiffness.clone_from(&other.stiffness);
         self.mode.clone_from(&other.mode);
+        self.heat.clone_from(&other.heat);
     }
 }
 
@@ -179,8 +195,25 @@ impl Springs {
         self.mode[i] == ElementMode::Sticking as u8
     }
 
-    pub(super) fn new(count: usize) -> Self {
-        Self { x: vec![0.0; count], y: vec![0.0; count], stiffness: vec![0.0; count], mode: vec![0; count] }
+    /// Relaxed and cold; of elements that slip warms or not.
+    pub(super) fn new(count: usize, warms: bool) -> Self {
+        Self {
+            x: vec![0.0; count],
+            y: vec![0.0; count],
+            stiffness: vec![0.0; count],
+            mode: vec![0; count],
+            heat: vec![ElementHeat::default(); if warms { count } else { 0 }],
+        }
+    }
+
+    /// By how much the law of element `i` is warmer than the temperature given, K.
+    pub(super) fn rise_of_law(&self, i: usize) -> f64 {
+        self.heat.get(i).map_or(0.0, |heat| heat.of_law)
+    }
+
+    /// By how much element `i` is warmer than the temperature given, K.
+    pub(super) fn rise(&self, i: usize) -> f64 {
+        self.heat.get(i).map_or(0.0, ElementHeat::rise)
     }
 
     /// Sets the springs of a block; its first element is the one at `start` here. Those that are not here are relaxed.
@@ -189,13 +222,16 @@ impl Springs {
             block.force[0][lane] = T::constant(self.x[i]);
             block.force[1][lane] = T::constant(self.y[i]);
             block.stiffness[lane] = T::constant(self.stiffness[i]);
+            if let Some(heat) = self.heat.get(i) {
+                block.heat.load(lane, heat);
+            }
         }
     }
 
     /// All of them, to be set.
     pub(super) fn all(&mut self) -> SpringsMut<'_> {
-        let Self { x, y, stiffness, mode } = self;
-        SpringsMut { first: 0, x, y, stiffness, mode }
+        let Self { x, y, stiffness, mode, heat } = self;
+        SpringsMut { first: 0, x, y, stiffness, mode, heat }
     }
 }
 
@@ -208,6 +244,7 @@ pub(super) struct SpringsMut<'a> {
     y: &'a mut [f64],
     stiffness: &'a mut [f64],
     mode: &'a mut [u8],
+    heat: &'a mut [ElementHeat],
 }
 
 impl<'a> SpringsMut<'a> {
@@ -222,6 +259,7 @@ impl<'a> SpringsMut<'a> {
             y: take(&mut self.y, count),
             stiffness: take(&mut self.stiffness, count),
             mode: take(&mut self.mode, count),
+            heat: take(&mut self.heat, count),
         }
     }
 
@@ -232,13 +270,17 @@ impl<'a> SpringsMut<'a> {
             self.y[i] = block.force[1][lane].value();
             self.stiffness[i] = block.stiffness[lane].value();
             self.mode[i] = block.mode[lane];
+            if let Some(heat) = self.heat.get_mut(i) {
+                *heat = block.heat.element(lane);
+            }
         }
     }
 }
 
-/// The first `count` of a slice, which goes on after them.
+/// The first `count` of a slice, which goes on after them; all of a shorter one.
 fn take<'a, T>(slice: &mut &'a mut [T], count: usize) -> &'a mut [T] {
-    let (front, back) = std::mem::take(slice).split_at_mut(count);
+    let whole = std::mem::take(slice);
+    let (front, back) = whole.split_at_mut(count.min(whole.len()));
     *slice = back;
     front
 }
@@ -342,8 +384,12 @@ impl Totals {
 impl PatchState {
     /// Refuses numbers that no run can have reached.
     pub(super) fn check(&self, patch: &Patch) -> Result<(), RestoreError> {
-        let Springs { x, y, stiffness, mode } = &self.springs;
+        let Springs { x, y, stiffness, mode, heat } = &self.springs;
         let count = patch.count();
+        let warm = if patch.heat().is_some() { count } else { 0 };
+        if heat.len() != warm {
+            return Err(RestoreError::Count { found: heat.len(), expected: warm });
+        }
         for found in [x.len(), y.len(), stiffness.len(), mode.len()] {
             if found != count {
                 return Err(RestoreError::Count { found, expected: count });
@@ -361,6 +407,9 @@ impl PatchState {
         }
         if let Some(value) = mode.iter().find(|value| **value > ElementMode::Sticking as u8) {
             return invalid("a mode", f64::from(*value));
+        }
+        if let Some(value) = heat.iter().find_map(ElementHeat::invalid) {
+            return invalid("a rise of the temperature", value);
         }
         let place = self.totals.place;
         if !(0.0..1.0).contains(&place) {

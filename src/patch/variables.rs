@@ -35,6 +35,10 @@ pub enum PatchOutput {
     Pressure,
     /// Share of the normal force that is borne beyond the table.
     Beyond,
+    /// The temperature of the warmest element that bears, K.
+    LargestTemperature,
+    /// The mean temperature of the elements that bear, by their areas, K.
+    MeanTemperature,
     /// Tangential over normal force.
     Friction,
     /// Share of hysteresis in it.
@@ -49,6 +53,8 @@ pub enum PatchOutput {
     ElementTraction(usize, usize),
     /// Mode of an element: 0 free, 1 slips, 2 sticks.
     ElementMode(usize),
+    /// Temperature of an element, K.
+    ElementTemperature(usize),
 }
 
 /// An output variable of a patch: a column of the result file, a variable of the FMU.
@@ -103,7 +109,7 @@ impl Patch {
     }
 
     fn variables_of(&self, group: PatchGroup) -> Vec<PatchVariable> {
-        use Unit::{Joule, One, Pascal, SquareMeter, Watt};
+        use Unit::{Joule, Kelvin, One, Pascal, SquareMeter, Watt};
         let real = |output, name, unit, description| PatchVariable::real(group, output, name, unit, description);
         let count = |output, name, description| PatchVariable::count(group, output, name, description);
         match group {
@@ -119,7 +125,7 @@ impl Patch {
                     "Energy lost with contacts that were released",
                 ),
             ],
-            PatchGroup::Contact => vec![
+            PatchGroup::Contact => [
                 count(PatchOutput::Count, "contact.count", "Elements that bear"),
                 count(PatchOutput::Sticking, "contact.sticking", "Elements that stick"),
                 real(PatchOutput::NominalArea, "contact.nominal_area", SquareMeter, "Area of the elements that bear"),
@@ -131,7 +137,18 @@ impl Patch {
                 ),
                 real(PatchOutput::Pressure, "contact.pressure", Pascal, "Largest pressure on an element"),
                 real(PatchOutput::Beyond, "contact.beyond", One, "Share of force.z that is borne beyond the table"),
-            ],
+            ]
+            .into_iter()
+            .chain(self.heat().iter().flat_map(|_| {
+                let (largest, mean) = (PatchOutput::LargestTemperature, PatchOutput::MeanTemperature);
+                let (largest_is, mean_is) =
+                    ("Temperature of the warmest element that bears", "Mean temperature of the elements that bear");
+                [
+                    real(largest, "contact.temperature_largest", Kelvin, largest_is),
+                    real(mean, "contact.temperature_mean", Kelvin, mean_is),
+                ]
+            }))
+            .collect(),
             PatchGroup::Friction => vec![
                 real(PatchOutput::Friction, "friction.coefficient", One, "Tangential force over force.z"),
                 real(
@@ -183,7 +200,7 @@ impl Patch {
         }
     }
 
-    fn fields(&self, i: usize) -> [PatchVariable; 4] {
+    fn fields(&self, i: usize) -> impl Iterator<Item = PatchVariable> + use<> {
         let element = self.element_name(i);
         let name = |field: &str| format!("{element}.{field}");
         let real = |output, field: &str, unit, what: &str| {
@@ -193,6 +210,9 @@ impl Patch {
             let (field, what) = (format!("traction.{}", AXES[axis]), format!("Traction along {} on", AXES[axis]));
             real(PatchOutput::ElementTraction(i, axis), &field, Unit::Pascal, &what)
         };
+        let temperature = self
+            .heat()
+            .map(|_| real(PatchOutput::ElementTemperature(i), "temperature", Unit::Kelvin, "Temperature of"));
         let modes = format!("Mode (0 free, 1 slipping, 2 sticking) of {element}");
         [
             real(PatchOutput::ElementPressure(i), "pressure", Unit::Pascal, "Pressure on"),
@@ -200,6 +220,8 @@ impl Patch {
             traction(1),
             PatchVariable::count(PatchGroup::Elements, PatchOutput::ElementMode(i), &name("mode"), &modes),
         ]
+        .into_iter()
+        .chain(temperature)
     }
 }
 
@@ -251,6 +273,8 @@ impl PatchRun {
             PatchOutput::RealArea => sums.real_area,
             PatchOutput::Pressure => sums.pressure,
             PatchOutput::Beyond => share(sums.beyond, sums.normal),
+            PatchOutput::LargestTemperature => totals.temperature + sums.warmest,
+            PatchOutput::MeanTemperature => totals.temperature + share(sums.warmth, sums.nominal_area),
             PatchOutput::Friction => share(totals.wrench[0].hypot(totals.wrench[1]), totals.wrench[2]),
             PatchOutput::Hysteresis => share(sums.hysteresis, sums.tangential),
             PatchOutput::ElasticEnergy => sums.elastic,
@@ -258,6 +282,7 @@ impl PatchRun {
             PatchOutput::ElementPressure(i) => self.pressure_on(i),
             PatchOutput::ElementTraction(i, axis) => self.traction_on(i, axis),
             PatchOutput::ElementMode(i) => f64::from(self.springs.mode[i]),
+            PatchOutput::ElementTemperature(i) => totals.temperature + self.springs.rise(i),
         }
     }
 }

@@ -8,7 +8,8 @@ use std::num::NonZero;
 use std::sync::Mutex;
 use std::thread;
 
-use super::block::{BLOCK, Block, ElementRange, FaceMotion, Sums};
+use super::block::{Block, ElementRange, FaceMotion, Sums};
+use super::lanes::BLOCK;
 use super::state::{Springs, SpringsMut};
 use crate::element::ResampledLaw;
 use crate::math::Number;

@@ -58,7 +58,7 @@ pub use keys::{KeyEntry, patch_keys, scene_keys, similar_keys};
 pub use link_kind::{ByLink, LinkKind};
 pub use material::{Heat, Material, PronyTerm, Wlf, complex_stiffness};
 pub use parameters::{Parameter, Value};
-pub use patch_file::{Backing, FaceShape, Grid, NotDoubled, PatchFile, PatchGroup, TableExtrapolation};
+pub use patch_file::{Backing, FaceHeat, FaceShape, Grid, NotDoubled, PatchFile, PatchGroup, TableExtrapolation};
 pub use profile::{
     Extract, LengthUnit, LoadedProfile, Missing, ProfileOptions, ReadingNote, ThirdColumn, Tilt, UnknownWord,
 };

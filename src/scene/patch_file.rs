@@ -30,6 +30,8 @@ pub struct PatchFile {
     pub offset: [f64; 3],
     /// What stands behind every element, if that gives way.
     pub backing: Option<Backing>,
+    /// How slip heats every element, if it does.
+    pub heat: Option<FaceHeat>,
     /// How the body moves when a master gives no rates.
     pub extrapolation: Extrapolation,
     /// How many times finer a step is cut than it needs to be.
@@ -38,8 +40,8 @@ pub struct PatchFile {
     pub outputs: Vec<PatchGroup>,
     /// What its FMU's description says for simple importers.
     pub fmu: FmuOptions,
-    /// Where the keys are that only the table can judge: `temperature` and `nominal_area`, or the table.
-    pub(super) places: [Location; 2],
+    /// Where the keys are that only the table can judge: `temperature` and `nominal_area`, or the table, and `heat`.
+    pub(super) places: [Location; 3],
 }
 
 /// The elements of a face.
@@ -78,6 +80,19 @@ impl Backing {
     pub fn block(height: f64, modulus: f64) -> Self {
         Self { normal: modulus / height, shear: modulus / (3.0 * height) }
     }
+}
+
+/// What the heat of slip meets behind the surface of a face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FaceHeat {
+    /// Heat conductivity, W/(m K).
+    pub conductivity: f64,
+    /// Specific heat capacity, J/(kg K).
+    pub capacity: f64,
+    /// Density, kg/m³.
+    pub density: f64,
+    /// The part of what slip loses that heats the elements, 1; the ground takes the rest.
+    pub share: f64,
 }
 
 /// A grid of elements about the middle of a face.
@@ -196,6 +211,13 @@ impl PatchFile {
     pub fn refuse_temperature(&self, expected: String) -> SceneError {
         let given = self.temperature.map_or_else(String::new, |kelvin| format!("{kelvin:?}"));
         SceneError::new(self.places[0].clone(), "table.temperature", Problem::Value { given, expected })
+    }
+
+    /// The error of heat with a table that does not have several temperatures.
+    pub fn refuse_heat(&self, found: usize) -> SceneError {
+        let given = if found == 0 { "a table without temperatures".to_owned() } else { format!("a table of {found}") };
+        let expected = "a table of two temperatures or more: friction follows what slip heats".to_owned();
+        SceneError::new(self.places[2].clone(), "patch.heat", Problem::Value { given, expected })
     }
 
     /// The error of a nominal area that is given with a table of pressures, or is missing with one of forces.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use asperity::patch::{MotionError, Patch, PatchRun, PatchStart, Pose};
-use asperity::scene::{Backing, Parameter, ParameterError, TableExtrapolation, Value};
+use asperity::scene::{Backing, FaceHeat, Parameter, ParameterError, TableExtrapolation, Value};
 
 use crate::program::files::{FileError, load_patch, print};
 use crate::program::overrides::Setting;
@@ -51,6 +51,10 @@ pub(crate) fn rows(patch: &Patch) -> Vec<LabelledLine> {
     }
     if let Some(Backing { normal, shear }) = patch.backing() {
         rows.push(("Backing", format!("{normal:e} Pa/m along the normal and {shear:e} Pa/m in shear, in series")));
+    }
+    if let Some(FaceHeat { conductivity, capacity, density, share }) = patch.heat() {
+        let rubber = format!("{conductivity} W/(m K), {capacity} J/(kg K), {density} kg/m³");
+        rows.push(("Heat", format!("{share} of what slip loses warms the elements, of {rubber}")));
     }
     rows.push(("Clear at", format!("z = {} m and above, level", patch.clear_height())));
     rows.push(("Low end", low_end(patch)));

@@ -11,7 +11,10 @@ use super::{
     Method, Missing, OutputGroup, ThirdColumn, Tilt, Unit,
 };
 
-pub(super) use patch::{AREA, BACKING_NORMAL, BACKING_SHEAR, COORDINATE, PATCH_ROOT, REFINE, ShapeKind};
+pub(super) use patch::{
+    AREA, BACKING_NORMAL, BACKING_SHEAR, COORDINATE, HEAT_CAPACITY, HEAT_CONDUCTIVITY, HEAT_DENSITY, HEAT_SHARE,
+    PATCH_ROOT, REFINE, ShapeKind,
+};
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Key {

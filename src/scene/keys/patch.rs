@@ -72,10 +72,32 @@ pub(in crate::scene) const BACKING_NORMAL: Key =
 pub(in crate::scene) const BACKING_SHEAR: Key =
     number("shear", POSITIVE, Unit::PascalPerMeter, "Stiffness in shear per area of what is behind the contacts");
 
-const FLAT: &[Key] = &[SHAPE, LENGTH, WIDTH, NX, NY, TRANSPORT, OFFSET, BACKING];
-const CYLINDER: &[Key] =
-    &[SHAPE, number("radius", POSITIVE, Unit::Meter, "Radius"), LENGTH, WIDTH, NX, NY, TRANSPORT, OFFSET, BACKING];
-const POINTS: &[Key] = &[SHAPE, key("path", Allowed::Text(PATH), "File of the points"), OFFSET, BACKING];
+const HEAT: Key = table("heat", &[HEAT_CONDUCTIVITY, HEAT_CAPACITY, HEAT_DENSITY, HEAT_SHARE]);
+pub(in crate::scene) const HEAT_CONDUCTIVITY: Key =
+    number("conductivity", CONDUCTION, Unit::WattPerMeterKelvin, "Heat conductivity behind the surface");
+pub(in crate::scene) const HEAT_CAPACITY: Key =
+    number("capacity", CONDUCTION, Unit::JoulePerKilogramKelvin, "Specific heat capacity behind the surface");
+pub(in crate::scene) const HEAT_DENSITY: Key =
+    number("density", CONDUCTION, Unit::KilogramPerCubicMeter, "Density behind the surface");
+pub(in crate::scene) const HEAT_SHARE: Key =
+    number("share", POSITIVE.up_to(1.0), Unit::One, "Part of what slip loses that heats the elements");
+/// So that their products and quotients are positive numbers too.
+const CONDUCTION: NumberRange = POSITIVE.down_to(1e-9).up_to(1e20);
+
+const FLAT: &[Key] = &[SHAPE, LENGTH, WIDTH, NX, NY, TRANSPORT, OFFSET, BACKING, HEAT];
+const CYLINDER: &[Key] = &[
+    SHAPE,
+    number("radius", POSITIVE, Unit::Meter, "Radius"),
+    LENGTH,
+    WIDTH,
+    NX,
+    NY,
+    TRANSPORT,
+    OFFSET,
+    BACKING,
+    HEAT,
+];
+const POINTS: &[Key] = &[SHAPE, key("path", Allowed::Text(PATH), "File of the points"), OFFSET, BACKING, HEAT];
 
 pub(in crate::scene) const REFINE: Key =
     whole("refine", 1, 1000, "How many times finer a step is cut than it needs to be");

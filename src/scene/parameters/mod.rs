@@ -123,6 +123,14 @@ pub enum Parameter {
     BackingNormal,
     /// `patch.backing.shear`
     BackingShear,
+    /// `patch.heat.conductivity`
+    FaceConductivity,
+    /// `patch.heat.capacity`
+    FaceCapacity,
+    /// `patch.heat.density`
+    FaceDensity,
+    /// `patch.heat.share`
+    FaceShare,
 }
 
 /// A parameter's value.
@@ -205,6 +213,10 @@ impl Parameter {
             Self::Refine => "solver.refine",
             Self::BackingNormal => "patch.backing.normal",
             Self::BackingShear => "patch.backing.shear",
+            Self::FaceConductivity => "patch.heat.conductivity",
+            Self::FaceCapacity => "patch.heat.capacity",
+            Self::FaceDensity => "patch.heat.density",
+            Self::FaceShare => "patch.heat.share",
         };
         name.to_owned()
     }
@@ -215,6 +227,10 @@ impl Parameter {
             Self::Refine => &keys::REFINE,
             Self::BackingNormal => &keys::BACKING_NORMAL,
             Self::BackingShear => &keys::BACKING_SHEAR,
+            Self::FaceConductivity => &keys::HEAT_CONDUCTIVITY,
+            Self::FaceCapacity => &keys::HEAT_CAPACITY,
+            Self::FaceDensity => &keys::HEAT_DENSITY,
+            Self::FaceShare => &keys::HEAT_SHARE,
             _ => keys::at(&self.name()).unwrap_or(&keys::NONE),
         }
     }
@@ -334,7 +350,7 @@ macro_rules! field {
             // They follow others until they are set: see `real` and `write_real`.
             CreepSpeed | FineCreepSpeed | AbsoluteTolerance => None,
             Initial | CarrierInitial | Method | MaxSteps | Extrapolation | TableExtrapolation | Refine | BackingNormal
-            | BackingShear => None,
+            | BackingShear | FaceConductivity | FaceCapacity | FaceDensity | FaceShare => None,
         }
     }};
 }

@@ -5,9 +5,11 @@ use std::path::Path as FilePath;
 
 use super::table::{Entry, Result, Source, TableReader};
 use super::{read_input, read_name, surface};
-use crate::scene::error::ContentError;
+use crate::scene::error::{ContentError, Location};
 use crate::scene::keys::{AREA, COORDINATE, Form, Key, PATCH_ROOT, ShapeKind};
-use crate::scene::patch_file::{Backing, FaceShape, Grid, MAX_ELEMENTS, PatchFile, PatchGroup, TableExtrapolation};
+use crate::scene::patch_file::{
+    Backing, FaceHeat, FaceShape, Grid, MAX_ELEMENTS, PatchFile, PatchGroup, TableExtrapolation,
+};
 use crate::scene::text_table::{self, Dimension, Heading, Row, Unit, Words, decode};
 use crate::scene::{FmuOptions, SceneError, read_file, read_text};
 
@@ -47,11 +49,11 @@ impl PatchFile {
         let temperature = table.entry("temperature");
         let nominal_area = table.entry("nominal_area");
         let place = |entry: &Option<Entry<'_>>| entry.as_ref().unwrap_or(&table_entry).location();
-        let places = [place(&temperature), place(&nominal_area)];
+        let (temperature_place, area_place) = (place(&temperature), place(&nominal_area));
         let path = surface::read_path(&table.required("path")?)?;
         let table_extrapolation = table.optional_choice("extrapolation")?.unwrap_or(TableExtrapolation::Hold);
         table.finish()?;
-        let (shape, transport, offset, backing) = read_face(&root.required("patch")?)?;
+        let face = read_face(&root.required("patch")?)?;
         let extrapolation = root.optional_table("input", read_input)?.unwrap_or_default();
         let refine = root.optional_table("solver", |table| table.optional_whole("refine"))?.flatten().unwrap_or(1);
         let fmu = root.optional_table("fmu", |table| Ok((read_outputs(table)?, super::read_fmu_options(table)?)))?;
@@ -63,20 +65,32 @@ impl PatchFile {
             temperature: temperature.map(|entry| entry.number()).transpose()?,
             table_extrapolation,
             nominal_area: nominal_area.map(|entry| entry.number()).transpose()?,
-            shape,
-            transport,
-            offset,
-            backing,
+            shape: face.shape,
+            transport: face.transport,
+            offset: face.offset,
+            backing: face.backing,
+            heat: face.heat,
             extrapolation,
             refine: u32::try_from(refine).unwrap_or(1),
             outputs,
             fmu,
-            places,
+            places: [temperature_place, area_place, face.heat_place],
         })
     }
 }
 
-fn read_face(entry: &Entry<'_>) -> Result<(FaceShape, bool, [f64; 3], Option<Backing>)> {
+/// What `[patch]` says.
+struct FaceKeys {
+    shape: FaceShape,
+    transport: bool,
+    offset: [f64; 3],
+    backing: Option<Backing>,
+    heat: Option<FaceHeat>,
+    /// Where `heat` is, or the table.
+    heat_place: Location,
+}
+
+fn read_face(entry: &Entry<'_>) -> Result<FaceKeys> {
     let mut table = entry.open()?;
     let kind = table.required("shape")?.choice::<ShapeKind>()?;
     table.use_keys(kind.keys())?;
@@ -88,8 +102,20 @@ fn read_face(entry: &Entry<'_>) -> Result<(FaceShape, bool, [f64; 3], Option<Bac
     let transport = kind != ShapeKind::Points && table.flag("transport")?;
     let offset = table.entry("offset").map(|entry| read_offset(&entry)).transpose()?.unwrap_or_default();
     let backing = table.optional_table("backing", read_backing)?;
+    let heat_entry = table.entry("heat");
+    let heat_place = heat_entry.as_ref().unwrap_or(entry).location();
+    let heat = heat_entry.map(|entry| entry.table(read_heat)).transpose()?;
     table.finish()?;
-    Ok((shape, transport, offset, backing))
+    Ok(FaceKeys { shape, transport, offset, backing, heat, heat_place })
+}
+
+fn read_heat(table: &mut TableReader<'_>) -> Result<FaceHeat> {
+    Ok(FaceHeat {
+        conductivity: table.number("conductivity")?,
+        capacity: table.number("capacity")?,
+        density: table.number("density")?,
+        share: table.number("share")?,
+    })
 }
 
 /// By its stiffnesses, or by its height and modulus.

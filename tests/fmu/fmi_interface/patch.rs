@@ -47,9 +47,19 @@ fn pose_after(steps: u32) -> [f64; 6] {
     std::array::from_fn(|i| POSE[i] + RATES[i] * H * f64::from(steps))
 }
 
+/// The wheel, warmed by slip.
+fn warm_wheel() -> String {
+    let heat = "heat = { conductivity = 0.25, capacity = 1700.0, density = 1100.0, share = 0.3 }";
+    WHEEL.replace("transport = true", &format!("transport = true\n{heat}"))
+}
+
 /// An instance that has done some steps.
 fn rolling(steps: u32) -> Fmu {
-    let fmu = fmu(WHEEL);
+    rolling_of(WHEEL, steps)
+}
+
+fn rolling_of(text: &str, steps: u32) -> Fmu {
+    let fmu = fmu(text);
     assert_eq!((fmu.setup(0.0), fmu.enter()), (OK, OK));
     give(&fmu, POSE, RATES);
     assert_eq!(fmu.exit(), OK);
@@ -139,7 +149,13 @@ fn its_results_are_those_of_the_library() {
 
 #[test]
 fn a_state_goes_on_bit_for_bit() {
-    let fmu = rolling(10);
+    for text in [WHEEL, &warm_wheel()] {
+        goes_on_bit_for_bit(text);
+    }
+}
+
+fn goes_on_bit_for_bit(text: &str) {
+    let fmu = rolling_of(text, 10);
     let (bytes, mut state) = (fmu.frozen(), fmu.state());
     let go = |fmu: &Fmu| {
         for step in 10..16 {
@@ -152,7 +168,7 @@ fn a_state_goes_on_bit_for_bit() {
     assert_eq!(fmu.set_state(state), OK);
     assert_eq!(go(&fmu), first);
     assert_eq!(fmu.free_state(&mut state), OK);
-    let other = rolling(1);
+    let other = rolling_of(text, 1);
     other.thaw(&bytes);
     assert_eq!(go(&other), first);
 }
@@ -265,6 +281,34 @@ fn the_stiffnesses_of_a_backing_are_parameters() {
     assert_eq!(fmu(&backed).set_real("patch.backing.shear", -1.0), ERROR);
 }
 
+/// Of what heats it a wheel has variables and parameters; the temperatures rise with the share.
+#[test]
+fn a_warm_wheel_has_temperatures() {
+    let text = warm_wheel();
+    let rise_at = |share: f64| {
+        let fmu = fmu(&text);
+        assert_eq!(fmu.set_real("patch.heat.share", share), OK);
+        assert_eq!((fmu.setup(0.0), fmu.enter()), (OK, OK));
+        give(&fmu, POSE, RATES);
+        assert_eq!(fmu.exit(), OK);
+        give(&fmu, POSE, RATES);
+        assert_eq!(fmu.step(0.0, 1e-2), OK);
+        let [largest, mean, cell] =
+            ["contact.temperature_largest", "contact.temperature_mean", "element[4,1].temperature"]
+                .map(|name| fmu.real(name));
+        assert!(largest >= mean && largest >= cell && mean > 293.15, "{largest} {mean} {cell}");
+        largest - 293.15
+    };
+    let (little, much) = (rise_at(0.01), rise_at(0.02));
+    assert!((much / little - 2.0).abs() < 0.01, "{little} {much}");
+    let names: Vec<String> = fmu(&text).variables.entries().map(|(_, entry)| entry.name.clone()).collect();
+    assert_eq!(names[24..27], ["contact.beyond", "contact.temperature_largest", "contact.temperature_mean"]);
+    let parameters = ["conductivity", "capacity", "density", "share"].map(|name| format!("patch.heat.{name}"));
+    assert_eq!(names[names.len() - 4..], parameters);
+    assert_eq!(fmu(&text).set_real("patch.heat.share", 1.5), ERROR);
+    assert_eq!(fmu(&text).set_real("patch.heat.density", 0.0), ERROR);
+}
+
 /// An angle that is no number, a turn beyond the parts of a step.
 #[test]
 fn impossible_steps_leave_the_patch_as_it_was() {
@@ -295,6 +339,7 @@ fn a_patch_file_names_what_is_wrong() {
             "nx = 6\nbacking = { height = 1e-3, modulus = 6e6, shear = 1e9 }",
             "p.toml:11: patch.backing.shear: unknown; allowed: height, modulus",
         ),
+        ("nx = 6", "nx = 6\nheat = { share = 0.3 }", "p.toml:11: patch.heat.conductivity: missing"),
         ("nx = 6", "nz = 6", "p.toml:10: patch.nz: unknown; allowed: shape, radius"),
         (
             "path = \"block",

@@ -3,5 +3,6 @@
 mod backing;
 mod exact;
 mod extreme;
+mod heat;
 mod invariants;
 mod reference;

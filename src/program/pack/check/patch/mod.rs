@@ -52,8 +52,8 @@ pub(in crate::program::pack) fn check(
     let folder = folder_beside(&command.output)?;
     // At rest, and at the middles of smaller elements, pressures are a little beyond those of the table.
     let hold = Value::Text(TableExtrapolation::Hold.word().into());
-    // Layers stand on what does not give way.
-    let mut patch = patch.without_backing();
+    // Layers stand on what does not give way, and at one temperature.
+    let mut patch = patch.contacts_alone();
     patch.set_parameter(Parameter::TableExtrapolation, hold.clone())?;
     let speeds = speeds(&patch.table().grid);
     let faces: Vec<_> = speeds.map(|speed| TiltedFace::new(&patch, speed, command.points as usize)).collect();
