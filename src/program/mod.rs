@@ -35,6 +35,9 @@ use cli::Command;
 
 /// Executes the command of the command line.
 pub(crate) fn run(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
+    if arguments.quiet {
+        terminal::be_quiet();
+    }
     match arguments.command {
         Command::Simulate(command) => run_simulate(&command)?,
         Command::Contact(command) => contact::contact(&command)?,

@@ -53,7 +53,8 @@ fn page() -> String {
         // Writing to a text cannot fail.
         let _ = writeln!(page, "| `{}` | {unit} | {description} |", output.name);
     }
-    page += "\n## Commands\n";
+    page +=
+        "\n## Commands\n\nAll of them take `-q`, `--quiet`: results and warnings alone, neither notes nor progress.\n";
     let mut command = Arguments::command();
     command.build();
     for of in command.get_subcommands().filter(|of| !of.is_hide_set() && of.get_name() != "help") {
@@ -101,7 +102,7 @@ fn options(command: &Command) -> String {
     let about = command.get_about().map(ToString::to_string).unwrap_or_default();
     let mut text = format!("\n### `{NAME} {}`\n\n{about}.\n", command.get_name());
     text += "\n| option | meaning |\n|---|---|\n";
-    let given = |argument: &&Arg| !argument.is_hide_set() && argument.get_id() != "help";
+    let given = |argument: &&Arg| !argument.is_hide_set() && !argument.is_global_set() && argument.get_id() != "help";
     for argument in command.get_arguments().filter(given) {
         let names: Vec<String> = argument
             .get_short()

@@ -1,9 +1,13 @@
 //! Text for terminal and files: numbers, aligned lines, warnings, the progress bar.
 
 use std::fmt::{self, Display, Formatter, LowerExp};
+use std::io::{self, IsTerminal as _};
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle, TermLike};
 
 /// A line with a label; without one it continues the line above.
 pub(crate) type LabelledLine = (&'static str, String);
@@ -64,22 +68,108 @@ pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
 }
 
 /// Prints a warning to standard error.
+#[expect(clippy::print_stderr, reason = "standard output holds results only")]
 pub(crate) fn warn(message: &str) {
-    note(&format!("warning: {message}"));
+    eprintln!("asperity: warning: {message}");
 }
 
 /// Prints a note to standard error.
 #[expect(clippy::print_stderr, reason = "standard output holds results only")]
 pub(crate) fn note(message: &str) {
-    eprintln!("asperity: {message}");
+    if !QUIET.load(Ordering::Relaxed) {
+        eprintln!("asperity: {message}");
+    }
 }
 
-/// A progress bar of `length` positions; hidden where standard error is no terminal.
+/// Whether notes and progress are left out: `--quiet`.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// Leaves notes and progress out from now on; warnings stay.
+pub(crate) fn be_quiet() {
+    QUIET.store(true, Ordering::Relaxed);
+}
+
+/// A progress bar of `length` positions; where standard error is no terminal a line every ten seconds.
 pub(crate) fn bar(length: u64) -> ProgressBar {
-    let bar = ProgressBar::new(length);
-    match ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left") {
+    let is_terminal = std::io::stderr().is_terminal();
+    let (target, template) = match QUIET.load(Ordering::Relaxed) {
+        true => (ProgressDrawTarget::hidden(), ""),
+        false if is_terminal => (ProgressDrawTarget::stderr(), "{bar:40} {percent:>3} %  {msg}  {eta} left"),
+        false => (ProgressDrawTarget::term_like(Box::new(ProgressLines::new())), "{percent} % done, {eta} left  {msg}"),
+    };
+    let bar = ProgressBar::with_draw_target(Some(length), target);
+    match ProgressStyle::with_template(template) {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,
+    }
+}
+
+/// Draws a progress bar as lines, the first one late enough for short runs to have none.
+#[derive(Debug)]
+struct ProgressLines(Mutex<ProgressLine>);
+
+#[derive(Debug)]
+struct ProgressLine {
+    text: String,
+    printed: Instant,
+}
+
+impl ProgressLines {
+    const INTERVAL: Duration = Duration::from_secs(10);
+    /// Characters of a line.
+    const WIDTH: u16 = 120;
+
+    fn new() -> Self {
+        Self(Mutex::new(ProgressLine { text: String::new(), printed: Instant::now() }))
+    }
+
+    fn with_line(&self, change: impl FnOnce(&mut ProgressLine)) -> io::Result<()> {
+        change(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner));
+        Ok(())
+    }
+}
+
+impl TermLike for ProgressLines {
+    fn width(&self) -> u16 {
+        Self::WIDTH
+    }
+
+    fn move_cursor_up(&self, _: usize) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn move_cursor_down(&self, _: usize) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn move_cursor_right(&self, _: usize) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn move_cursor_left(&self, _: usize) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn write_line(&self, text: &str) -> io::Result<()> {
+        self.write_str(text)
+    }
+
+    fn write_str(&self, text: &str) -> io::Result<()> {
+        self.with_line(|line| line.text += text)
+    }
+
+    fn clear_line(&self) -> io::Result<()> {
+        self.with_line(|line| line.text.clear())
+    }
+
+    fn flush(&self) -> io::Result<()> {
+        self.with_line(|line| {
+            let text = std::mem::take(&mut line.text);
+            if !text.trim().is_empty() && line.printed.elapsed() >= Self::INTERVAL {
+                note(text.trim());
+                line.printed = Instant::now();
+            }
+        })
     }
 }
 
