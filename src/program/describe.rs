@@ -69,7 +69,10 @@ pub(super) fn rows(scene: &Scene) -> Vec<LabelledLine> {
     if let Some(material) = &scene.material {
         rows.extend(labelled("Material", [body(scene, material), series(material), temperature(material)]));
     }
-    rows.extend(labelled("Links", links(scene).map(link)));
+    rows.extend(labelled(
+        "Links",
+        each_once(links(scene).map(|(name, link, count)| (name, vec![link_text(link, count)]))),
+    ));
     rows.extend(labelled("Foundation", foundation::rows(scene)));
     rows.extend(labelled("Order", [paper_order(scene), order_as_coded(scene)]));
     rows.push(("Profile", profile(&scene.surface)));
@@ -84,9 +87,9 @@ pub(super) fn rows(scene: &Scene) -> Vec<LabelledLine> {
     rows
 }
 
-/// A number for reading: 12 digits, which hide the rounding errors of derived constants.
+/// A number for reading: five digits, as of 293.15 K.
 fn number(value: f64) -> String {
-    decimal(rounded(value, 12), 1e-3..1e6)
+    decimal(rounded(value, 5), 1e-3..1e6)
 }
 
 fn or_left_out(value: Option<f64>, unit: &str) -> String {
@@ -162,11 +165,28 @@ fn links(scene: &Scene) -> [Links; 4] {
     LinkKind::ALL.map(|kind| (kind.name(), scene.link(kind), kind.count(scene.layer.masses)))
 }
 
-fn link((name, link, count): Links) -> String {
-    let Some(link) = link else { return format!("{name:<12}{LEFT_OUT}") };
+fn link_text(link: Option<Link>, count: usize) -> String {
+    let Some(link) = link else { return LEFT_OUT.into() };
     let stiffness = or_left_out(link.stiffness, " N/m");
     let damping = or_left_out(link.damping, " N s/m");
-    format!("{name:<12}{count} of c {stiffness}, d {damping}, n = {}{}", link.maxwell.len(), elements(&link))
+    format!("{count} of c {stiffness}, d {damping}, n = {}{}", link.maxwell.len(), elements(&link))
+}
+
+/// Lines that begin with a name each; the name of an earlier one in place of lines that are the same.
+fn each_once(parts: impl IntoIterator<Item = (&'static str, Vec<String>)>) -> Vec<String> {
+    let mut said: Vec<(&'static str, Vec<String>)> = Vec::new();
+    let mut rows = Vec::new();
+    for (name, lines) in parts {
+        match said.iter().find(|(_, earlier)| *earlier == lines && lines != [LEFT_OUT]) {
+            Some((earlier, _)) if !lines.is_empty() => rows.push(format!("{name:<12}as {earlier}")),
+            _ => {
+                let heads = std::iter::once(name).chain(std::iter::repeat(""));
+                rows.extend(heads.zip(&lines).map(|(head, line)| format!("{head:<12}{line}")));
+                said.push((name, lines));
+            }
+        }
+    }
+    rows
 }
 
 fn elements(link: &Link) -> String {
@@ -300,7 +320,7 @@ fn reduction(scene: &Scene) -> Vec<LabelledLine> {
         "{}: the largest relative change of a link's force by the elements left out",
         number(scene.solver.reduce)
     );
-    let links = LinkKind::ALL.into_iter().flat_map(|kind| reduced_link(scene, &reduction, kind));
+    let links = each_once(LinkKind::ALL.map(|kind| (kind.name(), reduced_link(scene, &reduction, kind))));
     labelled("Reduce", [meaning, long_times(&reduction), short_times(scene, &reduction)].into_iter().chain(links))
 }
 
@@ -336,7 +356,7 @@ fn reduced_link(scene: &Scene, reduction: &Reduction, kind: LinkKind) -> Vec<Str
     let stiffness = reduction.stiffness[kind];
     let replaced: Vec<_> = reduction.replaced.iter().filter(|one| one.kind == kind).collect();
     let left = link.maxwell.len() - replaced.len();
-    let head = format!("{:<12}{left} of {} elements stay, K' = {stiffness:.4e} N/m", kind.name(), link.maxwell.len());
+    let head = format!("{left} of {} elements stay, K' = {stiffness:.4e} N/m", link.maxwell.len());
     [head].into_iter().chain(replaced.iter().map(|one| replaced_element(one, stiffness))).collect()
 }
 
@@ -347,8 +367,7 @@ fn replaced_element(one: &Replaced, stiffness: f64) -> String {
     };
     let share = if one.bound > 0.0 { one.bound / stiffness } else { 0.0 };
     format!(
-        "{:<12}[{}] {} N/m at {} s is {why}: a {replacement}, bound {share:.2e}",
-        "",
+        "[{}] {} N/m at {} s is {why}: a {replacement}, bound {share:.2e}",
         one.index + 1,
         number(one.element.stiffness),
         number(one.element.relaxation_time)

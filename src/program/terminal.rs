@@ -12,10 +12,16 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle, TermLike};
 /// A line with a label; without one it continues the line above.
 pub(crate) type LabelledLine = (&'static str, String);
 
-/// The lines as text, aligned after their labels.
+/// The lines as text, aligned after their labels, and broken between words where they are long.
 pub(crate) fn lines(lines: &[LabelledLine]) -> String {
-    lines.iter().map(|(label, text)| format!("{label:<12}{text}\n")).collect()
+    let options = textwrap::Options::new(LINE_LENGTH).subsequent_indent(CONTINUED).break_words(false);
+    lines.iter().map(|(label, text)| textwrap::fill(&format!("{label:<12}{text}"), &options) + "\n").collect()
 }
+
+/// Characters of a line.
+const LINE_LENGTH: usize = 120;
+/// What is before the continuation of a line.
+const CONTINUED: &str = "              ";
 
 /// Lines of which the first has the label.
 pub(crate) fn labelled(label: &'static str, texts: impl IntoIterator<Item = String>) -> Vec<LabelledLine> {
@@ -204,6 +210,16 @@ mod tests {
             let is_plain = value == 0.0 || (1e-4..1e16).contains(&value.abs());
             assert_eq!(real(value), if is_plain { format!("{value}") } else { format!("{value:e}") });
         }
+    }
+
+    #[test]
+    fn long_lines_are_broken_between_words() {
+        let text = lines(&[("Label", "word ".repeat(60))]);
+        let rows: Vec<&str> = text.lines().collect();
+        assert!(rows.len() == 3 && rows.iter().all(|row| row.chars().count() <= LINE_LENGTH), "{text}");
+        assert!(rows[1].starts_with("              word") && text.matches("word").count() == 60, "{text}");
+        // A long word stays whole.
+        assert_eq!(lines(&[("Label", "x".repeat(300))]).lines().count(), 1);
     }
 
     #[test]
