@@ -83,6 +83,15 @@ pub(crate) fn bar(length: u64) -> ProgressBar {
     }
 }
 
+/// A count of `what` is done, where nobody knows of how many; hidden where standard error is no terminal.
+pub(crate) fn counter(what: &str) -> ProgressBar {
+    let bar = ProgressBar::new_spinner();
+    match ProgressStyle::with_template(&format!("{{spinner}} {{pos}} {what}  {{msg}}  {{elapsed}}")) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,7 +2,7 @@
 
 use super::table::RunRow;
 use super::verdict::{LargestOpen, Open, Pair, Source, Verdict};
-use crate::program::persson::Theory;
+use asperity::steady::persson::Theory;
 use crate::program::terminal::{LabelledLine, decimal, labelled, lines, rounded};
 
 const TITLES: [&str; 13] = [
