@@ -5,7 +5,7 @@ use rmpfit::{MPConfig, MPError, MPFitter, MPPar, MPResult, MPSide, MPSuccess};
 
 use super::error::CalibrationError;
 use super::latin_hypercube::latin_hypercube;
-use super::model::FrictionModel;
+use super::model::{FrictionModel, FrictionParts};
 use super::problem::{Problem, sum_of_squares};
 
 /// When a fit ends.
@@ -22,6 +22,8 @@ pub struct Tolerance {
 impl Tolerance {
     /// Of a model that is known to many digits.
     pub const EXACT: Self = Self { chi_square: 1e-14, places: 1e-10, steps: 200 };
+    /// Of what is a start for others.
+    pub const ROUGH: Self = Self { chi_square: 1e-3, places: 1e-3, steps: 20 };
     /// Of one that is known to some.
     pub const USUAL: Self = Self { chi_square: 1e-6, places: 1e-5, steps: 60 };
 }
@@ -63,7 +65,7 @@ pub fn minimise(
     let config = MPConfig {
         ftol: tolerance.chi_square,
         xtol: tolerance.places,
-        gtol: 0.0,
+        gtol: ORTHOGONAL,
         max_iter: tolerance.steps,
         step_factor: FIRST_STEP,
         ..MPConfig::new()
@@ -75,11 +77,14 @@ pub fn minimise(
     if let Some(error) = fitter.error {
         return Err(error);
     }
-    let has_converged = matches!(&status, Ok(status) if status.success != MPSuccess::MaxIter);
+    let status = status.map_err(|error| CalibrationError::Model(format!("the fit cannot go on: {error}")))?;
+    let has_converged = status.success != MPSuccess::MaxIter;
     let chi_square = sum_of_squares(&problem.residuals(model, &places)?);
     Ok(Fitted { places, chi_square, has_converged })
 }
 
+/// The cosine between residuals and derivatives at which a fit ends.
+const ORTHOGONAL: f64 = 1e-10;
 /// The first step is at most this many times the size of the start: not across the whole of the bounds.
 const FIRST_STEP: f64 = 1.0;
 
@@ -134,12 +139,7 @@ impl MPFitter for Fitter<'_> {
         &self.bounds
     }
 
-    fn jacobian(
-        &mut self,
-        places: &[f64],
-        deviates: &mut [f64],
-        derivatives: &mut [Option<Vec<f64>>],
-    ) -> MPResult<()> {
+    fn jacobian(&mut self, places: &[f64], deviates: &mut [f64], derivatives: &mut [Option<Vec<f64>>]) -> MPResult<()> {
         let linearised = self.problem.linearised(self.model, places);
         let linearised = self.given(linearised)?;
         deviates.copy_from_slice(&linearised.residuals);
@@ -152,26 +152,33 @@ impl MPFitter for Fitter<'_> {
     }
 }
 
-/// Starts of the fit by the theory.
-const STARTS: usize = 24;
-/// The seed of their places.
+/// Places that are looked at, ...
+const PLACES: usize = 64;
+/// ... and those of them that a fit begins at.
+const STARTS: usize = 6;
+/// The seed of the places.
 const SEED: u64 = 46;
 /// Fits whose places differ by less than this are one.
 const SAME: f64 = 0.02;
 
-/// Fits by a cheap model from starts that fill the bounds and from some of one's own, from the best; of those that end at
-/// the same place the best.
+/// Fits by a cheap model, the best first: from the best of places that fill the bounds and from some of one's own; of
+/// those that end at the same place the best.
 ///
 /// # Errors
 /// Those of the model.
 pub fn starts_by_theory(
     problem: &Problem,
     theory: &dyn FrictionModel,
-    own: Option<Vec<f64>>,
+    own: &[f64],
     tolerance: Tolerance,
 ) -> Result<Vec<Fitted>, CalibrationError> {
-    let starts: Vec<Vec<f64>> =
-        own.into_iter().chain(latin_hypercube(STARTS, problem.parameters.len(), SEED)).collect();
+    let places = latin_hypercube(PLACES, problem.parameters.len(), SEED);
+    let frictions = problem.frictions(theory, &places)?;
+    let chi_square = |frictions: &Vec<FrictionParts>| sum_of_squares(&problem.residuals_of(frictions));
+    let mut places: Vec<(f64, Vec<f64>)> = frictions.iter().map(chi_square).zip(places).collect();
+    places.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let best = places.into_iter().take(STARTS).map(|(_, places)| places);
+    let starts: Vec<Vec<f64>> = std::iter::once(own.to_vec()).chain(best).collect();
     let fits: Result<Vec<Fitted>, CalibrationError> =
         starts.par_iter().map(|start| minimise(problem, theory, start, tolerance, &|_| ())).collect();
     let mut fits = fits?;

@@ -124,7 +124,10 @@ impl Measurements {
         let text = decode(bytes).map_err(|error| MeasurementsError::new(1, error.to_string()))?;
         let blocks = Block::all(&text, false);
         let Some(block) = blocks.iter().max_by_key(|block| block.rows) else {
-            return Err(MeasurementsError::new(text.lines().count().max(1), format!("no rows of numbers: expected {EXPECTED}")));
+            return Err(MeasurementsError::new(
+                text.lines().count().max(1),
+                format!("no rows of numbers: expected {EXPECTED}"),
+            ));
         };
         let head = block.head(&|name| Heading::parse(name, &VOCABULARY).is_some());
         let mut reader = TableReader { block, head: &head, notes: Vec::new() };
@@ -199,7 +202,10 @@ impl TableReader<'_, '_> {
             [only] => only,
             [(first, _), (second, _), ..] => {
                 let [first, second] = [first, second].map(|index| self.head.names[index].trim());
-                return Err(MeasurementsError::new(line, format!("columns {first} and {second}: expected one of them")));
+                return Err(MeasurementsError::new(
+                    line,
+                    format!("columns {first} and {second}: expected one of them"),
+                ));
             }
         };
         let name = format!("column {} ({})", index + 1, self.head.names[index].trim());
@@ -263,13 +269,11 @@ mod tests {
 
     #[test]
     fn columns_are_found_by_name_and_unit() {
-        let measured = read("sample;v [mm/s];p [bar];T [°C];mu;std\n1;10;2,5;20;0,8;0,02\n1;100;2,5;40;0,7;0,03\n").unwrap();
+        let measured =
+            read("sample;v [mm/s];p [bar];T [°C];mu;std\n1;10;2,5;20;0,8;0,02\n1;100;2,5;40;0,7;0,03\n").unwrap();
         let first = measured.rows[0];
         assert_eq!(first.line, 2);
-        assert_eq!(
-            first.point,
-            OperatingPoint { speed: 0.01, load: 2.5e5, temperature: Some(293.15) }
-        );
+        assert_eq!(first.point, OperatingPoint { speed: 0.01, load: 2.5e5, temperature: Some(293.15) });
         assert_eq!((first.friction, first.sigma), (0.8, Some(0.02)));
         assert!(measured.has_sigma() && measured.has_temperature() && measured.notes.is_empty());
     }

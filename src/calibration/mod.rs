@@ -8,6 +8,7 @@
 
 mod error;
 mod fit;
+mod known_laws;
 mod latin_hypercube;
 mod measurements;
 mod memo;

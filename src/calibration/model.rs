@@ -66,8 +66,7 @@ pub(super) fn at_temperature(mut scene: Scene, temperature: Option<f64>) -> Scen
 pub(super) fn groups(tasks: &[Task]) -> Vec<(Vec<f64>, Option<f64>, Vec<usize>)> {
     let mut groups: Vec<(Vec<f64>, Option<f64>, Vec<usize>)> = Vec::new();
     for (index, task) in tasks.iter().enumerate() {
-        let is_alike =
-            |group: &&mut (Vec<f64>, _, _)| group.0 == task.parameters && group.1 == task.point.temperature;
+        let is_alike = |group: &&mut (Vec<f64>, _, _)| group.0 == task.parameters && group.1 == task.point.temperature;
         match groups.iter_mut().find(is_alike) {
             Some(group) => group.2.push(index),
             None => groups.push((task.parameters.clone(), task.point.temperature, vec![index])),

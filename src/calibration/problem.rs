@@ -145,24 +145,24 @@ impl Problem {
         Ok(frictions.iter().flat_map(|frictions| self.residuals_of(frictions)).collect())
     }
 
-    /// The residuals at some places and their derivatives, by differences to both sides as far as the bounds let.
+    /// The residuals at some places and their derivatives, by differences to the side where the bounds leave room.
     ///
     /// # Errors
     /// Those of [`frictions`](Self::frictions).
     pub fn linearised(&self, model: &dyn FrictionModel, places: &[f64]) -> Result<Linearised, CalibrationError> {
         let step = model.step();
-        let shifted = |parameter: usize, by: f64| {
+        let shifted = |parameter: usize| {
             let mut shifted = places.to_vec();
-            shifted[parameter] = (shifted[parameter] + by).clamp(0.0, 1.0);
+            let up = shifted[parameter] + step;
+            shifted[parameter] = if up <= 1.0 { up } else { shifted[parameter] - step };
             shifted
         };
-        let sides = (0..places.len()).flat_map(|parameter| [shifted(parameter, -step), shifted(parameter, step)]);
-        let all: Vec<Vec<f64>> = std::iter::once(places.to_vec()).chain(sides).collect();
+        let all: Vec<Vec<f64>> = std::iter::once(places.to_vec()).chain((0..places.len()).map(shifted)).collect();
         let frictions = self.frictions(model, &all)?;
         let residuals: Vec<Vec<f64>> = frictions.iter().map(|frictions| self.residuals_of(frictions)).collect();
         let derivative = |row: usize, parameter: usize| {
-            let (low, high) = (1 + 2 * parameter, 2 + 2 * parameter);
-            (residuals[high][row] - residuals[low][row]) / (all[high][parameter] - all[low][parameter])
+            let change = residuals[1 + parameter][row] - residuals[0][row];
+            change / (all[1 + parameter][parameter] - places[parameter])
         };
         let jacobian = DMatrix::from_fn(self.rows.len(), places.len(), derivative);
         Ok(Linearised { residuals: residuals.into_iter().next().unwrap_or_default(), jacobian })

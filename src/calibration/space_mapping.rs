@@ -97,7 +97,8 @@ pub fn map_space(
         };
         let has_converged = (0..places.len()).all(is_small);
         if has_converged || best.as_ref().is_none_or(|best| chi_square < best.fitted.chi_square) {
-            best = Some(SpaceMapping { fitted: Fitted { places, chi_square, has_converged }, linearised, rounds: round });
+            best =
+                Some(SpaceMapping { fitted: Fitted { places, chi_square, has_converged }, linearised, rounds: round });
         }
         if has_converged {
             break;

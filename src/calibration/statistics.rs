@@ -68,8 +68,7 @@ impl Statistics {
         let inner: Vec<usize> = (0..count).filter(|&index| at_bound[index].is_none()).collect();
         let degrees = problem.rows.len().saturating_sub(inner.len());
         let chi_square = sum_of_squares(&linearised.residuals);
-        let scale =
-            if problem.has_sigma || degrees == 0 { 1.0 } else { chi_square_per_degree(chi_square, degrees) };
+        let scale = if problem.has_sigma || degrees == 0 { 1.0 } else { chi_square_per_degree(chi_square, degrees) };
         let jacobian = by_coordinates(problem, linearised).select_columns(&inner);
         let mut statistics = Self {
             chi_square,

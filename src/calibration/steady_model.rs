@@ -5,6 +5,7 @@ use std::fmt::{self, Debug, Formatter};
 use rayon::prelude::*;
 
 use super::error::CalibrationError;
+use super::known_laws::KnownLaws;
 use super::model::{Done, FrictionModel, FrictionParts, Outcome, SceneAt, Task, at_temperature, groups};
 use crate::scene::Scene;
 use crate::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
@@ -16,6 +17,7 @@ pub type GridOf<'a> = dyn Fn(&Scene) -> Result<SurfaceGrid, CalibrationError> + 
 pub struct SteadyModel<'a> {
     scene_at: &'a SceneAt<'a>,
     grid_of: &'a GridOf<'a>,
+    laws: KnownLaws,
 }
 
 /// Friction is known to some 1e-6, with heat to 1e-5, and bends over a tenth of the bounds.
@@ -24,7 +26,7 @@ const STEP: f64 = 1e-3;
 impl<'a> SteadyModel<'a> {
     /// The solver on the grids of the scenes.
     pub fn new(scene_at: &'a SceneAt<'a>, grid_of: &'a GridOf<'a>) -> Self {
-        Self { scene_at, grid_of }
+        Self { scene_at, grid_of, laws: KnownLaws::default() }
     }
 }
 
@@ -34,13 +36,14 @@ impl FrictionModel for SteadyModel<'_> {
         let prepared = groups.into_par_iter().map(|(parameters, temperature, indices)| {
             let scene = at_temperature((self.scene_at)(&parameters)?, temperature);
             let grid = (self.grid_of)(&scene)?;
-            let rubber = SlidingRubber::new(&scene).ok_or_else(|| {
+            let rubber = SlidingRubber::with_friction(&scene, self.laws.law(&scene)).ok_or_else(|| {
                 CalibrationError::Model("steady sliding takes a scene in the material form, with layer.width".into())
             })?;
             Ok((rubber, grid, indices))
         });
         let prepared: Vec<_> = prepared.collect::<Result<_, CalibrationError>>()?;
-        let points = prepared.iter().flat_map(|(rubber, grid, indices)| indices.iter().map(move |i| (rubber, grid, *i)));
+        let points =
+            prepared.iter().flat_map(|(rubber, grid, indices)| indices.iter().map(move |i| (rubber, grid, *i)));
         let points: Vec<_> = points.collect();
         // What a solver finds does not depend on what it found before.
         points.par_iter().with_max_len(1).try_for_each_init(

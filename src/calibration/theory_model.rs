@@ -10,9 +10,10 @@ use std::sync::{Mutex, PoisonError};
 use rayon::prelude::*;
 
 use super::error::CalibrationError;
+use super::known_laws::KnownLaws;
 use super::model::{Done, FrictionModel, FrictionParts, SceneAt, Task, at_temperature, groups};
 use crate::element::OperatingPoint;
-use crate::model::{Flash, FrictionLaw};
+use crate::model::Flash;
 use crate::scene::{Body, Material, Scene, Surface};
 use crate::steady::persson::{ProfileWaves, Theory};
 
@@ -21,6 +22,7 @@ pub struct TheoryModel<'a> {
     scene_at: &'a SceneAt<'a>,
     /// What was found of the profiles met last, one for each temperature: most parameters leave them as they are.
     profiles: Mutex<Vec<KnownProfile>>,
+    laws: KnownLaws,
 }
 
 /// What the waves of a profile do in a rubber.
@@ -33,22 +35,22 @@ struct KnownProfile {
     found: Vec<(OperatingPoint, Theory)>,
 }
 
-/// Derivatives by central differences are good to the square of it.
-const STEP: f64 = 1e-4;
+/// Friction is known to all digits: differences are good to some six.
+const STEP: f64 = 1e-6;
 /// Profiles that are remembered: more than a table has temperatures.
 const MOST_PROFILES: usize = 64;
 
 impl<'a> TheoryModel<'a> {
     /// The theory of the scenes; of one in the direct form every task fails.
     pub fn new(scene_at: &'a SceneAt<'a>) -> Self {
-        Self { scene_at, profiles: Mutex::new(Vec::new()) }
+        Self { scene_at, profiles: Mutex::new(Vec::new()), laws: KnownLaws::default() }
     }
 
     /// Friction at some points of a scene.
     fn friction(&self, scene: &Scene, points: &[OperatingPoint]) -> Result<Vec<FrictionParts>, CalibrationError> {
         let area = scene.layer.element_area().ok_or_else(no_theory)?;
         let theories = self.theories(scene, points).ok_or_else(no_theory)?;
-        let law = FrictionLaw::new(scene);
+        let law = self.laws.law(scene);
         let parts = |(point, theory): (&OperatingPoint, Theory)| {
             let normal = point.load / theory.area * area;
             let slip = law.slip(normal, point.speed, Flash::held(0.0));
@@ -64,9 +66,8 @@ impl<'a> TheoryModel<'a> {
         let mut material = scene.material.clone()?;
         material.heat = None;
         let body = scene.layer.body(&material)?;
-        let is_it = |known: &KnownProfile| {
-            known.body == body && known.material == material && known.surface == scene.surface
-        };
+        let is_it =
+            |known: &KnownProfile| known.body == body && known.material == material && known.surface == scene.surface;
         let mut known = {
             let mut profiles = self.profiles.lock().unwrap_or_else(PoisonError::into_inner);
             match profiles.iter().position(is_it) {

@@ -103,7 +103,8 @@ impl CurveGrid {
             true => vec![None],
             false => Cluster::all(temperatures, |a, b| b > a + 3.0).into_iter().map(Some).collect(),
         };
-        let speeds = points.map(|point| point.speed).fold((f64::MAX, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
+        let speeds =
+            points.map(|point| point.speed).fold((f64::MAX, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
         Self { pressures, temperatures, speeds }
     }
 

@@ -88,7 +88,6 @@ const CURVE: u32 = 25;
 /// How many measurements a plan proposes.
 const PLANNED: usize = 3;
 
-
 /// A scene whose numbers are free.
 #[derive(Debug)]
 pub(super) struct FreeScene<'a> {
@@ -276,7 +275,8 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<ExitCode, CalibrateError>
         let curves = work.curves(&grid, &calibrated)?;
         measured_friction::picture(&grid, &measurements.rows, &curves).write(picture)?;
     }
-    let files: Vec<&Path> = [Some(&output), picture.as_ref(), table.as_ref()].into_iter().flatten().map(PathBuf::as_path).collect();
+    let files: Vec<&Path> =
+        [Some(&output), picture.as_ref(), table.as_ref()].into_iter().flatten().map(PathBuf::as_path).collect();
     print_beside([&output], &summary::text(&free, &calibrated, &measurements, planned.as_ref(), &files))?;
     summary::warnings(&calibrated, &measurements).iter().for_each(|warning| warn(warning));
     Ok(if calibrated.is_whole() { ExitCode::SUCCESS } else { ExitCode::from(OPEN) })
@@ -361,8 +361,8 @@ impl Work<'_> {
     /// The best start of the dear model among the fits by the theory and the scene's own values.
     fn start(&self, problem: &Problem) -> Result<Vec<f64>, CalibrationError> {
         let own = problem.places(&self.free.own);
-        let mut starts = vec![own.clone()];
-        let fits = starts_by_theory(problem, self.theory, Some(own), Tolerance::USUAL)?;
+        let fits = starts_by_theory(problem, self.theory, &own, Tolerance::ROUGH)?;
+        let mut starts = vec![own];
         starts.extend(fits.into_iter().take(TRIED).map(|fit| fit.places));
         let outcomes = problem.outcomes(self.model, &starts)?;
         // Those at which most points slide steadily, and of these the one with the least square.

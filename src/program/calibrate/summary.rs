@@ -42,9 +42,14 @@ pub(super) fn text(
     }
     rows.extend(parameters(free, calibrated));
     rows.extend(correlations(calibrated));
-    rows.extend(labelled("Not told", calibrated.statistics.not_identifiable.iter().map(|direction| {
-        not_identifiable(direction, &calibrated.problem.parameters)
-    })));
+    rows.extend(labelled(
+        "Not told",
+        calibrated
+            .statistics
+            .not_identifiable
+            .iter()
+            .map(|direction| not_identifiable(direction, &calibrated.problem.parameters)),
+    ));
     rows.push(("Chi square", chi_square(calibrated)));
     rows.extend(rests_on(calibrated));
     rows.extend(labelled("Far off", far_off(calibrated, measurements)));
@@ -81,7 +86,9 @@ fn parameters(free: &FreeScene<'_>, calibrated: &Calibrated) -> Vec<LabelledLine
         let error = statistics.errors[index].map(|error| parameter.error_of_value(values[index], error));
         let (error, interval) = match (error, statistics.intervals[index], statistics.at_bound[index]) {
             _ if !statistics.is_identifiable(index) => ("-".to_owned(), "not identifiable".to_owned()),
-            (Some(error), Some((low, high)), _) => (short(error, 2), format!("{} to {}", short(low, 4), short(high, 4))),
+            (Some(error), Some((low, high)), _) => {
+                (short(error, 2), format!("{} to {}", short(low, 4), short(high, 4)))
+            }
             (_, _, Some(bound)) => ("-".to_owned(), format!("at its bound {}", short(bound, 4))),
             _ => ("-".to_owned(), String::new()),
         };
@@ -153,8 +160,9 @@ fn rests_on(calibrated: &Calibrated) -> Vec<LabelledLine> {
         let mean = shares.iter().map(|(share, _)| share).sum::<f64>() / shares.len().max(1) as f64;
         let least = shares.iter().min_by(|a, b| a.0.total_cmp(&b.0));
         let most = shares.iter().max_by(|a, b| a.0.total_cmp(&b.0));
-        let end = |end: Option<&(f64, String)>| end.map(|(share, at)| format!("{share:.0} % at {at}")).unwrap_or_default();
-        format!("{name:<9}{mean:.0} % of friction in the mean, from {} to {}", end(least), end(most))
+        let end =
+            |end: Option<&(f64, String)>| end.map(|(share, at)| format!("{share:.0} % at {at}")).unwrap_or_default();
+        format!("{name:<9}{mean:>3.0} % of friction in the mean, from {} to {}", end(least), end(most))
     };
     labelled("Rests on", kinds.into_iter().map(row))
 }
@@ -187,10 +195,18 @@ fn planned(plan: &Plan, parameters: &[FreeParameter]) -> Vec<LabelledLine> {
     let worst = plan.before.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(index, _)| index);
     let bring = |(index, parameter): (usize, &FreeParameter)| {
         let worst = if index == worst { " (the worst)" } else { "" };
-        format!("standard error {}: {} with them{worst}", error(parameter, plan.before[index]), short(
-            if parameter.is_logarithmic() { plan.after[index] } else { parameter.error_of_value(0.0, plan.after[index]) },
-            2
-        ))
+        format!(
+            "standard error {}: {} with them{worst}",
+            error(parameter, plan.before[index]),
+            short(
+                if parameter.is_logarithmic() {
+                    plan.after[index]
+                } else {
+                    parameter.error_of_value(0.0, plan.after[index])
+                },
+                2
+            )
+        )
     };
     let points = labelled("To measure", plan.points.iter().map(describe));
     points.into_iter().chain(labelled("", parameters.iter().enumerate().map(bring))).collect()
@@ -200,12 +216,8 @@ fn planned(plan: &Plan, parameters: &[FreeParameter]) -> Vec<LabelledLine> {
 pub(super) fn warnings(calibrated: &Calibrated, measurements: &Measurements) -> Vec<String> {
     let mut warnings = Vec::new();
     for (point, why) in &calibrated.left_out {
-        let lines: Vec<String> = measurements
-            .rows
-            .iter()
-            .filter(|row| row.point == *point)
-            .map(|row| row.line.to_string())
-            .collect();
+        let lines: Vec<String> =
+            measurements.rows.iter().filter(|row| row.point == *point).map(|row| row.line.to_string()).collect();
         warnings.push(format!("left out: line {} ({}): {why}", lines.join(", "), describe(point)));
     }
     if !calibrated.fitted.has_converged {
@@ -217,7 +229,8 @@ pub(super) fn warnings(calibrated: &Calibrated, measurements: &Measurements) -> 
         }
     }
     if !calibrated.statistics.not_identifiable.is_empty() {
-        warnings.push("not all parameters are identifiable: measure what tells them apart, or fix one of them".to_owned());
+        warnings
+            .push("not all parameters are identifiable: measure what tells them apart, or fix one of them".to_owned());
     }
     warnings
 }

@@ -53,7 +53,9 @@ fn header(free: &FreeScene<'_>, calibrated: &Calibrated, measurements: &Measurem
     let data = name_of(&free.command.data);
     let rows = match measurements.rows.len() - calibrated.problem.rows.len() {
         0 => format!("{} measurements", calibrated.problem.rows.len()),
-        left_out => format!("{} of {} measurements", calibrated.problem.rows.len(), left_out + calibrated.problem.rows.len()),
+        left_out => {
+            format!("{} of {} measurements", calibrated.problem.rows.len(), left_out + calibrated.problem.rows.len())
+        }
     };
     let mut lines = vec![format!("fitted to {rows} of {data}")];
     if !calibrated.fitted.has_converged {

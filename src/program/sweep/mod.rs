@@ -34,9 +34,9 @@ pub(crate) use point::{SMALL as SMALL_FRICTION, SteadySliding, StopBounds};
 use slide::Blocks;
 use solved::SolvedPoints;
 pub(crate) use solved::status as solved_status;
+use table_file::TableFile;
 pub(crate) use table_file::fingerprint as table_fingerprint;
 pub(crate) use table_file::{SweepTable, TableFileError};
-use table_file::TableFile;
 use values::Values;
 
 /// `asperity sweep` failed, or not all of its points are steady.
