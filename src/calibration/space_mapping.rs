@@ -15,6 +15,8 @@ use crate::element::OperatingPoint;
 const ROUNDS: usize = 8;
 /// The change of a parameter over its standard error at which the rounds end.
 const SMALL_CHANGE: f64 = 0.1;
+/// A change of a coordinate that a dear model of some digits does not tell from none.
+const UNRESOLVED: f64 = 2e-3;
 /// A parameter that changes the cheap model by less than this part of what the others do is none of its own.
 const UNSEEN: f64 = 1e-9;
 
@@ -93,7 +95,7 @@ pub fn map_space(
         let statistics = Statistics::new(problem, &places, &linearised);
         let is_small = |index: usize| {
             let change = (next.places[index] - places[index]).abs() * problem.parameters[index].span();
-            statistics.errors[index].map_or(change == 0.0, |error| change <= SMALL_CHANGE * error)
+            change <= UNRESOLVED || statistics.errors[index].is_some_and(|error| change <= SMALL_CHANGE * error)
         };
         let has_converged = (0..places.len()).all(is_small);
         if has_converged || best.as_ref().is_none_or(|best| chi_square < best.fitted.chi_square) {

@@ -2,7 +2,8 @@
 //!
 //! With J the derivatives of the weighted residuals by the coordinates (the logarithm, or the value over the distance of
 //! the bounds), the covariance is (JᵀJ)⁻¹, times χ² per degree of freedom where the standard deviations are assumed. A
-//! singular value of J below 1e-3 of the largest is a direction that the data do not see.
+//! singular value of J below 1e-3 of the largest is a direction that the data do not see, and a parameter whose 95 %
+//! interval covers its bounds is one that they do not tell.
 
 use nalgebra::DMatrix;
 
@@ -53,6 +54,8 @@ pub struct Statistics {
     pub singular_values: Vec<f64>,
     /// What cannot be identified.
     pub not_identifiable: Vec<Direction>,
+    /// Which parameters have an interval that covers their bounds: the data add nothing to these.
+    pub covers_bounds: Vec<bool>,
 }
 
 impl Statistics {
@@ -80,6 +83,7 @@ impl Statistics {
             correlation: DMatrix::identity(count, count),
             singular_values: Vec::new(),
             not_identifiable: Vec::new(),
+            covers_bounds: vec![false; count],
         };
         statistics.decompose(jacobian, &inner);
         let factor = student(degrees);
@@ -89,6 +93,9 @@ impl Statistics {
                 let end = |sign: f64| parameter.moved(value, sign * factor * error);
                 (end(-1.0), end(1.0))
             });
+            let (low, high) = parameter.bounds();
+            let interval = statistics.intervals[index];
+            statistics.covers_bounds[index] = interval.is_some_and(|interval| interval.0 <= low && high <= interval.1);
         }
         statistics
     }
@@ -122,9 +129,15 @@ impl Statistics {
         }
     }
 
-    /// Whether each parameter is told by the data.
+    /// Whether the data tell all parameters.
+    pub fn tell_all(&self) -> bool {
+        self.not_identifiable.is_empty() && !self.covers_bounds.contains(&true)
+    }
+
+    /// Whether the data tell a parameter.
     pub fn is_identifiable(&self, index: usize) -> bool {
-        !self.not_identifiable.iter().any(|direction| direction.parameters().any(|part| part == index))
+        !self.covers_bounds[index]
+            && !self.not_identifiable.iter().any(|direction| direction.parameters().any(|part| part == index))
     }
 }
 

@@ -221,7 +221,7 @@ impl Calibrated {
     }
 
     fn is_whole(&self) -> bool {
-        self.fitted.has_converged && self.statistics.not_identifiable.is_empty()
+        self.fitted.has_converged && self.statistics.tell_all()
     }
 }
 

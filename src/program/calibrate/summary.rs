@@ -42,14 +42,7 @@ pub(super) fn text(
     }
     rows.extend(parameters(free, calibrated));
     rows.extend(correlations(calibrated));
-    rows.extend(labelled(
-        "Not told",
-        calibrated
-            .statistics
-            .not_identifiable
-            .iter()
-            .map(|direction| not_identifiable(direction, &calibrated.problem.parameters)),
-    ));
+    rows.extend(labelled("Not told", not_told(calibrated)));
     rows.push(("Chi square", chi_square(calibrated)));
     rows.extend(rests_on(calibrated));
     rows.extend(labelled("Far off", far_off(calibrated, measurements)));
@@ -112,6 +105,16 @@ fn correlations(calibrated: &Calibrated) -> Vec<LabelledLine> {
         format!("{:<width$}{entries}", calibrated.problem.parameters[a].key)
     };
     labelled("Correlation", (0..count).map(row))
+}
+
+/// What the data do not tell.
+fn not_told(calibrated: &Calibrated) -> Vec<String> {
+    let (statistics, parameters) = (&calibrated.statistics, &calibrated.problem.parameters);
+    let directions = statistics.not_identifiable.iter().map(|direction| not_identifiable(direction, parameters));
+    let covered = parameters.iter().zip(&statistics.covers_bounds).filter(|(_, covers)| **covers);
+    let covered = covered
+        .map(|(parameter, _)| format!("not identifiable: the 95 % interval of {} covers its bounds", parameter.key));
+    directions.chain(covered).collect()
 }
 
 /// What counts only together.
@@ -228,7 +231,7 @@ pub(super) fn warnings(calibrated: &Calibrated, measurements: &Measurements) -> 
             warnings.push(format!("{} is at its bound {}", parameter.key, short(*bound, 4)));
         }
     }
-    if !calibrated.statistics.not_identifiable.is_empty() {
+    if !calibrated.statistics.tell_all() {
         warnings
             .push("not all parameters are identifiable: measure what tells them apart, or fix one of them".to_owned());
     }

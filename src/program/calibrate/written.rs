@@ -61,7 +61,7 @@ fn header(free: &FreeScene<'_>, calibrated: &Calibrated, measurements: &Measurem
     if !calibrated.fitted.has_converged {
         lines.push("NOT CONVERGED: the numbers below are where the fit was given up".to_owned());
     }
-    if !statistics.not_identifiable.is_empty() {
+    if !statistics.tell_all() {
         lines.push("NOT IDENTIFIABLE: the data do not tell all of the numbers below".to_owned());
     }
     lines.extend(free.parameters.iter().zip(calibrated.values()).enumerate().map(|(index, (parameter, value))| {
