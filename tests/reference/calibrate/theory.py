@@ -1,7 +1,7 @@
 """Persson's theory of a profile with a rate-dependent shear strength, fitted by scipy.optimize.least_squares.
 
 Writes theory.measured.csv (with 3 % of noise) and theory.fit.csv (what scipy finds) for theory.toml, in its folder. Needs
-numpy and scipy; written without the program's sources' help, from docs/calibrate.md and docs/model.md alone.
+numpy and scipy. An independent program: from docs/calibrate.md and docs/model.md.
 """
 
 from pathlib import Path
@@ -53,7 +53,8 @@ def residuals(logarithms):
 
 
 fit = least_squares(residuals, 0.5 * (low + high), bounds=(low, high), xtol=1e-15, ftol=1e-15, gtol=1e-15, jac="3-point")
-rows = [f"{speed!r},{pressure!r},{mu!r}" for (speed, pressure), mu in zip(((float(v), p) for v, p in points), map(float, measured))]
+rows = [f"{float(speed)!r},{pressure!r},{float(mu)!r}" for (speed, pressure), mu in zip(points, measured)]
 (here / "theory.measured.csv").write_text("\n".join(["speed [m/s],pressure [Pa],friction", *rows]) + "\n")
 found = [f"{key},{a!r},{b!r},{float(value)!r}" for (key, (a, b)), value in zip(bounds.items(), np.exp(fit.x))]
-(here / "theory.fit.csv").write_text("\n".join(["key,low,high,value", *found, f"chi_square,0,0,{float(2 * fit.cost)!r}"]) + "\n")
+found = ["key,low,high,value", *found, f"chi_square,0,0,{float(2 * fit.cost)!r}"]
+(here / "theory.fit.csv").write_text("\n".join(found) + "\n")
