@@ -1,6 +1,6 @@
 //! `asperity compare`: the curves of a sweep beside measured friction.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use asperity::calibration::{Measured, chi_square_per_degree};
 use asperity::element::{Load, OperatingPoint, Quantity};
@@ -71,7 +71,7 @@ pub(crate) fn compare(command: &Compare) -> Result<(), CompareError> {
 /// Points of a curve.
 const CURVE: u32 = 60;
 
-fn summary(command: &Compare, within: &[(Measured, f64)], picture: &PathBuf) -> String {
+fn summary(command: &Compare, within: &[(Measured, f64)], picture: &Path) -> String {
     let deviations = |(row, friction): &(Measured, f64)| (friction - row.friction) / row.sigma_or_assumed();
     let chi_square: f64 = within.iter().map(|pair| deviations(pair).powi(2)).sum();
     let mut worst: Vec<&(Measured, f64)> = within.iter().collect();

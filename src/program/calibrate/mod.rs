@@ -321,7 +321,7 @@ impl Work<'_> {
             match self.fit(&problem) {
                 Ok((fitted, linearised, way)) => {
                     let statistics = Statistics::new(&problem, &fitted.places, &linearised);
-                    let frictions = problem.frictions(self.model, &[fitted.places.clone()])?.remove(0);
+                    let frictions = problem.frictions(self.model, std::slice::from_ref(&fitted.places))?.remove(0);
                     return Ok(Calibrated { problem, fitted, linearised, statistics, frictions, left_out, way });
                 }
                 Err(CalibrationError::NotSteady(failed)) => {
@@ -358,10 +358,14 @@ impl Work<'_> {
         Ok((fitted, linearised, "differences of the layer itself: its friction and the theory's part".to_owned()))
     }
 
-    /// The best start of the dear model among the fits by the theory and the scene's own values.
+    /// The best start of the dear model among the fits by the theory and the scene's own values; of the layer, which is
+    /// too dear to be tried at several, the best fit by the theory.
     fn start(&self, problem: &Problem) -> Result<Vec<f64>, CalibrationError> {
         let own = problem.places(&self.free.own);
         let fits = starts_by_theory(problem, self.theory, &own, Tolerance::ROUGH)?;
+        if let (Method::Layer, Some(best)) = (&self.free.method, fits.first()) {
+            return Ok(best.places.clone());
+        }
         let mut starts = vec![own];
         starts.extend(fits.into_iter().take(TRIED).map(|fit| fit.places));
         let outcomes = problem.outcomes(self.model, &starts)?;

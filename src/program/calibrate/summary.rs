@@ -152,12 +152,15 @@ fn chi_square(calibrated: &Calibrated) -> String {
     format!("{} per degree of freedom, of which there are {}; {end}", short(per_degree, 4), statistics.degrees)
 }
 
+/// A part of friction.
+type PartOf = fn(&FrictionParts) -> f64;
+
 /// On what the data rest: shares of friction in the mean, and the points that rest most on each.
 fn rests_on(calibrated: &Calibrated) -> Vec<LabelledLine> {
-    let kinds: [(&str, fn(&FrictionParts) -> f64); 3] =
+    let kinds: [(&str, PartOf); 3] =
         [("profile", |parts| parts.profile), ("fine", |parts| parts.fine), ("shear", |parts| parts.shear)];
     let points = || calibrated.problem.points.iter().zip(&calibrated.frictions);
-    let row = |(name, part): (&str, fn(&FrictionParts) -> f64)| {
+    let row = |(name, part): (&str, PartOf)| {
         let shares: Vec<(f64, String)> =
             points().map(|(point, parts)| (100.0 * part(parts) / parts.friction(), describe(point))).collect();
         let mean = shares.iter().map(|(share, _)| share).sum::<f64>() / shares.len().max(1) as f64;
