@@ -32,6 +32,12 @@ impl FreeParameter {
     /// The value at a place between the bounds, 0 to 1: even in the logarithm or in the value. The ends are the bounds
     /// to the last bit.
     pub fn value(&self, place: f64) -> f64 {
+        if place <= 0.0 {
+            return self.low;
+        }
+        if place >= 1.0 {
+            return self.high;
+        }
         let between = if self.is_logarithmic() {
             (self.low.ln() + place * (self.high / self.low).ln()).exp()
         } else {
