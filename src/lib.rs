@@ -19,10 +19,11 @@
 //! | [`outputs`] | the table of the outputs: names, units, values, derivatives, dependencies |
 //! | [`simulation`] | a run: its state, the steps of both methods and their lengths, local regions, the reference run |
 //! | [`element`] | a point-contact element: the forces of a layer, looked up in a table of a sweep |
+//! | `calibration` | a scene's free numbers from measured friction: models, least squares, errors, plans |
 //! | [`patch`] | a contact patch: many point-contact elements on a rigid face, in three dimensions |
 //! | [`fmi`] | the FMI 2.0 co-simulation interface |
 //! | `robustness` | catalogue of perturbations of a scene and the judge of their runs, for reports and tests |
-//! | program | the command line program: simulate, sweep, converge, fit, pack, report, plot |
+//! | program | the command line program: simulate, sweep, calibrate, converge, fit, pack, report, plot |
 //!
 //! ```
 //! use asperity::outputs::variables;
@@ -103,6 +104,8 @@
 //! | E_impact | `Energies::impact` | J | energy lost in impacts |
 //! | T, V | `kinetic_energy()`, `elastic_energy()` | J | energy balance E_in = Δ(T + V + T_c + V_c) + E_damper + E_maxwell + E_friction + E_impact + E_c |
 
+#[cfg(feature = "program")]
+pub mod calibration;
 pub mod contact;
 pub mod element;
 pub mod fmi;

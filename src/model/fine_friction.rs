@@ -102,6 +102,11 @@ const LINEAR: f64 = 1.0e-3;
 /// Above this, erf is 1 but for 1e-8.
 const FULL: f64 = 4.0;
 
+/// v_c at the temperature of a material, m/s.
+fn creep_speed_at(creep_speed: f64, material: &Material) -> f64 {
+    creep_speed / material.shift_factor()
+}
+
 impl FineFriction {
     /// The law of a scene; `None` where the profile lacks nothing.
     pub fn new(scene: &Scene) -> Option<Self> {
@@ -109,7 +114,7 @@ impl FineFriction {
         let area = scene.layer.element_area()?;
         let creep_speed = scene.fine_creep_speed();
         let law = |log_speeds, stress, hysteresis| {
-            let creep_speed = creep_speed / material.shift_factor();
+            let creep_speed = creep_speed_at(creep_speed, material);
             Self { area, creep_speed, log_speeds, stress, share: ShareTable::new(), hysteresis }
         };
         if let FineWaves::Modulus { rms_slope, modulus } = fine.waves {
@@ -126,6 +131,13 @@ impl FineFriction {
         let stress = log_stresses.iter().copied().zip(slopes(&log_stresses)).map(|(y, slope)| [y, slope]).collect();
         let loses = fine.hysteresis && sums.iter().any(|sums| sums.losses() > 0.0);
         Some(law(log_speeds, stress, loses.then(|| HysteresisTable::new(&sums))))
+    }
+
+    /// The law at another temperature of the `material`, of which `creep_speed` (m/s) is v_c at the reference temperature:
+    /// its tables are those at the reference temperature.
+    #[must_use]
+    pub fn at_temperature_of(&self, material: &Material, creep_speed: f64) -> Self {
+        Self { creep_speed: creep_speed_at(creep_speed, material), ..self.clone() }
     }
 
     /// Whether friction changes with the speed.

@@ -113,10 +113,14 @@ pub struct LinearFriction {
 impl FrictionLaw {
     /// The law of a scene.
     pub fn new(scene: &Scene) -> Self {
+        Self::with_fine(scene, FineFriction::new(scene))
+    }
+
+    /// The law of a scene whose roughness below the profile is known to rub so.
+    pub fn with_fine(scene: &Scene, fine: Option<FineFriction>) -> Self {
         let coulomb = scene.friction.as_ref().and_then(|friction| friction.coulomb).unwrap_or(0.0);
         let shear = scene.shear_force().unwrap_or(0.0);
         let rate_shear = scene.rate_shear().and_then(|law| RateShearLaw::new(&law));
-        let fine = FineFriction::new(scene);
         let rubs = fine.as_ref().is_some_and(FineFriction::rubs);
         Self {
             present: coulomb > 0.0 || shear > 0.0 || rate_shear.is_some() || rubs,

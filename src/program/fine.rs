@@ -5,9 +5,9 @@ use std::f64::consts::{SQRT_2, TAU};
 
 use asperity::model::{FineFriction, Flash, FlashKernel, FrictionLaw};
 use asperity::scene::{FineRoughness, Scene, Spectrum};
+use asperity::steady::persson::WholeFriction;
 
 use super::figure::{Curve, Panel, SideBySide, Stroke};
-use super::persson::WholeFriction;
 use super::terminal::{decimal, rounded};
 
 /// Speeds (m/s) and pressures (Pa) at which the law is printed.

@@ -1,6 +1,8 @@
 //! The commands of the program, one module each, and what they share.
 
+mod calibrate;
 mod cli;
+mod compare;
 mod contact;
 mod converge;
 mod describe;
@@ -14,10 +16,10 @@ mod html;
 mod interrupt;
 mod lock;
 mod material;
+mod measured_friction;
 mod overrides;
 mod pack;
 mod patch;
-mod persson;
 mod reference;
 mod report;
 mod result_file;
@@ -40,6 +42,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
     }
     match arguments.command {
         Command::Simulate(command) => run_simulate(&command)?,
+        Command::Calibrate(command) => return Ok(calibrate::calibrate(&command)?),
+        Command::Compare(command) => compare::compare(&command)?,
         Command::Contact(command) => contact::contact(&command)?,
         Command::Converge(command) => return Ok(converge::converge(&command)?),
         Command::Plot(command) => figure::plot_files(&command)?,

@@ -111,6 +111,30 @@ pub(crate) fn overridden(text: &str, set: &[Setting]) -> Result<Overridden, Over
     Ok(Overridden { text: document.to_string(), in_named_files })
 }
 
+/// The number at a key of the text; `None` where there is none.
+pub(crate) fn number(text: &str, key: &str) -> Option<f64> {
+    let document: DocumentMut = text.strip_prefix('\u{feff}').unwrap_or(text).parse().ok()?;
+    let path = segments(key)?;
+    let (last, path) = path.split_last()?;
+    let mut table: &dyn TableLike = document.as_table();
+    for segment in path {
+        let item = table.get(segment.name)?;
+        table = match segment.element {
+            None => item.as_table_like()?,
+            Some(element) => match item {
+                Item::ArrayOfTables(tables) => tables.get(element)?,
+                _ => item.as_array()?.get(element)?.as_inline_table()?,
+            },
+        };
+    }
+    let item = table.get(last.name)?;
+    let value = match last.element {
+        None => item.as_value()?,
+        Some(element) => item.as_array()?.get(element)?,
+    };
+    value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
+}
+
 /// A value of TOML; what is none is a text, so that words need no quotation marks, or a number such as `.5`.
 fn value(given: &str) -> Value {
     let is_digit_or_sign = |first: char| first.is_ascii_digit() || "+-.".contains(first);
@@ -277,6 +301,16 @@ mod tests {
     fn what_stands_in_a_file_is_left_to_its_reader() {
         let overridden = set(&[("material.prony[2].modulus", "1e6")]).unwrap();
         assert_eq!((overridden.text.as_str(), overridden.in_named_files.len()), (TEXT, 1));
+    }
+
+    #[test]
+    fn a_number_is_found_by_its_key() {
+        assert_eq!(number(TEXT, "layer.masses"), Some(2.0));
+        assert_eq!(number(TEXT, "layer.vertical.maxwell[2].stiffness"), Some(2.0));
+        assert_eq!(number(TEXT, "excitation[2].u_sine.amplitude"), Some(1.0));
+        for key in ["name", "layer.mass", "excitation[3].duration", "material.prony[1].modulus", "..", "layer"] {
+            assert_eq!(number(TEXT, key), None, "{key}");
+        }
     }
 
     #[test]

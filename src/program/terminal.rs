@@ -97,13 +97,25 @@ pub(crate) fn be_quiet() {
 
 /// A progress bar of `length` positions; where standard error is no terminal a line every ten seconds.
 pub(crate) fn bar(length: u64) -> ProgressBar {
-    let is_terminal = std::io::stderr().is_terminal();
+    progress(Some(length), "{bar:40} {percent:>3} %  {msg}  {eta} left", "{percent} % done, {eta} left  {msg}")
+}
+
+/// A count of `what` is done, where nobody knows of how many; shown as [`bar`] is.
+pub(crate) fn counter(what: &str) -> ProgressBar {
+    progress(
+        None,
+        &format!("{{spinner}} {{pos}} {what}  {{msg}}  {{elapsed}}"),
+        &format!("{{pos}} {what}, {{elapsed}}  {{msg}}"),
+    )
+}
+
+fn progress(length: Option<u64>, for_terminals: &str, as_lines: &str) -> ProgressBar {
     let (target, template) = match QUIET.load(Ordering::Relaxed) {
-        true => (ProgressDrawTarget::hidden(), ""),
-        false if is_terminal => (ProgressDrawTarget::stderr(), "{bar:40} {percent:>3} %  {msg}  {eta} left"),
-        false => (ProgressDrawTarget::term_like(Box::new(ProgressLines::new())), "{percent} % done, {eta} left  {msg}"),
+        true => (ProgressDrawTarget::hidden(), for_terminals),
+        false if io::stderr().is_terminal() => (ProgressDrawTarget::stderr(), for_terminals),
+        false => (ProgressDrawTarget::term_like(Box::new(ProgressLines::new())), as_lines),
     };
-    let bar = ProgressBar::with_draw_target(Some(length), target);
+    let bar = ProgressBar::with_draw_target(length, target);
     match ProgressStyle::with_template(template) {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,

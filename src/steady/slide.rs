@@ -95,10 +95,15 @@ pub struct SteadySolver {
 impl SlidingRubber {
     /// The rubber of a scene in the material form, on a half-space or a layer; `None` of any other.
     pub fn new(scene: &Scene) -> Option<Self> {
+        Self::with_friction(scene, FrictionLaw::new(scene))
+    }
+
+    /// [`new`](Self::new) of a scene whose law of friction is known.
+    pub fn with_friction(scene: &Scene, friction: FrictionLaw) -> Option<Self> {
         let material = scene.material.clone()?;
         Some(Self {
             body: scene.layer.body(&material)?,
-            friction: FrictionLaw::new(scene),
+            friction,
             element_area: scene.layer.element_area()?,
             heat: HeatResponse::new(scene),
             has_friction: scene.has_friction(),

@@ -6,6 +6,7 @@ use std::ffi::OsString;
 use std::ops::{Deref, RangeInclusive};
 use std::path::PathBuf;
 
+use asperity::calibration::FreeParameter;
 use asperity::scene::{LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt};
 use clap::{ArgGroup, Args, Parser, Subcommand};
 
@@ -14,7 +15,7 @@ use super::sweep::SweepMethod;
 use super::sweep::values::{Shard, Values};
 pub(crate) use values::{Condition, PlotAxis, WlfConstants, tenth};
 use values::{
-    Frequencies, Tolerances, column_unit, count, fit_error, frequency, key_and_value, length, picture,
+    Frequencies, Tolerances, column_unit, count, fit_error, free_parameter, frequency, key_and_value, length, picture,
     picture_or_table, poisson_ratio, powers, pressure, seconds, seeds, share, speed, table, temperature, wavelengths,
 };
 
@@ -54,6 +55,11 @@ pub(crate) enum Command {
     /// Tests whether friction and contact area depend on a scene's spacing, length and seed. Exit status 0: all within
     /// the error; 3: not all.
     Converge(Converge),
+    /// Fits numbers of a scene to measured friction: values, standard errors, what the data cannot tell. Exit status 0:
+    /// converged; 3: not converged, or not all identifiable; 1: refused.
+    Calibrate(Calibrate),
+    /// Compares the table of a sweep with measured friction: curves and points in one picture, and the worst points.
+    Compare(Compare),
     /// Draws where the rubber touches in steady sliding, and how hard.
     Contact(Contact),
     /// Prints what completes commands and options in a shell: asperity completions bash >>
@@ -482,6 +488,70 @@ pub(crate) struct Sweep {
     pub(crate) force: bool,
     #[command(flatten)]
     pub(crate) set: Set,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Calibrate {
+    /// The scene file, in the material form; its excitation and outputs are not used.
+    #[arg(value_name = "SCENE.toml")]
+    pub(crate) scene: PathBuf,
+    /// The measured friction: columns, by their names and units, of speed, pressure (or force on the whole layer) and
+    /// friction; of temperature and of the standard deviation of friction if it has them. Rows of one point are repeats.
+    #[arg(long, value_name = "MEASURED.csv")]
+    pub(crate) data: PathBuf,
+    /// A number of the scene to fit, by its key as for --set, within bounds; its logarithm where they are positive and a
+    /// decade apart. May be repeated, up to 12 times.
+    #[arg(long, value_name = "KEY=LOW..HIGH", value_parser = free_parameter, required = true)]
+    pub(crate) free: Vec<FreeParameter>,
+    /// The scene to write with the numbers found, its comments kept; - for standard output. The points found are kept in
+    /// a table beside it, from which an interrupted fit goes on. Default: the scene's file with .calibrated.toml.
+    #[arg(short, long, value_name = "OUT.toml")]
+    pub(crate) output: Option<PathBuf>,
+    /// The plot to write, as SVG or PNG according to the file name. Default: the output's name with .svg.
+    #[arg(long, value_name = "OUT.svg", value_parser = picture())]
+    pub(crate) plot: Option<PathBuf>,
+    /// How steady sliding is found, as in asperity sweep.
+    #[arg(long, value_name = "METHOD", value_enum)]
+    pub(crate) method: Option<SweepMethod>,
+    /// Points of a period along x, with --method steady, as in asperity sweep.
+    #[arg(long, value_name = "N", value_parser = count)]
+    pub(crate) points: Option<u32>,
+    /// Admissible standard error of the friction coefficient, relative to it, with --method layer. Default: 5e-3.
+    #[arg(long, value_name = "SHARE", value_parser = share)]
+    pub(crate) error: Option<f64>,
+    /// Maximum sliding distance in m for a point to become steady, with --method layer. Default: 100 blocks.
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
+    pub(crate) distance: Option<f64>,
+    /// Also proposes three points to measure that would tell most (D-optimal among a grid).
+    #[arg(long)]
+    pub(crate) plan: bool,
+    /// Speeds of that grid in m/s, in the format of asperity sweep. Default: a decade beyond the data's.
+    #[arg(long, value_name = "VALUES", value_parser = Values::speeds, requires = "plan")]
+    pub(crate) speeds: Option<Values>,
+    /// Pressures of that grid in Pa. Default: a factor of two beyond the data's.
+    #[arg(long, value_name = "VALUES", value_parser = Values::pressures, requires = "plan")]
+    pub(crate) pressures: Option<Values>,
+    /// Temperatures of that grid in K. Default: 20 K beyond the data's.
+    #[arg(long, value_name = "VALUES", value_parser = Values::temperatures, requires = "plan")]
+    pub(crate) temperatures: Option<Values>,
+    /// Replaces an existing table of points instead of going on from it.
+    #[arg(long)]
+    pub(crate) force: bool,
+    #[command(flatten)]
+    pub(crate) set: Set,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Compare {
+    /// The table of asperity sweep, over pressures.
+    #[arg(value_name = "TABLE.csv")]
+    pub(crate) table: PathBuf,
+    /// The measured friction, as for asperity calibrate.
+    #[arg(long, value_name = "MEASURED.csv")]
+    pub(crate) data: PathBuf,
+    /// The plot to write, as SVG or PNG according to the file name. Default: the table's name with .compare.svg.
+    #[arg(short, long, value_name = "OUT.svg", value_parser = picture())]
+    pub(crate) output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -5,6 +5,7 @@ use std::fmt::{self, Display, Formatter};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
+use asperity::calibration::FreeParameter;
 use asperity::scene::Wlf;
 use asperity::scene::text_table::{Dimension, Unit, quantity};
 use clap::builder::{PathBufValueParser, TypedValueParser};
@@ -17,6 +18,17 @@ pub(super) fn key_and_value(text: &str) -> Result<(String, String), String> {
         Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().into(), value.trim().into())),
         _ => Err("expected KEY=VALUE, such as solver.relative_tolerance=1e-9".into()),
     }
+}
+
+/// The key and the bounds of `--free`.
+pub(super) fn free_parameter(text: &str) -> Result<FreeParameter, String> {
+    let parted = text.split_once('=').and_then(|(key, bounds)| {
+        let (low, high) = ends(bounds)?;
+        FreeParameter::new(key.trim().to_owned(), low, high)
+    });
+    parted
+        .filter(|parameter| !parameter.key.is_empty())
+        .ok_or_else(|| "expected KEY=LOW..HIGH, LOW below HIGH, such as friction.rate_shear.strength=1e5..2e7".into())
 }
 
 /// Which rows `--where` chooses.

@@ -24,7 +24,7 @@ use super::files::{FileError, check_outputs, default_output, picture_beside, pri
 use super::interrupt::Farewell;
 use super::sweep::{NeverSteady, StopBounds, check_can_be_steady, relevant, steady_sliding, table_fingerprint};
 use super::terminal::{self, warn};
-use crate::program::persson::{Dimension, Theory};
+use asperity::steady::persson::{Dimension, Theory};
 use plan::{Next, Plan};
 use table::{Measured, RunRow, StudyHeader, Table};
 use variants::{Template, Variant};

@@ -2,8 +2,8 @@
 
 use super::table::RunRow;
 use super::verdict::{LargestOpen, Open, Pair, Source, Verdict};
-use crate::program::persson::Theory;
 use crate::program::terminal::{LabelledLine, decimal, labelled, lines, rounded};
+use asperity::steady::persson::Theory;
 
 const TITLES: [&str; 13] = [
     "masses",

@@ -11,8 +11,8 @@ use super::verdict::Pair;
 use crate::program::draft::LineFile;
 use crate::program::files::{FileError, write};
 use crate::program::lock::TableLock;
-use crate::program::persson::Theory;
 use crate::program::terminal::{real, warn};
+use asperity::steady::persson::Theory;
 
 /// The first line of a table; its number grows when readers have to know of a change.
 const FORMAT: &str = "# asperity converge = 3";

@@ -28,13 +28,15 @@ use super::interrupt::Farewell;
 use super::terminal::{self, lines, warn};
 use load_search::{heights, rest_separation};
 pub(crate) use method::{Asked, Method, MethodError, SweepMethod};
+pub(crate) use plot::with_prefix;
 use point::{MIN_BLOCKS, PointResult};
 pub(crate) use point::{SMALL as SMALL_FRICTION, SteadySliding, StopBounds};
 use slide::Blocks;
 use solved::SolvedPoints;
 pub(crate) use solved::status as solved_status;
+use table_file::TableFile;
 pub(crate) use table_file::fingerprint as table_fingerprint;
-use table_file::{SweepTable, TableFile, TableFileError};
+pub(crate) use table_file::{SweepTable, TableFileError};
 use values::Values;
 
 /// `asperity sweep` failed, or not all of its points are steady.
@@ -209,11 +211,11 @@ fn run(
     work
 }
 
-/// Standard error of the friction coefficient over it where none is given.
-const ERROR: f64 = 5e-3;
+/// Standard error of the layer's friction coefficient over it where none is given.
+pub(crate) const LAYER_ERROR: f64 = 5e-3;
 
 fn bounds(command: &Sweep) -> StopBounds {
-    StopBounds { error: command.error.unwrap_or(ERROR), distance: command.distance }
+    StopBounds { error: command.error.unwrap_or(LAYER_ERROR), distance: command.distance }
 }
 
 fn asked(command: &Sweep) -> Asked {
@@ -271,7 +273,7 @@ fn temperatures(command: &Sweep, scene: &Scene) -> Result<Vec<f64>, SweepError> 
     Ok(values)
 }
 
-fn with_temperature(scene: &Scene, temperature: f64) -> Scene {
+pub(crate) fn with_temperature(scene: &Scene, temperature: f64) -> Scene {
     let mut scene = scene.clone();
     if let Some(wlf) = scene.material.as_mut().and_then(|material| material.wlf.as_mut()) {
         wlf.temperature = temperature;

@@ -73,7 +73,7 @@ fn curves<'a>(name: &str, look: usize, rows: impl Iterator<Item = &'a StoredRow>
 }
 
 /// A quantity with a prefix of its unit: `0.2 MPa`.
-fn with_prefix(value: f64, unit: &str) -> String {
+pub(crate) fn with_prefix(value: f64, unit: &str) -> String {
     let (prefix, factor) = match value {
         value if value >= 1e5 => ("M", 1e6),
         value if value >= 1e3 => ("k", 1e3),

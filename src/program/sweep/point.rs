@@ -92,6 +92,11 @@ impl SteadySliding {
         self.friction.hysteresis
     }
 
+    /// The part of that by the waves that the profile lacks, 1.
+    pub(crate) fn fine(&self) -> f64 {
+        self.friction.fine.unwrap_or(0.0)
+    }
+
     /// Mean force against the motion, N.
     pub(crate) fn drag(&self) -> f64 {
         self.friction.whole * self.force_z

@@ -56,20 +56,20 @@ fn some_of(points: &[String]) -> String {
 
 /// A row as it stands in a file: a table that is continued or merged keeps it to the letter.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct StoredRow {
-    pub(super) row: TableRow,
+pub(crate) struct StoredRow {
+    pub(crate) row: TableRow,
     text: String,
 }
 
 /// A table read from a file.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct SweepTable {
-    pub(super) header: TableHeader,
-    pub(super) rows: Vec<StoredRow>,
+pub(crate) struct SweepTable {
+    pub(crate) header: TableHeader,
+    pub(crate) rows: Vec<StoredRow>,
 }
 
 impl SweepTable {
-    pub(super) fn read(path: &Path) -> Result<Self, TableFileError> {
+    pub(crate) fn read(path: &Path) -> Result<Self, TableFileError> {
         let text = read_text(path).map_err(FileError::io("read", path))?;
         let (table, corrupt) = Self::parse(&text, path)?;
         corrupt.into_iter().next().map_or(Ok(table), |error| Err(error.into()))

@@ -8,23 +8,25 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 
-use asperity::scene::{Body, FineBand, FineRoughness, Material, Scene, Spectrum};
+use crate::scene::{Body, FineBand, FineRoughness, Material, Scene, Spectrum, Surface};
 
 /// Area and friction by the theory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Theory {
+pub struct Theory {
     /// In contact over the whole by the waves of the profile, 1.
-    pub(super) area: f64,
+    pub area: f64,
     /// Friction coefficient with S = 1.
-    pub(super) friction: f64,
+    pub friction: f64,
     /// Friction coefficient with S = ½ + ½P².
-    pub(super) friction_reduced: f64,
+    pub friction_reduced: f64,
 }
 
 /// Whether the waves of the profile are those of ridges across the motion, or those of a line on an isotropic surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Dimension {
+pub enum Dimension {
+    /// Ridges across the motion.
     One,
+    /// An isotropic surface, of which the profile is a line.
     Two,
 }
 
@@ -34,13 +36,13 @@ const ANGLES: u32 = 32;
 impl Theory {
     /// Area and friction of the waves that the layer of `scene` resolves and of those that the profile lacks, sliding at
     /// `speed` (m/s) under `pressure` (Pa); `None` in the direct form.
-    pub(super) fn new(scene: &Scene, pressure: f64, speed: f64, dimension: Dimension) -> Option<Self> {
+    pub fn new(scene: &Scene, pressure: f64, speed: f64, dimension: Dimension) -> Option<Self> {
         let parts = Part::all(scene, speed, dimension)?;
         Some(Self::of(&parts, pressure))
     }
 
     /// Area, friction and friction reduced.
-    pub(super) fn values(&self) -> [f64; 3] {
+    pub fn values(&self) -> [f64; 3] {
         [self.area, self.friction, self.friction_reduced]
     }
 
@@ -60,11 +62,11 @@ impl Theory {
 
 /// What a wave of an isotropic surface, or a band of waves that the profile lacks, gives of friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct WaveFriction {
+pub struct WaveFriction {
     /// q, rad/m.
-    pub(super) wave_number: f64,
+    pub wave_number: f64,
     /// Whether the profile lacks it.
-    pub(super) is_fine: bool,
+    pub is_fine: bool,
     /// Its part of the friction coefficient by hysteresis, with S = ¾ + ¼P².
     friction: f64,
 }
@@ -72,16 +74,16 @@ pub(super) struct WaveFriction {
 /// The friction coefficient of an isotropic surface by the theory, and its parts, with the factors of the law of the
 /// waves that the profile lacks (docs/foundation.md, section 5).
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct WholeFriction {
+pub struct WholeFriction {
     /// Of each wave, in the order of q.
-    pub(super) by_wave: Vec<WaveFriction>,
+    pub by_wave: Vec<WaveFriction>,
     /// What Coulomb's friction and the shear of the area that touches add.
-    pub(super) adhesion: f64,
+    pub adhesion: f64,
 }
 
 impl WholeFriction {
     /// That of `scene` at `speed` (m/s) under `pressure` (Pa); without waves in the direct form.
-    pub(super) fn new(scene: &Scene, pressure: f64, speed: f64) -> Self {
+    pub fn new(scene: &Scene, pressure: f64, speed: f64) -> Self {
         let parts = Part::all(scene, speed, Dimension::Two).unwrap_or_default();
         let of = |(part, in_contact): (&Part, f64)| {
             let Part { wave_number, is_fine, loss, .. } = *part;
@@ -99,11 +101,12 @@ impl WholeFriction {
     }
 
     /// Its part by the hysteresis of some waves.
-    pub(super) fn hysteresis(&self, of: impl Fn(&WaveFriction) -> bool) -> f64 {
+    pub fn hysteresis(&self, of: impl Fn(&WaveFriction) -> bool) -> f64 {
         self.by_wave.iter().filter(|wave| of(wave)).fold(0.0, |sum, wave| sum + wave.friction)
     }
 
-    pub(super) fn friction(&self) -> f64 {
+    /// All of it.
+    pub fn friction(&self) -> f64 {
         self.hysteresis(|_| true) + self.adhesion
     }
 }
@@ -206,6 +209,28 @@ impl Dimension {
     }
 }
 
+/// All waves of a profile, to be met at any speed and pressure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProfileWaves {
+    /// q (rad/m) and mean square height, m².
+    waves: Vec<(f64, f64)>,
+    dimension: Dimension,
+}
+
+impl ProfileWaves {
+    /// Those of a surface: of a map as of an isotropic one, else of ridges.
+    pub fn new(surface: &Surface) -> Self {
+        let dimension = if surface.map().is_some() { Dimension::Two } else { Dimension::One };
+        Self { waves: Spectrum::new(surface).modes().collect(), dimension }
+    }
+
+    /// Area and friction of the waves in rubber of a `material` as part of a `body`, at `speed` (m/s) under `pressure`, Pa.
+    pub fn sliding(&self, material: &Material, body: Body, speed: f64, pressure: f64) -> Theory {
+        let part = |&wave: &(f64, f64)| Part::of_profile(wave, material, body, speed, self.dimension);
+        Theory::of(&self.waves.iter().map(part).collect::<Vec<_>>(), pressure)
+    }
+}
+
 /// The waves of the profile that the layer resolves.
 fn resolved(scene: &Scene) -> Vec<(f64, f64)> {
     Spectrum::new(&scene.surface).modes().filter(|(wave_number, _)| scene.layer.resolves(*wave_number)).collect()
@@ -215,7 +240,7 @@ fn resolved(scene: &Scene) -> Vec<(f64, f64)> {
 mod tests {
     use std::f64::consts::{FRAC_2_PI, TAU};
 
-    use asperity::scene::PronyTerm;
+    use crate::scene::PronyTerm;
 
     use super::*;
 

@@ -1,0 +1,228 @@
+//! What the data say of parameters at a least square: errors, correlations, what cannot be told apart.
+//!
+//! With J the derivatives of the weighted residuals by the coordinates (the logarithm, or the value over the distance of
+//! the bounds), the covariance is (JᵀJ)⁻¹, times χ² per degree of freedom where the standard deviations are assumed. A
+//! singular value of J below 1e-3 of the largest is a direction that the data do not see, and a parameter whose 95 %
+//! interval covers its bounds is one that they do not tell.
+
+use nalgebra::DMatrix;
+
+use super::parameter::FreeParameter;
+use super::problem::{Linearised, Problem, sum_of_squares};
+
+/// A singular value below this part of the largest is of a direction that is not identifiable.
+const NOT_IDENTIFIABLE: f64 = 1e-3;
+/// A place nearer than this to a bound is at it.
+const AT_BOUND: f64 = 1e-4;
+
+/// A direction in the parameters in which friction hardly changes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Direction {
+    /// How much each parameter moves, in its coordinate; the squares add to 1.
+    pub components: Vec<f64>,
+    /// Its singular value over the largest.
+    pub share: f64,
+}
+
+impl Direction {
+    /// The parameters that take part: their indices.
+    pub fn parameters(&self) -> impl Iterator<Item = usize> {
+        /// Smaller components are none.
+        const NEXT_TO_NONE: f64 = 0.1;
+        self.components.iter().enumerate().filter(|(_, part)| part.abs() > NEXT_TO_NONE).map(|(index, _)| index)
+    }
+}
+
+/// Errors and identifiability of the parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Statistics {
+    /// Sum of the squared residuals.
+    pub chi_square: f64,
+    /// Measurements less free parameters.
+    pub degrees: usize,
+    /// What the squares of errors are multiplied by: 1, or χ² per degree of freedom where the deviations are assumed.
+    pub scale: f64,
+    /// Which parameters are at a bound: the bound.
+    pub at_bound: Vec<Option<f64>>,
+    /// Standard errors in the coordinates; `None` at a bound.
+    pub errors: Vec<Option<f64>>,
+    /// 95 % intervals of the values; `None` at a bound.
+    pub intervals: Vec<Option<(f64, f64)>>,
+    /// Correlations; 0 with those at a bound.
+    pub correlation: DMatrix<f64>,
+    /// The singular values of J, descending, without those at a bound.
+    pub singular_values: Vec<f64>,
+    /// What cannot be identified.
+    pub not_identifiable: Vec<Direction>,
+    /// Which parameters have an interval that covers their bounds: the data add nothing to these.
+    pub covers_bounds: Vec<bool>,
+}
+
+impl Statistics {
+    /// Those at some places.
+    pub fn new(problem: &Problem, places: &[f64], linearised: &Linearised) -> Self {
+        let count = places.len();
+        let bound = |(place, parameter): (&f64, &FreeParameter)| match *place {
+            place if place < AT_BOUND => Some(parameter.bounds().0),
+            place if place > 1.0 - AT_BOUND => Some(parameter.bounds().1),
+            _ => None,
+        };
+        let at_bound: Vec<Option<f64>> = places.iter().zip(&problem.parameters).map(bound).collect();
+        let inner: Vec<usize> = (0..count).filter(|&index| at_bound[index].is_none()).collect();
+        let degrees = problem.rows.len().saturating_sub(inner.len());
+        let chi_square = sum_of_squares(&linearised.residuals);
+        let scale = if problem.has_sigma || degrees == 0 { 1.0 } else { chi_square_per_degree(chi_square, degrees) };
+        let jacobian = by_coordinates(problem, linearised).select_columns(&inner);
+        let mut statistics = Self {
+            chi_square,
+            degrees,
+            scale,
+            at_bound,
+            errors: vec![None; count],
+            intervals: vec![None; count],
+            correlation: DMatrix::identity(count, count),
+            singular_values: Vec::new(),
+            not_identifiable: Vec::new(),
+            covers_bounds: vec![false; count],
+        };
+        statistics.decompose(jacobian, &inner);
+        let factor = student(degrees);
+        for (index, parameter) in problem.parameters.iter().enumerate() {
+            let value = parameter.value(places[index]);
+            statistics.intervals[index] = statistics.errors[index].map(|error| {
+                let end = |sign: f64| parameter.moved(value, sign * factor * error);
+                (end(-1.0), end(1.0))
+            });
+            let (low, high) = parameter.bounds();
+            let interval = statistics.intervals[index];
+            statistics.covers_bounds[index] = interval.is_some_and(|interval| interval.0 <= low && high <= interval.1);
+        }
+        statistics
+    }
+
+    /// Errors, correlations and directions from the singular values of J over the parameters that are at no bound.
+    fn decompose(&mut self, jacobian: DMatrix<f64>, inner: &[usize]) {
+        if inner.is_empty() {
+            return;
+        }
+        let decomposed = jacobian.svd(false, true);
+        let Some(directions) = decomposed.v_t else { return };
+        self.singular_values = decomposed.singular_values.iter().copied().collect();
+        let largest = self.singular_values.iter().copied().fold(0.0, f64::max);
+        let covariance = |a: usize, b: usize| -> f64 {
+            let part = |(k, value): (usize, &f64)| directions[(k, a)] * directions[(k, b)] / (value * value);
+            self.scale * self.singular_values.iter().enumerate().map(part).sum::<f64>()
+        };
+        let deviations: Vec<f64> = (0..inner.len()).map(|a| covariance(a, a).sqrt()).collect();
+        for (a, &row) in inner.iter().enumerate() {
+            for (b, &column) in inner.iter().enumerate() {
+                self.correlation[(row, column)] = covariance(a, b) / (deviations[a] * deviations[b]);
+            }
+        }
+        inner.iter().zip(&deviations).for_each(|(&index, deviation)| self.errors[index] = Some(*deviation));
+        for (k, value) in self.singular_values.iter().enumerate() {
+            if *value <= NOT_IDENTIFIABLE * largest {
+                let mut components = vec![0.0; self.errors.len()];
+                inner.iter().enumerate().for_each(|(a, &index)| components[index] = directions[(k, a)]);
+                self.not_identifiable.push(Direction { components, share: value / largest });
+            }
+        }
+    }
+
+    /// Whether the data tell all parameters.
+    pub fn tell_all(&self) -> bool {
+        self.not_identifiable.is_empty() && !self.covers_bounds.contains(&true)
+    }
+
+    /// Whether the data tell a parameter.
+    pub fn is_identifiable(&self, index: usize) -> bool {
+        !self.covers_bounds[index]
+            && !self.not_identifiable.iter().any(|direction| direction.parameters().any(|part| part == index))
+    }
+}
+
+/// J by the coordinates of the statistics.
+pub(super) fn by_coordinates(problem: &Problem, linearised: &Linearised) -> DMatrix<f64> {
+    let mut jacobian = linearised.jacobian.clone();
+    for (mut column, parameter) in jacobian.column_iter_mut().zip(&problem.parameters) {
+        column /= parameter.span();
+    }
+    jacobian
+}
+
+/// χ² per degree of freedom; χ² itself without any.
+pub fn chi_square_per_degree(chi_square: f64, degrees: usize) -> f64 {
+    chi_square / degrees.max(1) as f64
+}
+
+/// The factor of the standard error in a 95 % interval: Student's t, by its expansion in the inverse of the degrees of
+/// freedom (M. Abramowitz, I. A. Stegun, 26.7.5), to 1 % from three on.
+fn student(degrees: usize) -> f64 {
+    /// Of the normal distribution.
+    const NORMAL: f64 = 1.959_963_984_540_054;
+    let (z, inverse) = (NORMAL, 1.0 / degrees.max(1) as f64);
+    let square = z * z;
+    let first = z * (square + 1.0) / 4.0;
+    let second = z * ((5.0 * square + 16.0) * square + 3.0) / 96.0;
+    let third = z * (((3.0 * square + 19.0) * square + 17.0) * square - 15.0) / 384.0;
+    let fourth = z * ((((79.0 * square + 776.0) * square + 1482.0) * square - 1920.0) * square - 945.0) / 92160.0;
+    z + inverse * (first + inverse * (second + inverse * (third + inverse * fourth)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibration::Row;
+
+    /// Quantiles of Student's distribution from tables.
+    #[test]
+    fn the_factor_of_an_interval_is_that_of_students_tables() {
+        for (degrees, factor) in [(3, 3.182), (5, 2.571), (10, 2.228), (30, 2.042), (1000, 1.962)] {
+            assert!((student(degrees) / factor - 1.0).abs() < 1e-2, "{degrees}: {}", student(degrees));
+        }
+    }
+
+    fn problem(rows: usize, parameters: usize, has_sigma: bool) -> Problem {
+        // Coordinates and places are one: the bounds are not a decade apart.
+        let parameter = |i| FreeParameter::new(format!("p{i}"), 1.0, 2.0).unwrap();
+        Problem {
+            parameters: (0..parameters).map(parameter).collect(),
+            points: Vec::new(),
+            rows: vec![Row { point: 0, friction: 1.0, sigma: 0.1 }; rows],
+            has_sigma,
+        }
+    }
+
+    /// A line through points at -1, 0, 1: its constant has 1/3 of the variance, its slope 1/2.
+    #[test]
+    fn a_line_has_the_errors_of_the_book() {
+        let jacobian = DMatrix::from_row_slice(3, 2, &[1.0, -1.0, 1.0, 0.0, 1.0, 1.0]);
+        let linearised = Linearised { residuals: vec![1.0, -2.0, 1.0], jacobian };
+        for (has_sigma, scale) in [(true, 1.0), (false, 6.0)] {
+            let statistics = Statistics::new(&problem(3, 2, has_sigma), &[0.5, 0.5], &linearised);
+            let errors: Vec<f64> = statistics.errors.iter().map(|error| error.unwrap()).collect();
+            assert!((errors[0] - f64::sqrt(scale / 3.0)).abs() < 1e-12, "{errors:?}");
+            assert!((errors[1] - f64::sqrt(scale / 2.0)).abs() < 1e-12, "{errors:?}");
+            assert!(statistics.correlation[(0, 1)].abs() < 1e-12 && statistics.not_identifiable.is_empty());
+        }
+    }
+
+    #[test]
+    fn a_parameter_at_its_bound_has_no_error_and_costs_no_degree() {
+        let jacobian = DMatrix::from_row_slice(3, 2, &[1.0, -1.0, 1.0, 0.0, 1.0, 1.0]);
+        let linearised = Linearised { residuals: vec![1.0, -2.0, 1.0], jacobian };
+        let statistics = Statistics::new(&problem(3, 2, true), &[0.5, 1.0], &linearised);
+        assert_eq!((statistics.at_bound[1], statistics.errors[1], statistics.degrees), (Some(2.0), None, 2));
+    }
+
+    #[test]
+    fn what_counts_only_together_is_named() {
+        let jacobian = 100.0 * DMatrix::from_row_slice(3, 3, &[1.0, -1.0, 0.1, 2.0, -2.0, 3.0, 3.0, -3.0, 1.0]);
+        let linearised = Linearised { residuals: vec![0.0; 3], jacobian };
+        let statistics = Statistics::new(&problem(3, 3, true), &[0.5; 3], &linearised);
+        let [direction] = &statistics.not_identifiable[..] else { panic!("{statistics:?}") };
+        assert_eq!(direction.parameters().collect::<Vec<_>>(), [0, 1]);
+        assert!((direction.components[0] - direction.components[1]).abs() < 1e-12);
+        assert!(!statistics.is_identifiable(1) && statistics.is_identifiable(2));
+    }
+}

@@ -1,0 +1,130 @@
+//! The table beside a calibration's output: the points that were found, so that nothing is found twice.
+
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use asperity::calibration::{FreeParameter, FrictionParts, Outcome, Task};
+use asperity::element::OperatingPoint;
+use asperity::scene::{read_file, text_table};
+
+use super::CalibrateError;
+use crate::program::draft::LineFile;
+use crate::program::files::FileError;
+use crate::program::lock::TableLock;
+use crate::program::terminal::{real, warn};
+
+/// The first line of a table; its number grows when readers have to know of a change.
+const FORMAT: &str = "# asperity calibrate = 1";
+const STEADY: &str = "steady";
+
+/// A table to which points are added.
+#[derive(Debug)]
+pub(super) struct KeptPoints {
+    file: LineFile,
+    _lock: TableLock,
+}
+
+impl KeptPoints {
+    /// Begins a table or, unless it is to be replaced, continues the one that is there; and the points that it has.
+    pub(super) fn open(
+        path: &Path,
+        fingerprint: &str,
+        parameters: &[FreeParameter],
+        replace: bool,
+    ) -> Result<(Self, Vec<(Task, Outcome)>), CalibrateError> {
+        let lock = TableLock::take(path)?;
+        let head = head(fingerprint, parameters);
+        let known = if replace { Vec::new() } else { read(path, &head, parameters.len())? };
+        let rows: String = known.iter().map(|(task, outcome)| line(task, outcome)).collect();
+        Ok((Self { file: LineFile::create(path, &(head + &rows))?, _lock: lock }, known))
+    }
+
+    /// Adds a point; it is in the file when this returns.
+    pub(super) fn add(&self, task: &Task, outcome: &Outcome) -> Result<(), FileError> {
+        self.file.add(&line(task, outcome))
+    }
+}
+
+/// The lines before the rows.
+fn head(fingerprint: &str, parameters: &[FreeParameter]) -> String {
+    let keys = parameters.iter().map(|parameter| parameter.key.as_str());
+    let others = ["speed [m/s]", "pressure [Pa]", "temperature [K]", "status", "profile [1]", "fine [1]", "shear [1]"];
+    format!("{FORMAT}\n# fingerprint = {fingerprint}\n{}\n", keys.chain(others).collect::<Vec<_>>().join(","))
+}
+
+fn line(task: &Task, outcome: &Outcome) -> String {
+    let values = task.parameters.iter().copied().map(real);
+    let OperatingPoint { speed, load, temperature } = task.point;
+    let point = [real(speed), real(load), temperature.map(real).unwrap_or_default()];
+    let status = outcome.as_ref().err().map_or(STEADY, String::as_str);
+    let parts = outcome.as_ref().map_or([None; 3], |parts| [parts.profile, parts.fine, parts.shear].map(Some));
+    let fields = values.chain(point).chain([text_table::quoted(status)]);
+    let parts = parts.map(|part| part.map(real).unwrap_or_default());
+    fields.chain(parts).collect::<Vec<_>>().join(",") + "\n"
+}
+
+/// The points of the table at `path`, without those that are damaged; none where there is no file.
+fn read(path: &Path, head: &str, parameters: usize) -> Result<Vec<(Task, Outcome)>, CalibrateError> {
+    let text = match read_file(path) {
+        Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(FileError::io("read", path)(error).into()),
+    };
+    // A header that was cut off as its writer was stopped.
+    if head.starts_with(&text) {
+        return Ok(Vec::new());
+    }
+    let Some(rows) = text.strip_prefix(head) else {
+        return Err(CalibrateError::OtherCalibration { path: PathBuf::from(path) });
+    };
+    let mut known = Vec::new();
+    for (number, line) in (1 + head.lines().count()..).zip(rows.split_inclusive('\n')) {
+        match point(line, parameters) {
+            Some(found) => known.push(found),
+            None => warn(&format!("{}:{number}: the row is damaged; its point is found again", path.display())),
+        }
+    }
+    Ok(known)
+}
+
+/// The point of a row; `None` where it is damaged. A last line without an end was cut off.
+fn point(line: &str, parameters: usize) -> Option<(Task, Outcome)> {
+    let line = line.strip_suffix('\n')?;
+    let fields: Vec<String> = text_table::fields(line, ',').map(std::borrow::Cow::into_owned).collect();
+    if fields.len() != parameters + 7 {
+        return None;
+    }
+    let number = |index: usize| fields.get(index)?.parse::<f64>().ok().filter(|number| number.is_finite());
+    let values: Option<Vec<f64>> = (0..parameters).map(number).collect();
+    let temperature = if fields[parameters + 2].is_empty() { None } else { Some(number(parameters + 2)?) };
+    let point = OperatingPoint { speed: number(parameters)?, load: number(parameters + 1)?, temperature };
+    let outcome = match fields[parameters + 3].as_str() {
+        STEADY => Ok(FrictionParts {
+            profile: number(parameters + 4)?,
+            fine: number(parameters + 5)?,
+            shear: number(parameters + 6)?,
+        }),
+        why => Err(why.to_owned()),
+    };
+    Some((Task { parameters: values?, point }, outcome))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_is_read_as_it_was_written() {
+        let task = |temperature| Task {
+            parameters: vec![1.0 / 3.0, 2e-7],
+            point: OperatingPoint { speed: 0.1, load: 1e5, temperature },
+        };
+        let parts = FrictionParts { profile: 0.1 + 0.2, fine: 1e-9, shear: -0.5 };
+        for (task, outcome) in [(task(Some(293.15)), Ok(parts)), (task(None), Err("no, \"never\" steady".to_owned()))] {
+            let line = line(&task, &outcome);
+            assert_eq!(point(&line, 2), Some((task, outcome)));
+            // Whatever is cut off.
+            assert!((0..line.len()).all(|end| point(&line[..end], 2).is_none()), "{line}");
+        }
+    }
+}

@@ -1,0 +1,462 @@
+//! `asperity calibrate`: fits numbers of a scene to measured friction.
+
+mod kept;
+mod layer_model;
+mod summary;
+mod written;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Duration;
+
+use asperity::calibration::{
+    CalibrationError, Fitted, FreeParameter, FrictionModel, FrictionParts, Linearised, Measurements, Memo, Outcome,
+    Plan, Problem, Statistics, SteadyModel, Task, TheoryModel, Tolerance, chi_square_per_degree, map_space, minimise,
+    plan, starts_by_theory,
+};
+use asperity::element::OperatingPoint;
+use asperity::scene::{Scene, read_text};
+use indicatif::ProgressBar;
+
+use super::cli::Calibrate;
+use super::figure::{Figure as _, Stroke};
+use super::files::{
+    self, FileError, check_outputs, is_standard_output, load_without_excitation, picture_beside, print_beside, sources,
+};
+use super::interrupt::Farewell;
+use super::measured_friction::{self, CurveGrid, MeasuredFrictionError, ModelCurves};
+use super::overrides::{self, OverrideError, Setting};
+use super::sweep::{
+    Asked, LAYER_ERROR, Method, MethodError, NeverSteady, StopBounds, relevant, table_fingerprint, with_temperature,
+};
+use super::terminal::{self, real, rounded, warn};
+use kept::KeptPoints;
+use layer_model::LayerModel;
+
+/// `asperity calibrate` refused the scene, the data or the parameters.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum CalibrateError {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error(transparent)]
+    Measured(#[from] MeasuredFrictionError),
+    #[error(transparent)]
+    Calibration(#[from] CalibrationError),
+    #[error(transparent)]
+    Method(#[from] MethodError),
+    #[error(transparent)]
+    NeverSteady(#[from] NeverSteady),
+    #[error("cannot be written as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+    #[error("the scene has no material or layer.width, so nothing in it has a pressure: expected the material form")]
+    NoArea,
+    #[error("the scene has [carrier.x]; expected none, since the speed is prescribed")]
+    BodyAlongX,
+    #[error("--free {key}: expected a number in the scene file, to start from; the file has none there")]
+    NoNumber { key: String },
+    #[error("--free {key}: expected it once")]
+    Twice { key: String },
+    #[error("--free: expected at most {most} parameters, found {found}")]
+    Many { most: usize, found: usize },
+    #[error("--free {key}: expected a scene whose steady sliding is solved for: the layer has no heat in it")]
+    HeatOfLayer { key: String },
+    #[error("--free {key}: {problem}")]
+    Bound { key: String, problem: String },
+    #[error("{}: the scene has no material.wlf, so nothing in it depends on the temperature of the data", .0.display())]
+    NoWlf(PathBuf),
+    #[error("{}:{line}: {problem}", .path.display())]
+    Temperature { path: PathBuf, line: usize, problem: String },
+    #[error(
+        "{} is of another calibration: of another scene, other parameters, method or version; name another -o, or give --force \
+         to replace it",
+        .path.display()
+    )]
+    OtherCalibration { path: PathBuf },
+    #[error(
+        "-o {}: the scene names files relative to its folder ({}): expected an output there",
+        .output.display(), .file.display()
+    )]
+    OtherFolder { output: PathBuf, file: PathBuf },
+}
+
+/// Exit status where the fit has not converged or not all is identifiable: it is to be looked at.
+const OPEN: u8 = 3;
+/// Most free parameters.
+const MOST_FREE: usize = 12;
+/// Points of a curve.
+const CURVE: u32 = 25;
+/// How many measurements a plan proposes.
+const PLANNED: usize = 3;
+
+/// A scene whose numbers are free.
+#[derive(Debug)]
+pub(super) struct FreeScene<'a> {
+    command: &'a Calibrate,
+    text: String,
+    scene: Scene,
+    /// The area of the layer, m².
+    area: f64,
+    parameters: Vec<FreeParameter>,
+    /// The values that the file has.
+    own: Vec<f64>,
+    method: Method,
+    of_method: String,
+}
+
+impl<'a> FreeScene<'a> {
+    fn new(command: &'a Calibrate) -> Result<Self, CalibrateError> {
+        let scene = load_without_excitation(&command.scene, &command.set)?;
+        if scene.carrier.x.is_some() {
+            return Err(CalibrateError::BodyAlongX);
+        }
+        let area = scene.layer.area().filter(|_| scene.material.is_some()).ok_or(CalibrateError::NoArea)?;
+        let text = read_text(&command.scene).map_err(FileError::io("read", &command.scene))?;
+        let text = overrides::overridden(&text, &command.set).map_err(FileError::from)?.text;
+        let (method, of_method) = asked(command).choose(&scene)?;
+        method.check(&scene)?;
+        let mut free =
+            Self { command, text, scene, area, parameters: command.free.clone(), own: Vec::new(), method, of_method };
+        free.check_parameters()?;
+        Ok(free)
+    }
+
+    /// The parameters are numbers of the file, each once, and the scene is possible at each of their bounds.
+    fn check_parameters(&mut self) -> Result<(), CalibrateError> {
+        let keys: Vec<String> = self.parameters.iter().map(|parameter| parameter.key.clone()).collect();
+        if keys.len() > MOST_FREE {
+            return Err(CalibrateError::Many { most: MOST_FREE, found: keys.len() });
+        }
+        for (index, key) in keys.iter().enumerate() {
+            if keys[..index].contains(key) {
+                return Err(CalibrateError::Twice { key: key.clone() });
+            }
+            if matches!(self.method, Method::Layer) && key.starts_with("material.heat") {
+                return Err(CalibrateError::HeatOfLayer { key: key.clone() });
+            }
+            let own = overrides::number(&self.text, key);
+            self.own.push(own.ok_or_else(|| CalibrateError::NoNumber { key: key.clone() })?);
+        }
+        for (index, parameter) in self.parameters.iter().enumerate() {
+            let (low, high) = parameter.bounds();
+            for bound in [low, high] {
+                let mut values = self.own.clone();
+                values[index] = bound;
+                let refused = |problem| CalibrateError::Bound { key: parameter.key.clone(), problem };
+                self.at(&values).map_err(|error| refused(error.to_string()))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The free keys with their values.
+    fn settings(&self, values: &[f64]) -> Vec<Setting> {
+        self.parameters.iter().zip(values).map(|(parameter, value)| (parameter.key.clone(), real(*value))).collect()
+    }
+
+    /// The scene at some values.
+    fn at(&self, values: &[f64]) -> Result<Scene, CalibrationError> {
+        let settings = self.settings(values);
+        overrides::scene(&self.text, &self.command.scene, &settings).map_err(|refusal| {
+            let named: Vec<String> = settings.iter().map(|(key, value)| format!("{key} = {value}")).collect();
+            let problem = FileError::from(refusal).to_string();
+            CalibrationError::Scene { parameters: named.join(", "), problem }
+        })
+    }
+
+    /// The measurements at temperatures that the scene can have: its own where they have none.
+    fn measurements(&self) -> Result<Measurements, CalibrateError> {
+        let path = &self.command.data;
+        let mut measurements = measured_friction::read(path, self.area)?;
+        let wlf = self.scene.material.as_ref().and_then(|material| material.wlf.as_ref());
+        let Some(own) = wlf.map(|wlf| wlf.temperature) else {
+            return match measurements.has_temperature() {
+                true => Err(CalibrateError::NoWlf(path.clone())),
+                false => Ok(measurements),
+            };
+        };
+        for row in &mut measurements.rows {
+            let temperature = *row.point.temperature.get_or_insert(own);
+            with_temperature(&self.scene, temperature).check().map_err(|error| CalibrateError::Temperature {
+                path: path.clone(),
+                line: row.line,
+                problem: error.to_string(),
+            })?;
+        }
+        Ok(measurements)
+    }
+
+    fn fingerprint(&self) -> Result<String, CalibrateError> {
+        let settings = self.method.settings(|| format!("{:?}", bounds(self.command)));
+        Ok(table_fingerprint(&relevant(self.scene.clone()), &format!("calibrate {settings}"))?)
+    }
+}
+
+fn asked(command: &Calibrate) -> Asked {
+    let Calibrate { method, points, error, distance, .. } = *command;
+    Asked { method, points, has_error: error.is_some(), has_distance: distance.is_some() }
+}
+
+fn bounds(command: &Calibrate) -> StopBounds {
+    StopBounds { error: command.error.unwrap_or(LAYER_ERROR), distance: command.distance }
+}
+
+/// What a calibration found.
+#[derive(Debug)]
+pub(super) struct Calibrated {
+    problem: Problem,
+    fitted: Fitted,
+    linearised: Linearised,
+    statistics: Statistics,
+    /// Friction of the problem's points.
+    frictions: Vec<FrictionParts>,
+    /// The points that cannot be simulated, and why.
+    left_out: Vec<(OperatingPoint, String)>,
+    /// How it was fitted.
+    way: String,
+}
+
+impl Calibrated {
+    fn values(&self) -> Vec<f64> {
+        self.problem.values(&self.fitted.places).iter().map(|value| rounded(*value, DIGITS)).collect()
+    }
+
+    fn is_whole(&self) -> bool {
+        self.fitted.has_converged && self.statistics.tell_all()
+    }
+}
+
+/// Digits of a fitted number.
+const DIGITS: usize = 7;
+
+/// Fits, writes the scene and the picture, and says what the data tell.
+pub(crate) fn calibrate(command: &Calibrate) -> Result<ExitCode, CalibrateError> {
+    let free = FreeScene::new(command)?;
+    let measurements = free.measurements()?;
+    let output = command.output.clone().unwrap_or_else(|| command.scene.with_extension("calibrated.toml"));
+    let picture = picture_beside(&output, command.plot.as_ref());
+    let table = (!is_standard_output(&output)).then(|| output.with_extension("points.csv"));
+    let taken = sources(&command.scene, &free.scene).into_iter().chain([command.data.clone()]).collect();
+    check_outputs([&output].into_iter().chain(&picture).chain(&table), taken)?;
+    written::check_folder(&output, command, &free.scene)?;
+    let (kept, known) = match &table {
+        Some(table) => {
+            let opened = KeptPoints::open(table, &free.fingerprint()?, &free.parameters, command.force)?;
+            (Some(opened.0), opened.1)
+        }
+        None => (None, Vec::new()),
+    };
+    let bar = progress_bar();
+    let _farewell = table.as_ref().map(|table| farewell(table, &bar));
+    let add = |task: &Task, outcome: &Outcome| {
+        bar.inc(1);
+        let added = kept.as_ref().map_or(Ok(()), |kept| kept.add(task, outcome));
+        added.map_err(|error| CalibrationError::NotKept(error.to_string()))
+    };
+    let scene_at = |values: &[f64]| free.at(values);
+    let grid_of = |scene: &Scene| match asked(command).choose(scene) {
+        Ok((Method::Steady(grid), _)) => Ok(grid),
+        Ok((Method::Layer, of_method)) => Err(CalibrationError::Model(of_method)),
+        Err(error) => Err(CalibrationError::Model(error.to_string())),
+    };
+    let theory = TheoryModel::new(&scene_at);
+    let steady = SteadyModel::new(&scene_at, &grid_of);
+    let layer = LayerModel { scene_at: &scene_at, area: free.area, bounds: bounds(command) };
+    let is_solved = matches!(free.method, Method::Steady(_));
+    let model: &dyn FrictionModel = if is_solved { &steady } else { &layer };
+    let model = Memo::new(model, known, &add);
+
+    let work = Work { free: &free, theory: &theory, model: &model, bar: &bar };
+    let calibrated = work.calibrate(&measurements)?;
+    let planned = if command.plan { Some(work.plan(&calibrated)?) } else { None };
+    bar.finish_and_clear();
+    files::write(&output, written::text(&free, &calibrated, &measurements)?)?;
+    if let Some(picture) = &picture {
+        let grid = CurveGrid::new(calibrated.problem.points.iter());
+        let curves = work.curves(&grid, &calibrated)?;
+        measured_friction::picture(&grid, &measurements.rows, &curves).write(picture)?;
+    }
+    let files: Vec<&Path> =
+        [Some(&output), picture.as_ref(), table.as_ref()].into_iter().flatten().map(PathBuf::as_path).collect();
+    print_beside([&output], &summary::text(&free, &calibrated, &measurements, planned.as_ref(), &files))?;
+    summary::warnings(&calibrated, &measurements).iter().for_each(|warning| warn(warning));
+    Ok(if calibrated.is_whole() { ExitCode::SUCCESS } else { ExitCode::from(OPEN) })
+}
+
+fn progress_bar() -> ProgressBar {
+    let bar = terminal::counter("points");
+    bar.set_message("first fit by the theory");
+    bar.enable_steady_tick(Duration::from_secs(1));
+    bar
+}
+
+fn farewell(table: &Path, bar: &ProgressBar) -> Farewell {
+    let done = bar.clone();
+    Farewell::new(table, move || {
+        let points = done.position();
+        done.finish_and_clear();
+        format!("{points} more points are done")
+    })
+}
+
+/// What a calibration is made with.
+#[derive(Clone, Copy)]
+struct Work<'a> {
+    free: &'a FreeScene<'a>,
+    theory: &'a TheoryModel<'a>,
+    model: &'a Memo<'a>,
+    bar: &'a ProgressBar,
+}
+
+/// How many of the fits by the theory are tried as starts.
+const TRIED: usize = 4;
+/// The layer's friction is known to some 0.5 %.
+const OF_LAYER: Tolerance = Tolerance { chi_square: 1e-3, places: 3e-3, steps: 12 };
+
+impl Work<'_> {
+    /// The fit, without the points that do not slide steadily where it leads.
+    fn calibrate(&self, measurements: &Measurements) -> Result<Calibrated, CalibrateError> {
+        let whole = Problem::new(self.free.parameters.clone(), measurements);
+        let (mut problem, mut left_out) = (whole, Vec::new());
+        loop {
+            match self.fit(&problem) {
+                Ok((fitted, linearised, way)) => {
+                    let statistics = Statistics::new(&problem, &fitted.places, &linearised);
+                    let frictions = problem.frictions(self.model, std::slice::from_ref(&fitted.places))?.remove(0);
+                    return Ok(Calibrated { problem, fitted, linearised, statistics, frictions, left_out, way });
+                }
+                Err(CalibrationError::NotSteady(failed)) => {
+                    let points: Vec<OperatingPoint> = failed.iter().map(|(point, _)| *point).collect();
+                    problem = problem.without(&points);
+                    left_out.extend(failed);
+                }
+                Err(error) => return Err(error.into()),
+            }
+        }
+    }
+
+    /// A fit of all points: where it ended, what friction does there, and how it came there.
+    fn fit(&self, problem: &Problem) -> Result<(Fitted, Linearised, String), CalibrationError> {
+        let start = self.start(problem)?;
+        let progress = |chi_square: f64| {
+            let degrees = problem.rows.len().saturating_sub(problem.parameters.len());
+            let cost = rounded(chi_square_per_degree(chi_square, degrees), 4);
+            self.bar.set_message(format!("χ² per degree of freedom now {cost}"));
+        };
+        if matches!(self.free.method, Method::Steady(_)) {
+            let fitted = minimise(problem, self.model, &start, Tolerance::USUAL, &progress)?;
+            let linearised = problem.linearised(self.model, &fitted.places)?;
+            return Ok((fitted, linearised, "steady sliding itself, from a first fit by Persson's theory".to_owned()));
+        }
+        let mapped = map_space(problem, self.theory, self.model, &start, &progress)?;
+        if let Some(mapped) = mapped.as_ref().filter(|mapped| mapped.fitted.has_converged) {
+            let way = format!("space mapping: Persson's theory corrected by the layer in {} rounds", mapped.rounds);
+            return Ok((mapped.fitted.clone(), mapped.linearised.clone(), way));
+        }
+        let start = mapped.map_or(start, |mapped| mapped.fitted.places);
+        let fitted = minimise(problem, self.model, &start, OF_LAYER, &progress)?;
+        let linearised = problem.linearised(self.model, &fitted.places)?;
+        Ok((fitted, linearised, "differences of the layer itself: its friction and the theory's part".to_owned()))
+    }
+
+    /// The best start of the dear model among the fits by the theory and the scene's own values; of the layer, which is
+    /// too dear to be tried at several, the best fit by the theory.
+    fn start(&self, problem: &Problem) -> Result<Vec<f64>, CalibrationError> {
+        let own = problem.places(&self.free.own);
+        let fits = starts_by_theory(problem, self.theory, &own, Tolerance::ROUGH)?;
+        if let (Method::Layer, Some(best)) = (&self.free.method, fits.first()) {
+            return Ok(best.places.clone());
+        }
+        let mut starts = vec![own];
+        starts.extend(fits.into_iter().take(TRIED).map(|fit| fit.places));
+        let outcomes = problem.outcomes(self.model, &starts)?;
+        // Those at which most points slide steadily, and of these the one with the least square.
+        let worth = |outcomes: &Vec<Outcome>| {
+            let residual = |row: &asperity::calibration::Row| {
+                let friction = outcomes[row.point].as_ref().ok()?.friction();
+                Some(((friction - row.friction) / row.sigma).powi(2))
+            };
+            let failed = outcomes.iter().filter(|outcome| outcome.is_err()).count();
+            (failed, problem.rows.iter().filter_map(residual).sum::<f64>())
+        };
+        let order = |a: &(usize, f64), b: &(usize, f64)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1));
+        let best = outcomes.iter().map(worth).zip(&starts).min_by(|a, b| order(&a.0, &b.0));
+        Ok(best.map(|(_, places)| places.clone()).unwrap_or_default())
+    }
+
+    /// Friction before and after over the speed: of a layer at the measured points alone.
+    fn curves(&self, grid: &CurveGrid, calibrated: &Calibrated) -> Result<Vec<ModelCurves>, CalibrateError> {
+        let is_solved = matches!(self.free.method, Method::Steady(_));
+        let points = if is_solved { grid.points(CURVE) } else { calibrated.problem.points.clone() };
+        let after = calibrated.problem.values(&calibrated.fitted.places);
+        let of = |values: &[f64], name, stroke| {
+            let task = |&point: &OperatingPoint| Task { parameters: values.to_vec(), point };
+            let tasks: Vec<Task> = points.iter().map(task).collect();
+            let found = std::sync::Mutex::new(Vec::new());
+            self.model.evaluate(&tasks, &|index, outcome| {
+                let point = outcome.ok().map(|parts| (tasks[index].point, parts.friction()));
+                found.lock().unwrap_or_else(std::sync::PoisonError::into_inner).extend(point);
+                Ok(())
+            })?;
+            let points = found.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+            Ok::<_, CalibrationError>(ModelCurves { name, stroke, points })
+        };
+        Ok(vec![of(&self.free.own, "before", Stroke::Dashed)?, of(&after, "after", Stroke::Line)?])
+    }
+
+    /// What to measure next.
+    fn plan(&self, calibrated: &Calibrated) -> Result<Plan, CalibrateError> {
+        self.bar.set_message("what to measure next");
+        let Calibrated { problem, fitted, linearised, statistics, .. } = calibrated;
+        let candidates = self.candidates(&problem.points);
+        // The layer is too dear for a grid.
+        let is_solved = matches!(self.free.method, Method::Steady(_));
+        let model: &dyn FrictionModel = if is_solved { self.model } else { self.theory };
+        Ok(plan(problem, model, (&fitted.places, linearised, statistics), &candidates, PLANNED)?)
+    }
+
+    /// The grid that is asked for; else one that reaches a decade of speed, a factor of two of pressure and 20 K beyond
+    /// the measurements.
+    fn candidates(&self, measured: &[OperatingPoint]) -> Vec<OperatingPoint> {
+        let command = self.free.command;
+        let range = |value: &dyn Fn(&OperatingPoint) -> Option<f64>| {
+            let values = measured.iter().filter_map(value);
+            values.fold(None, |range: Option<(f64, f64)>, value| {
+                Some(range.map_or((value, value), |(low, high)| (low.min(value), high.max(value))))
+            })
+        };
+        let even = |count: u32, (low, high): (f64, f64)| {
+            (0..count).map(move |i| low + (high - low) * f64::from(i) / f64::from(count - 1)).collect::<Vec<f64>>()
+        };
+        let in_logarithm = |count: u32, range: Option<(f64, f64)>, factor: f64| {
+            let range = range.map(|(low, high)| ((low / factor).ln(), (high * factor).ln()));
+            let values = range.map_or_else(Vec::new, |range| even(count, range));
+            values.into_iter().map(|value| rounded(value.exp(), 3)).collect::<Vec<f64>>()
+        };
+        let speeds = command.speeds.clone().map(|values| values.0);
+        let speeds = speeds.unwrap_or_else(|| in_logarithm(9, range(&|point| Some(point.speed)), 10.0));
+        let pressures = command.pressures.clone().map(|values| values.0);
+        let pressures = pressures.unwrap_or_else(|| in_logarithm(3, range(&|point| Some(point.load)), 2.0));
+        let own = range(&|point| point.temperature).map(|(low, high)| even(5, (low - 20.0, high + 20.0)));
+        let kelvin = command.temperatures.clone().map(|values| values.0).or(own);
+        let is_possible = |kelvin: &f64| with_temperature(&self.free.scene, *kelvin).check().is_ok();
+        let temperatures: Vec<Option<f64>> = match kelvin {
+            Some(kelvin) if measured.iter().any(|point| point.temperature.is_some()) => {
+                kelvin.into_iter().filter(is_possible).map(|kelvin| Some(rounded(kelvin, 5))).collect()
+            }
+            _ => vec![None],
+        };
+        let mut points = Vec::new();
+        for &temperature in &temperatures {
+            for &load in &pressures {
+                points.extend(speeds.iter().map(|&speed| OperatingPoint { speed, load, temperature }));
+            }
+        }
+        points
+    }
+}
+
+impl From<OverrideError> for CalibrateError {
+    fn from(error: OverrideError) -> Self {
+        FileError::from(error).into()
+    }
+}
