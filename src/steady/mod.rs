@@ -14,6 +14,7 @@ mod contact;
 mod heat;
 mod krylov;
 mod linear;
+mod resample;
 mod slide;
 mod surface;
 mod transform;

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Output;
 
 use crate::common::{Table, asperity, root, run, scratch};
 
@@ -138,6 +139,98 @@ fn each_method_says_what_it_is_for() {
     run(asperity().args(flat).args(["--set", "friction={ coulomb = 0.3 }", "-o", &table]));
     let text = fs::read_to_string(&table).unwrap();
     assert!(text.contains("# method = layer: the surface is flat"), "{text}");
+}
+
+fn converge(scene: &Path, table: &Path, options: &[&str]) -> Output {
+    asperity().arg("converge").arg(scene).arg("-o").arg(table).args(["--speed", "0.1"]).args(options).output().unwrap()
+}
+
+/// The grid is halved until area and friction stay, along both directions of a map; a file that is one period is not doubled, a
+/// self-affine map is along the sliding, and has other seeds. A second call has nothing left to do.
+#[test]
+fn the_grid_is_refined_until_nothing_changes() {
+    let folder = scratch("steady-converge");
+    let table = folder.join("study.csv");
+    let options = ["--pressure", "2e5", "--error", "0.03"];
+    let output = converge(&reference("steady/steady-map.toml"), &table, &options);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{output:?}");
+    assert!(said.starts_with("points  spacing, m") && !said.contains("std. error"), "{said}");
+    assert!(!said.contains("twice the length") && !said.contains("seeds"), "{said}");
+    let text = fs::read_to_string(&table).unwrap();
+    assert!(text.contains("\n# method = steady, on the map's own 128 x 128 points\n"), "{text}");
+    let rows = Table::read(&table);
+    assert_eq!(rows.texts("points")[..2], ["128", "256"]);
+    assert!(rows.texts("fit_rms").iter().all(|fit| fit.is_empty()));
+    // The first is the point of the reference's grid.
+    let expected = Table::read(&reference("steady/steady-map.csv"));
+    let at = |row: &usize| (expected.number(*row, "pressure [Pa]"), expected.number(*row, "speed [m/s]")) == (2e5, 0.1);
+    if let Some(row) = (0..expected.len()).find(at) {
+        assert!((rows.number(0, "friction") / expected.number(row, "friction [1]") - 1.0).abs() < 1e-3);
+    }
+    assert_eq!(converge(&reference("steady/steady-map.toml"), &table, &options).stdout, output.stdout);
+    assert_eq!(fs::read_to_string(&table).unwrap(), text);
+
+    let isotropic = "surface={ kind = 'self_affine', isotropic = true, length = 2e-3, size_y = 1e-3, points = 64, hurst = 0.8, \
+                     rms = 5e-6, roll_off_wavelength = 1e-3, cut_off_wavelength = 2e-4, seed = 5 }";
+    let options = ["--pressure", "2e5", "--error", "0.5", "--seeds", "3", "--force", "--set", isotropic];
+    let output = converge(&reference("half-plane/sine.toml"), &table, &options);
+    assert!(output.status.success(), "{output:?}");
+    let rows = Table::read(&table);
+    assert_eq!(rows.texts("points"), ["64", "128", "256", "128", "128"]);
+    assert_eq!(rows.column("length"), [2e-3, 2e-3, 4e-3, 2e-3, 2e-3]);
+    assert_eq!(rows.texts("seed"), ["5", "5", "5", "6", "7"]);
+    let refused = |options: &[&str], expected: &str| {
+        let output = converge(&reference("half-plane/sine.toml"), &table, &[&["--pressure", "2e5"], options].concat());
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success() && message.contains(expected), "{options:?}: {message}");
+    };
+    refused(&["--distance", "1"], "--distance: expected none with --method steady");
+    refused(&["--seeds", "3"], "so nothing depends on a seed");
+    refused(&["--points", "64", "--most-points", "100"], "--most-points: expected at least 128");
+}
+
+/// Heat has no steady state in a layer: its sweep and its study name the method that has one, which is theirs by default.
+#[test]
+fn a_layer_that_heats_is_never_steady() {
+    let folder = scratch("steady-heat");
+    let scene = reference("steady/steady-road.toml");
+    let table = folder.join("table.csv");
+    let point = [scene.to_str().unwrap(), "-o", table.to_str().unwrap(), "--method", "layer"];
+    let sweep = refused(&[&["sweep", "--speeds", "0.1", "--pressures", "3e5"], &point[..]].concat());
+    let study = refused(&[&["converge", "--speed", "0.1", "--pressure", "3e5"], &point[..]].concat());
+    for message in [sweep, study] {
+        assert!(message.contains("material.heat: expected none") && message.contains("--method steady"), "{message}");
+    }
+}
+
+/// A map at other points is the same map by its waves.
+#[test]
+fn a_map_is_solved_on_as_many_points_as_are_asked_for() {
+    let folder = scratch("steady-map-points");
+    let point = ["--speeds", "0.1", "--pressures", "2e5", "--points"];
+    let scene = reference("steady/steady-map.toml");
+    let row = |points: &str| {
+        let table = folder.join(format!("{points}.csv"));
+        let text = sweep(&scene, &table, &[&point[..], &[points]].concat());
+        let rows = Table::read(&table);
+        (text, rows.number(0, "friction"), rows.number(0, "contact_ratio"))
+    };
+    let (own, fine, coarse) = (row("128"), row("256"), row("100"));
+    assert!(own.0.contains("# method = steady, on the map's own 128 x 128 points"), "{}", own.0);
+    assert!(fine.0.contains("# method = steady, on 256 x 256 points by the waves of the map, which has 128 x 128"));
+    // What half the spacing changes, and what is left out at fewer points.
+    for (other, allowed) in [(fine, 0.02), (coarse, 0.05)] {
+        assert!((other.1 / own.1 - 1.0).abs() < allowed && (other.2 / own.2 - 1.0).abs() < 2.5 * allowed);
+    }
+    let few = refused(
+        &[
+            &["sweep", scene.to_str().unwrap(), "-o", "none.csv", "--speeds", "1", "--pressures", "2e5"][..],
+            &["--points", "8"],
+        ]
+        .concat(),
+    );
+    assert!(few.contains("expected a map solved on at least 16 points along x and y, found [8, 8]"), "{few}");
 }
 
 /// Pressures of the data have the mean that was asked for and stand where the gap is 0.

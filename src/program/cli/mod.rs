@@ -431,8 +431,8 @@ pub(crate) struct Sweep {
     /// foundation is "half_space" or "layer" and the surface periodic and not flat; else layer.
     #[arg(long, value_name = "METHOD", value_enum)]
     pub(crate) method: Option<SweepMethod>,
-    /// Points of a period along x, with --method steady. Default: the profile's own, or 8 to its shortest wave where they
-    /// are uneven or fewer.
+    /// Points of a period along x, with --method steady; of a map with those along y in proportion. Default: the surface's
+    /// own, or of a profile 8 to its shortest wave where they are uneven or fewer.
     #[arg(long, value_name = "N", value_parser = count)]
     pub(crate) points: Option<u32>,
     /// Admissible standard error of the friction coefficient, relative to it, with --method layer. Default: 5e-3.
@@ -472,7 +472,8 @@ pub(crate) struct Contact {
     /// Sliding speed in m/s.
     #[arg(long, value_name = "SPEED", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) speed: f64,
-    /// Points of a period along x. Default: the profile's own, or 8 to its shortest wave where they are uneven or fewer.
+    /// Points of a period along x; of a map with those along y in proportion. Default: the surface's own, or of a profile 8
+    /// to its shortest wave where they are uneven or fewer.
     #[arg(long, value_name = "N", value_parser = count)]
     pub(crate) points: Option<u32>,
     /// The picture to write, as SVG or PNG according to the file name.
@@ -503,9 +504,16 @@ pub(crate) struct Converge {
     /// Number of seeds of a self-affine surface or roughness, the scene's own included. Default: 4.
     #[arg(long, value_name = "N", value_parser = seeds)]
     pub(crate) seeds: Option<u32>,
-    /// Most masses that the halved spacing may come to; with twice the length there are twice as many.
-    #[arg(long, value_name = "N", default_value_t = 4096, value_parser = count)]
-    pub(crate) most_masses: u32,
+    /// How steady sliding is found, as in a sweep. Default: as a sweep's.
+    #[arg(long, value_name = "METHOD", value_enum)]
+    pub(crate) method: Option<SweepMethod>,
+    /// Points of a period along x to begin with, with --method steady. Default: as of a sweep.
+    #[arg(long, value_name = "N", value_parser = count)]
+    pub(crate) points: Option<u32>,
+    /// Most masses, or points of the whole surface with --method steady, that the halved spacing may come to; with twice
+    /// the length there are twice as many. Default: 4096 masses, 2097152 points.
+    #[arg(long, value_name = "N", visible_alias = "most-masses", value_parser = count)]
+    pub(crate) most_points: Option<u32>,
     /// The table to write, - for standard output; an existing table of the same study is continued. Default: the
     /// scene's file name with .converge.csv.
     #[arg(short, long, value_name = "TABLE.csv")]
@@ -513,8 +521,8 @@ pub(crate) struct Converge {
     /// The plot to write, as SVG or PNG according to the file name. Default: the table's name with .svg.
     #[arg(long, value_name = "OUT.svg", value_parser = picture())]
     pub(crate) plot: Option<PathBuf>,
-    /// Maximum sliding distance in m for a run to become steady. Default: 100 blocks; a block is a whole number of
-    /// profile periods or layer lengths.
+    /// Maximum sliding distance in m for a run to become steady, with --method layer. Default: 100 blocks; a block is a
+    /// whole number of profile periods or layer lengths.
     #[arg(long, value_name = "METRES", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) distance: Option<f64>,
     /// Replaces an existing table instead of continuing it.

@@ -1,7 +1,7 @@
 //! How steady sliding is found: by solving for it, or by letting the layer slide until it is steady.
 
 use asperity::scene::{FoundationKind, HeightMap, Scene};
-use asperity::steady::SurfaceGrid;
+use asperity::steady::{GridSize, SurfaceGrid};
 
 use super::NeverSteady;
 
@@ -34,11 +34,9 @@ pub(crate) enum MethodError {
     OfTheLayer(&'static str),
     #[error("--points: expected none with --method layer, whose points are its masses")]
     OfTheSolver,
-    #[error("--points: expected none with a map of heights, which is solved on its own points")]
-    OfTheMap,
     #[error("surface: {0}; give --method layer for the line of it that the layer slides on")]
     NoMap(String),
-    #[error("surface: expected a map of at least {least} points along x and y, found {found:?}")]
+    #[error("surface: expected a map solved on at least {least} points along x and y, found {found:?}")]
     SmallMap { least: usize, found: [usize; 2] },
     #[error("--points: expected at least {least}, found {found}")]
     FewPoints { least: usize, found: usize },
@@ -99,20 +97,28 @@ impl Asked {
     }
 
     fn steady_on_map(self, scene: &Scene, map: &HeightMap) -> Result<(Method, String), MethodError> {
-        if self.points.is_some() {
-            return Err(MethodError::OfTheMap);
-        }
-        let (size, least) = ([map.nx(), map.ny()], SurfaceGrid::FEWEST);
-        if size.iter().any(|&count| count < least) {
-            return Err(MethodError::SmallMap { least, found: size });
+        let (own, least) = (GridSize { nx: map.nx(), ny: map.ny() }, SurfaceGrid::FEWEST);
+        let size = self.points.map_or(own, |points| {
+            let share = f64::from(points) / own.nx as f64;
+            GridSize { nx: points as usize, ny: (share * own.ny as f64).round() as usize }
+        });
+        if size.nx.min(size.ny) < least {
+            return Err(MethodError::SmallMap { least, found: [size.nx, size.ny] });
         }
         if scene.material.as_ref().is_some_and(|material| material.equilibrium_modulus == 0.0) {
             return Err(MethodError::Lacks(
                 "material.equilibrium_modulus = 0 leaves waves across the sliding no stiffness",
             ));
         }
-        let header = format!("steady, on the map's own {} x {} points", size[0], size[1]);
-        Ok((Method::Steady(SurfaceGrid::of_map(map)), header))
+        let surface = SurfaceGrid::of_map(map);
+        if size == own {
+            return Ok((Method::Steady(surface), format!("steady, on the map's own {} x {} points", own.nx, own.ny)));
+        }
+        let header = format!(
+            "steady, on {} x {} points by the waves of the map, which has {} x {}",
+            size.nx, size.ny, own.nx, own.ny
+        );
+        Ok((Method::Steady(surface.resampled(size)), header))
     }
 }
 

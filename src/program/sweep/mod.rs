@@ -87,7 +87,7 @@ pub(crate) enum NeverSteady {
 }
 
 /// Refuses a scene of which no slide could become steady.
-pub(crate) fn check_can_be_steady(scene: &Scene) -> Result<(), NeverSteady> {
+fn check_can_be_steady(scene: &Scene) -> Result<(), NeverSteady> {
     if scene.material.as_ref().is_some_and(|material| material.heat.is_some()) {
         return Err(NeverSteady::Heats);
     }
