@@ -15,7 +15,8 @@ use super::sweep::values::{Shard, Values};
 pub(crate) use values::{Condition, PlotAxis, WlfConstants, tenth};
 use values::{
     Frequencies, Tolerances, column_unit, count, fit_error, frequency, key_and_value, length, picture,
-    picture_or_table, poisson_ratio, positive, powers, seconds, seeds, share, table, temperature, wavelengths,
+    picture_or_table, poisson_ratio, positive, powers, seconds, seeds, share, table_or_arrays, temperature,
+    wavelengths,
 };
 
 /// Simulates rubber on a rough surface and packs the simulation as an FMU.
@@ -476,11 +477,12 @@ pub(crate) struct Contact {
     /// to its shortest wave where they are uneven or fewer.
     #[arg(long, value_name = "N", value_parser = count)]
     pub(crate) points: Option<u32>,
-    /// The picture to write, as SVG or PNG according to the file name.
+    /// The picture to write, as SVG or PNG according to the file name: along a profile heights and pressure; of a map
+    /// pressure, gap and where it is touched.
     #[arg(short, long, value_name = "OUT.png", value_parser = picture())]
     pub(crate) output: PathBuf,
-    /// A table of all points to write: x, y, height, pressure, gap.
-    #[arg(long, value_name = "OUT.csv", value_parser = table())]
+    /// All points to write: x, y, height, pressure, gap, as a table or, with .npz, as arrays of numpy with a row for each y.
+    #[arg(long, value_name = "OUT.csv|.npz", value_parser = table_or_arrays())]
     pub(crate) data: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) set: Set,
