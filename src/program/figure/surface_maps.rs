@@ -19,6 +19,8 @@ const BELOW: (u32, u32) = (760, 300);
 const LONG: f64 = 1.6;
 /// Space for a colour bar and its ticks.
 const BAR: u32 = 84 * FINE;
+/// The least distance of maps side by side: their titles need it.
+const APART: u32 = 270 * FINE;
 /// Space between the title of a map and the map, and for the scale bar below them all.
 const TITLE: u32 = 2 * LEGEND_LINE + 2 * FINE;
 const FOOT: u32 = 40 * FINE;
@@ -134,7 +136,7 @@ impl SurfaceMaps {
     fn corner(&self, index: usize) -> (u32, u32) {
         let ((width, height), index) = (self.map_size(), index as u32);
         let (column, row) = if self.is_long() { (0, index) } else { (index, 0) };
-        let (across, down) = (2 * MARGIN + width + BAR, TITLE + height + 2 * MARGIN);
+        let (across, down) = ((2 * MARGIN + width + BAR).max(APART), TITLE + height + 3 * MARGIN);
         (2 * MARGIN + column * across, MARGIN + row * down + TITLE)
     }
 
@@ -169,7 +171,7 @@ impl SurfaceMaps {
 impl Figure for SurfaceMaps {
     fn size(&self) -> (u32, u32) {
         let ((width, height), (left, top)) = (self.map_size(), self.corner(self.maps.len() - 1));
-        ((left + width + BAR).div_ceil(FINE), (top + height + FOOT).div_ceil(FINE))
+        ((left + (width + BAR).max(APART)).div_ceil(FINE), (top + height + FOOT).div_ceil(FINE))
     }
 
     fn images(&self) -> Vec<Raster> {

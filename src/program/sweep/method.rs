@@ -52,6 +52,13 @@ pub(crate) struct Asked {
 }
 
 impl Asked {
+    /// What a table was asked for with this line of its header; `None` where a layer slid.
+    pub(super) fn of_table(method: Option<&str>) -> Option<Self> {
+        let mut numbers = method?.strip_prefix("steady")?.split(|c: char| !c.is_ascii_digit());
+        let points = numbers.find_map(|number| number.parse().ok());
+        Some(Self { method: Some(SweepMethod::Steady), points, has_error: false, has_distance: false })
+    }
+
     /// The method of a sweep of `scene`, and what the table's header says of it.
     pub(crate) fn choose(self, scene: &Scene) -> Result<(Method, String), MethodError> {
         let reason = (self.method == Some(SweepMethod::Layer)).then_some("as asked for").or_else(|| why_layer(scene));
@@ -151,5 +158,31 @@ impl Method {
             Self::Steady(_) => Ok(()),
             Self::Layer => super::check_can_be_steady(scene),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The headers that are written say what is to be asked for to have the same points again.
+    #[test]
+    fn a_header_says_how_many_points_there_were() {
+        let text = "name = 'sine'\nlayer = { foundation = 'half_space', masses = 32, spacing = 1e-4, width = 1e-2 }\n\
+                    material = { density = 1e3, poisson_ratio = 0.5, equilibrium_modulus = 1e6, prony = [] }\n\
+                    surface = { kind = 'sinusoid', amplitude = 1e-5, wavelength = 1e-3, points_per_wavelength = 6 }";
+        let scene = Scene::parse(text, "sine.toml".as_ref()).unwrap();
+        let asked = |method: &str, points: Option<u32>| {
+            let asked = Asked::of_table(Some(method)).map(|asked| (asked.method, asked.points));
+            assert_eq!(asked, Some((Some(SweepMethod::Steady), points)), "{method}");
+        };
+        for points in [None, Some(24)] {
+            let ours = Asked { method: None, points, has_error: false, has_distance: false };
+            let (_, header) = ours.choose(&scene).unwrap();
+            asked(&header, Some(points.unwrap_or(16)));
+        }
+        asked("steady, on the map's own 128 x 64 points", Some(128));
+        asked("steady, on 256 x 128 points by the waves of the map, which has 128 x 64", Some(256));
+        assert!(Asked::of_table(Some("layer: as asked for")).is_none() && Asked::of_table(None).is_none());
     }
 }

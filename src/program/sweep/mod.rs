@@ -9,6 +9,7 @@ mod point;
 mod slide;
 mod solved;
 mod steady;
+mod swept;
 mod table_file;
 pub(super) mod values;
 
@@ -28,11 +29,13 @@ use super::interrupt::Farewell;
 use super::terminal::{self, lines, warn};
 use load_search::{heights, rest_separation};
 pub(crate) use method::{Asked, Method, MethodError, SweepMethod};
+use point::SteadySliding;
 use point::{MIN_BLOCKS, PointResult};
-pub(crate) use point::{SMALL as SMALL_FRICTION, SteadySliding, StopBounds};
+pub(crate) use point::{SMALL as SMALL_FRICTION, StopBounds};
 use slide::Blocks;
 use solved::SolvedPoints;
 pub(crate) use solved::status as solved_status;
+pub(crate) use swept::{Swept, SweptPoint};
 pub(crate) use table_file::fingerprint as table_fingerprint;
 use table_file::{SweepTable, TableFile, TableFileError};
 use values::Values;
@@ -333,7 +336,7 @@ pub(crate) fn steady_sliding(
 }
 
 /// Steady sliding at one point with the carrier held at `w` (m), where the load is near that of the point.
-pub(crate) fn steady_sliding_at(
+fn steady_sliding_at(
     scene: &Scene,
     point: &OperatingPoint,
     w: f64,
