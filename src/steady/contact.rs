@@ -9,14 +9,15 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use super::compliance::Compliance;
 use super::linear::{LinearSolver, gather};
 use super::surface::SurfaceGrid;
-use super::transform::Convolution;
+use super::transform::{Convolution, GridSize};
 use crate::math::{SplitMix64, sum};
 use crate::scene::Material;
 
 /// The residual (root mean square over the contact) of the last set over the rms height.
 const ACCURACY: f64 = 1.0e-6;
-/// That of the first set of the finest grid; each set after it has a tenth.
-const FIRST_ACCURACY: f64 = 1.0e-2;
+/// That of the first set of the finest grid, of ridges and of maps, where more of the points lie at edges and are wrong at
+/// first; each set after it has a tenth.
+const FIRST_ACCURACIES: (f64, f64) = (1.0e-3, 3.0e-2);
 /// Those of the first and of the last set of a grid from which a finer one starts, ...
 const COARSE_ACCURACIES: (f64, f64) = (1.0e-3, 1.0e-4);
 /// ... and the part of the points of its set that may still be wrong.
@@ -122,7 +123,7 @@ impl ContactSolver {
                 Some((coarse, nx)) => level.interpolated(coarse, *nx),
             };
             if index == 0 {
-                return (level.solve(&finest, first, pressure, Goal::FINEST), finest);
+                return (level.solve(&finest, first, pressure, Goal::finest(level.surface.size)), finest);
             }
             let compliance = compliance(level);
             let found = level.solve(&compliance, first, pressure, Goal::COARSE);
@@ -158,13 +159,24 @@ impl ContactSolver {
 }
 
 impl Goal {
-    const FINEST: Self = Self { first_accuracy: FIRST_ACCURACY, accuracy: ACCURACY, wrong: 0.0, sets: MOST_SETS };
     const COARSE: Self = Self {
         first_accuracy: COARSE_ACCURACIES.0,
         accuracy: COARSE_ACCURACIES.1,
         wrong: COARSE_WRONG,
         sets: MOST_COARSE_SETS,
     };
+
+    fn finest(size: GridSize) -> Self {
+        let first_accuracy = if size.ny == 1 { FIRST_ACCURACIES.0 } else { FIRST_ACCURACIES.1 };
+        Self { first_accuracy, accuracy: ACCURACY, wrong: 0.0, sets: MOST_SETS }
+    }
+
+    /// The accuracy of the set after one.
+    fn next(self, accuracy: f64) -> f64 {
+        let tenth = 0.1 * accuracy;
+        // No set for what rounding leaves of the last power of ten.
+        if tenth < 1.5 * self.accuracy { self.accuracy } else { tenth }
+    }
 }
 
 impl Contact {
@@ -272,7 +284,7 @@ impl Level {
                     *value = least;
                 }
             }
-            accuracy = (0.1 * accuracy).max(goal.accuracy);
+            accuracy = goal.next(accuracy);
         }
         Contact { gaps, ..found }
     }

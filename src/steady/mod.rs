@@ -15,6 +15,7 @@ mod heat;
 mod krylov;
 mod linear;
 pub mod persson;
+mod resample;
 mod slide;
 mod surface;
 mod transform;

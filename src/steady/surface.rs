@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use super::resample::{self, transposed};
 use super::transform::{Convolution, GridSize};
 use crate::math::sum;
 use crate::scene::{HeightMap, Spectrum, Surface};
@@ -47,6 +48,13 @@ impl SurfaceGrid {
     pub fn of_map(map: &HeightMap) -> Self {
         let (size, [dx, dy]) = (GridSize { nx: map.nx(), ny: map.ny() }, map.spacing());
         Self::new(size, dx * size.nx as f64, dy * size.ny as f64, map.heights().to_vec())
+    }
+
+    /// The same waves on another grid: those that it cannot hold are left out.
+    pub fn resampled(&self, size: GridSize) -> Self {
+        let along_x = resample::lines(&self.heights, self.size.nx, size.nx);
+        let columns = resample::lines(&transposed(&along_x, size.nx), self.size.ny, size.ny);
+        Self::new(size, self.length, self.width, transposed(&columns, size.ny))
     }
 
     /// As many points of a profile as it has itself, where they are even and enough for its shortest wave; else as many as

@@ -32,8 +32,9 @@ fn write(folder: &Path, scene: &SceneText) -> (PathBuf, PathBuf) {
     (scene.write(folder), folder.join("table.csv"))
 }
 
+/// A study of the layer.
 fn converge(scene: &Path, table: &Path, options: &[&str]) -> Output {
-    asperity().arg("converge").arg(scene).arg("-o").arg(table).args(options).output().unwrap()
+    asperity().args(["converge", "--method", "layer"]).arg(scene).arg("-o").arg(table).args(options).output().unwrap()
 }
 
 /// Standard output of a study that ends with this exit status.
@@ -76,7 +77,7 @@ fn full_contact_of_a_sine_converges_at_once() {
     assert!(friction.iter().all(|friction| (friction / exact - 1.0).abs() < 0.15), "{friction:?}, exact {exact}");
     let change = table.number(1, "friction_change");
     assert!((change - (friction[1] - friction[0]) / friction[1]).abs() < 1e-12);
-    assert!(file.lines().count() == 11 && path.with_extension("svg").exists());
+    assert!(file.lines().count() == 12 && path.with_extension("svg").exists());
 }
 
 /// A tenth of M, 0.133 MPa, is passed by the pressure of the study alone: the scene has no phases.
@@ -174,6 +175,7 @@ fn invalid_studies_are_refused() {
     assert!(refused(&folder.join("heights.toml"), &path, &FULL, 1).contains("one height for each mass"));
     let asked = |options: &[&str], status: i32| refused(&scene, &path, &[&FULL[..], options].concat(), status);
     assert!(asked(&["--most-masses", "63"], 1).contains("expected at least 64"));
+    assert!(asked(&["--points", "64"], 1).contains("--points: expected none with --method layer"));
     assert!(asked(&["--seeds", "1"], 2).contains("from 2 to 1000"));
     assert!(asked(&["--error", "0"], 2).contains("a share above 0"));
     assert!(refused(&scene, &path, &["--speed", "1", "--pressure", "-1"], 2).contains("a number above 0"));

@@ -1,7 +1,9 @@
 //! `asperity sweep --method steady` and `asperity contact`: tables, what they say, and what is refused.
 
 use std::fs;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
+use std::process::Output;
 
 use crate::common::{Table, asperity, root, run, scratch};
 
@@ -140,6 +142,152 @@ fn each_method_says_what_it_is_for() {
     assert!(text.contains("# method = layer: the surface is flat"), "{text}");
 }
 
+fn converge(scene: &Path, table: &Path, options: &[&str]) -> Output {
+    asperity().arg("converge").arg(scene).arg("-o").arg(table).args(["--speed", "0.1"]).args(options).output().unwrap()
+}
+
+/// The grid is halved until area and friction stay, along both directions of a map; a file that is one period is not doubled, a
+/// self-affine map is along the sliding, and has other seeds. A second call has nothing left to do.
+#[test]
+fn the_grid_is_refined_until_nothing_changes() {
+    let folder = scratch("steady-converge");
+    let table = folder.join("study.csv");
+    let options = ["--pressure", "3e5", "--error", "0.03"];
+    let output = converge(&reference("steady/steady-map.toml"), &table, &options);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{output:?}");
+    assert!(said.starts_with("points  spacing, m") && !said.contains("std. error"), "{said}");
+    assert!(!said.contains("twice the length") && !said.contains("seeds"), "{said}");
+    let text = fs::read_to_string(&table).unwrap();
+    assert!(text.contains("\n# method = steady, on the map's own 128 x 128 points\n"), "{text}");
+    let rows = Table::read(&table);
+    assert_eq!(rows.texts("points")[..2], ["128", "256"]);
+    assert!(rows.texts("fit_rms").iter().all(|fit| fit.is_empty()));
+    // The first is the point of the reference's grid.
+    let expected = Table::read(&reference("steady/steady-map.csv"));
+    let at = |row: usize| (expected.number(row, "pressure [Pa]"), expected.number(row, "speed [m/s]"));
+    let row = (0..expected.len()).find(|&row| at(row) == (3e5, 0.1)).unwrap();
+    assert!((rows.number(0, "friction") / expected.number(row, "friction [1]") - 1.0).abs() < 1e-3);
+    assert_eq!(converge(&reference("steady/steady-map.toml"), &table, &options).stdout, output.stdout);
+    assert_eq!(fs::read_to_string(&table).unwrap(), text);
+
+    let isotropic = "surface={ kind = 'self_affine', isotropic = true, length = 2e-3, size_y = 1e-3, points = 64, hurst = 0.8, \
+                     rms = 5e-6, roll_off_wavelength = 1e-3, cut_off_wavelength = 2e-4, seed = 5 }";
+    let options = ["--pressure", "2e5", "--error", "0.5", "--seeds", "3", "--force", "--set", isotropic];
+    let output = converge(&reference("half-plane/sine.toml"), &table, &options);
+    assert!(output.status.success(), "{output:?}");
+    let rows = Table::read(&table);
+    assert_eq!(rows.texts("points"), ["64", "128", "256", "128", "128"]);
+    assert_eq!(rows.column("length"), [2e-3, 2e-3, 4e-3, 2e-3, 2e-3]);
+    assert_eq!(rows.texts("seed"), ["5", "5", "5", "6", "7"]);
+    let refused = |options: &[&str], expected: &str| {
+        let output = converge(&reference("half-plane/sine.toml"), &table, &[&["--pressure", "2e5"], options].concat());
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success() && message.contains(expected), "{options:?}: {message}");
+    };
+    refused(&["--distance", "1"], "--distance: expected none with --method steady");
+    refused(&["--seeds", "3"], "so nothing depends on a seed");
+    refused(&["--points", "64", "--most-points", "100"], "--most-points: expected at least 128");
+}
+
+/// Heat has no steady state in a layer: its sweep and its study name the method that has one, which is theirs by default.
+#[test]
+fn a_layer_that_heats_is_never_steady() {
+    let folder = scratch("steady-heat");
+    let scene = reference("steady/steady-road.toml");
+    let table = folder.join("table.csv");
+    let point = [scene.to_str().unwrap(), "-o", table.to_str().unwrap(), "--method", "layer"];
+    let sweep = refused(&[&["sweep", "--speeds", "0.1", "--pressures", "3e5"], &point[..]].concat());
+    let study = refused(&[&["converge", "--speed", "0.1", "--pressure", "3e5"], &point[..]].concat());
+    for message in [sweep, study] {
+        assert!(message.contains("material.heat: expected none") && message.contains("--method steady"), "{message}");
+    }
+}
+
+/// A map at other points is the same map by its waves.
+#[test]
+fn a_map_is_solved_on_as_many_points_as_are_asked_for() {
+    let folder = scratch("steady-map-points");
+    let point = ["--speeds", "0.1", "--pressures", "2e5", "--points"];
+    let scene = reference("steady/steady-map.toml");
+    let row = |points: &str| {
+        let table = folder.join(format!("{points}.csv"));
+        let text = sweep(&scene, &table, &[&point[..], &[points]].concat());
+        let rows = Table::read(&table);
+        (text, rows.number(0, "friction"), rows.number(0, "contact_ratio"))
+    };
+    let (own, fine, coarse) = (row("128"), row("256"), row("100"));
+    assert!(own.0.contains("# method = steady, on the map's own 128 x 128 points"), "{}", own.0);
+    assert!(fine.0.contains("# method = steady, on 256 x 256 points by the waves of the map, which has 128 x 128"));
+    // What half the spacing changes, and what is left out at fewer points.
+    for (other, allowed) in [(fine, 0.02), (coarse, 0.05)] {
+        assert!((other.1 / own.1 - 1.0).abs() < allowed && (other.2 / own.2 - 1.0).abs() < 2.5 * allowed);
+    }
+    let few = refused(
+        &[
+            &["sweep", scene.to_str().unwrap(), "-o", "none.csv", "--speeds", "1", "--pressures", "2e5"][..],
+            &["--points", "8"],
+        ]
+        .concat(),
+    );
+    assert!(few.contains("expected a map solved on at least 16 points along x and y, found [8, 8]"), "{few}");
+}
+
+/// The maps of a contact are drawn, of a long one below each other; numpy's arrays are the table's columns.
+#[test]
+fn a_contact_of_a_map_is_drawn_as_maps() {
+    let folder = scratch("steady-contact-map");
+    let scene = reference("steady/steady-map.toml");
+    let file = |name: &str| folder.join(name);
+    let contact = |options: &[&str], picture: &str, data: &str| {
+        let mut command = asperity();
+        command.arg("contact").arg(&scene).args(["--pressure", "3e5", "--speed", "0.1"]).args(options);
+        run(command.arg("-o").arg(file(picture)).arg("--data").arg(file(data)))
+    };
+    let _ = contact(&[], "contact.svg", "contact.csv");
+    let _ = contact(&[], "contact.png", "contact.npz");
+    let svg = fs::read_to_string(file("contact.svg")).unwrap();
+    assert_eq!(svg.matches("<image ").count(), 3);
+    for text in
+        ["pressure in MPa", "gap in µm", "height in µm", "contact, 14.9 % of the area", "1 mm", "the rubber slides"]
+    {
+        assert!(svg.contains(text), "{text}");
+    }
+    assert!(fs::read(file("contact.png")).unwrap().starts_with(b"\x89PNG"));
+    let rows = Table::read(&file("contact.csv"));
+    let mut archive = zip::ZipArchive::new(fs::File::open(file("contact.npz")).unwrap()).unwrap();
+    for (name, column, shape) in [
+        ("height", "height [m]", "(128, 128)"),
+        ("pressure", "pressure [Pa]", "(128, 128)"),
+        ("gap", "gap [m]", "(128, 128)"),
+    ] {
+        let mut bytes = Vec::new();
+        archive.by_name(&format!("{name}.npy")).unwrap().read_to_end(&mut bytes).unwrap();
+        assert!(bytes.starts_with(b"\x93NUMPY\x01\x00"), "{name}");
+        let start = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
+        assert_eq!(start % 64, 0);
+        let header = String::from_utf8_lossy(&bytes[10..start]).into_owned();
+        assert!(header.contains(&format!("'shape': {shape}")) && header.ends_with('\n'), "{header}");
+        let values = bytes[start..].chunks_exact(8).map(|bytes| f64::from_le_bytes(bytes.try_into().unwrap()));
+        assert_eq!(values.collect::<Vec<_>>(), rows.column(column), "{name}");
+    }
+    let long = "surface={ kind = 'self_affine', isotropic = true, length = 4e-3, size_y = 1e-3, points = 128, hurst = 0.8, \
+                rms = 5e-6, roll_off_wavelength = 1e-3, cut_off_wavelength = 2.5e-4, seed = 5 }";
+    let _ = contact(&["--set", long], "long.svg", "long.csv");
+    let svg = fs::read_to_string(file("long.svg")).unwrap();
+    let edge = |name: &str| -> Vec<u32> {
+        let images = svg.split("<image ").skip(1);
+        images
+            .map(|image| {
+                image.split(&format!(" {name}=\"")).nth(1).unwrap().split('"').next().unwrap().parse().unwrap()
+            })
+            .collect()
+    };
+    let (height, top) = (edge("height"), edge("y"));
+    assert_eq!(edge("width")[0], 4 * height[0]);
+    assert!(top[1] > top[0] + height[0] && top[2] > top[1] + height[1]);
+}
+
 /// Pressures of the data have the mean that was asked for and stand where the gap is 0.
 #[test]
 fn a_contact_is_drawn_and_written() {
@@ -160,4 +308,43 @@ fn a_contact_is_drawn_and_written() {
     // The sum of 2048 roundings.
     assert!((pressures.iter().sum::<f64>() / 2048.0 / 3e5 - 1.0).abs() < 1e-12);
     assert!(pressures.iter().zip(&gaps).all(|(p, gap)| (*p > 0.0) == (*gap == 0.0)));
+}
+
+/// A table that was solved for is checked with solutions between its points, and to and fro with a layer that bears the same
+/// load, which is another model; a patch with solutions at its separations.
+#[test]
+fn an_element_of_solutions_is_checked_with_solutions() {
+    let folder = scratch("steady-check");
+    let (scene, table) = (reference("half-plane/sine.toml"), folder.join("table.csv"));
+    let options = ["--speeds", "0.1..1/4", "--pressures", "5e3..4e4/4", "--points", "512"];
+    let _ = sweep(&scene, &table, &options);
+    // A library that nothing loads.
+    let library = root().join("Cargo.toml");
+    let pack = |options: &[&str], name: &str| {
+        let mut command = asperity();
+        command.arg("pack").args(options).arg("-o").arg(folder.join(name)).arg("--library").arg(&library);
+        run(command.arg("--check").arg(&scene).args(["--points", "4"]))
+    };
+    let said = pack(&["--table", table.to_str().unwrap()], "sine.fmu");
+    assert!(said.contains("4 of 4 points between the table's") && said.contains("which is another model"), "{said}");
+    let points = Table::read(&folder.join("sine-check/points.csv"));
+    for name in ["F_x error", "F_z error", "P_diss error"] {
+        // In the middles of cells as wide as a factor of two.
+        assert!(points.column(name).iter().all(|error| error.abs() < 0.05), "{name}: {points:?}");
+    }
+    // The load is the point's.
+    let area = 128.0 * 3.125e-5 * 1e-2;
+    let loads = points.column("F_z solution").into_iter().zip(points.column("pressure [Pa]"));
+    assert!(loads.into_iter().all(|(force, pressure)| (force / (pressure * area) - 1.0).abs() < 1e-12));
+
+    let patch = folder.join("patch.toml");
+    let text = "name = 'p'\n[table]\npath = 'table.csv'\n\
+                [patch]\nshape = 'flat'\nlength = 0.1\nwidth = 0.05\nnx = 8\nny = 4\n";
+    fs::write(&patch, text).unwrap();
+    let said = pack(&["--patch", patch.to_str().unwrap()], "patch.fmu");
+    assert!(said.contains("12 of 12 elements beside their solutions"), "{said}");
+    assert!(said.contains("to and fro: not done, the layer is another model than what was swept"), "{said}");
+    let points = Table::read(&folder.join("patch-check/points.csv"));
+    // Solutions found at the separations of elements, between the table's pressures.
+    assert!(points.column("force.z error").iter().all(|error| error.abs() < 0.05), "{points:?}");
 }

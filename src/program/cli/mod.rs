@@ -16,7 +16,8 @@ use super::sweep::values::{Shard, Values};
 pub(crate) use values::{Condition, PlotAxis, WlfConstants, tenth};
 use values::{
     Frequencies, Tolerances, column_unit, count, fit_error, free_parameter, frequency, key_and_value, length, picture,
-    picture_or_table, poisson_ratio, powers, pressure, seconds, seeds, share, speed, table, temperature, wavelengths,
+    picture_or_table, poisson_ratio, powers, pressure, seconds, seeds, share, speed, table_or_arrays, temperature,
+    wavelengths,
 };
 
 /// Simulates rubber on a rough surface and packs the simulation as an FMU.
@@ -461,8 +462,8 @@ pub(crate) struct Sweep {
     /// foundation is "half_space" or "layer" and the surface periodic and not flat; else layer.
     #[arg(long, value_name = "METHOD", value_enum)]
     pub(crate) method: Option<SweepMethod>,
-    /// Points of a period along x, with --method steady. Default: the profile's own, or 8 to its shortest wave where they
-    /// are uneven or fewer.
+    /// Points of a period along x, with --method steady; of a map with those along y in proportion. Default: the surface's
+    /// own, or of a profile 8 to its shortest wave where they are uneven or fewer.
     #[arg(long, value_name = "N", value_parser = count)]
     pub(crate) points: Option<u32>,
     /// Admissible standard error of the friction coefficient, relative to it, with --method layer. Default: 5e-3.
@@ -566,14 +567,16 @@ pub(crate) struct Contact {
     /// Sliding speed in m/s.
     #[arg(long, value_name = "SPEED", value_parser = speed, allow_negative_numbers = true)]
     pub(crate) speed: f64,
-    /// Points of a period along x. Default: the profile's own, or 8 to its shortest wave where they are uneven or fewer.
+    /// Points of a period along x; of a map with those along y in proportion. Default: the surface's own, or of a profile 8
+    /// to its shortest wave where they are uneven or fewer.
     #[arg(long, value_name = "N", value_parser = count)]
     pub(crate) points: Option<u32>,
-    /// The picture to write, as SVG or PNG according to the file name.
+    /// The picture to write, as SVG or PNG according to the file name: along a profile heights and pressure; of a map
+    /// pressure, gap and where it is touched.
     #[arg(short, long, value_name = "OUT.png", value_parser = picture())]
     pub(crate) output: PathBuf,
-    /// A table of all points to write: x, y, height, pressure, gap.
-    #[arg(long, value_name = "OUT.csv", value_parser = table())]
+    /// All points to write: x, y, height, pressure, gap, as a table or, with .npz, as arrays of numpy with a row for each y.
+    #[arg(long, value_name = "OUT.csv|.npz", value_parser = table_or_arrays())]
     pub(crate) data: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) set: Set,
@@ -597,9 +600,16 @@ pub(crate) struct Converge {
     /// Number of seeds of a self-affine surface or roughness, the scene's own included. Default: 4.
     #[arg(long, value_name = "N", value_parser = seeds)]
     pub(crate) seeds: Option<u32>,
-    /// Most masses that the halved spacing may come to; with twice the length there are twice as many.
-    #[arg(long, value_name = "N", default_value_t = 4096, value_parser = count)]
-    pub(crate) most_masses: u32,
+    /// How steady sliding is found, as in a sweep. Default: as a sweep's.
+    #[arg(long, value_name = "METHOD", value_enum)]
+    pub(crate) method: Option<SweepMethod>,
+    /// Points of a period along x to begin with, with --method steady. Default: as of a sweep.
+    #[arg(long, value_name = "N", value_parser = count)]
+    pub(crate) points: Option<u32>,
+    /// Most masses, or points of the whole surface with --method steady, that the halved spacing may come to; with twice
+    /// the length there are twice as many. Default: 4096 masses, 2097152 points.
+    #[arg(long, value_name = "N", visible_alias = "most-masses", value_parser = count)]
+    pub(crate) most_points: Option<u32>,
     /// The table to write, - for standard output; an existing table of the same study is continued. Default: the
     /// scene's file name with .converge.csv.
     #[arg(short, long, value_name = "TABLE.csv")]
@@ -607,8 +617,8 @@ pub(crate) struct Converge {
     /// The plot to write, as SVG or PNG according to the file name. Default: the table's name with .svg.
     #[arg(long, value_name = "OUT.svg", value_parser = picture())]
     pub(crate) plot: Option<PathBuf>,
-    /// Maximum sliding distance in m for a run to become steady. Default: 100 blocks; a block is a whole number of
-    /// profile periods or layer lengths.
+    /// Maximum sliding distance in m for a run to become steady, with --method layer. Default: 100 blocks; a block is a
+    /// whole number of profile periods or layer lengths.
     #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
     pub(crate) distance: Option<f64>,
     /// Replaces an existing table instead of continuing it.

@@ -161,9 +161,9 @@ pub(super) fn wavelengths(text: &str) -> Result<RangeInclusive<f64>, String> {
     ends(text).filter(allowed).map(|(shortest, longest)| shortest..=longest).ok_or_else(message)
 }
 
-/// A file for a table.
-pub(super) fn table() -> impl TypedValueParser<Value = PathBuf> {
-    ending_in(&["csv"], "a name that ends in .csv, or -")
+/// A file for a table or for arrays of numpy.
+pub(super) fn table_or_arrays() -> impl TypedValueParser<Value = PathBuf> {
+    ending_in(&["csv", "npz"], "a name that ends in .csv or .npz, or -")
 }
 
 /// A file for a plot; its name gives the format.

@@ -13,6 +13,7 @@ use std::time::Duration;
 
 use asperity::element::{Load, OperatingPoint};
 use asperity::scene::{LinkKind, Scene};
+use asperity::steady::{SlidingRubber, SteadySolver};
 use cpu_time::ThreadTime;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
@@ -22,12 +23,15 @@ use super::draft::TablePlace;
 use super::figure::Figure as _;
 use super::files::{FileError, check_outputs, default_output, picture_beside, print_beside, sources};
 use super::interrupt::Farewell;
-use super::sweep::{NeverSteady, StopBounds, check_can_be_steady, relevant, steady_sliding, table_fingerprint};
+use super::sweep::{
+    Asked, Method, MethodError, NeverSteady, StopBounds, SweepMethod, relevant, solved_status, steady_sliding,
+    table_fingerprint,
+};
 use super::terminal::{self, warn};
 use asperity::steady::persson::{Dimension, Theory};
 use plan::{Next, Plan};
 use table::{Measured, RunRow, StudyHeader, Table};
-use variants::{Template, Variant};
+use variants::{Parts, Template, Variant};
 use verdict::{Pair, Study, Verdict};
 
 /// `asperity converge` refused a scene or a file.
@@ -55,10 +59,12 @@ pub(crate) enum ConvergeError {
     Unclear { path: PathBuf },
     #[error("--seeds: neither the scene's surface nor its roughness is self_affine, so nothing depends on a seed")]
     NoSeed,
+    #[error(transparent)]
+    Method(#[from] MethodError),
     #[error(
-        "--most-masses: expected at least {least}: the scene has {masses} masses, and its spacing is halved at least once"
+        "--most-{parts}: expected at least {least}: the scene has {own} {parts}, and its spacing is halved at least once"
     )]
-    FewMasses { masses: u64, least: u64 },
+    FewParts { parts: &'static str, own: u64, least: u64 },
     #[error("{}: not the table of a study: {problem}; name another -o, or give --force to replace it", .path.display())]
     NotATable { path: PathBuf, problem: String },
     #[error(
@@ -77,24 +83,29 @@ const RUN_ERROR: f64 = 0.1;
 /// Makes the runs, prints the study and draws it.
 pub(crate) fn converge(command: &Converge) -> Result<ExitCode, ConvergeError> {
     let (template, scene) = Template::read(&command.scene, &command.set)?;
+    let (method, of_method) = asked(command).choose(&scene)?;
+    let template = match &method {
+        Method::Steady(surface) => template.on_grid(surface),
+        Method::Layer => template,
+    };
     let plan = plan(command, &template)?;
-    if let Some(warning) = scene.hard_pressure("--pressure", command.pressure) {
-        warn(&warning);
-    }
+    let warning = scene.hard_pressure("--pressure", command.pressure).filter(|_| matches!(method, Method::Layer));
+    warning.iter().for_each(|warning| warn(warning));
     let output = command.output.clone().unwrap_or_else(|| default_output(&command.scene, "converge.csv"));
     let picture = picture_beside(&output, command.plot.as_ref());
     check_outputs([&output].into_iter().chain(&picture), sources(&command.scene, &scene))?;
-    check_can_be_steady(&scene)?;
+    method.check(&scene)?;
     let place = TablePlace::new(&output)?;
-    let (table, runs) = Table::open(&place.path, header(command, &scene)?, command.force)?;
+    let (table, runs) =
+        Table::open(&place.path, header(command, &scene, &method, of_method, template.parts())?, command.force)?;
     let (study, mut runs) = Work { command, template: &template, plan, table: &table, output: &output }.finish(runs)?;
     runs.sort_by_key(|run| run.variant.place());
     let verdict = Verdict::new(&study, command.error);
     let rows: Vec<(&RunRow, Option<Pair>)> = runs.iter().map(|run| (run, change(run, &runs))).collect();
     table.finish(&summary::sentence(&verdict, command.error), &rows)?;
     let ladder: Vec<&RunRow> = runs.iter().filter(|run| run.variant.is_of_ladder()).take(study.ladder.len()).collect();
-    let judgement = summary::judgement(&ladder, &verdict, command.error, plan.seeds);
-    print_beside([&output], &format!("{}\n{judgement}", summary::table(&rows)))?;
+    let judgement = summary::judgement(&ladder, template.parts(), &verdict, command.error, plan.seeds);
+    print_beside([&output], &format!("{}\n{judgement}", summary::table(&rows, template.parts())))?;
     drop(table);
     place.finish()?;
     if let Some(picture) = &picture {
@@ -106,24 +117,43 @@ pub(crate) fn converge(command: &Converge) -> Result<ExitCode, ConvergeError> {
 /// Seeds where none are asked for.
 const SEEDS: u32 = 4;
 
+/// What a halved spacing may come to where nothing is asked for: masses of a layer, points of a surface.
+const MOST: (u32, u32) = (4096, 1 << 21);
+
+fn asked(command: &Converge) -> Asked {
+    let Converge { method, points, distance, .. } = *command;
+    Asked { method, points, has_error: false, has_distance: distance.is_some() }
+}
+
 fn plan(command: &Converge, template: &Template) -> Result<Plan, ConvergeError> {
-    let (masses, most) = (template.masses(), u64::from(command.most_masses));
-    let max_halvings = (most / masses).checked_ilog2().unwrap_or_default();
+    let parts = template.parts();
+    let most = command.most_points.unwrap_or(if parts == Parts::Masses { MOST.0 } else { MOST.1 });
+    let within = |halvings: &u32| template.contacts(*halvings) <= u64::from(most);
+    let max_halvings = (1..u32::BITS).take_while(within).count() as u32;
     if max_halvings == 0 {
-        return Err(ConvergeError::FewMasses { masses, least: 2 * masses });
+        let [own, least] = [0, 1].map(|halvings| template.contacts(halvings));
+        return Err(ConvergeError::FewParts { parts: parts.name(), own, least });
     }
     if command.seeds.is_some() && !template.has_seed() {
         return Err(ConvergeError::NoSeed);
     }
     let seeds = template.has_seed().then_some(command.seeds.unwrap_or(SEEDS));
-    Ok(Plan { error: command.error, max_halvings, seeds, has_split: template.has_split() })
+    let (has_length, has_split) = (template.has_length(), template.has_split());
+    Ok(Plan { error: command.error, max_halvings, has_length, seeds, has_split })
 }
 
-fn header(command: &Converge, scene: &Scene) -> Result<StudyHeader, ConvergeError> {
+fn header(
+    command: &Converge,
+    scene: &Scene,
+    method: &Method,
+    of_method: String,
+    parts: Parts,
+) -> Result<StudyHeader, ConvergeError> {
     let Converge { pressure, speed, error, distance, .. } = *command;
-    let settings = format!("converge {pressure:?} {speed:?} {error:?} {distance:?}");
+    let of_method_alone = method.settings(|| format!("{distance:?}"));
+    let settings = format!("converge {pressure:?} {speed:?} {error:?} {of_method_alone}");
     let fingerprint = table_fingerprint(&relevant(scene.clone()), &settings)?;
-    Ok(StudyHeader { scene: scene.name.clone(), fingerprint, pressure, speed, error })
+    Ok(StudyHeader { scene: scene.name.clone(), fingerprint, method: of_method, parts, pressure, speed, error })
 }
 
 /// The change of a run's values from those of the run that it is compared with.
@@ -174,27 +204,48 @@ impl Work<'_> {
     fn show(&self, bar: &ProgressBar, done: usize, missing: &[Variant]) {
         bar.set_length((done + missing.len() + self.plan.following(missing)) as u64);
         bar.set_position(done as u64);
-        let masses = missing.iter().map(|&variant| self.template.dimensions(variant).masses.to_string());
-        bar.set_message(format!("now with {} masses", masses.collect::<Vec<_>>().join(", ")));
+        let counts = missing.iter().map(|&variant| self.template.dimensions(variant).count.to_string());
+        let parts = self.template.parts().name();
+        bar.set_message(format!("now with {} {parts}", counts.collect::<Vec<_>>().join(", ")));
     }
 
     fn make(&self, variant: Variant, bar: &ProgressBar) -> Result<RunRow, FileError> {
         let scene = self.template.scene(variant)?;
         let clock = ThreadTime::now();
-        let outcome = self.measure(&scene);
+        let dimensions = self.template.dimensions(variant);
+        let is_of_layer = self.template.parts() == Parts::Masses;
+        let outcome = if is_of_layer { self.measure(&scene) } else { self.solve(&scene, dimensions.count) };
         let run_time = clock.elapsed().as_secs_f64();
         let Converge { pressure, speed, .. } = *self.command;
         let theories = [Dimension::One, Dimension::Two]
             .map(|dimension| Theory::new(&scene, pressure, speed, dimension).unwrap_or_default());
-        let fit_rms = scene.quality(LinkKind::Vertical).map_or(0.0, |quality| quality.rms);
-        let dimensions = self.template.dimensions(variant);
+        let fit_rms = is_of_layer.then(|| scene.quality(LinkKind::Vertical).map_or(0.0, |quality| quality.rms));
         let run = RunRow { variant, dimensions, fit_rms, outcome, theories, run_time };
         self.table.add(&run)?;
         bar.inc(1);
         Ok(run)
     }
 
-    /// Friction and area in steady sliding, or why there is none.
+    /// Friction and area in steady sliding on so many points along x, or why there is none.
+    fn solve(&self, scene: &Scene, points: u64) -> Result<Measured, String> {
+        let points = u32::try_from(points).map_err(|_| format!("{points} points are too many"))?;
+        let asked = Asked { method: Some(SweepMethod::Steady), points: Some(points), ..asked(self.command) };
+        let (method, _) = asked.choose(scene).map_err(|error| error.to_string())?;
+        let (Method::Steady(surface), Some(rubber)) = (method, SlidingRubber::new(scene)) else {
+            return Err("not to be solved for".into());
+        };
+        let slide = SteadySolver::new(surface).slide(&rubber, self.command.speed, self.command.pressure);
+        if slide.contact.left_over > 0 || !slide.heat_converged {
+            return Err(solved_status(&slide));
+        }
+        Ok(Measured {
+            mean: Pair { friction: slide.friction(), area: slide.area },
+            error: Pair { friction: 0.0, area: 0.0 },
+            hysteresis: slide.profile_hysteresis + slide.fine_hysteresis.unwrap_or_default(),
+        })
+    }
+
+    /// Friction and area of the layer in steady sliding, or why there is none.
     fn measure(&self, scene: &Scene) -> Result<Measured, String> {
         let Converge { pressure, speed, error, distance, .. } = *self.command;
         let area = scene.layer.area().ok_or("the layer has no width")?;

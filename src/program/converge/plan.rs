@@ -11,6 +11,8 @@ pub(super) struct Plan {
     pub(super) error: f64,
     /// Most halvings, at least one.
     pub(super) max_halvings: u32,
+    /// Whether there is more of the surface, or the layer slides over more of it, with twice the length.
+    pub(super) has_length: bool,
     /// Number of seeds, the scene's own included; `None` where it has none.
     pub(super) seeds: Option<u32>,
     /// Whether the profile may end elsewhere, and the waves that it lacks begin there.
@@ -43,18 +45,17 @@ impl Plan {
             return Next::Runs(vec![Variant::halved(ladder.len() as u32)]);
         }
         let Some(finest) = ladder.len().checked_sub(1) else {
-            let (split, seeds) = (self.has_split.then_some(None), self.seeds.map(|_| vec![None]));
-            return Next::Done(Study { ladder, length: None, split, seeds });
+            let [length, split] = [self.has_length, self.has_split].map(|has| has.then_some(None));
+            return Next::Done(Study { ladder, length, split, seeds: self.seeds.map(|_| vec![None]) });
         };
         let others = self.others(finest as u32);
         let left = missing(others.clone());
         if !left.is_empty() {
             return Next::Runs(left);
         }
-        let outcomes: Vec<Outcome> = others.into_iter().filter_map(outcome).collect();
-        let split = self.has_split.then(|| outcomes[1]);
-        let seeds = self.seeds.map(|_| outcomes[1 + usize::from(self.has_split)..].to_vec());
-        Next::Done(Study { ladder, length: outcomes[0], split, seeds })
+        let mut outcomes = others.into_iter().filter_map(outcome);
+        let [length, split] = [self.has_length, self.has_split].map(|has| has.then(|| outcomes.next().flatten()));
+        Next::Done(Study { ladder, length, split, seeds: self.seeds.map(|_| outcomes.collect()) })
     }
 
     /// The steady runs from the scene's spacing on, and whether no finer one is to be made.
@@ -75,8 +76,9 @@ impl Plan {
     fn others(&self, halvings: u32) -> Vec<Variant> {
         let finest = Variant::halved(halvings);
         let seeds = (1..self.seeds.unwrap_or(1)).map(|seed_shift| Variant { seed_shift, ..finest });
+        let doubled = self.has_length.then_some(Variant { doubled: true, ..finest });
         let split = self.has_split.then_some(Variant { split: true, ..finest });
-        std::iter::once(Variant { doubled: true, ..finest }).chain(split).chain(seeds).collect()
+        doubled.into_iter().chain(split).chain(seeds).collect()
     }
 
     /// Number of runs that follow these at least.
@@ -106,7 +108,7 @@ mod tests {
         unreachable!("the plan has an end")
     }
 
-    const PLAN: Plan = Plan { error: 0.05, max_halvings: 6, seeds: Some(3), has_split: false };
+    const PLAN: Plan = Plan { error: 0.05, max_halvings: 6, has_length: true, seeds: Some(3), has_split: false };
 
     /// 0.1 (1 + 0.4 2^-i): the fourth halving changes by less than 5 %.
     fn first_order(variant: Variant) -> Outcome {
@@ -132,6 +134,15 @@ mod tests {
         assert_eq!(study.seeds.map(|seeds| seeds.len()), Some(2));
     }
 
+    /// Of a file that is one period there is no more, and nothing follows where there is no seed either.
+    #[test]
+    fn a_surface_of_which_there_is_no_more_is_not_doubled() {
+        let (rounds, study) = made(Plan { has_length: false, seeds: None, ..PLAN }, first_order);
+        assert_eq!((rounds.len(), study.ladder.len(), study.length), (3, 4, None));
+        let (rounds, study) = made(Plan { has_length: false, ..PLAN }, first_order);
+        assert_eq!((rounds[3].len(), study.seeds.map(|seeds| seeds.len())), (2, Some(2)));
+    }
+
     #[test]
     fn max_masses_end_the_halvings() {
         let (rounds, study) = made(Plan { max_halvings: 1, seeds: None, ..PLAN }, first_order);
@@ -148,9 +159,9 @@ mod tests {
             |first: u32| move |variant: Variant| first_order(variant).filter(|_| variant.halvings < first);
         let (rounds, study) = made(PLAN, unsteady_from(2));
         assert_eq!((rounds.len(), study.ladder.len()), (3, 2));
-        assert!(study.length.is_some());
+        assert!(study.length.is_some_and(|length| length.is_some()));
         let (rounds, study) = made(PLAN, unsteady_from(0));
-        assert_eq!((rounds.len(), study.ladder.len(), study.length), (1, 0, None));
+        assert_eq!((rounds.len(), study.ladder.len(), study.length), (1, 0, Some(None)));
     }
 
     #[test]

@@ -1,12 +1,13 @@
 //! A study as text: a row for each run, what is left open, and what will do.
 
 use super::table::RunRow;
+use super::variants::Parts;
 use super::verdict::{LargestOpen, Open, Pair, Source, Verdict};
 use crate::program::terminal::{LabelledLine, decimal, labelled, lines, rounded};
 use asperity::steady::persson::Theory;
 
-const TITLES: [&str; 13] = [
-    "masses",
+/// Titles of the columns after what is counted.
+const TITLES: [&str; 12] = [
     "spacing, m",
     "length, m",
     "seed",
@@ -21,20 +22,29 @@ const TITLES: [&str; 13] = [
     "time, s",
 ];
 
+/// The columns that runs without links and without scatter do not have.
+const OF_LAYER: [&str; 2] = ["r rms", "std. error"];
+
 /// The runs, each with the change of its values from the one that it is compared with.
 pub(super) type Rows<'a> = [(&'a RunRow, Option<Pair>)];
 
 /// The rows as a table with a line for each.
-pub(super) fn table(rows: &Rows<'_>) -> String {
-    let mut cells = vec![TITLES.map(str::to_owned).to_vec()];
-    cells.extend(rows.iter().map(|(run, change)| fields(run, *change)));
-    let widths: Vec<usize> = (0..TITLES.len())
+pub(super) fn table(rows: &Rows<'_>, parts: Parts) -> String {
+    let titles: Vec<&str> = std::iter::once(parts.name()).chain(TITLES).collect();
+    let is_shown = |i: usize| parts == Parts::Masses || titles.get(i).is_none_or(|title| !OF_LAYER.contains(title));
+    let shown = |row: Vec<String>| -> Vec<String> {
+        row.into_iter().enumerate().filter(|(i, _)| is_shown(*i)).map(|(_, cell)| cell).collect()
+    };
+    let mut cells = vec![shown(titles.iter().map(|&title| title.to_owned()).collect())];
+    let count = cells[0].len();
+    cells.extend(rows.iter().map(|(run, change)| shown(fields(run, *change))));
+    let widths: Vec<usize> = (0..count)
         .map(|i| cells.iter().filter_map(|row| row.get(i)).map(|cell| cell.chars().count()).max().unwrap_or_default())
         .collect();
     let line = |row: &Vec<String>| {
         let padded: Vec<String> = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:>width$}")).collect();
         // The status of a run that is not steady takes the place of its values.
-        let status = row.get(TITLES.len()).map(|status| format!("  {status}")).unwrap_or_default();
+        let status = row.get(count).map(|status| format!("  {status}")).unwrap_or_default();
         padded.join("  ").trim_end().to_owned() + &status + "\n"
     };
     cells.iter().map(line).collect()
@@ -43,12 +53,12 @@ pub(super) fn table(rows: &Rows<'_>) -> String {
 fn fields(run: &RunRow, change: Option<Pair>) -> Vec<String> {
     let dimensions = &run.dimensions;
     let mut fields = vec![
-        dimensions.masses.to_string(),
+        dimensions.count.to_string(),
         number(dimensions.spacing),
         number(dimensions.length()),
         dimensions.seed.map_or_else(|| "-".into(), |seed| seed.to_string()),
         dimensions.split.map_or_else(|| "-".into(), number),
-        format!("{:.3}", run.fit_rms),
+        run.fit_rms.map_or_else(String::new, |fit_rms| format!("{fit_rms:.3}")),
     ];
     let of = |value: fn(&Pair) -> f64| match &run.outcome {
         Ok(measured) => [
@@ -79,12 +89,12 @@ fn percent(share: f64) -> String {
 
 /// Persson's theory, what each source leaves open, the coarsest spacing, and the verdict. `ladder` holds the runs with
 /// the scene's length and seed.
-pub(super) fn judgement(ladder: &[&RunRow], verdict: &Verdict, error: f64, seeds: Option<u32>) -> String {
+pub(super) fn judgement(ladder: &[&RunRow], parts: Parts, verdict: &Verdict, error: f64, seeds: Option<u32>) -> String {
     let mut all: Vec<LabelledLine> = Vec::new();
     all.extend(ladder.last().and_then(|run| hysteresis(run)).map(|line| ("Hysteresis", line)));
     all.extend(labelled("Persson", ladder.last().iter().flat_map(|run| theories(&run.theories))));
     all.extend(labelled("Open", verdict.open.iter().map(|open| open_line(open, seeds))));
-    all.extend(labelled("Coarsest", coarsest(ladder, verdict, error)));
+    all.extend(labelled("Coarsest", coarsest(ladder, parts, verdict, error)));
     all.push(("Verdict", sentence(verdict, error)));
     lines(&all)
 }
@@ -118,16 +128,16 @@ fn open_line(open: &Open, seeds: Option<u32>) -> String {
     format!("{name:<9}friction {}, area {}: {of}", percent(shares.friction), percent(shares.area))
 }
 
-fn coarsest(ladder: &[&RunRow], verdict: &Verdict, error: f64) -> [String; 2] {
+fn coarsest(ladder: &[&RunRow], parts: Parts, verdict: &Verdict, error: f64) -> [String; 2] {
     let line = |name: &str, halvings: Option<usize>| {
         let Some(run) = halvings.and_then(|halvings| ladder.get(halvings)) else {
             return format!("{name:<9}none of these spacings is within {}", percent(error));
         };
         let times = [Some(run), ladder.first(), ladder.last()].map(|run| run.map_or(0.0, |run| run.run_time));
         let [own, first, last] = times.map(seconds);
-        let (masses, spacing) = (run.dimensions.masses, number(run.dimensions.spacing));
+        let (parts, count, spacing) = (parts.name(), run.dimensions.count, number(run.dimensions.spacing));
         format!(
-            "{name:<9}masses = {masses}, spacing = {spacing} m within {}: {own} s (the scene's own {first} s, the finest \
+            "{name:<9}{parts} = {count}, spacing = {spacing} m within {}: {own} s (the scene's own {first} s, the finest \
              {last} s)",
             percent(error)
         )
@@ -160,7 +170,7 @@ mod tests {
     fn the_verdict_names_what_leaves_most_open() {
         let pair = |friction: f64, area: f64| Pair { friction, area };
         let ladder = vec![pair(0.5, 0.102), pair(0.5, 0.1)];
-        let study = Study { ladder, length: Some(pair(0.5, 0.1)), split: None, seeds: None };
+        let study = Study { ladder, length: Some(Some(pair(0.5, 0.1))), split: None, seeds: None };
         assert_eq!(
             sentence(&Verdict::new(&study, 0.05), 0.05),
             "converged: spacing leaves most open, 2 % of the area, within 5 %"
@@ -169,7 +179,7 @@ mod tests {
             sentence(&Verdict::new(&study, 0.01), 0.01),
             "not converged: spacing leaves most open, 2 % of the area, more than 1 %"
         );
-        let study = Study { length: None, ..study };
+        let study = Study { length: Some(None), ..study };
         assert_eq!(sentence(&Verdict::new(&study, 0.05), 0.05), "not converged: what length leaves open is not known");
     }
 }

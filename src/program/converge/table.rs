@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use asperity::scene::{read_file, text_table};
 
 use super::ConvergeError;
-use super::variants::{Dimensions, Variant};
+use super::variants::{Dimensions, Parts, Variant};
 use super::verdict::Pair;
 use crate::program::draft::LineFile;
 use crate::program::files::{FileError, write};
@@ -17,6 +17,7 @@ use asperity::steady::persson::Theory;
 /// The first line of a table; its number grows when readers have to know of a change.
 const FORMAT: &str = "# asperity converge = 3";
 
+/// The columns; the fifth is called as what it counts.
 const COLUMNS: [&str; 25] = [
     "halvings [1]",
     "length_factor [1]",
@@ -61,8 +62,8 @@ pub(super) struct Measured {
 pub(super) struct RunRow {
     pub(super) variant: Variant,
     pub(super) dimensions: Dimensions,
-    /// Root mean square of r - 1, 1: how far the links miss the surface that they stand for.
-    pub(super) fit_rms: f64,
+    /// Root mean square of r - 1, 1: how far the links miss the surface that they stand for; `None` without links.
+    pub(super) fit_rms: Option<f64>,
     /// What was measured, or why nothing was.
     pub(super) outcome: Result<Measured, String>,
     /// Persson's theory of ridges and of an isotropic surface.
@@ -79,7 +80,7 @@ impl RunRow {
 
     /// The row's line, its end included; `change` is that of the values from another run to this one.
     fn line(&self, change: Option<Pair>) -> String {
-        let Dimensions { masses, spacing, seed, split: longest } = self.dimensions;
+        let Dimensions { count, spacing, seed, split: longest } = self.dimensions;
         let status = self.outcome.as_ref().err().map_or(STEADY, String::as_str);
         let measured = self.outcome.as_ref().ok();
         let text = |value: Option<f64>| value.map(real).unwrap_or_default();
@@ -96,13 +97,13 @@ impl RunRow {
             if doubled { "2" } else { "1" }.to_owned(),
             seed_shift.to_string(),
             if split { "0.5" } else { "1" }.to_owned(),
-            masses.to_string(),
+            count.to_string(),
             real(spacing),
             real(self.dimensions.length()),
             seed.map(|seed| seed.to_string()).unwrap_or_default(),
             text(longest),
             text_table::quoted(status),
-            real(self.fit_rms),
+            text(self.fit_rms),
         ];
         let [friction, area] = [of(|pair| pair.friction), of(|pair| pair.area)];
         let values = [&friction[..], &[measured.map(|run| run.hysteresis)], &area].concat();
@@ -122,8 +123,8 @@ impl RunRow {
             |i: usize| Some(Theory { area: number(i)?, friction: number(i + 1)?, friction_reduced: number(i + 2)? });
         let whole = |i: usize| text(i).parse::<u64>().ok();
         let small = |i: usize| text(i).parse::<u32>().ok();
+        let optional = |i: usize| if text(i).is_empty() { Some(None) } else { Some(Some(number(i)?)) };
         let seed = if text(7).is_empty() { None } else { Some(whole(7)?) };
-        let longest = if text(8).is_empty() { None } else { Some(number(8)?) };
         let pair = |friction: usize, area: usize| Some(Pair { friction: number(friction)?, area: number(area)? });
         let outcome = match text(9) {
             STEADY => Ok(Measured { mean: pair(11, 15)?, error: pair(12, 16)?, hysteresis: number(14)? }),
@@ -136,8 +137,8 @@ impl RunRow {
                 seed_shift: small(2)?,
                 split: text(3) == "0.5",
             },
-            dimensions: Dimensions { masses: whole(4)?, spacing: number(5)?, seed, split: longest },
-            fit_rms: number(10)?,
+            dimensions: Dimensions { count: whole(4)?, spacing: number(5)?, seed, split: optional(8)? },
+            fit_rms: optional(10)?,
             outcome,
             theories: [theory(18)?, theory(21)?],
             run_time: number(24)?,
@@ -152,6 +153,9 @@ pub(super) struct StudyHeader {
     pub(super) scene: String,
     /// What tells this study from others.
     pub(super) fingerprint: String,
+    /// How steady sliding is found.
+    pub(super) method: String,
+    pub(super) parts: Parts,
     /// The mean pressure of the runs, Pa.
     pub(super) pressure: f64,
     /// The speed of the runs, m/s.
@@ -166,13 +170,18 @@ impl StudyHeader {
             FORMAT.to_owned(),
             format!("# scene = {}", self.scene),
             format!("# fingerprint = {}", self.fingerprint),
+            format!("# method = {}", self.method),
             format!("# pressure = {} Pa", real(self.pressure)),
             format!("# speed = {} m/s", real(self.speed)),
             format!("# error = {}", real(self.error)),
         ];
         lines.extend(verdict.map(|verdict| format!("# verdict = {verdict}")));
-        lines.push(COLUMNS.join(","));
+        lines.push(self.columns());
         lines.join("\n") + "\n"
+    }
+
+    fn columns(&self) -> String {
+        COLUMNS.join(",").replace("masses", self.parts.name())
     }
 }
 
@@ -222,8 +231,8 @@ fn runs_done(path: &Path, header: &StudyHeader) -> Result<Vec<RunRow>, ConvergeE
     let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
     let not_a_table = |problem: String| ConvergeError::NotATable { path: path.to_owned(), problem };
     let mut rows = text_table::rows(whole, Some(','));
-    if !whole.starts_with(FORMAT) || rows.next().is_none_or(|names| names.fields != COLUMNS) {
-        return Err(not_a_table(format!("expected the line `{FORMAT}` and the columns {}", COLUMNS.join(", "))));
+    if !whole.starts_with(FORMAT) || rows.next().is_none_or(|names| names.fields.len() != COLUMNS.len()) {
+        return Err(not_a_table(format!("expected the line `{FORMAT}` and the columns {}", header.columns())));
     }
     let key = format!("# fingerprint = {}", header.fingerprint);
     if !whole.lines().any(|line| line == key) {
@@ -245,9 +254,16 @@ mod tests {
 
     fn run(outcome: Result<Measured, String>) -> RunRow {
         let theory = |area: f64| Theory { area, friction: 0.1 / 3.0, friction_reduced: 1e-7 };
-        let dimensions = Dimensions { masses: 64, spacing: 1e-4 / 3.0, seed: Some(u64::MAX), split: Some(2e-3) };
+        let dimensions = Dimensions { count: 64, spacing: 1e-4 / 3.0, seed: Some(u64::MAX), split: Some(2e-3) };
         let variant = Variant { halvings: 3, doubled: true, seed_shift: 2, split: true };
-        RunRow { variant, dimensions, fit_rms: 0.25, outcome, theories: [theory(0.1), theory(0.2)], run_time: 12.5 }
+        RunRow {
+            variant,
+            dimensions,
+            fit_rms: Some(0.25),
+            outcome,
+            theories: [theory(0.1), theory(0.2)],
+            run_time: 12.5,
+        }
     }
 
     #[test]
@@ -257,7 +273,7 @@ mod tests {
         let steady = run(Ok(Measured { mean, error, hysteresis: 0.1 }));
         let failed = run(Err("not steady after 0.5 m, at all: \"never\"".into()));
         let seedless = Dimensions { seed: None, split: None, ..steady.dimensions };
-        for run in [steady.clone(), failed, RunRow { dimensions: seedless, ..steady }] {
+        for run in [steady.clone(), failed, RunRow { dimensions: seedless, fit_rms: None, ..steady }] {
             for change in [None, Some(pair(-0.5, 0.25))] {
                 let line = run.line(change);
                 let row = text_table::rows(&line, Some(',')).next().unwrap();

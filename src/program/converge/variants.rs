@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use asperity::scene::Scene;
+use asperity::steady::{GridSize, SurfaceGrid};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -50,11 +51,30 @@ impl Variant {
     }
 }
 
-/// The layer of a run, and its seed.
+/// What is halved, and a part of which is a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Parts {
+    /// The masses of the layer.
+    Masses,
+    /// The points of a period of the surface along x, with so many rows of them in the scene itself.
+    Points { rows: u64 },
+}
+
+impl Parts {
+    /// As the table's columns call them.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Masses => "masses",
+            Self::Points { .. } => "points",
+        }
+    }
+}
+
+/// The layer or the period of the surface in a run, and its seed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Dimensions {
-    /// Number of masses k.
-    pub(super) masses: u64,
+    /// Number of masses k, or of points along x.
+    pub(super) count: u64,
     /// Δx, m.
     pub(super) spacing: f64,
     /// The seed of the surface, else that of the layer's roughness; `None`: neither has one.
@@ -64,9 +84,9 @@ pub(super) struct Dimensions {
 }
 
 impl Dimensions {
-    /// Length kΔx of the layer, m.
+    /// Length kΔx, m.
     pub(super) fn length(&self) -> f64 {
-        self.masses as f64 * self.spacing
+        self.count as f64 * self.spacing
     }
 }
 
@@ -114,6 +134,7 @@ pub(super) struct Template {
     split: Option<SplitNumber>,
     /// The dimensions of the scene itself.
     own: Dimensions,
+    parts: Parts,
 }
 
 impl Template {
@@ -146,8 +167,25 @@ impl Template {
         let split = table(document, "surface").and_then(SplitNumber::new);
         let longest = split.as_ref().map(|split| split.wavelength.value.real());
         let (masses_of_scene, spacing_of_scene) = (masses.value.whole(), spacing.value.real());
-        let own = Dimensions { masses: masses_of_scene, spacing: spacing_of_scene, seed, split: longest };
-        Ok(Self { path: path.to_owned(), text, in_named_files, masses, spacing, self_affine, split, own })
+        let own = Dimensions { count: masses_of_scene, spacing: spacing_of_scene, seed, split: longest };
+        let parts = Parts::Masses;
+        Ok(Self { path: path.to_owned(), text, in_named_files, masses, spacing, self_affine, split, own, parts })
+    }
+
+    /// The same with the points of a surface in place of the masses.
+    pub(super) fn on_grid(self, surface: &SurfaceGrid) -> Self {
+        let GridSize { nx, ny } = surface.size;
+        let own = Dimensions { count: nx as u64, spacing: surface.length / nx as f64, ..self.own };
+        Self { own, parts: Parts::Points { rows: ny as u64 }, ..self }
+    }
+
+    pub(super) fn parts(&self) -> Parts {
+        self.parts
+    }
+
+    /// Whether there is more of the surface with twice the length, or the layer slides over more of it.
+    pub(super) fn has_length(&self) -> bool {
+        self.parts == Parts::Masses || self.has_seed()
     }
 
     /// Whether there are other seeds.
@@ -160,21 +198,22 @@ impl Template {
         self.split.is_some()
     }
 
-    /// Number of masses of the scene itself.
-    pub(super) fn masses(&self) -> u64 {
-        self.own.masses
+    /// Number of masses, or of points of the whole surface, with the spacing halved so often.
+    pub(super) fn contacts(&self, halvings: u32) -> u64 {
+        let rows = if let Parts::Points { rows: rows @ 2.. } = self.parts { rows << halvings } else { 1 };
+        (self.own.count << halvings) * rows
     }
 
     pub(super) fn dimensions(&self, variant: Variant) -> Dimensions {
         Dimensions {
-            masses: (self.own.masses << variant.halvings) << u32::from(variant.doubled),
+            count: (self.own.count << variant.halvings) << u32::from(variant.doubled),
             spacing: self.own.spacing / f64::from(variant.halvings).exp2(),
             seed: self.own.seed.map(|seed| shifted(seed, variant.seed_shift)),
             split: self.own.split.map(|split| if variant.split { 0.5 * split } else { split }),
         }
     }
 
-    /// The scene of a variant.
+    /// The scene of a variant; with points in place of masses the layer has as many masses.
     pub(super) fn scene(&self, variant: Variant) -> Result<Scene, FileError> {
         let mut scene = Scene::parse(&self.text_of(variant), &self.path)?;
         overrides::set_in_named_files(&mut scene, &self.in_named_files)?;
@@ -183,9 +222,9 @@ impl Template {
 
     /// The scene's text with the numbers of a variant.
     fn text_of(&self, variant: Variant) -> String {
-        let Dimensions { masses, spacing, .. } = self.dimensions(variant);
+        let Dimensions { count, spacing, .. } = self.dimensions(variant);
         let factor = 1_u32 << u32::from(variant.doubled);
-        let mut changes = vec![(&self.masses, NumberValue::Whole(masses)), (&self.spacing, NumberValue::Real(spacing))];
+        let mut changes = vec![(&self.masses, NumberValue::Whole(count)), (&self.spacing, NumberValue::Real(spacing))];
         for SelfAffineNumbers { length, points, seed } in &self.self_affine {
             changes.push((length, NumberValue::Real(f64::from(factor) * length.value.real())));
             changes.push((points, NumberValue::Whole(u64::from(factor) * points.value.whole())));
@@ -312,7 +351,7 @@ mod tests {
         assert_eq!(template.text_of(variant), expected);
         let scene = template.scene(variant).unwrap();
         assert_eq!((scene.layer.masses, scene.layer.roughness.len(), scene.surface.x().len()), (128, 128, 129));
-        let dimensions = Dimensions { masses: 128, spacing: 2.5e-5, seed: Some(8), split: None };
+        let dimensions = Dimensions { count: 128, spacing: 2.5e-5, seed: Some(8), split: None };
         assert_eq!(template.dimensions(variant), dimensions);
         assert!(scene.layer.roughness.iter().any(|height| *height != 0.0));
     }

@@ -54,8 +54,8 @@ impl std::ops::Sub for Pair {
 pub(super) struct Study {
     /// The scene, then with half the spacing, a quarter, …, all steady.
     pub(super) ladder: Vec<Pair>,
-    /// The finest of these with twice the length.
-    pub(super) length: Option<Pair>,
+    /// The finest of these with twice the length; `None` where there is no more of the surface.
+    pub(super) length: Option<Option<Pair>>,
     /// The finest of these with the profile down to half the wavelength at which the waves that it lacks begin; `None`
     /// where that cannot move.
     pub(super) split: Option<Option<Pair>>,
@@ -111,10 +111,10 @@ pub(super) struct LargestOpen {
 impl Verdict {
     /// On what each source may leave open, `error`.
     pub(super) fn new(study: &Study, error: f64) -> Self {
-        let mut open = vec![
-            Open { source: Source::Spacing, shares: last_change(&study.ladder) },
-            Open { source: Source::Length, shares: length(study) },
-        ];
+        let mut open = vec![Open { source: Source::Spacing, shares: last_change(&study.ladder) }];
+        if let Some(length) = study.length {
+            open.push(Open { source: Source::Length, shares: length_shares(study.ladder.last(), length) });
+        }
         if let Some(split) = study.split {
             open.push(Open { source: Source::Split, shares: split_shares(study.ladder.last(), split) });
         }
@@ -149,8 +149,8 @@ fn last_change(ladder: &[Pair]) -> Option<Pair> {
     Some(last.change_from(before).abs())
 }
 
-fn length(study: &Study) -> Option<Pair> {
-    Some(study.length?.change_from(study.ladder.last()?).abs())
+fn length_shares(own: Option<&Pair>, doubled: Option<Pair>) -> Option<Pair> {
+    Some(doubled?.change_from(own?).abs())
 }
 
 /// The change of friction alone: of the area in contact with the profile's waves finer ones take their part.
@@ -193,7 +193,7 @@ mod tests {
     }
 
     fn study(ladder: &[(f64, f64)], length: (f64, f64)) -> Study {
-        Study { ladder: pairs(ladder), length: pairs(&[length]).pop(), split: None, seeds: None }
+        Study { ladder: pairs(ladder), length: Some(pairs(&[length]).pop()), split: None, seeds: None }
     }
 
     /// An area of first order, 0.1 (1 + 0.4 2^-i): the changes are half of what was left before, and as much is left.

@@ -117,7 +117,7 @@ impl Maps {
 }
 
 /// The size (subpixels) of a face of a length and a width within some pixels.
-fn fitted(length: f64, width: f64, within: (u32, u32)) -> (u32, u32) {
+pub(super) fn fitted(length: f64, width: f64, within: (u32, u32)) -> (u32, u32) {
     let (length, width) = (length.max(width / SLENDER), width.max(length / SLENDER));
     let scale = (f64::from(within.0) / length).min(f64::from(within.1) / width) * f64::from(FINE);
     ((scale * length).round() as u32, (scale * width).round() as u32)
@@ -188,24 +188,36 @@ impl Scales {
     /// The scale of the colours with its ticks.
     fn draw_colours<B: Backend>(&self, canvas: &Canvas<B>, height: u32) -> DrawResult {
         let axis = Axis::linear("pressure", "Pa", [0.0, self.pressure].into_iter(), Fit::Tight);
-        let (left, top) = (2 * MARGIN as i32, MARGIN as i32 + LEGEND_LINE as i32);
-        let (right, bottom) = (left + SCALE.1 as i32, MARGIN as i32 + height as i32);
-        canvas.draw(&Text::new(axis.title.clone(), (left, MARGIN as i32), text_style(TEXT_SIZE)))?;
-        let at = |i: i32| bottom + (top - bottom) * i / COLOURS;
-        for i in 0..COLOURS {
-            let colour: RGBColor = ViridisRGB.get_color((f64::from(i) + 0.5) / f64::from(COLOURS));
-            canvas.draw(&Rectangle::new([(left, at(i + 1)), (right, at(i))], colour.filled()))?;
-        }
-        canvas.draw(&Rectangle::new([(left, top), (right, bottom)], INK.stroke_width(FINE)))?;
-        for tick in axis.ticks(0) {
-            let y = axis.map(&tick, (bottom, top));
-            let end = right + 5 * FINE as i32;
-            canvas.draw(&PathElement::new([(right, y), (end, y)], INK.stroke_width(FINE)))?;
-            let corner = (end + 3 * FINE as i32, y - (TICK_SIZE / 2) as i32);
-            canvas.draw(&Text::new(axis.format_ext(&tick), corner, text_style(TICK_SIZE)))?;
-        }
-        Ok(())
+        let corner = (2 * MARGIN as i32, MARGIN as i32);
+        canvas.draw(&Text::new(axis.title.clone(), corner, text_style(TEXT_SIZE)))?;
+        let top = corner.1 + LEGEND_LINE as i32;
+        draw_colour_bar(canvas, (corner.0, top), height - LEGEND_LINE, &axis, |share| ViridisRGB.get_color(share))
     }
+}
+
+/// A bar of the colours from the low end of an axis, below, to its high end, with the ticks on its right.
+pub(super) fn draw_colour_bar<B: Backend>(
+    canvas: &Canvas<B>,
+    (left, top): (i32, i32),
+    height: u32,
+    axis: &Axis,
+    colour: impl Fn(f64) -> RGBColor,
+) -> DrawResult {
+    let (right, bottom) = (left + SCALE.1 as i32, top + height as i32);
+    let at = |i: i32| bottom + (top - bottom) * i / COLOURS;
+    for i in 0..COLOURS {
+        let colour = colour((f64::from(i) + 0.5) / f64::from(COLOURS));
+        canvas.draw(&Rectangle::new([(left, at(i + 1)), (right, at(i))], colour.filled()))?;
+    }
+    canvas.draw(&Rectangle::new([(left, top), (right, bottom)], INK.stroke_width(FINE)))?;
+    for tick in axis.ticks(0) {
+        let y = axis.map(&tick, (bottom, top));
+        let end = right + 5 * FINE as i32;
+        canvas.draw(&PathElement::new([(right, y), (end, y)], INK.stroke_width(FINE)))?;
+        let corner = (end + 3 * FINE as i32, y - (TICK_SIZE / 2) as i32);
+        canvas.draw(&Text::new(axis.format_ext(&tick), corner, text_style(TICK_SIZE)))?;
+    }
+    Ok(())
 }
 
 fn size(tile: &Tile) -> f64 {

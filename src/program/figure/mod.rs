@@ -8,6 +8,8 @@ mod moment;
 mod panels;
 mod patch;
 mod plot;
+mod raster;
+mod surface_maps;
 
 use std::convert::Infallible;
 use std::error::Error;
@@ -25,6 +27,8 @@ pub(crate) use ladders::{Ladder, LadderPanel, Ladders, Rung};
 pub(crate) use panels::{Below, LinearPanel, LinearStack, Panel, ProfilePicture, SideBySide, Stacked, TimeHistory};
 pub(crate) use patch::PatchHistory;
 pub(crate) use plot::{PlotError, plot_files};
+use raster::Raster;
+pub(crate) use surface_maps::{Colours, FieldMap, Marks, SurfaceMaps};
 
 use super::files::{self, FileError, ends_in};
 
@@ -76,7 +80,12 @@ pub(crate) trait Figure {
         ""
     }
 
-    /// Draws everything but the title.
+    /// Images below all that is drawn.
+    fn images(&self) -> Vec<Raster> {
+        Vec::new()
+    }
+
+    /// Draws everything but the title and the images.
     fn draw<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult;
 
     /// Writes the figure to `path`: as PNG where its name ends so, else as SVG.
@@ -96,13 +105,19 @@ pub(crate) trait Figure {
         canvas.present()?;
         drop(canvas);
         let [drawn, shown] = [drawn, size].map(|(width, height)| format!("<svg width=\"{width}\" height=\"{height}\""));
-        Ok(text.replacen(&drawn, &shown, 1))
+        let mut text = text.replacen(&drawn, &shown, 1);
+        // The first element is the white background.
+        let background = text.find("/>").map_or(text.len(), |end| end + "/>".len());
+        let images: String = self.images().iter().map(Raster::svg).collect::<Result<_, _>>()?;
+        text.insert_str(background, &images);
+        Ok(text)
     }
 
     /// The PNG file, with `scale` pixels for one of the figure's along each axis; a divisor of [`FINE`].
     fn png(&self, scale: u32) -> Result<Vec<u8>, Box<dyn Error>> {
         let size = subpixels(self.size());
         let mut rgb = vec![u8::MAX; 3 * size.0 as usize * size.1 as usize];
+        self.images().iter().for_each(|image| image.paint(&mut rgb, size.0 as usize));
         draw_with_title(self, &Pixels { size, rgb: &mut rgb }.into_drawing_area())?;
         encode(&averaged(&rgb, size.0 as usize, (FINE / scale) as usize), size.0 * scale / FINE, size.1 * scale / FINE)
     }

@@ -38,7 +38,9 @@ fn verdict(text: &str, scene: &str) -> Result<String, String> {
         return Err(format!("it is of the scene {studied}, the sweep of {scene}"));
     }
     let verdict = value("verdict").map_err(|missing| format!("{missing}: the study is not finished"))?;
-    Ok(format!("{verdict} (at {}, {})", value("pressure")?, value("speed")?))
+    // The studies of a layer and of the surface solved for are of different errors.
+    let by = value("method").map_or_else(|_| String::new(), |method| format!(", by {method}"));
+    Ok(format!("{verdict} (at {}, {}{by})", value("pressure")?, value("speed")?))
 }
 
 #[cfg(test)]
@@ -52,6 +54,8 @@ mod tests {
     fn a_verdict_says_where_it_was_found() {
         let found = verdict(STUDY, "block");
         assert_eq!(found.as_deref(), Ok("converged: spacing leaves most open (at 100000 Pa, 0.1 m/s)"));
+        let found = verdict(&STUDY.replace("# speed", "# method = layer: as asked for\n# speed"), "block");
+        assert!(found.is_ok_and(|verdict| verdict.ends_with("0.1 m/s, by layer: as asked for)")));
     }
 
     #[test]

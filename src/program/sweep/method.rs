@@ -1,7 +1,7 @@
 //! How steady sliding is found: by solving for it, or by letting the layer slide until it is steady.
 
 use asperity::scene::{FoundationKind, HeightMap, Scene};
-use asperity::steady::SurfaceGrid;
+use asperity::steady::{GridSize, SurfaceGrid};
 
 use super::NeverSteady;
 
@@ -34,11 +34,9 @@ pub(crate) enum MethodError {
     OfTheLayer(&'static str),
     #[error("--points: expected none with --method layer, whose points are its masses")]
     OfTheSolver,
-    #[error("--points: expected none with a map of heights, which is solved on its own points")]
-    OfTheMap,
     #[error("surface: {0}; give --method layer for the line of it that the layer slides on")]
     NoMap(String),
-    #[error("surface: expected a map of at least {least} points along x and y, found {found:?}")]
+    #[error("surface: expected a map solved on at least {least} points along x and y, found {found:?}")]
     SmallMap { least: usize, found: [usize; 2] },
     #[error("--points: expected at least {least}, found {found}")]
     FewPoints { least: usize, found: usize },
@@ -54,6 +52,13 @@ pub(crate) struct Asked {
 }
 
 impl Asked {
+    /// What a table was asked for with this line of its header; `None` where a layer slid.
+    pub(super) fn of_table(method: Option<&str>) -> Option<Self> {
+        let mut numbers = method?.strip_prefix("steady")?.split(|c: char| !c.is_ascii_digit());
+        let points = numbers.find_map(|number| number.parse().ok());
+        Some(Self { method: Some(SweepMethod::Steady), points, has_error: false, has_distance: false })
+    }
+
     /// The method of a sweep of `scene`, and what the table's header says of it.
     pub(crate) fn choose(self, scene: &Scene) -> Result<(Method, String), MethodError> {
         let reason = (self.method == Some(SweepMethod::Layer)).then_some("as asked for").or_else(|| why_layer(scene));
@@ -99,20 +104,28 @@ impl Asked {
     }
 
     fn steady_on_map(self, scene: &Scene, map: &HeightMap) -> Result<(Method, String), MethodError> {
-        if self.points.is_some() {
-            return Err(MethodError::OfTheMap);
-        }
-        let (size, least) = ([map.nx(), map.ny()], SurfaceGrid::FEWEST);
-        if size.iter().any(|&count| count < least) {
-            return Err(MethodError::SmallMap { least, found: size });
+        let (own, least) = (GridSize { nx: map.nx(), ny: map.ny() }, SurfaceGrid::FEWEST);
+        let size = self.points.map_or(own, |points| {
+            let share = f64::from(points) / own.nx as f64;
+            GridSize { nx: points as usize, ny: (share * own.ny as f64).round() as usize }
+        });
+        if size.nx.min(size.ny) < least {
+            return Err(MethodError::SmallMap { least, found: [size.nx, size.ny] });
         }
         if scene.material.as_ref().is_some_and(|material| material.equilibrium_modulus == 0.0) {
             return Err(MethodError::Lacks(
                 "material.equilibrium_modulus = 0 leaves waves across the sliding no stiffness",
             ));
         }
-        let header = format!("steady, on the map's own {} x {} points", size[0], size[1]);
-        Ok((Method::Steady(SurfaceGrid::of_map(map)), header))
+        let surface = SurfaceGrid::of_map(map);
+        if size == own {
+            return Ok((Method::Steady(surface), format!("steady, on the map's own {} x {} points", own.nx, own.ny)));
+        }
+        let header = format!(
+            "steady, on {} x {} points by the waves of the map, which has {} x {}",
+            size.nx, size.ny, own.nx, own.ny
+        );
+        Ok((Method::Steady(surface.resampled(size)), header))
     }
 }
 
@@ -145,5 +158,31 @@ impl Method {
             Self::Steady(_) => Ok(()),
             Self::Layer => super::check_can_be_steady(scene),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The headers that are written say what is to be asked for to have the same points again.
+    #[test]
+    fn a_header_says_how_many_points_there_were() {
+        let text = "name = 'sine'\nlayer = { foundation = 'half_space', masses = 32, spacing = 1e-4, width = 1e-2 }\n\
+                    material = { density = 1e3, poisson_ratio = 0.5, equilibrium_modulus = 1e6, prony = [] }\n\
+                    surface = { kind = 'sinusoid', amplitude = 1e-5, wavelength = 1e-3, points_per_wavelength = 6 }";
+        let scene = Scene::parse(text, "sine.toml".as_ref()).unwrap();
+        let asked = |method: &str, points: Option<u32>| {
+            let asked = Asked::of_table(Some(method)).map(|asked| (asked.method, asked.points));
+            assert_eq!(asked, Some((Some(SweepMethod::Steady), points)), "{method}");
+        };
+        for points in [None, Some(24)] {
+            let ours = Asked { method: None, points, has_error: false, has_distance: false };
+            let (_, header) = ours.choose(&scene).unwrap();
+            asked(&header, Some(points.unwrap_or(16)));
+        }
+        asked("steady, on the map's own 128 x 64 points", Some(128));
+        asked("steady, on 256 x 128 points by the waves of the map, which has 128 x 64", Some(256));
+        assert!(Asked::of_table(Some("layer: as asked for")).is_none() && Asked::of_table(None).is_none());
     }
 }

@@ -9,6 +9,7 @@ mod point;
 mod slide;
 mod solved;
 mod steady;
+mod swept;
 mod table_file;
 pub(super) mod values;
 
@@ -29,11 +30,13 @@ use super::terminal::{self, lines, warn};
 use load_search::{heights, rest_separation};
 pub(crate) use method::{Asked, Method, MethodError, SweepMethod};
 pub(crate) use plot::with_prefix;
+use point::SteadySliding;
 use point::{MIN_BLOCKS, PointResult};
-pub(crate) use point::{SMALL as SMALL_FRICTION, SteadySliding, StopBounds};
+pub(crate) use point::{SMALL as SMALL_FRICTION, StopBounds};
 use slide::Blocks;
 use solved::SolvedPoints;
 pub(crate) use solved::status as solved_status;
+pub(crate) use swept::{Swept, SweptPoint};
 use table_file::TableFile;
 pub(crate) use table_file::fingerprint as table_fingerprint;
 pub(crate) use table_file::{SweepTable, TableFileError};
@@ -89,7 +92,7 @@ pub(crate) enum NeverSteady {
 }
 
 /// Refuses a scene of which no slide could become steady.
-pub(crate) fn check_can_be_steady(scene: &Scene) -> Result<(), NeverSteady> {
+fn check_can_be_steady(scene: &Scene) -> Result<(), NeverSteady> {
     if scene.material.as_ref().is_some_and(|material| material.heat.is_some()) {
         return Err(NeverSteady::Heats);
     }
@@ -335,7 +338,7 @@ pub(crate) fn steady_sliding(
 }
 
 /// Steady sliding at one point with the carrier held at `w` (m), where the load is near that of the point.
-pub(crate) fn steady_sliding_at(
+fn steady_sliding_at(
     scene: &Scene,
     point: &OperatingPoint,
     w: f64,

@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use asperity::element::{OperatingPoint, Quantity, STEADY, TableHeader, TableRow};
+use asperity::element::{Load, OperatingPoint, Quantity, STEADY, TableHeader, TableRow};
 use asperity::scene::Scene;
 use asperity::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 
@@ -10,7 +10,7 @@ use super::{SweepError, with_temperature};
 
 /// The solver of the points of a sweep, on all threads.
 #[derive(Debug)]
-pub(super) struct SolvedPoints {
+pub(crate) struct SolvedPoints {
     surface: SurfaceGrid,
     /// The rubber at each temperature.
     rubbers: Vec<(Option<f64>, SlidingRubber)>,
@@ -38,15 +38,36 @@ impl SolvedPoints {
 
     /// The row of a point.
     pub(super) fn row(&self, point: OperatingPoint, header: &TableHeader) -> TableRow {
-        let Some((_, rubber)) = self.rubbers.iter().find(|(temperature, _)| *temperature == point.temperature) else {
-            return TableRow::new(point, "no such temperature".to_owned());
-        };
-        let pressure = header.load.force(point.load) / self.area;
+        let pressure = self.pressure(&point, header.load);
+        match self.slide(&point, pressure) {
+            Some(slide) => self.written(point, pressure, &slide),
+            None => TableRow::new(point, "no such temperature".to_owned()),
+        }
+    }
+
+    /// The area of the layer, m².
+    pub(super) fn area(&self) -> f64 {
+        self.area
+    }
+
+    /// Root mean square height of the surface, m.
+    pub(super) fn rms_height(&self) -> f64 {
+        self.surface.rms_height()
+    }
+
+    /// The mean pressure of a point, Pa.
+    pub(super) fn pressure(&self, point: &OperatingPoint, load: Load) -> f64 {
+        load.force(point.load) / self.area
+    }
+
+    /// Steady sliding at the speed and the temperature of a point under a pressure (Pa); `None` at another temperature.
+    pub(super) fn slide(&self, point: &OperatingPoint, pressure: f64) -> Option<SteadySlide> {
+        let (_, rubber) = self.rubbers.iter().find(|(temperature, _)| *temperature == point.temperature)?;
         let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut solver = idle.unwrap_or_else(|| SteadySolver::new(self.surface.clone()));
         let slide = solver.slide(rubber, point.speed, pressure);
         self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(solver);
-        self.written(point, pressure, &slide)
+        Some(slide)
     }
 
     fn written(&self, point: OperatingPoint, pressure: f64, slide: &SteadySlide) -> TableRow {

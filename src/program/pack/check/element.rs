@@ -1,5 +1,6 @@
-//! `asperity pack --table TABLE.csv --check SCENE.toml`: the element against the layer that was swept, in steady
-//! sliding between the points of the table and along a motion to and fro.
+//! `asperity pack --table TABLE.csv --check SCENE.toml`: the element against what was swept, in steady sliding between the
+//! points of the table and along a motion to and fro. Of a table that was solved for the points are solved for too; to and
+//! fro there is the layer alone, another model, of which the friction under the same load is compared.
 
 use std::path::Path;
 
@@ -16,7 +17,7 @@ use crate::program::figure::{Figure as _, Ladder, LadderPanel, Ladders, Rung, St
 use crate::program::files::FileError;
 use crate::program::result_file::{CsvWriter, ResultWriter};
 use crate::program::runner::CarrierSample;
-use crate::program::sweep::{SteadySliding, StopBounds, steady_sliding};
+use crate::program::sweep::{Method, StopBounds, Swept, SweptPoint};
 use crate::program::terminal::{self, LabelledLine, labelled, real};
 
 /// What is compared in steady sliding.
@@ -32,57 +33,61 @@ pub(in crate::program::pack) fn check(
 ) -> Result<Vec<LabelledLine>, CheckError> {
     let scene = scene_of(contact.table(), scene)?;
     let load = contact.table().load;
+    let between = centres(&contact.table().grid);
+    let swept = Swept::of_table(&scene, contact.table(), &between.temperatures)?;
     let folder = folder_beside(&command.output)?;
-    let checks = check_points(contact, &scene, command.points as usize);
-    write_points(&folder.join("points.csv"), load, &checks)?;
+    let checks = check_points(
+        contact,
+        &scene,
+        &swept,
+        &selected(&between.points().collect::<Vec<_>>(), command.points as usize),
+    );
+    write_points(&folder.join("points.csv"), load, swept.name(), &checks)?;
     errors_plot(&checks, load).write(&folder.join("errors.svg"))?;
     let mut lines = summary(&checks);
     let compared: Vec<_> = checks.iter().filter(|check| check.errors().is_some()).collect();
     if let Some(middle) = compared.get(compared.len() / 2) {
-        lines.extend(to_and_fro(contact, &scene, middle, &folder)?);
+        lines.extend(to_and_fro(contact, &scene, &swept, middle, &folder)?);
     }
     lines.push(("", format!("in {}", folder.display())));
     Ok(lines)
 }
 
-/// The layer and the element at a point between those of the table.
+/// What was swept and the element at a point between those of the table.
 #[derive(Debug)]
 struct PointCheck {
     point: OperatingPoint,
-    /// The status where the layer was not steady.
-    layer: Result<SteadySliding, String>,
-    /// |F_x|, F_z and P_diss of the element at the layer's w.
+    /// The status where it was not steady, after what it was.
+    swept: Result<SweptPoint, String>,
+    /// |F_x|, F_z and P_diss of the element at the same w.
     element: Option<Result<[f64; 3], String>>,
 }
 
-fn check_points(contact: &PointContact, scene: &Scene, count: usize) -> Vec<PointCheck> {
-    let table = contact.table();
-    let points = selected(&centres(&table.grid), count);
+fn check_points(contact: &PointContact, scene: &Scene, swept: &Swept, points: &[OperatingPoint]) -> Vec<PointCheck> {
     let bar = terminal::bar(points.len() as u64);
     let check = |&point: &OperatingPoint| {
-        let layer = steady_sliding(scene, &point, table.load, StopBounds { error: ERROR, distance: None });
-        let element = layer.as_ref().ok().map(|layer| element_sliding(contact, &point, layer.w));
+        let found = swept.sliding(scene, &point, contact.table().load, StopBounds { error: ERROR, distance: None });
+        let element = found.as_ref().ok().map(|found| element_sliding(contact, &point, found.w));
         bar.inc(1);
-        PointCheck { point, layer, element }
+        PointCheck { point, swept: found.map_err(|status| format!("{} {status}", swept.name())), element }
     };
     let checks = points.par_iter().with_max_len(1).map(check).collect();
     bar.finish_and_clear();
     checks
 }
 
-/// The centres of the cells of a grid; an axis of one value keeps it.
-fn centres(grid: &SweepGrid) -> Vec<OperatingPoint> {
+/// The grid of the centres of the cells of a grid; an axis of one value keeps it.
+fn centres(grid: &SweepGrid) -> SweepGrid {
     let centres = |axis: &[f64], mean: fn(f64, f64) -> f64| match axis {
         [one] => vec![*one],
         _ => axis.windows(2).map(|ends| mean(ends[0], ends[1])).collect::<Vec<_>>(),
     };
     let geometric: fn(f64, f64) -> f64 = |a, b| (a * b).sqrt();
-    let grid = SweepGrid {
+    SweepGrid {
         speeds: centres(&grid.speeds, geometric),
         loads: centres(&grid.loads, geometric),
         temperatures: centres(&grid.temperatures, f64::midpoint),
-    };
-    grid.points().collect()
+    }
 }
 
 /// The element at the temperature of a point.
@@ -106,19 +111,19 @@ fn element_sliding(contact: &PointContact, point: &OperatingPoint, w: f64) -> Re
 }
 
 impl PointCheck {
-    /// Errors of the element relative to the layer; `None` where one of them has no values.
+    /// Errors of the element relative to what was swept; `None` where one of them has no values.
     fn errors(&self) -> Option<[f64; 3]> {
-        let (layer, element) = (self.layer_values()?, self.element.as_ref()?.as_ref().ok()?);
-        Some(std::array::from_fn(|i| element[i] / layer[i] - 1.0))
+        let (swept, element) = (self.swept_values()?, self.element.as_ref()?.as_ref().ok()?);
+        Some(std::array::from_fn(|i| element[i] / swept[i] - 1.0))
     }
 
-    fn layer_values(&self) -> Option<[f64; 3]> {
-        self.layer.as_ref().ok().map(|layer| [layer.drag(), layer.force_z, layer.power()])
+    fn swept_values(&self) -> Option<[f64; 3]> {
+        self.swept.as_ref().ok().map(|swept| [swept.drag, swept.force_z, swept.power])
     }
 
     fn status(&self) -> String {
-        match (&self.layer, &self.element) {
-            (Err(status), _) => format!("layer {status}"),
+        match (&self.swept, &self.element) {
+            (Err(status), _) => status.clone(),
             (_, Some(Err(status))) => format!("element: {status}"),
             _ => "compared".into(),
         }
@@ -127,11 +132,11 @@ impl PointCheck {
     fn fields(&self) -> Vec<String> {
         let text = |value: Option<f64>| value.map(real).unwrap_or_default();
         let point = self.point;
-        let w = self.layer.as_ref().ok().map(|layer| layer.w);
+        let w = self.swept.as_ref().ok().map(|swept| swept.w);
         let mut fields = vec![real(point.speed), real(point.load), text(point.temperature), self.status(), text(w)];
         let element = self.element.as_ref().and_then(|element| element.as_ref().ok());
         for i in 0..COMPARED.len() {
-            fields.push(text(self.layer_values().map(|values| values[i])));
+            fields.push(text(self.swept_values().map(|values| values[i])));
             fields.push(text(element.map(|values| values[i])));
             fields.push(text(self.errors().map(|errors| errors[i])));
         }
@@ -153,10 +158,10 @@ fn summary(checks: &[PointCheck]) -> Vec<LabelledLine> {
     labelled("Checked", texts)
 }
 
-fn write_points(path: &Path, load: Load, checks: &[PointCheck]) -> Result<(), FileError> {
+fn write_points(path: &Path, load: Load, swept: &str, checks: &[PointCheck]) -> Result<(), FileError> {
     let mut head = vec!["speed [m/s]".to_owned(), format!("{} [{}]", load.name(), load.unit())];
     head.extend(["temperature [K]", "status", "w [m]"].map(String::from));
-    head.extend(COMPARED.iter().flat_map(|name| ["layer", "element", "error"].map(|of| format!("{name} {of}"))));
+    head.extend(COMPARED.iter().flat_map(|name| [swept, "element", "error"].map(|of| format!("{name} {of}"))));
     let mut writer = CsvWriter::create(path, head.iter().map(String::as_str))?;
     checks.iter().try_for_each(|check| writer.write(check.fields()))?;
     writer.finish()
@@ -191,17 +196,21 @@ struct Loop {
     element: Vec<[f64; LOOP_OUTPUTS.len()]>,
 }
 
-/// Drags both to and fro from rest at the height and the speed of `check`; writes them as result files and plots them.
+/// Drags both to and fro from rest at the height and the speed of `check`, the layer under the same load where something
+/// else was swept; writes them as result files and plots them.
 fn to_and_fro(
     contact: &PointContact,
     scene: &Scene,
+    swept: &Swept,
     check: &PointCheck,
     folder: &Path,
 ) -> Result<Vec<LabelledLine>, CheckError> {
-    let Ok(layer) = &check.layer else { return Ok(Vec::new()) };
+    let Ok(found) = &check.swept else { return Ok(Vec::new()) };
     let variables: Vec<Variable> = LOOP_OUTPUTS.into_iter().filter_map(variable).collect();
     let files = ["loop-layer.csv", "loop-element.csv"].map(|name| folder.join(name));
-    let rows = match Loop::run(contact, scene, &check.point, layer.w, &variables) {
+    let rows = height_of_layer(contact, scene, swept, check, found)
+        .and_then(|of_layer| Loop::run(contact, scene, &check.point, [found.w, of_layer], &variables));
+    let rows = match rows {
         Ok(rows) => rows,
         Err(status) => return Ok(vec![("", format!("to and fro at {:.3e} m/s: {status}", check.point.speed))]),
     };
@@ -220,15 +229,40 @@ fn to_and_fro(
         negate: true,
         from_motion: false,
     })?;
-    Ok(rows.summary(&variables))
+    Ok(match swept {
+        Swept::Layer => rows.summary("over the layer's largest value", &variables),
+        Swept::Solved { .. } => {
+            let head =
+                "friction alone, beside the layer under the same load, which is another model; over its largest value";
+            rows.summary(head, &variables[..1])
+        }
+    })
+}
+
+/// The displacement of the carrier (m) at which the layer bears what the element does at that of `found`.
+fn height_of_layer(
+    contact: &PointContact,
+    scene: &Scene,
+    swept: &Swept,
+    check: &PointCheck,
+    found: &SweptPoint,
+) -> Result<f64, String> {
+    if matches!(swept, Swept::Layer) {
+        return Ok(found.w);
+    }
+    Method::Layer.check(scene).map_err(|error| error.to_string())?;
+    let bounds = StopBounds { error: ERROR, distance: None };
+    let layer = Swept::Layer.sliding(scene, &check.point, contact.table().load, bounds);
+    layer.map(|layer| layer.w).map_err(|status| format!("layer {status}"))
 }
 
 impl Loop {
+    /// The element and the layer with their carriers held at these w, m.
     fn run(
         contact: &PointContact,
         scene: &Scene,
         point: &OperatingPoint,
-        w: f64,
+        [w, of_layer]: [f64; 2],
         variables: &[Variable],
     ) -> Result<Self, String> {
         let mut element = element_at(contact, point, &Start { w, ..Start::default() })?;
@@ -246,7 +280,7 @@ impl Loop {
             element.advance(duration, rate, 0.0).map_err(|error| error.to_string())?;
             rows.push(values(&element));
         }
-        let layer = motion.layer(scene, point.temperature, w, variables)?;
+        let layer = motion.layer(scene, point.temperature, of_layer, variables)?;
         Ok(Self { motion, carriers: motion.carriers(w), layer, element: rows })
     }
 
@@ -256,9 +290,10 @@ impl Loop {
         writer.finish()
     }
 
-    /// The largest and the root mean square differences over the largest value of the layer.
-    fn summary(&self, variables: &[Variable]) -> Vec<LabelledLine> {
-        let head = format!("{}, over the layer's largest value", self.motion.describe());
+    /// The largest and the root mean square differences of the `variables`, the first of the rows', over the largest value
+    /// of the layer, and after the motion `what` they are.
+    fn summary(&self, what: &str, variables: &[Variable]) -> Vec<LabelledLine> {
+        let head = format!("{}, {what}", self.motion.describe());
         let of = |(i, variable): (usize, &Variable)| {
             let largest = self.layer.iter().fold(f64::MIN_POSITIVE, |largest, row| largest.max(row[i].abs()));
             let errors = self.layer.iter().zip(&self.element).map(|(a, b)| (a[i] - b[i]).abs() / largest);

@@ -1,5 +1,5 @@
-//! `asperity pack --check SCENE.toml`: an element or a patch against the layer that was swept, in steady sliding and
-//! along a motion to and fro.
+//! `asperity pack --check SCENE.toml`: an element or a patch against what was swept, in steady sliding and along a motion
+//! to and fro.
 
 mod drag;
 mod element;
@@ -14,7 +14,7 @@ use asperity::scene::{CarrierBodies, ParameterError, Scene};
 
 use crate::program::figure::PlotError;
 use crate::program::files::{self, FileError};
-use crate::program::sweep::separation_at_rest;
+use crate::program::sweep::{SweepError, separation_at_rest};
 
 pub(super) use element::check as check_element;
 pub(super) use patch::check as check_patch;
@@ -33,6 +33,8 @@ pub(crate) enum CheckError {
     File(#[from] FileError),
     #[error(transparent)]
     Plot(#[from] PlotError),
+    #[error("--check: {0}")]
+    Swept(#[from] SweepError),
     #[error("--check: the table was swept of {table:?}, the scene is {scene:?}: expected the scene that was swept")]
     OtherScene { table: String, scene: String },
     #[error("--check: {what} is {found} in the scene, {swept} in the table: expected the scene that was swept")]

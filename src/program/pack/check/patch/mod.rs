@@ -1,5 +1,6 @@
 //! `asperity pack --patch PATCH.toml --check SCENE.toml`: elements of a tilted patch, each beside its layer, dragged
-//! along x at speeds of the table and to and fro; and the patch beside one of twice as many elements along and across.
+//! along x at speeds of the table and to and fro; and the patch beside one of twice as many elements along and across. Of a
+//! table that was solved for, what is solved for stands for the layers.
 
 mod doubled;
 mod elements;
@@ -19,6 +20,7 @@ use super::element::element_at;
 use super::{CheckError, folder_beside, scene_of};
 use crate::program::cli::Pack;
 use crate::program::figure::{Figure as _, Ladder, LadderPanel, Ladders, Rung, Stroke};
+use crate::program::sweep::Swept;
 use crate::program::terminal::{LabelledLine, labelled};
 use doubled::Doubled;
 use elements::Dragged;
@@ -33,6 +35,7 @@ const SPEEDS: usize = 3;
 struct CheckSetting<'a> {
     patch: &'a Patch,
     scene: &'a Scene,
+    swept: &'a Swept,
     /// At the speeds, the least first.
     faces: &'a [TiltedFace],
     /// In the pose of the middle one of the faces.
@@ -49,6 +52,8 @@ pub(in crate::program::pack) fn check(
     scene: &Path,
 ) -> Result<Vec<LabelledLine>, CheckError> {
     let scene = scene_of(patch.table(), scene)?;
+    let temperature = point(patch, 0.0).temperature;
+    let swept = Swept::of_table(&scene, patch.table(), temperature.as_slice())?;
     let folder = folder_beside(&command.output)?;
     // At rest, and at the middles of smaller elements, pressures are a little beyond those of the table.
     let hold = Value::Text(TableExtrapolation::Hold.word().into());
@@ -65,7 +70,7 @@ pub(in crate::program::pack) fn check(
     contact.set_parameter(Parameter::TableExtrapolation, hold)?;
     let motion = ToAndFro { speed: middle.speed, length: stick_length(&contact, &patch, middle) };
     let lever = faces.iter().map(TiltedFace::lever).fold(0.0, f64::max);
-    let setting = CheckSetting { patch: &patch, scene: &scene, faces: &faces, motion, lever };
+    let setting = CheckSetting { patch: &patch, scene: &scene, swept: &swept, faces: &faces, motion, lever };
     setting.compare(&folder)
 }
 
@@ -108,7 +113,11 @@ impl CheckSetting<'_> {
         sliding.write(&folder.join("points.csv"))?;
         sliding.plot().write(&folder.join("elements.svg"))?;
         let mut texts = sliding.summary();
-        match Dragged::run(self)? {
+        let dragged = match self.swept {
+            Swept::Layer => Dragged::run(self)?,
+            Swept::Solved { .. } => Err("not done, the layer is another model than what was swept".to_owned()),
+        };
+        match dragged {
             Ok(dragged) => {
                 dragged.write(folder)?;
                 texts.extend(extent(&self.motion.describe(), dragged.pair()));
@@ -116,7 +125,8 @@ impl CheckSetting<'_> {
             Err(status) => texts.push(format!("to and fro: {status}")),
         }
         let steady = sliding.pair();
-        let mut pairs = vec![("elements beside their layers", &steady)];
+        let name = format!("elements beside their {}s", self.swept.name());
+        let mut pairs = vec![(name.as_str(), &steady)];
         let doubled = Doubled::run(self)?;
         match &doubled {
             Ok(doubled) => {

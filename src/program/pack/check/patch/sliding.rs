@@ -15,7 +15,7 @@ use crate::program::figure::{Ladder, LadderPanel, Ladders, Rung, Stroke};
 use crate::program::files::FileError;
 use crate::program::pack::check::{ERROR, SLIDING_DISTANCE};
 use crate::program::result_file::CsvWriter;
-use crate::program::sweep::{StopBounds, steady_sliding_at};
+use crate::program::sweep::StopBounds;
 use crate::program::terminal::{self, real};
 
 /// What is compared of an element: along and across the plane.
@@ -62,21 +62,22 @@ impl<'a> Sliding<'a> {
         let all: usize = self.speeds.iter().map(|sliding| sliding.elements.len()).sum();
         let range =
             if pressures.is_empty() { String::new() } else { format!(" from {least:.3e} to {largest:.3e} Pa,") };
-        let compared = pressures.len();
+        let (compared, name) = (pressures.len(), self.setting.swept.name());
         let mut texts =
-            vec![format!("{compared} of {all} elements beside their layers,{range} over the layers' largest values")];
+            vec![format!("{compared} of {all} elements beside their {name}s,{range} over the {name}s' largest values")];
         let shares = self.pair().shares();
         texts.extend(self.speeds.iter().zip(shares).map(|(sliding, share)| sliding.line(share)));
-        texts.extend(self.speeds.iter().flat_map(SlidingAtSpeed::failed));
+        texts.extend(self.speeds.iter().flat_map(|sliding| sliding.failed(name)));
         texts
     }
 
     pub(super) fn write(&self, path: &Path) -> Result<(), FileError> {
+        let swept = self.setting.swept.name();
         let of_each =
-            COMPARED.iter().flat_map(|(name, _)| ["layer", "element", "error"].map(|of| format!("{name} {of}")));
+            COMPARED.iter().flat_map(|(name, _)| [swept, "element", "error"].map(|of| format!("{name} {of}")));
         let head: Vec<String> = HEAD.map(String::from).into_iter().chain(of_each).collect();
         let mut writer = CsvWriter::create(path, head.iter().map(String::as_str))?;
-        let rows = self.speeds.iter().flat_map(SlidingAtSpeed::rows);
+        let rows = self.speeds.iter().flat_map(|sliding| sliding.rows(swept));
         rows.into_iter().try_for_each(|row| writer.write(row))?;
         writer.finish()
     }
@@ -139,18 +140,18 @@ impl<'a> SlidingAtSpeed<'a> {
         format!("at {} m/s: {}", real(self.face.speed), text(share))
     }
 
-    fn failed(&self) -> impl Iterator<Item = String> {
+    fn failed(&self, swept: &'static str) -> impl Iterator<Item = String> {
         let all = self.face.tilted_elements.iter().zip(&self.layers);
         let failed = all.filter_map(|(tilted, layer)| Some((tilted, layer.as_ref().err()?)));
-        failed.map(|(tilted, status)| {
-            format!("element {} at {} m/s: layer {status}", tilted.element.index + 1, real(self.face.speed))
+        failed.map(move |(tilted, status)| {
+            format!("element {} at {} m/s: {swept} {status}", tilted.element.index + 1, real(self.face.speed))
         })
     }
 
-    fn rows(&self) -> impl Iterator<Item = Vec<String>> {
+    fn rows(&self, swept: &'static str) -> impl Iterator<Item = Vec<String>> {
         let all = self.face.tilted_elements.iter().zip(&self.layers).zip(&self.elements);
-        all.map(|((tilted, layer), element)| {
-            let status = layer.as_ref().map_or_else(|status| format!("layer {status}"), |_| "compared".into());
+        all.map(move |((tilted, layer), element)| {
+            let status = layer.as_ref().map_or_else(|status| format!("{swept} {status}"), |_| "compared".into());
             let mut row = vec![real(self.face.speed), (tilted.element.index + 1).to_string()];
             row.extend(
                 tilted
@@ -183,10 +184,10 @@ fn layer_force(
     tilted: &TiltedElement,
     force_z: f64,
 ) -> Result<[f64; 3], String> {
-    let CheckSetting { patch, scene, .. } = setting;
+    let CheckSetting { patch, scene, swept, .. } = setting;
     let (load, share) = (patch.table().load, tilted.element.area / patch.nominal_area());
     let at = OperatingPoint { load: load.at_force(force_z / share), ..point(patch, speed) };
     let w = tilted.separation - patch.table().rest_separation;
-    let found = steady_sliding_at(scene, &at, w, load, StopBounds { error: ERROR, distance: None })?;
-    Ok([-share * found.drag(), 0.0, share * found.force_z])
+    let found = swept.sliding_at(scene, &at, w, load, StopBounds { error: ERROR, distance: None })?;
+    Ok([-share * found.drag, 0.0, share * found.force_z])
 }
