@@ -12,6 +12,8 @@ use super::problem::{Linearised, Problem, sum_of_squares};
 
 /// A singular value below this part of the largest is of a direction that is not identifiable.
 const NOT_IDENTIFIABLE: f64 = 1e-3;
+/// A smaller component of a direction is a rounding.
+const ROUNDING: f64 = 1e-12;
 /// A place nearer than this to a bound is at it.
 const AT_BOUND: f64 = 1e-4;
 
@@ -106,11 +108,16 @@ impl Statistics {
             return;
         }
         let decomposed = jacobian.svd(false, true);
-        let Some(directions) = decomposed.v_t else { return };
+        let Some(mut directions) = decomposed.v_t else { return };
+        // A rounding over the singular value of what is not seen would be a large variance of what is.
+        directions.apply(|component| *component = if component.abs() < ROUNDING { 0.0 } else { *component });
         self.singular_values = decomposed.singular_values.iter().copied().collect();
         let largest = self.singular_values.iter().copied().fold(0.0, f64::max);
         let covariance = |a: usize, b: usize| -> f64 {
-            let part = |(k, value): (usize, &f64)| directions[(k, a)] * directions[(k, b)] / (value * value);
+            let part = |(k, value): (usize, &f64)| match directions[(k, a)] * directions[(k, b)] {
+                0.0 => 0.0,
+                product => product / (value * value),
+            };
             self.scale * self.singular_values.iter().enumerate().map(part).sum::<f64>()
         };
         let deviations: Vec<f64> = (0..inner.len()).map(|a| covariance(a, a).sqrt()).collect();
