@@ -231,7 +231,8 @@ mod tests {
         assert!(rows.len() == 3 && rows.iter().all(|row| row.chars().count() <= LINE_LENGTH), "{text}");
         assert!(rows[1].starts_with("              word") && text.matches("word").count() == 60, "{text}");
         // A long word stays whole.
-        assert_eq!(lines(&[("Label", "x".repeat(300))]).lines().count(), 1);
+        let word = "x".repeat(300);
+        assert!(lines(&[("Label", word.clone())]).contains(&word));
     }
 
     #[test]
