@@ -175,11 +175,16 @@ impl Runner {
 
     /// Times of the rows of a phase of `duration` (s) that begins now, in s from its start.
     fn times(&self, duration: f64) -> Vec<f64> {
+        /// Share of the duration by which a time differs from that of a row by rounding.
+        const ROUNDING: f64 = 1e-9;
         let mut times: Vec<f64> = self.rows.times(duration).collect();
-        let within = self.also_at.iter().map(|time| time - self.carrier.time).filter(|s| 0.0 < *s && *s < duration);
-        times.extend(within);
+        for s in self.also_at.iter().map(|time| time - self.carrier.time) {
+            let is_there = |other: &f64| (other - s).abs() <= ROUNDING * duration;
+            if ROUNDING * duration < s && s < duration && !times.iter().any(is_there) {
+                times.push(s);
+            }
+        }
         times.sort_by(f64::total_cmp);
-        times.dedup();
         times
     }
 

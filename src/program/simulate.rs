@@ -8,9 +8,9 @@ use asperity::simulation::{MethodSwitch, SimulationError};
 use indicatif::ProgressBar;
 
 use super::cli::Simulate;
-use super::elements::{ArraysError, ElementHistory};
-use super::figure::{Figure as _, TimeHistory};
-use super::files::{FileError, check_outputs, load, named, sources};
+use super::elements::{ArraysError, ElementHistory, Span};
+use super::figure::{Figure as _, LayerPicture, TimeHistory, write_film};
+use super::files::{FileError, check_outputs, ends_in, load, named, sources};
 use super::interrupt::fail;
 use super::result_file::ResultWriter;
 use super::runner::{CarrierSample, Rows, Runner};
@@ -68,12 +68,27 @@ fn write_elements(elements: &ElementHistory, command: &Simulate) -> Result<(), S
     if let Some(path) = &command.elements {
         elements.write_arrays(path)?;
     }
-    if let Some(path) = &command.animate {
-        elements.write_page(path)?;
+    match &command.animate {
+        Some(path) if ends_in(path, "html") => elements.write_page(path)?,
+        Some(path) => write_frames(elements, path)?,
+        None => (),
     }
     // A phase that a force ends may end the run before its nominal duration.
     check_end(command, elements.rows().last().map_or(0.0, |row| row.time))?;
+    for (time, path) in &command.contact {
+        if let Some(row) = elements.row_at(*time) {
+            LayerPicture::alone(elements, row).write(path)?;
+        }
+    }
     Ok(())
+}
+
+/// Animates the masses in pictures, of which there are at most as many as one likes to wait for.
+fn write_frames(elements: &ElementHistory, path: &Path) -> Result<(), FileError> {
+    const MOST: usize = 100;
+    let rows = elements.evenly_in_time(MOST);
+    let span = Span::over(elements, &rows);
+    write_film(rows.len(), |i| LayerPicture::in_film(elements, rows[i], span), path)
 }
 
 fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<(), SimulateError> {

@@ -13,6 +13,7 @@
 #[path = "../common/mod.rs"]
 #[allow(dead_code, unreachable_pub, reason = "shared by several tests")]
 mod common;
+mod contact_seen;
 mod converge;
 mod damper;
 mod element;

@@ -15,8 +15,9 @@ use super::sweep::SweepMethod;
 use super::sweep::values::{Shard, Values};
 pub(crate) use values::{Condition, PlotAxis, WlfConstants, tenth};
 use values::{
-    Frequencies, Tolerances, animation, arrays, column_unit, count, fit_error, frequency, key_and_value, length, moment,
-    picture, picture_or_table, poisson_ratio, positive, powers, seconds, seeds, share, table, temperature, wavelengths,
+    Frequencies, Tolerances, animation, arrays, column_unit, count, fit_error, frequency, key_and_value, length,
+    moment, picture, picture_or_table, poisson_ratio, positive, powers, seconds, seeds, share, table, temperature,
+    wavelengths,
 };
 
 /// Simulates rubber on a rough surface and packs the simulation as an FMU.

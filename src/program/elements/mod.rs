@@ -117,6 +117,15 @@ impl ElementHistory {
         (0..self.rows.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 
+    /// The rows nearest to the ends of even parts of the time of the run, at most `most` of them; one row may be nearest to
+    /// several.
+    pub(crate) fn evenly_in_time(&self, most: usize) -> Vec<usize> {
+        let (Some(first), Some(last)) = (self.rows.first(), self.rows.last()) else { return Vec::new() };
+        let parts = (self.rows.len().min(most) - 1).max(1);
+        let time = |part: usize| first.time + (last.time - first.time) * (part as f64 / parts as f64);
+        (0..=parts).filter_map(|part| self.row_at(time(part))).collect()
+    }
+
     /// Of `most` rows those at even parts of the run, the first and the last among them; all where there are fewer.
     pub(crate) fn spread(&self, most: usize) -> Vec<usize> {
         let last = self.rows.len().saturating_sub(1);
@@ -208,8 +217,11 @@ impl Span {
         let (mut low, mut high, mut load, mut flash) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64, 0.0_f64);
         for &row in if touching.is_empty() { rows } else { &touching } {
             for element in history.elements(row) {
-                let height = history.surface.spline().evaluate(element.x).0;
-                (low, high) = (low.min(element.z.min(height)), high.max(element.z.max(height)));
+                // Below the mass, and half-way to its neighbours.
+                for aside in [-0.5, 0.0, 0.5] {
+                    let height = history.surface.spline().evaluate(element.x + aside * history.spacing()).0;
+                    (low, high) = (low.min(element.z.min(height)), high.max(element.z.max(height)));
+                }
                 (load, flash) = (load.max(element.load), flash.max(element.flash));
             }
         }
