@@ -134,11 +134,9 @@ print(masses)
 #[test]
 fn a_contact_is_drawn_at_its_time_which_is_a_row() {
     let folder = scratch("contact-moment");
-    let end = *{
-        run(&mut simulate(&folder, &["--points", "4"]));
-        Table::read(&folder.join("out.csv")).column("time").last().unwrap()
-    };
+    run(&mut simulate(&folder, &["--points", "4"]));
     let before = Table::read(&folder.join("out.csv"));
+    let end = *before.column("time").last().unwrap();
     let time = 0.77 * end;
     let options = [format!("{time}=out.svg"), format!("{end}=out.png")];
     run(&mut simulate(&folder, &["--points", "4", "--contact", &options[0], "--contact", &options[1]]));

@@ -82,12 +82,12 @@ pub(crate) struct Simulate {
     /// Plots forces, contacts and dissipation over time, as SVG or PNG according to the file name.
     #[arg(long, value_name = "OUT.svg", value_parser = picture())]
     pub(crate) plot: Option<PathBuf>,
-    /// Animates the contact: the layer on its profile, pressure, stick and slip, flash temperature, forces. A page for a
-    /// browser (.html), an animated picture (.apng), or a row of pictures (.png: OUT-001.png and so on).
+    /// Animates the contact: the layer on its profile, pressure, stick and slip, flash temperature, forces. A page for
+    /// a browser (.html), an animated picture (.apng), or a row of pictures (.png: OUT-001.png and so on).
     #[arg(long, value_name = "OUT.html", value_parser = animation(), conflicts_with = "patch")]
     pub(crate) animate: Option<PathBuf>,
-    /// Draws the layer, the profile and the pressure at a time in s, as SVG or PNG; the result file has a row there too.
-    /// May be repeated.
+    /// Draws the layer, the profile and the pressure at a time in s, as SVG or PNG; the result file has a row there
+    /// too. May be repeated.
     #[arg(long, value_name = "TIME=OUT.svg", value_parser = moment(), conflicts_with = "patch")]
     pub(crate) contact: Vec<(f64, PathBuf)>,
     /// Writes position, forces, mode and flash temperature of all masses as arrays of numpy, a line for each result

@@ -117,8 +117,8 @@ impl ElementHistory {
         (0..self.rows.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 
-    /// The rows nearest to the ends of even parts of the time of the run, at most `most` of them; one row may be nearest to
-    /// several.
+    /// The rows nearest to the ends of even parts of the time of the run, at most `most` of them; one row may be nearest
+    /// to several.
     pub(crate) fn evenly_in_time(&self, most: usize) -> Vec<usize> {
         let (Some(first), Some(last)) = (self.rows.first(), self.rows.last()) else { return Vec::new() };
         let parts = (self.rows.len().min(most) - 1).max(1);

@@ -11,8 +11,8 @@ use crate::program::files::{self, FileError, ends_in};
 /// How long a picture of an animated one is shown, as numerator and denominator of a second.
 const SHOWN: (u16, u16) = (1, 10);
 
-/// Writes `count` pictures of the same size: as an animation where the name of `path` ends in `.apng`, else each as a PNG
-/// of its own.
+/// Writes `count` pictures of the same size: as an animation where the name of `path` ends in `.apng`, else each as a
+/// PNG of its own.
 pub(crate) fn write_film<F: Figure>(
     count: usize,
     picture: impl Fn(usize) -> F + Sync,
