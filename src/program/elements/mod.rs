@@ -16,11 +16,14 @@ pub(crate) struct ElementHistory {
     surface: Surface,
     /// Positions of the masses at rest for u = 0, m.
     rest: Vec<f64>,
+    spacing: f64,
     /// Area that a mass stands for, m²; in the material form alone.
     area: Option<f64>,
     variables: Vec<Variable>,
     fields: Vec<Field>,
     rows: Vec<Instant>,
+    /// The least and the largest x - u of all masses in all rows, m.
+    reach: (f64, f64),
 }
 
 /// An output of every mass, for all rows: the masses of the first row first.
@@ -81,10 +84,12 @@ impl ElementHistory {
             name: scene.name.clone(),
             surface: scene.surface.clone(),
             rest: (0..scene.layer.masses).map(|i| scene.layer.rest_position(i)).collect(),
+            spacing: scene.layer.spacing,
             area: scene.layer.element_area(),
             fields: of_mass.iter().map(field).collect(),
             variables,
             rows: Vec::new(),
+            reach: (f64::INFINITY, f64::NEG_INFINITY),
         }
     }
 
@@ -97,6 +102,8 @@ impl ElementHistory {
         }
         let (displacement, force) = (&snapshot.displacement, &snapshot.on_carrier);
         self.rows.push(Instant { time, u: displacement.x, w: displacement.z, force_x: force.x, force_z: force.z });
+        let places = self.elements(self.rows.len() - 1).map(|element| element.x - displacement.x);
+        self.reach = places.fold(self.reach, |(low, high), x| (low.min(x), high.max(x)));
     }
 
     pub(crate) fn name(&self) -> &str {
@@ -135,16 +142,16 @@ impl ElementHistory {
         rows
     }
 
-    /// What is seen along x while u = 0: a little more than the layer at rest, m.
+    /// What is seen along x while u = 0: a little more than where the masses are, m.
     pub(crate) fn ends(&self) -> (f64, f64) {
-        let (first, last) = (self.rest[0], self.rest[self.rest.len() - 1]);
-        let margin = self.spacing() / 2.0 + 0.02 * (last - first);
-        (first - margin, last + margin)
+        let (low, high) = self.reach;
+        let margin = (0.02 * (high - low)).max(self.spacing / 2.0);
+        (low - margin, high + margin)
     }
 
-    /// The distance of the masses at rest, m; a single one has a tenth of a millimetre for itself.
+    /// The distance of the masses at rest, m.
     pub(crate) fn spacing(&self) -> f64 {
-        if self.rest.len() > 1 { self.rest[1] - self.rest[0] } else { 1e-4 }
+        self.spacing
     }
 
     /// What [`Element::load`] is, and its unit.
@@ -159,18 +166,16 @@ impl ElementHistory {
 
     pub(crate) fn elements(&self, row: usize) -> impl Iterator<Item = Element> {
         let masses = self.rest.len();
-        let of = move |output: Output| self.values(output).map(|values| &values[row * masses..(row + 1) * masses]);
-        let [x, z, force, mode] =
-            [Output::ElementX(0), Output::ElementZ(0), Output::ElementNormalForce(0), Output::ElementMode(0)].map(of);
-        let (x, z, force, mode) = (x.into_iter().flatten(), z.into_iter().flatten(), force, mode);
+        let of = |output: Output| self.values(output).map_or(&[][..], |all| &all[row * masses..(row + 1) * masses]);
+        let [x, z] = [Output::ElementX(0), Output::ElementZ(0)].map(of);
+        let [force, mode] = [Output::ElementNormalForce(0), Output::ElementMode(0)].map(of);
         let flash = of(Output::ElementFlash(0));
-        let contacts = force.into_iter().flatten().zip(mode.into_iter().flatten());
-        x.zip(z).zip(contacts).enumerate().map(move |(i, ((&x, &z), (force, &mode)))| Element {
-            x,
-            z,
-            load: force / self.area.unwrap_or(1.0),
-            touch: Touch::new(mode),
-            flash: flash.map_or(0.0, |flash| flash[i]),
+        (0..masses).map(move |i| Element {
+            x: x[i],
+            z: z[i],
+            load: force[i] / self.area.unwrap_or(1.0),
+            touch: Touch::new(mode[i]),
+            flash: flash.get(i).copied().unwrap_or_default(),
         })
     }
 
@@ -225,7 +230,49 @@ impl Span {
                 (load, flash) = (load.max(element.load), flash.max(element.flash));
             }
         }
-        let margin = if high > low { 0.06 * (high - low) } else { 0.1 * history.spacing() };
+        // On a flat profile there are rounding errors alone.
+        let margin = (0.06 * (high - low)).max(1e-3 * history.spacing());
         Self { heights: (low - margin, high + margin), load, flash }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A run pressed within a tenth of its time and slid for the rest, with as many rows of both.
+    fn history() -> ElementHistory {
+        let text = "name = 'pair'\n[layer]\nmasses = 2\nspacing = 1e-4\nmass = 1e-7\n\
+                    [layer.vertical]\nstiffness = 2e3\n[surface]\nkind = 'flat'\n";
+        let scene = Scene::parse(text, "pair.toml".as_ref()).unwrap();
+        let mut history = ElementHistory::new(&scene);
+        let times = (0..=10).map(|i| 0.01 * f64::from(i)).chain((1..=10).map(|i| 0.1 + 0.09 * f64::from(i)));
+        history.rows = times.map(|time| Instant { time, u: 0.0, w: 0.0, force_x: 0.0, force_z: 0.0 }).collect();
+        history
+    }
+
+    #[test]
+    fn rows_are_chosen_evenly_by_number_and_by_time() {
+        let history = history();
+        assert_eq!(history.spread(5), [0, 5, 10, 15, 20]);
+        assert_eq!((history.spread(2), history.spread(1000).len()), (vec![0, 20], 21));
+        // At 0, 0.25, 0.5, 0.75 and 1 s: the last four are among the ten rows after 0.1 s.
+        assert_eq!(history.evenly_in_time(5), [0, 12, 14, 17, 20]);
+        assert_eq!((history.row_at(0.033), history.row_at(9.0)), (Some(3), Some(20)));
+    }
+
+    #[test]
+    fn a_run_of_one_row_has_one_and_one_without_rows_none() {
+        let mut history = history();
+        history.rows.truncate(1);
+        assert_eq!(history.spread(5), [0]);
+        history.rows.clear();
+        assert_eq!((history.row_at(0.0), history.evenly_in_time(5)), (None, vec![]));
+    }
+
+    #[test]
+    fn fields_are_those_of_a_mass() {
+        let names: Vec<String> = history().fields.into_iter().map(|field| field.name).collect();
+        assert_eq!(names, ["x", "z", "F_N", "F_T", "mode"]);
     }
 }
