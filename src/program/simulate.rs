@@ -1,4 +1,4 @@
-//! `asperity simulate`: runs a scene along its excitation and writes a result file.
+//! `asperity simulate`: runs a scene along its excitation, writes a result file and draws what is asked for.
 
 use std::path::{Path, PathBuf};
 

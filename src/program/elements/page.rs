@@ -15,7 +15,7 @@ const TEMPLATE: &str = include_str!("animation.html");
 /// Bytes of the frames, and points of the profile and of the forces over time, that leave the page below 5 MB.
 const FRAME_BYTES: usize = 2_800_000;
 const PROFILE_POINTS: usize = 250_000;
-const FORCE_POINTS: usize = 20_000;
+const FORCE_POINTS: usize = 10_000;
 /// Points of the profile along the layer: two a pixel of a large screen.
 const POINTS_IN_VIEW: f64 = 4000.0;
 
@@ -104,8 +104,9 @@ impl ElementHistory {
 
     fn page(&self) -> Page<'_> {
         let masses = self.rest.len();
-        let bytes = masses * if self.has_flash() { 9 } else { 7 };
-        let rows = self.spread((FRAME_BYTES / bytes).max(2));
+        // Time and u, and of each mass x, z, load, touch and flash temperature.
+        let bytes = 16 + masses * if self.has_flash() { 9 } else { 7 };
+        let rows = self.spread(FRAME_BYTES / bytes);
         let span = Span::over(self, &rows);
         let (load_name, load_unit) = self.load_unit();
         Page {
@@ -174,6 +175,9 @@ impl ElementHistory {
 
 #[cfg(test)]
 mod tests {
+    use asperity::scene::Scene;
+
+    use super::super::Instant;
     use super::*;
 
     #[test]
@@ -184,6 +188,26 @@ mod tests {
         let bytes = BASE64_STANDARD.decode(data).unwrap();
         let read = bytes.chunks(2).map(|pair| low + f64::from(u16::from_le_bytes([pair[0], pair[1]])) * part);
         assert!(read.zip(&values).all(|(read, value)| (read - value).abs() <= 0.51 * part));
+    }
+
+    /// Of many masses or many rows.
+    #[test]
+    fn a_page_stays_below_5_mb() {
+        for (masses, rows) in [(2, 300_000), (1000, 1000)] {
+            let text = format!(
+                "name = 'long'\n[layer]\nmasses = {masses}\nspacing = 1e-6\nmass = 1e-7\n[layer.vertical]\n\
+                 stiffness = 2e3\n[surface]\nkind = 'sinusoid'\namplitude = 1e-6\nwavelength = 1.0\n"
+            );
+            let mut history = ElementHistory::new(&Scene::parse(&text, "long.toml".as_ref()).unwrap());
+            // As far as a period, and numbers of as many digits as there may be.
+            let row =
+                |i: usize| Instant { time: i as f64 / 3e5, u: i as f64 / 7e4, w: 0.0, force_x: 1.0, force_z: 2.0 };
+            history.rows = (0..rows).map(row).collect();
+            history.reach = (0.0, 1e-6 * masses as f64);
+            history.fields.iter_mut().for_each(|field| field.values = vec![0.0; masses * rows]);
+            let length = serde_json::to_string(&history.page()).unwrap().len() + TEMPLATE.len();
+            assert!((2_000_000..5_000_000).contains(&length), "{masses} masses, {rows} rows: {length}");
+        }
     }
 
     #[test]
