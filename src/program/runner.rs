@@ -98,6 +98,8 @@ pub(crate) struct Runner {
     simulation: Simulation,
     carrier: CarrierSample,
     rows: Rows,
+    /// Times of rows besides those, s.
+    also_at: Vec<f64>,
     /// Number of phases followed so far.
     phases: usize,
     /// Area of the layer, m², if the scene gives it.
@@ -113,7 +115,12 @@ impl Runner {
             CarrierSample { time: start.time, u: start.u, w: start.w, load: start.load, pull: start.pull, temperature };
         let mut simulation = Simulation::new(scene, &start)?;
         simulation.record_method_switches(true);
-        Ok(Self { simulation, carrier, rows, phases: 0, area: scene.layer.area() })
+        Ok(Self { simulation, carrier, rows, also_at: Vec::new(), phases: 0, area: scene.layer.area() })
+    }
+
+    /// The run with rows at `times` (s) too.
+    pub(crate) fn with_rows_at(self, times: Vec<f64>) -> Self {
+        Self { also_at: times, ..self }
     }
 
     pub(crate) fn simulation(&mut self) -> &mut Simulation {
@@ -159,12 +166,27 @@ impl Runner {
             return Ok(0.0);
         }
         let rows = if phase.is_row { Rows::PerPhase(1) } else { self.rows };
-        let times: Vec<f64> = rows.times(duration).collect();
+        let times = self.times(rows, duration);
         let start = self.carrier;
         let observe = |s: f64, snapshot: &Snapshot<'_>| observe(start.after(&motion, s), snapshot);
         self.simulation.advance_observed(&Motion { duration, ..motion }, None, &times, observe)?;
         self.carrier = CarrierSample { time: self.simulation.time(), ..start.after(&motion, duration) };
         Ok(duration)
+    }
+
+    /// Times of the rows of a phase of `duration` (s) that begins now, in s from its start.
+    fn times(&self, rows: Rows, duration: f64) -> Vec<f64> {
+        /// Share of the duration by which a time differs from that of a row by rounding.
+        const ROUNDING: f64 = 1e-9;
+        let mut times: Vec<f64> = rows.times(duration).collect();
+        for s in self.also_at.iter().map(|time| time - self.carrier.time) {
+            let is_there = |other: &f64| (other - s).abs() <= ROUNDING * duration;
+            if ROUNDING * duration < s && s < duration && !times.iter().any(is_there) {
+                times.push(s);
+            }
+        }
+        times.sort_by(f64::total_cmp);
+        times
     }
 
     /// The time at which F_z rises to `force` (N), in s from the start of the motion. A copy of the simulation finds

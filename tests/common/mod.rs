@@ -71,6 +71,14 @@ fn environment(folder: &str, packages: &str) -> PathBuf {
     run(Command::new("bash").arg(script).arg(target().join(folder)).arg(packages)).trim().into()
 }
 
+/// A browser without a window: Debian's chromium-headless-shell, or another Chromium.
+pub fn browser() -> &'static str {
+    const NAMES: [&str; 5] =
+        ["chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+    let is_there = |name: &&str| Command::new(name).arg("--version").output().is_ok();
+    NAMES.into_iter().find(is_there).unwrap_or_else(|| panic!("no browser; one of {NAMES:?} is needed"))
+}
+
 /// Runs fmpy from its command line.
 pub fn fmpy(arguments: &[&str]) -> String {
     run(Command::new(python()).args(["-m", "fmpy"]).args(arguments))

@@ -14,6 +14,7 @@ mod calibrate;
 #[path = "../common/mod.rs"]
 #[allow(dead_code, unreachable_pub, reason = "shared by several tests")]
 mod common;
+mod contact_seen;
 mod converge;
 mod damper;
 mod element;

@@ -4,20 +4,21 @@ mod values;
 
 use std::ffi::OsString;
 use std::ops::{Deref, RangeInclusive};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use asperity::calibration::FreeParameter;
 use asperity::scene::{LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt};
 use clap::{ArgGroup, Args, Parser, Subcommand};
 
+use super::files::default_output;
 use super::overrides::Setting;
 use super::sweep::SweepMethod;
 use super::sweep::values::{Shard, Values};
 pub(crate) use values::{Condition, PlotAxis, WlfConstants, tenth};
 use values::{
-    Frequencies, Tolerances, column_unit, count, fit_error, free_parameter, frequency, key_and_value, length, picture,
-    picture_or_table, poisson_ratio, powers, pressure, seconds, seeds, share, speed, table_or_arrays, temperature,
-    wavelengths,
+    Frequencies, Tolerances, animation, arrays, column_unit, count, fit_error, free_parameter, frequency,
+    key_and_value, length, moment, picture, picture_or_table, poisson_ratio, powers, pressure, seconds, seeds, share,
+    speed, table_or_arrays, temperature, wavelengths,
 };
 
 /// Simulates rubber on a rough surface and packs the simulation as an FMU.
@@ -99,9 +100,10 @@ pub(crate) struct Simulate {
     /// one step from row to row.
     #[arg(long, value_name = "MOTION.csv", requires = "patch", conflicts_with = "scene")]
     pub(crate) motion: Option<PathBuf>,
-    /// The result file to write; - for standard output.
+    /// The result file to write; - for standard output. Default: the name of the scene or patch with .csv, in this
+    /// folder.
     #[arg(short, long, value_name = "OUT.csv")]
-    pub(crate) output: PathBuf,
+    output: Option<PathBuf>,
     /// Number of result rows for each phase of the excitation.
     #[arg(long, value_name = "N", default_value_t = 50, value_parser = count, conflicts_with = "patch")]
     pub(crate) points: u32,
@@ -110,6 +112,25 @@ pub(crate) struct Simulate {
     /// Plots forces, contacts and dissipation over time, as SVG or PNG according to the file name.
     #[arg(long, value_name = "OUT.svg", value_parser = picture())]
     pub(crate) plot: Option<PathBuf>,
+    /// Animates the contact: the layer on its profile, pressure, stick and slip, flash temperature, forces. A page for
+    /// a browser (.html), an animated picture (.apng), or a row of pictures (.png: OUT-001.png and so on).
+    #[arg(long, value_name = "OUT.html", value_parser = animation(), conflicts_with = "patch")]
+    pub(crate) animate: Option<PathBuf>,
+    /// Draws the layer, the profile and the pressure at a time in s, as SVG or PNG; the result file has a row there
+    /// too. May be repeated.
+    #[arg(long, value_name = "TIME=OUT.svg", value_parser = moment(), conflicts_with = "patch")]
+    pub(crate) contact: Vec<(f64, PathBuf)>,
+    /// Writes position, forces, mode and flash temperature of all masses as arrays of numpy, a line for each result
+    /// row, and the profile.
+    #[arg(long, value_name = "OUT.npz", value_parser = arrays(), conflicts_with = "patch")]
+    pub(crate) elements: Option<PathBuf>,
+}
+
+impl Simulate {
+    /// The result file of a run of what is in the file `simulated`.
+    pub(crate) fn output(&self, simulated: &Path) -> PathBuf {
+        self.output.clone().unwrap_or_else(|| default_output(simulated, "csv"))
+    }
 }
 
 // Not a doc comment: that would be the description of the commands that have it.

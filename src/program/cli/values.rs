@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use asperity::calibration::FreeParameter;
 use asperity::scene::Wlf;
 use asperity::scene::text_table::{Dimension, Unit, quantity};
-use clap::builder::{PathBufValueParser, TypedValueParser};
+use clap::builder::{PathBufValueParser, StringValueParser, TypedValueParser};
 
 use crate::program::files::{ends_in, is_standard_output};
 
@@ -169,6 +169,29 @@ pub(super) fn table_or_arrays() -> impl TypedValueParser<Value = PathBuf> {
 /// A file for a plot; its name gives the format.
 pub(super) fn picture() -> impl TypedValueParser<Value = PathBuf> {
     ending_in(&["svg", "png"], "a name that ends in .svg or .png")
+}
+
+/// A file for an animation; its name gives the format.
+pub(super) fn animation() -> impl TypedValueParser<Value = PathBuf> {
+    ending_in(&["html", "apng", "png"], "a name that ends in .html, .apng or .png")
+}
+
+/// A file for arrays of numpy.
+pub(super) fn arrays() -> impl TypedValueParser<Value = PathBuf> {
+    ending_in(&["npz"], "a name that ends in .npz")
+}
+
+/// A time in s, and a file for a plot of that instant.
+pub(super) fn moment() -> impl TypedValueParser<Value = (f64, PathBuf)> {
+    StringValueParser::new().try_map(|text| {
+        let (time, path) = text.split_once('=').ok_or("expected TIME=OUT.svg, such as 2e-3=contact.svg")?;
+        let path = PathBuf::from(path);
+        let is_picture = ["svg", "png"].into_iter().any(|ending| ends_in(&path, ending));
+        if !is_picture {
+            return Err("expected a name that ends in .svg or .png after TIME=".to_owned());
+        }
+        Ok((seconds(time)?, path))
+    })
 }
 
 /// A file for a plot or a table; a table on standard output.

@@ -2,7 +2,9 @@
 
 mod axis;
 mod chart;
+mod film;
 mod ladders;
+mod layer;
 mod maps;
 mod moment;
 mod panels;
@@ -23,7 +25,9 @@ use plotters::style::text_anchor::{HPos, VPos};
 use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingErrorKind};
 
 pub(crate) use chart::{Curve, Stroke};
+pub(crate) use film::write_film;
 pub(crate) use ladders::{Ladder, LadderPanel, Ladders, Rung};
+pub(crate) use layer::LayerPicture;
 pub(crate) use panels::{Below, LinearPanel, LinearStack, Panel, ProfilePicture, SideBySide, Stacked, TimeHistory};
 pub(crate) use patch::PatchHistory;
 pub(crate) use plot::{PlotError, plot_files};
@@ -115,12 +119,18 @@ pub(crate) trait Figure {
 
     /// The PNG file, with `scale` pixels for one of the figure's along each axis; a divisor of [`FINE`].
     fn png(&self, scale: u32) -> Result<Vec<u8>, Box<dyn Error>> {
-        let size = subpixels(self.size());
-        let mut rgb = vec![u8::MAX; 3 * size.0 as usize * size.1 as usize];
-        self.images().iter().for_each(|image| image.paint(&mut rgb, size.0 as usize));
-        draw_with_title(self, &Pixels { size, rgb: &mut rgb }.into_drawing_area())?;
-        encode(&averaged(&rgb, size.0 as usize, (FINE / scale) as usize), size.0 * scale / FINE, size.1 * scale / FINE)
+        let (width, height) = self.size();
+        encode(&pixels(self, scale)?, width * scale, height * scale)
     }
+}
+
+/// The colours of a figure's pixels, `scale` for one of the figure's along each axis.
+fn pixels<F: Figure + ?Sized>(figure: &F, scale: u32) -> Result<Vec<u8>, Box<dyn Error>> {
+    let size = subpixels(figure.size());
+    let mut rgb = vec![u8::MAX; 3 * size.0 as usize * size.1 as usize];
+    figure.images().iter().for_each(|image| image.paint(&mut rgb, size.0 as usize));
+    draw_with_title(figure, &Pixels { size, rgb: &mut rgb }.into_drawing_area())?;
+    Ok(averaged(&rgb, size.0 as usize, (FINE / scale) as usize))
 }
 
 fn subpixels((width, height): (u32, u32)) -> (u32, u32) {

@@ -31,15 +31,16 @@ pub(crate) fn simulate(command: &Simulate, patch_file: &Path, motion_file: &Path
     let patch = load_patch(patch_file, &command.set)?;
     let mut taken = sources(patch_file, &patch);
     taken.push(motion_file.to_owned());
-    check_outputs([&command.output].into_iter().chain(&command.plot), taken)?;
+    let output = command.output(patch_file);
+    check_outputs([&output].into_iter().chain(&command.plot), taken)?;
     let motion = MotionFile::read(motion_file, &patch)?;
-    let mut recorder = PatchRecorder::new(&patch, &motion, command)?;
+    let mut recorder = PatchRecorder::new(&patch, &motion, &output, command.plot.is_some())?;
     let mut run = PatchRun::new(&patch, &motion.start()).map_err(PatchSimulateError::Start)?;
     recorder.row(&mut run, motion.values(&motion.rows()[0]))?;
     let mut result = Ok(());
     for (step, row) in motion.motions() {
         if let Err(source) = run.advance(&step) {
-            result = Err(PatchSimulateError::Run { source, time: run.time(), output: command.output.clone() });
+            result = Err(PatchSimulateError::Run { source, time: run.time(), output });
             break;
         }
         recorder.row(&mut run, motion.values(row))?;
@@ -61,13 +62,13 @@ struct PatchRecorder {
 }
 
 impl PatchRecorder {
-    fn new(patch: &Patch, motion: &MotionFile, command: &Simulate) -> Result<Self, FileError> {
+    fn new(patch: &Patch, motion: &MotionFile, output: &Path, is_drawn: bool) -> Result<Self, FileError> {
         let variables = patch.variables();
         let names = motion.names().into_iter().chain(variables.iter().map(|variable| variable.name.as_str()));
         Ok(Self {
             values: vec![0.0; variables.len()],
-            writer: CsvWriter::create(&command.output, names)?,
-            history: command.plot.is_some().then(|| PatchHistory::new(patch, &motion.times())),
+            writer: CsvWriter::create(output, names)?,
+            history: is_drawn.then(|| PatchHistory::new(patch, &motion.times())),
             variables,
         })
     }
