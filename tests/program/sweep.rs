@@ -179,7 +179,8 @@ fn the_low_end_is_named() {
     let (scene, table) = scene(&folder, &flat());
     let mut sweep = asperity();
     sweep.arg("sweep").arg(&scene).arg("-o").arg(&table).args(["--speeds", "0.1,1", "--forces", "0.5,1,2"]);
-    let printed = run(&mut sweep);
+    // Long lines are broken between words.
+    let printed = run(&mut sweep).split_whitespace().collect::<Vec<_>>().join(" ");
     // Springs of 8 kN/m: 62.5 µm to the first force, as much to the second, twice that to the third. ln F rises by ln 2 from
     // each to the next; the parabola through the three has the slope (1 + 1/2 · 1/3) ln 2/62.5 µm at the first, and the law
     // touches 2/slope farther.

@@ -120,10 +120,12 @@ impl<'a> Entry<'a> {
         number(value).or_else(|| self.key.unit.read(value.as_str()?))
     }
 
-    /// Refuses the value for not being a number of the range; of a text the units are named, too.
+    /// Refuses the value for not being a number of the range; of a text that begins as one the units are named, too.
     fn refuse_number(&self, range: NumberRange) -> SceneError {
         let units = self.key.unit.readable();
-        match self.is_text() && !units.is_empty() {
+        let is_like_a_number =
+            |text: &str| text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+        match self.value.as_str().is_some_and(is_like_a_number) && !units.is_empty() {
             true => self.refuse(format_args!("{range}, in SI units or as a text with its unit, one of {units}")),
             false => self.refuse(range),
         }
