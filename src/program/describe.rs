@@ -255,8 +255,6 @@ fn friction(scene: &Scene) -> Vec<LabelledLine> {
 /// Where friction falls over the speed, at which the masses of a layer may stick and slip one by one; nothing where it
 /// does not.
 fn falling_friction(scene: &Scene) -> Option<String> {
-    /// Pressure of a contact, Pa.
-    const PRESSURE: f64 = 3e5;
     /// Speeds are 10^(i/PER_DECADE) m/s.
     const PER_DECADE: i32 = 10;
     const EXPONENTS: Range<i32> = -6 * PER_DECADE..2 * PER_DECADE;
@@ -264,7 +262,7 @@ fn falling_friction(scene: &Scene) -> Option<String> {
     const LEAST_FALL: f64 = 0.01;
 
     let law = FrictionLaw::new(scene);
-    let normal = scene.layer.element_area().map_or(0.0, |area| PRESSURE * area);
+    let normal = scene.layer.element_area().map_or(0.0, |area| fine::MIDDLE * area);
     let speed = |exponent: i32| 10.0_f64.powf(f64::from(exponent) / f64::from(PER_DECADE));
     let friction = |exponent: i32| law.slip(normal, speed(exponent), Flash::held(0.0)).force();
     let fall = |at: i32| f64::from(PER_DECADE) * (1.0 - friction(at + 1) / friction(at));

@@ -14,7 +14,7 @@ use super::terminal::{decimal, rounded};
 const SPEEDS: [f64; 3] = [1e-4, 1e-2, 1.0];
 const PRESSURES: [f64; 3] = [1e5, 3e5, 1e6];
 /// Pressure (Pa) at which friction is divided into its parts.
-const MIDDLE: f64 = PRESSURES[1];
+pub(super) const MIDDLE: f64 = PRESSURES[1];
 
 /// The summary in a line each; nothing where the profile lacks nothing.
 pub(super) fn rows(scene: &Scene) -> Vec<String> {

@@ -85,17 +85,18 @@ pub(super) fn obstacle(phase: &Phase, carrier: &CarrierBodies, temperature: Opti
     let is_free = |body: &Option<CarrierBody>| body.as_ref().is_some_and(|body| !body.has_drive());
     let fits = |kelvin: f64| temperature.is_some_and(|wlf| Wlf { temperature: kelvin, ..*wlf }.check().is_ok());
     let has_normal = phase.load.is_some() || phase.pressure.is_some();
-    match () {
-        () if phase.pressure.is_some() && phase.load.is_some() => Some("no load beside pressure"),
-        () if has_normal && body_z.is_none() => Some("no load and no pressure without [carrier.z]"),
-        () if phase.pull.is_some() && body_x.is_none() => Some("no pull without [carrier.x]"),
-        () if phase.u.rate != 0.0 && is_free(body_x) => Some("no change of u with [carrier.x] that has no drive"),
-        () if phase.w.rate != 0.0 && is_free(body_z) => Some("no change of w with [carrier.z] that has no drive"),
-        () if phase.temperature.is_some_and(|kelvin| !fits(kelvin)) => {
-            Some("no temperature without temperature = true in [input], nor one beyond the pole of WLF's equation")
-        }
-        () => None,
-    }
+    let obstacles = [
+        (phase.pressure.is_some() && phase.load.is_some(), "no load beside pressure"),
+        (has_normal && body_z.is_none(), "no load and no pressure without [carrier.z]"),
+        (phase.pull.is_some() && body_x.is_none(), "no pull without [carrier.x]"),
+        (phase.u.rate != 0.0 && is_free(body_x), "no change of u with [carrier.x] that has no drive"),
+        (phase.w.rate != 0.0 && is_free(body_z), "no change of w with [carrier.z] that has no drive"),
+        (
+            phase.temperature.is_some_and(|kelvin| !fits(kelvin)),
+            "no temperature without temperature = true in [input], nor one beyond the pole of WLF's equation",
+        ),
+    ];
+    obstacles.into_iter().find_map(|(is_there, expected)| is_there.then_some(expected))
 }
 
 #[cfg(test)]

@@ -26,9 +26,7 @@ use super::files::{
 use super::interrupt::Farewell;
 use super::measured_friction::{self, CurveGrid, MeasuredFrictionError, ModelCurves};
 use super::overrides::{self, OverrideError, Setting};
-use super::sweep::{
-    Asked, LAYER_ERROR, Method, MethodError, NeverSteady, StopBounds, relevant, table_fingerprint, with_temperature,
-};
+use super::sweep::{Method, MethodError, NeverSteady, relevant, table_fingerprint, with_temperature};
 use super::terminal::{self, real, rounded, warn};
 use kept::KeptPoints;
 use layer_model::LayerModel;
@@ -112,7 +110,7 @@ impl<'a> FreeScene<'a> {
         let area = scene.layer.area().filter(|_| scene.material.is_some()).ok_or(CalibrateError::NoArea)?;
         let text = read_text(&command.scene).map_err(FileError::io("read", &command.scene))?;
         let text = overrides::overridden(&text, &command.set).map_err(FileError::from)?.text;
-        let (method, of_method) = asked(command).choose(&scene)?;
+        let (method, of_method) = command.sliding.asked().choose(&scene)?;
         method.check(&scene)?;
         let mut free =
             Self { command, text, scene, area, parameters: command.free.clone(), own: Vec::new(), method, of_method };
@@ -186,18 +184,9 @@ impl<'a> FreeScene<'a> {
     }
 
     fn fingerprint(&self) -> Result<String, CalibrateError> {
-        let settings = self.method.settings(|| format!("{:?}", bounds(self.command)));
+        let settings = self.method.settings(|| format!("{:?}", self.command.sliding.bounds()));
         Ok(table_fingerprint(&relevant(self.scene.clone()), &format!("calibrate {settings}"))?)
     }
-}
-
-fn asked(command: &Calibrate) -> Asked {
-    let Calibrate { method, points, error, distance, .. } = *command;
-    Asked { method, points, has_error: error.is_some(), has_distance: distance.is_some() }
-}
-
-fn bounds(command: &Calibrate) -> StopBounds {
-    StopBounds { error: command.error.unwrap_or(LAYER_ERROR), distance: command.distance }
 }
 
 /// What a calibration found.
@@ -253,14 +242,14 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<ExitCode, CalibrateError>
         added.map_err(|error| CalibrationError::NotKept(error.to_string()))
     };
     let scene_at = |values: &[f64]| free.at(values);
-    let grid_of = |scene: &Scene| match asked(command).choose(scene) {
+    let grid_of = |scene: &Scene| match command.sliding.asked().choose(scene) {
         Ok((Method::Steady(grid), _)) => Ok(grid),
         Ok((Method::Layer, of_method)) => Err(CalibrationError::Model(of_method)),
         Err(error) => Err(CalibrationError::Model(error.to_string())),
     };
     let theory = TheoryModel::new(&scene_at);
     let steady = SteadyModel::new(&scene_at, &grid_of);
-    let layer = LayerModel { scene_at: &scene_at, area: free.area, bounds: bounds(command) };
+    let layer = LayerModel { scene_at: &scene_at, area: free.area, bounds: command.sliding.bounds() };
     let is_solved = matches!(free.method, Method::Steady(_));
     let model: &dyn FrictionModel = if is_solved { &steady } else { &layer };
     let model = Memo::new(model, known, &add);

@@ -479,21 +479,8 @@ pub(crate) struct Sweep {
     /// The plot to write, as SVG or PNG according to the file name. Default: the table's name with .svg.
     #[arg(long, value_name = "OUT.svg", value_parser = picture(), conflicts_with = "shard")]
     pub(crate) plot: Option<PathBuf>,
-    /// How steady sliding is found: by solving for it, or by letting the layer slide until it is. Default: steady where the
-    /// foundation is "half_space" or "layer" and the surface periodic and not flat; else layer.
-    #[arg(long, value_name = "METHOD", value_enum)]
-    pub(crate) method: Option<SweepMethod>,
-    /// Points of a period along x, with --method steady; of a map with those along y in proportion. Default: the surface's
-    /// own, or of a profile 8 to its shortest wave where they are uneven or fewer.
-    #[arg(long, value_name = "N", value_parser = count)]
-    pub(crate) points: Option<u32>,
-    /// Admissible standard error of the friction coefficient, relative to it, with --method layer. Default: 5e-3.
-    #[arg(long, value_name = "SHARE", value_parser = share)]
-    pub(crate) error: Option<f64>,
-    /// Maximum sliding distance in m for a point to become steady, with --method layer. Default: 100 blocks; a block is a
-    /// whole number of profile periods or layer lengths.
-    #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
-    pub(crate) distance: Option<f64>,
+    #[command(flatten)]
+    pub(crate) sliding: Sliding,
     /// Computes only share I of N of the points, I from 1 to N.
     #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
     pub(crate) shard: Option<Shard>,
@@ -510,6 +497,26 @@ pub(crate) struct Sweep {
     pub(crate) force: bool,
     #[command(flatten)]
     pub(crate) set: Set,
+}
+
+// How the points of a sweep are found. Not a doc comment: that would be the description of the commands that have it.
+#[derive(Clone, Copy, Debug, Args)]
+pub(crate) struct Sliding {
+    /// How steady sliding is found: by solving for it, or by letting the layer slide until it is. Default: steady where the
+    /// foundation is "half_space" or "layer" and the surface periodic and not flat; else layer.
+    #[arg(long, value_name = "METHOD", value_enum)]
+    pub(crate) method: Option<SweepMethod>,
+    /// Points of a period along x, with --method steady; of a map with those along y in proportion. Default: the surface's
+    /// own, or of a profile 8 to its shortest wave where they are uneven or fewer.
+    #[arg(long, value_name = "N", value_parser = count)]
+    pub(crate) points: Option<u32>,
+    /// Admissible standard error of the friction coefficient, relative to it, with --method layer. Default: 5e-3.
+    #[arg(long, value_name = "SHARE", value_parser = share)]
+    pub(crate) error: Option<f64>,
+    /// Maximum sliding distance in m for a point to become steady, with --method layer. Default: 100 blocks; a block is a
+    /// whole number of profile periods or layer lengths.
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
+    pub(crate) distance: Option<f64>,
 }
 
 #[derive(Debug, Args)]
@@ -532,18 +539,8 @@ pub(crate) struct Calibrate {
     /// The plot to write, as SVG or PNG according to the file name. Default: the output's name with .svg.
     #[arg(long, value_name = "OUT.svg", value_parser = picture())]
     pub(crate) plot: Option<PathBuf>,
-    /// How steady sliding is found, as in asperity sweep.
-    #[arg(long, value_name = "METHOD", value_enum)]
-    pub(crate) method: Option<SweepMethod>,
-    /// Points of a period along x, with --method steady, as in asperity sweep.
-    #[arg(long, value_name = "N", value_parser = count)]
-    pub(crate) points: Option<u32>,
-    /// Admissible standard error of the friction coefficient, relative to it, with --method layer. Default: 5e-3.
-    #[arg(long, value_name = "SHARE", value_parser = share)]
-    pub(crate) error: Option<f64>,
-    /// Maximum sliding distance in m for a point to become steady, with --method layer. Default: 100 blocks.
-    #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
-    pub(crate) distance: Option<f64>,
+    #[command(flatten)]
+    pub(crate) sliding: Sliding,
     /// Also proposes three points to measure that would tell most (D-optimal among a grid).
     #[arg(long)]
     pub(crate) plan: bool,
@@ -576,18 +573,25 @@ pub(crate) struct Compare {
     pub(crate) output: Option<PathBuf>,
 }
 
-#[derive(Debug, Args)]
-pub(crate) struct Contact {
-    /// The scene file, in the material form with a foundation "half_space" or "layer" and a periodic surface; its excitation
-    /// and outputs are not used.
-    #[arg(value_name = "SCENE.toml")]
-    pub(crate) scene: PathBuf,
+// One state of steady sliding. Not a doc comment: that would be the description of the commands that have it.
+#[derive(Clone, Copy, Debug, Args)]
+pub(crate) struct SteadyState {
     /// Mean pressure in Pa.
     #[arg(long, value_name = "PRESSURE", value_parser = pressure, allow_negative_numbers = true)]
     pub(crate) pressure: f64,
     /// Sliding speed in m/s.
     #[arg(long, value_name = "SPEED", value_parser = speed, allow_negative_numbers = true)]
     pub(crate) speed: f64,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Contact {
+    /// The scene file, in the material form with a foundation "half_space" or "layer" and a periodic surface; its excitation
+    /// and outputs are not used.
+    #[arg(value_name = "SCENE.toml")]
+    pub(crate) scene: PathBuf,
+    #[command(flatten)]
+    pub(crate) at: SteadyState,
     /// Points of a period along x; of a map with those along y in proportion. Default: the surface's own, or of a profile 8
     /// to its shortest wave where they are uneven or fewer.
     #[arg(long, value_name = "N", value_parser = count)]
@@ -608,12 +612,8 @@ pub(crate) struct Converge {
     /// The scene file, in the material form; its excitation and outputs are not used.
     #[arg(value_name = "SCENE.toml")]
     pub(crate) scene: PathBuf,
-    /// Mean pressure in Pa.
-    #[arg(long, value_name = "PRESSURE", value_parser = pressure, allow_negative_numbers = true)]
-    pub(crate) pressure: f64,
-    /// Sliding speed in m/s.
-    #[arg(long, value_name = "SPEED", value_parser = speed, allow_negative_numbers = true)]
-    pub(crate) speed: f64,
+    #[command(flatten)]
+    pub(crate) at: SteadyState,
     /// Admissible change of friction and area, as a share of them, with the spacing halved, the length doubled or
     /// another seed.
     #[arg(long, value_name = "SHARE", default_value_t = 0.05, value_parser = share)]

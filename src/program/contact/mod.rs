@@ -55,7 +55,7 @@ pub(crate) fn contact(command: &Contact) -> Result<(), ContactError> {
     };
     let rubber = SlidingRubber::new(&scene).ok_or(ContactError::NoMaterial)?;
     let mut solver = SteadySolver::new(surface);
-    let slide = solver.slide(&rubber, command.speed, command.pressure);
+    let slide = solver.slide(&rubber, command.at.speed, command.at.pressure);
     let surface = solver.surface();
     let fields = Fields::new(surface, &slide);
     picture::write(surface, &fields, slide.area, &command.output)?;
@@ -95,7 +95,7 @@ fn summary(scene: &Scene, command: &Contact, slide: &SteadySlide, fields: &Field
     let digits = |value: f64| rounded(value, 4);
     let largest = fields.pressures.iter().copied().fold(0.0, f64::max);
     let mut labelled = vec![
-        ("Scene", format!("{}, {} Pa at {} m/s", scene.name, command.pressure, command.speed)),
+        ("Scene", format!("{}, {} Pa at {} m/s", scene.name, command.at.pressure, command.at.speed)),
         ("Contact", format!("{} of the area, pressure up to {} Pa", digits(slide.area), digits(largest))),
         ("Separation", format!("{} m between the mean planes", digits(slide.contact.separation))),
         (

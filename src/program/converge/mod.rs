@@ -18,7 +18,7 @@ use cpu_time::ThreadTime;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 
-use super::cli::Converge;
+use super::cli::{Converge, SteadyState};
 use super::draft::TablePlace;
 use super::figure::Figure as _;
 use super::files::{FileError, check_outputs, default_output, picture_beside, print_beside, sources};
@@ -89,7 +89,7 @@ pub(crate) fn converge(command: &Converge) -> Result<ExitCode, ConvergeError> {
         Method::Layer => template,
     };
     let plan = plan(command, &template)?;
-    let warning = scene.hard_pressure("--pressure", command.pressure).filter(|_| matches!(method, Method::Layer));
+    let warning = scene.hard_pressure("--pressure", command.at.pressure).filter(|_| matches!(method, Method::Layer));
     warning.iter().for_each(|warning| warn(warning));
     let output = command.output.clone().unwrap_or_else(|| default_output(&command.scene, "converge.csv"));
     let picture = picture_beside(&output, command.plot.as_ref());
@@ -149,7 +149,7 @@ fn header(
     of_method: String,
     parts: Parts,
 ) -> Result<StudyHeader, ConvergeError> {
-    let Converge { pressure, speed, error, distance, .. } = *command;
+    let Converge { at: SteadyState { pressure, speed }, error, distance, .. } = *command;
     let of_method_alone = method.settings(|| format!("{distance:?}"));
     let settings = format!("converge {pressure:?} {speed:?} {error:?} {of_method_alone}");
     let fingerprint = table_fingerprint(&relevant(scene.clone()), &settings)?;
@@ -216,7 +216,7 @@ impl Work<'_> {
         let is_of_layer = self.template.parts() == Parts::Masses;
         let outcome = if is_of_layer { self.measure(&scene) } else { self.solve(&scene, dimensions.count) };
         let run_time = clock.elapsed().as_secs_f64();
-        let Converge { pressure, speed, .. } = *self.command;
+        let Converge { at: SteadyState { pressure, speed }, .. } = *self.command;
         let theories = [Dimension::One, Dimension::Two]
             .map(|dimension| Theory::new(&scene, pressure, speed, dimension).unwrap_or_default());
         let fit_rms = is_of_layer.then(|| scene.quality(LinkKind::Vertical).map_or(0.0, |quality| quality.rms));
@@ -234,7 +234,7 @@ impl Work<'_> {
         let (Method::Steady(surface), Some(rubber)) = (method, SlidingRubber::new(scene)) else {
             return Err("not to be solved for".into());
         };
-        let slide = SteadySolver::new(surface).slide(&rubber, self.command.speed, self.command.pressure);
+        let slide = SteadySolver::new(surface).slide(&rubber, self.command.at.speed, self.command.at.pressure);
         if slide.contact.left_over > 0 || !slide.heat_converged {
             return Err(solved_status(&slide));
         }
@@ -247,7 +247,7 @@ impl Work<'_> {
 
     /// Friction and area of the layer in steady sliding, or why there is none.
     fn measure(&self, scene: &Scene) -> Result<Measured, String> {
-        let Converge { pressure, speed, error, distance, .. } = *self.command;
+        let Converge { at: SteadyState { pressure, speed }, error, distance, .. } = *self.command;
         let area = scene.layer.area().ok_or("the layer has no width")?;
         let point = OperatingPoint { speed, load: pressure, temperature: None };
         let bounds = StopBounds { error: RUN_ERROR * error, distance };

@@ -20,7 +20,7 @@ use asperity::model::Model;
 use asperity::scene::{FineRoughness, Initial, OutputGroup, ParameterError, Path as Displacement, Phase, Scene};
 use rayon::prelude::*;
 
-use super::cli::Sweep;
+use super::cli::{Sliding, Sweep};
 use super::draft::TablePlace;
 use super::files::{
     FileError, check_outputs, default_output, load_without_excitation, named, picture_beside, print_beside, sources,
@@ -128,7 +128,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
         return Err(SweepError::BodyAlongX);
     }
     let (load, loads) = loads(command, &scene)?;
-    let (method, of_method) = asked(command).choose(&scene)?;
+    let (method, of_method) = command.sliding.asked().choose(&scene)?;
     let warning = if matches!(method, Method::Layer) { hard_pressure(&scene, load, &loads) } else { None };
     warning.iter().for_each(|warning| warn(warning));
     let grid = SweepGrid { speeds: speeds.0.clone(), loads, temperatures: temperatures(command, &scene)? };
@@ -158,7 +158,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
         Some(solved) => solved.row(*point, &header),
         None => {
             let scene = scene_at(&scene, point);
-            point::find(&scene, point.speed, load.force(point.load), bounds(command)).row(*point, &header)
+            point::find(&scene, point.speed, load.force(point.load), command.sliding.bounds()).row(*point, &header)
         }
     };
     run(command, find, &header, &file, &output)?;
@@ -215,15 +215,19 @@ fn run(
 }
 
 /// Standard error of the layer's friction coefficient over it where none is given.
-pub(crate) const LAYER_ERROR: f64 = 5e-3;
+const LAYER_ERROR: f64 = 5e-3;
 
-fn bounds(command: &Sweep) -> StopBounds {
-    StopBounds { error: command.error.unwrap_or(LAYER_ERROR), distance: command.distance }
-}
+impl Sliding {
+    /// When the layer's runs end.
+    pub(crate) fn bounds(&self) -> StopBounds {
+        StopBounds { error: self.error.unwrap_or(LAYER_ERROR), distance: self.distance }
+    }
 
-fn asked(command: &Sweep) -> Asked {
-    let Sweep { method, points, error, distance, .. } = *command;
-    Asked { method, points, has_error: error.is_some(), has_distance: distance.is_some() }
+    /// What decides the method.
+    pub(crate) fn asked(&self) -> Asked {
+        let Self { method, points, error, distance } = *self;
+        Asked { method, points, has_error: error.is_some(), has_distance: distance.is_some() }
+    }
 }
 
 /// The picture to draw; none of a shard.
@@ -321,7 +325,7 @@ fn scene_at(scene: &Scene, point: &OperatingPoint) -> Scene {
 fn fingerprint(scene: &Scene, command: &Sweep, load: Load, method: &Method) -> Result<String, serde_json::Error> {
     // The same for all temperatures: each point has its own.
     let scene = with_temperature(scene, 0.0);
-    let StopBounds { error, distance } = bounds(command);
+    let StopBounds { error, distance } = command.sliding.bounds();
     let settings = method.settings(|| format!("{error:?} {distance:?}"));
     table_file::fingerprint(&scene, &format!("{} {settings}", load.name()))
 }

@@ -460,8 +460,7 @@ pub(super) fn at(path: &str) -> Option<&'static Key> {
 /// The paths of other keys of a scene and of a patch that look like `given`, or end with it; elements of lists as
 /// `[1]`.
 pub fn similar_keys(given: &str) -> Vec<String> {
-    let faces = ShapeKind::WORDS.iter().flat_map(|(_, kind)| paths("patch.", kind.keys()));
-    let all = paths("", ROOT).into_iter().chain(paths("", PATCH_ROOT)).chain(faces);
+    let all = entries("", ROOT).into_iter().chain(patch_keys()).map(|key| key.path.replace("[]", "[1]"));
     let mut similar: Vec<String> = all.filter(|path| path != given && is_similar(given, path)).collect();
     similar.sort_unstable();
     similar.dedup();
@@ -489,9 +488,9 @@ pub struct KeyEntry {
     pub of_material: Option<bool>,
 }
 
-/// All keys of a scene.
+/// All keys of a scene; those of its surface are the layer's roughness's too.
 pub fn scene_keys() -> Vec<KeyEntry> {
-    entries("", ROOT)
+    entries("", ROOT).into_iter().filter(|key| !key.path.starts_with("layer.roughness.")).collect()
 }
 
 /// All keys of a patch.
@@ -518,8 +517,7 @@ fn entries(start: &str, keys: &[Key]) -> Vec<KeyEntry> {
         let below = match key.allowed {
             Allowed::Table(keys) => entries(&format!("{path}."), keys),
             Allowed::Tables(keys, _) => entries(&format!("{path}[]."), keys),
-            // Both surfaces have the same keys.
-            Allowed::Surface if key.name == "surface" => {
+            Allowed::Surface => {
                 SurfaceKind::WORDS.iter().flat_map(|(_, kind)| entries(&format!("{path}."), kind.keys())).collect()
             }
             _ => Vec::new(),
@@ -533,23 +531,6 @@ fn entries(start: &str, keys: &[Key]) -> Vec<KeyEntry> {
 fn without_repeats(keys: Vec<KeyEntry>) -> Vec<KeyEntry> {
     let mut seen = std::collections::HashSet::new();
     keys.into_iter().filter(|key| seen.insert(key.path.clone())).collect()
-}
-
-/// The paths of `keys` and of those below them.
-fn paths(start: &str, keys: &[Key]) -> Vec<String> {
-    let below = |key: &Key| {
-        let path = format!("{start}{}", key.name);
-        let paths = match key.allowed {
-            Allowed::Table(keys) => paths(&format!("{path}."), keys),
-            Allowed::Tables(keys, _) => paths(&format!("{path}[1]."), keys),
-            Allowed::Surface => {
-                SurfaceKind::WORDS.iter().flat_map(|(_, kind)| paths(&format!("{path}."), kind.keys())).collect()
-            }
-            _ => Vec::new(),
-        };
-        std::iter::once(path).chain(paths)
-    };
-    keys.iter().flat_map(below).collect()
 }
 
 /// The range of the number at a path; positive numbers where there is none.
