@@ -145,16 +145,43 @@ impl Problem {
         Ok(frictions.iter().flat_map(|frictions| self.residuals_of(frictions)).collect())
     }
 
-    /// The residuals at some places and their derivatives, by differences to the side where the bounds leave room.
+    /// The residuals at some places and their derivatives, by differences upwards where the bounds leave room.
     ///
     /// # Errors
     /// Those of [`frictions`](Self::frictions).
     pub fn linearised(&self, model: &dyn FrictionModel, places: &[f64]) -> Result<Linearised, CalibrationError> {
-        let step = model.step();
+        self.differences(model, places, model.step())
+    }
+
+    /// As [`linearised`](Self::linearised), each derivative the smaller one of the differences to both sides, or zero
+    /// where they have opposite signs. Friction jumps where a hot surface has several steady states; across a jump a
+    /// difference is as large as its step is short, and the data would seem to tell the parameter exactly.
+    ///
+    /// # Errors
+    /// Those of [`frictions`](Self::frictions).
+    pub fn linearised_to_both_sides(
+        &self,
+        model: &dyn FrictionModel,
+        places: &[f64],
+    ) -> Result<Linearised, CalibrationError> {
+        let upwards = self.differences(model, places, model.step())?;
+        let downwards = self.differences(model, places, -model.step())?;
+        let smaller = |a: f64, b: f64| if a * b > 0.0 { a.abs().min(b.abs()).copysign(a) } else { 0.0 };
+        Ok(Linearised { jacobian: upwards.jacobian.zip_map(&downwards.jacobian, smaller), ..upwards })
+    }
+
+    /// The residuals at some places and their difference quotients by a step, taken the other way where it would leave
+    /// the bounds.
+    fn differences(
+        &self,
+        model: &dyn FrictionModel,
+        places: &[f64],
+        step: f64,
+    ) -> Result<Linearised, CalibrationError> {
         let shifted = |parameter: usize| {
             let mut shifted = places.to_vec();
-            let up = shifted[parameter] + step;
-            shifted[parameter] = if up <= 1.0 { up } else { shifted[parameter] - step };
+            let along = shifted[parameter] + step;
+            shifted[parameter] = if (0.0..=1.0).contains(&along) { along } else { shifted[parameter] - step };
             shifted
         };
         let all: Vec<Vec<f64>> = std::iter::once(places.to_vec()).chain((0..places.len()).map(shifted)).collect();

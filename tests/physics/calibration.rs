@@ -1,7 +1,8 @@
 //! Least squares of measured friction: Persson's theory against scipy's fit of the same residuals.
 
 use asperity::calibration::{
-    CalibrationError, FreeParameter, Measurements, Problem, TheoryModel, Tolerance, map_space, minimise,
+    CalibrationError, Done, FreeParameter, FrictionModel, FrictionParts, Measurements, Problem, Task, TheoryModel,
+    Tolerance, map_space, minimise,
 };
 use asperity::scene::Scene;
 
@@ -79,4 +80,34 @@ fn a_bound_holds() {
     let fitted = minimise(&problem, &theory, &[0.5; 4], Tolerance::EXACT, &|_| ()).unwrap();
     assert_eq!(problem.values(&fitted.places)[3], 8e6);
     assert!(fitted.chi_square > chi_square && fitted.has_converged);
+}
+
+/// Friction that grows as its one parameter and jumps just above 2.
+struct Jump;
+
+impl FrictionModel for Jump {
+    fn evaluate(&self, tasks: &[Task], done: &Done<'_>) -> Result<(), CalibrationError> {
+        for (index, task) in tasks.iter().enumerate() {
+            let value = task.parameters[0];
+            let shear = if value > 2.0 { value + 0.1 } else { value };
+            done(index, Ok(FrictionParts { shear, ..FrictionParts::default() }))?;
+        }
+        Ok(())
+    }
+
+    fn step(&self) -> f64 {
+        1e-4
+    }
+}
+
+/// A standard error is that of the branch the fit ended on, not of the jump beside it.
+#[test]
+fn a_derivative_is_not_taken_across_a_jump() {
+    let parameter = FreeParameter::new("friction.coulomb".to_owned(), 1.0, 3.0).unwrap();
+    let measured = Measurements::parse(b"speed [m/s],pressure [Pa],mu,sigma\n1,1e5,2,1\n2,1e5,2,1\n", 1.0).unwrap();
+    let problem = Problem::new(vec![parameter], &measured);
+    let derivative = |linearised: asperity::calibration::Linearised| linearised.jacobian[(0, 0)];
+    // Two between the bounds; the step of 2e-4 is lost in rounding to 1e-12 of the quotient.
+    assert!((derivative(problem.linearised_to_both_sides(&Jump, &[0.5]).unwrap()) - 2.0).abs() < 1e-9);
+    assert!(derivative(problem.linearised(&Jump, &[0.5]).unwrap()) > 500.0);
 }

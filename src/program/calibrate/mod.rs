@@ -333,7 +333,7 @@ impl Work<'_> {
         };
         if matches!(self.free.method, Method::Steady(_)) {
             let fitted = minimise(problem, self.model, &start, Tolerance::USUAL, &progress)?;
-            let linearised = problem.linearised(self.model, &fitted.places)?;
+            let linearised = problem.linearised_to_both_sides(self.model, &fitted.places)?;
             return Ok((fitted, linearised, "steady sliding itself, from a first fit by Persson's theory".to_owned()));
         }
         let mapped = map_space(problem, self.theory, self.model, &start, &progress)?;
