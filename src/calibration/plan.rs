@@ -73,7 +73,7 @@ fn candidate_rows(
     let mut grid = Problem { points: candidates.to_vec(), ..problem.clone() };
     grid.rows = (0..candidates.len()).map(row).collect();
     let at = loop {
-        match grid.linearised(model, places) {
+        match grid.linearised_to_both_sides(model, places) {
             Err(CalibrationError::NotSteady(failed)) => {
                 grid = grid.without(&failed.iter().map(|(point, _)| *point).collect::<Vec<_>>());
             }

@@ -15,7 +15,7 @@ use asperity::calibration::{
     plan, starts_by_theory,
 };
 use asperity::element::OperatingPoint;
-use asperity::scene::{Scene, read_text};
+use asperity::scene::{Scene, read_text, similar_keys};
 use indicatif::ProgressBar;
 
 use super::cli::Calibrate;
@@ -50,7 +50,10 @@ pub(crate) enum CalibrateError {
     NoArea,
     #[error("the scene has [carrier.x]; expected none, since the speed is prescribed")]
     BodyAlongX,
-    #[error("--free {key}: expected a number in the scene file, to start from; the file has none there")]
+    #[error(
+        "--free {key}: expected a number in the scene file, to start from; the file has none there{}",
+        similar_in_words(key)
+    )]
     NoNumber { key: String },
     #[error("--free {key}: expected it once")]
     Twice { key: String },
@@ -75,6 +78,11 @@ pub(crate) enum CalibrateError {
         .output.display(), .file.display()
     )]
     OtherFolder { output: PathBuf, file: PathBuf },
+}
+
+fn similar_in_words(key: &str) -> String {
+    let similar = similar_keys(key);
+    if similar.is_empty() { String::new() } else { format!("; did you mean {}?", similar.join(", ")) }
 }
 
 /// Exit status where the fit has not converged or not all is identifiable: it is to be looked at.
