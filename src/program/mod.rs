@@ -32,13 +32,27 @@ mod sweep;
 mod terminal;
 
 use std::error::Error;
+use std::ffi::OsString;
 use std::process::ExitCode;
 
-pub(crate) use cli::Arguments;
-use cli::Command;
+use clap::Parser as _;
+use cli::{Arguments, Command};
+
+/// Executes a command line, the program's name first; prints its results, and the error that ended it. Does not return
+/// from `--help` and from a command line that cannot be understood.
+#[expect(clippy::print_stderr, reason = "the one place where the program prints the error that ended it")]
+pub fn main(words: impl IntoIterator<Item = OsString>) -> ExitCode {
+    match run(Arguments::parse_from(words)) {
+        Ok(status) => status,
+        Err(error) => {
+            eprintln!("asperity: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
 
 /// Executes the command of the command line.
-pub(crate) fn run(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
+fn run(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
     if arguments.quiet {
         terminal::be_quiet();
     }
