@@ -131,10 +131,10 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
     let picture = picture(command, &output);
     let study = convergence::file(command.converged.as_ref(), path);
     let taken = sources(path, &scene).into_iter().chain(study.clone()).collect();
+    check_outputs([&output].into_iter().chain(&picture), taken)?;
     let convergence = convergence::found(study.as_deref(), &scene.name)?;
     let plan = SweepPlan::new(scene, &options(command, speeds)?, convergence)?;
     plan.warning().iter().for_each(|warning| warn(warning));
-    check_outputs([&output].into_iter().chain(&picture), taken)?;
     let place = TablePlace::new(&output)?;
     let file = TableFile::open(&place.path, plan.header(), command.force)?;
     run(command, &plan, &file, &output)?;
