@@ -23,7 +23,7 @@
 //! | [`patch`] | a contact patch: many point-contact elements on a rigid face, in three dimensions |
 //! | [`fmi`] | the FMI 2.0 co-simulation interface |
 //! | `robustness` | catalogue of perturbations of a scene and the judge of their runs, for reports and tests |
-//! | program | the command line program: simulate, sweep, calibrate, converge, fit, pack, report, plot |
+//! | `program` | the commands simulate, sweep, calibrate, converge, fit, pack, report, plot, and what they compute |
 //!
 //! ```
 //! use asperity::outputs::variables;
@@ -104,6 +104,10 @@
 //! | E_impact | `Energies::impact` | J | energy lost in impacts |
 //! | T, V | `kinetic_energy()`, `elastic_energy()` | J | energy balance E_in = Δ(T + V + T_c + V_c) + E_damper + E_maxwell + E_friction + E_impact + E_c |
 
+// The commands name the library as whoever else uses it does.
+#[cfg(feature = "program")]
+extern crate self as asperity;
+
 #[cfg(feature = "program")]
 pub mod calibration;
 pub mod contact;
@@ -114,6 +118,8 @@ pub mod math;
 pub mod model;
 pub mod outputs;
 pub mod patch;
+#[cfg(feature = "program")]
+pub mod program;
 #[cfg(feature = "program")]
 pub mod robustness;
 pub mod scene;

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 /// The rooms of the library in their order, and which others each may use: only those to its left.
-const ROOMS: [(&str, &[&str]); 13] = [
+const ROOMS: [(&str, &[&str]); 14] = [
     ("math", &[]),
     ("scene", &["math"]),
     ("model", &["math", "scene"]),
@@ -20,6 +20,8 @@ const ROOMS: [(&str, &[&str]); 13] = [
     ("calibration", &["math", "scene", "model", "steady", "element"]),
     ("patch", &["math", "scene", "model", "outputs", "element"]),
     ("fmi", &["math", "scene", "model", "integrator", "contact", "outputs", "simulation", "element", "patch"]),
+    // The program, which uses all of them, and none uses.
+    ("program", &[]),
 ];
 
 /// Folders whose files use each other in no circle.

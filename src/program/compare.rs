@@ -10,7 +10,7 @@ use super::figure::{Figure as _, Stroke};
 use super::files::{FileError, check_outputs, name_of, named, print_beside};
 use super::measured_friction::{self, CurveGrid, MeasuredFrictionError, ModelCurves, describe, off};
 use super::sweep::{SweepTable, TableFileError};
-use super::terminal::{labelled, lines, rounded, warn};
+use super::terminal::{labelled, lines, note, rounded, warn};
 
 /// `asperity compare` failed.
 #[derive(Debug, thiserror::Error)]
@@ -39,6 +39,7 @@ pub(crate) fn compare(command: &Compare) -> Result<(), CompareError> {
         return Err(CompareError::OverForces(command.table.clone()));
     };
     let mut measurements = measured_friction::read(&command.data, area)?;
+    measurements.notes.iter().for_each(|text| note(text));
     if let [only] = table.header.grid.temperatures[..] {
         measurements.rows.iter_mut().for_each(|row| {
             let _ = row.point.temperature.get_or_insert(only);

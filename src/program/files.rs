@@ -12,7 +12,8 @@ use super::terminal::{LabelledLine, labelled, note, warn};
 
 /// A file cannot be read or written, or its scene is invalid.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum FileError {
+#[expect(missing_docs, reason = "the messages say what they are")]
+pub enum FileError {
     #[error(transparent)]
     Scene(#[from] SceneError),
     #[error(transparent)]
@@ -104,9 +105,17 @@ pub(crate) fn table_lines(scene: &Scene) -> Vec<LabelledLine> {
     labelled("Tables", scene.notes.iter().map(|read| read.text.clone()))
 }
 
+/// Reads a scene from `text`, its keys set to other values, as if it were the content of `file`.
+///
+/// # Errors
+/// Where the text or what is set in it is refused.
+pub fn parse_scene(text: &str, file: &Path, set: &[Setting]) -> Result<Scene, FileError> {
+    Ok(overrides::scene(text, file, set)?)
+}
+
 fn read_scene(path: &Path, set: &[Setting]) -> Result<Scene, FileError> {
     let text = read_text(path).map_err(FileError::io("read", path))?;
-    Ok(overrides::scene(&text, path, set)?)
+    parse_scene(&text, path, set)
 }
 
 /// Reads a patch, its keys overridden by `--set`.

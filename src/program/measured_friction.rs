@@ -8,24 +8,22 @@ use asperity::element::{Load, OperatingPoint};
 use super::figure::{Curve, Panel, SideBySide, Stroke};
 use super::files::{self, FileError};
 use super::sweep::with_prefix;
-use super::terminal::{note, rounded};
+use super::terminal::rounded;
 
 /// A table of measured friction cannot be used.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum MeasuredFrictionError {
+pub enum MeasuredFrictionError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error("{}:{error}", .path.display())]
     Table { path: PathBuf, error: MeasurementsError },
 }
 
-/// Reads a table and says what was assumed; forces act on `area`, m².
+/// Reads a table; forces act on `area`, m².
 pub(crate) fn read(path: &Path, area: f64) -> Result<Measurements, MeasuredFrictionError> {
     let bytes = files::read(path)?;
     let measured = Measurements::parse(&bytes, area);
-    let measured = measured.map_err(|error| MeasuredFrictionError::Table { path: path.to_owned(), error })?;
-    measured.notes.iter().for_each(|text| note(text));
-    Ok(measured)
+    measured.map_err(|error| MeasuredFrictionError::Table { path: path.to_owned(), error })
 }
 
 /// Points off by more than this times their standard deviation are named.

@@ -32,13 +32,41 @@ mod sweep;
 mod terminal;
 
 use std::error::Error;
+use std::ffi::OsString;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-pub(crate) use cli::Arguments;
-use cli::Command;
+pub use calibrate::{CalibrateError, CalibratedParameter, Calibration, CalibrationOptions, calibrate_scene};
+use clap::Parser as _;
+pub use cli::WlfConstants;
+use cli::{Arguments, Command};
+pub use contact::{ContactError, ContactFields, ContactOptions, SolvedContact, solve_contact};
+pub use files::{FileError, parse_scene};
+pub use fit::{FitError, FitOptions, FittedModuli, fit_moduli};
+pub use overrides::{OverrideError, Setting, with_settings};
+pub use pack::{PackError, fmu};
+pub use runner::{CarrierSample, Rows, Runner};
+pub use sweep::{
+    Loads, MethodError, NeverSteady, SlidingOptions, StoredRow, SweepError, SweepMethod, SweepOptions, SweepPlan,
+    SweepTable, TableFileError,
+};
+
+/// Executes a command line, the program's name first; prints its results, and the error that ended it. Does not return
+/// from `--help` and from a command line that cannot be understood. `library` is the shared library that FMUs are packed
+/// with where none is named; without it the one beside the program.
+#[expect(clippy::print_stderr, reason = "the one place where the program prints the error that ended it")]
+pub fn main(words: impl IntoIterator<Item = OsString>, library: Option<PathBuf>) -> ExitCode {
+    match run(Arguments::parse_from(words), library) {
+        Ok(status) => status,
+        Err(error) => {
+            eprintln!("asperity: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
 
 /// Executes the command of the command line.
-pub(crate) fn run(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
+fn run(arguments: Arguments, library: Option<PathBuf>) -> Result<ExitCode, Box<dyn Error>> {
     if arguments.quiet {
         terminal::be_quiet();
     }
@@ -50,7 +78,12 @@ pub(crate) fn run(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         Command::Converge(command) => return Ok(converge::converge(&command)?),
         Command::Plot(command) => figure::plot_files(&command)?,
         Command::Describe(command) => run_describe(&command)?,
-        Command::Pack(command) => pack::pack(&command)?,
+        Command::Pack(mut command) => {
+            if command.library.is_empty() {
+                command.library.extend(library.map(PathBuf::into_os_string));
+            }
+            pack::pack(&command)?;
+        }
         Command::Fit(command) => return Ok(fit::fit(&command)?),
         Command::Material(command) => material::material(&command)?,
         Command::Reference => reference::reference()?,

@@ -7,11 +7,12 @@ use asperity::scene::{ParameterError, Problem, Scene, SceneError, similar_keys};
 use toml_edit::{Array, DocumentMut, Item, Table, TableLike, Value};
 
 /// A key's path, elements of lists counted from 1, and its value.
-pub(crate) type Setting = (String, String);
+pub type Setting = (String, String);
 
 /// `--set` cannot be followed.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum OverrideError {
+#[expect(missing_docs, reason = "the messages say what they are")]
+pub enum OverrideError {
     #[error(
         "{key}: expected the path of a key, such as solver.relative_tolerance or layer.vertical.maxwell[1].stiffness"
     )]
@@ -89,6 +90,14 @@ fn refused(error: &SceneError) -> OverrideError {
         Problem::Unknown { .. } if !similar.is_empty() => OverrideError::Unknown { problem, similar },
         _ => OverrideError::Refused(problem),
     }
+}
+
+/// The text of a TOML file with keys set; what stands in files that it names stays there.
+///
+/// # Errors
+/// Where a key leads nowhere.
+pub fn with_settings(text: &str, set: &[Setting]) -> Result<String, OverrideError> {
+    Ok(overridden(text, set)?.text)
 }
 
 /// Sets keys in the text of a TOML file; a text that is not TOML stays as it is, for its reader to refuse.

@@ -16,7 +16,7 @@ use super::terminal::file_decimal;
 
 /// A result file cannot be read.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum ResultFileError {
+pub enum ResultFileError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error("{}: line {line}: {message}", .path.display())]

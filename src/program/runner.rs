@@ -4,28 +4,26 @@ use asperity::outputs::Snapshot;
 use asperity::scene::{Force, Input, Phase, Scene};
 use asperity::simulation::{MethodSwitch, Motion, Simulation, SimulationError, Start};
 
-use super::terminal::warn;
-
 /// Time and inputs at a row: displacements of the carrier or of a body's drive, forces on a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct CarrierSample {
+pub struct CarrierSample {
     /// Time, s.
-    pub(crate) time: f64,
+    pub time: f64,
     /// Displacement along x, m.
-    pub(crate) u: f64,
+    pub u: f64,
     /// Displacement along z, m.
-    pub(crate) w: f64,
+    pub w: f64,
     /// Load on a body without its constant part, N.
-    pub(crate) load: f64,
+    pub load: f64,
     /// Tangential force on a body without its constant part, N.
-    pub(crate) pull: f64,
+    pub pull: f64,
     /// Temperature of the layer where it is an input, K; else 0.
-    pub(crate) temperature: f64,
+    pub temperature: f64,
 }
 
 impl CarrierSample {
     /// The sample a time `s` (s) after this one, at which `motion` starts.
-    pub(crate) fn after(self, motion: &Motion, s: f64) -> Self {
+    pub fn after(self, motion: &Motion, s: f64) -> Self {
         let force = |force: Force, reached: f64| force.start.unwrap_or(reached) + force.change.at(s).position;
         Self {
             time: self.time + s,
@@ -38,7 +36,7 @@ impl CarrierSample {
     }
 
     /// The value of an input.
-    pub(crate) fn input(&self, input: Input) -> f64 {
+    pub fn input(&self, input: Input) -> f64 {
         match input {
             Input::U => self.u,
             Input::W => self.w,
@@ -51,16 +49,21 @@ impl CarrierSample {
 
 /// Number of even intervals that a phase is divided into.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Rows {
+pub enum Rows {
     /// This number for every phase.
     PerPhase(u32),
-    /// The fewest intervals of at most `longest` (s), each divided into `parts`.
-    Within { longest: f64, parts: u32 },
+    /// The fewest intervals of at most `longest`, each divided into `parts`.
+    Within {
+        /// Longest interval, s.
+        longest: f64,
+        /// Parts of each, 1 or more.
+        parts: u32,
+    },
 }
 
 impl Rows {
     /// Number of intervals of a phase of `duration` (s); 0 for a phase without duration.
-    pub(crate) fn intervals(self, duration: f64) -> u32 {
+    pub fn intervals(self, duration: f64) -> u32 {
         /// Relative rounding error of a duration that is a multiple of the interval.
         const ROUNDING: f64 = 1e-9;
         match self {
@@ -72,7 +75,7 @@ impl Rows {
 
     /// Ends of the intervals of a phase of `duration` (s), in s from its start. The last is the duration itself: a row
     /// later by a rounding error would never be reached.
-    pub(crate) fn times(self, duration: f64) -> impl Iterator<Item = f64> {
+    pub fn times(self, duration: f64) -> impl Iterator<Item = f64> {
         let count = self.intervals(duration);
         (1..=count).map(move |i| if i == count { duration } else { duration * f64::from(i) / f64::from(count) })
     }
@@ -94,7 +97,7 @@ pub(crate) fn start(scene: &Scene, u: f64) -> Start {
 
 /// A simulation that follows phases of motion.
 #[derive(Debug)]
-pub(crate) struct Runner {
+pub struct Runner {
     simulation: Simulation,
     carrier: CarrierSample,
     rows: Rows,
@@ -104,37 +107,59 @@ pub(crate) struct Runner {
     phases: usize,
     /// Area of the layer, m², if the scene gives it.
     area: Option<f64>,
+    /// Of phases that ended before their force was reached.
+    warnings: Vec<String>,
 }
 
 impl Runner {
     /// Starts a run of `scene` with the carrier at `u` (m), moving as the first phase begins.
-    pub(crate) fn new(scene: &Scene, rows: Rows, u: f64) -> Result<Self, SimulationError> {
+    ///
+    /// # Errors
+    /// As for [`Simulation::new`].
+    pub fn new(scene: &Scene, rows: Rows, u: f64) -> Result<Self, SimulationError> {
         let start = start(scene, u);
         let temperature = start.temperature.unwrap_or(scene.input_start(Input::Temperature));
         let carrier =
             CarrierSample { time: start.time, u: start.u, w: start.w, load: start.load, pull: start.pull, temperature };
         let mut simulation = Simulation::new(scene, &start)?;
         simulation.record_method_switches(true);
-        Ok(Self { simulation, carrier, rows, also_at: Vec::new(), phases: 0, area: scene.layer.area() })
+        Ok(Self {
+            simulation,
+            carrier,
+            rows,
+            also_at: Vec::new(),
+            phases: 0,
+            area: scene.layer.area(),
+            warnings: Vec::new(),
+        })
     }
 
     /// The run with rows at `times` (s) too.
-    pub(crate) fn with_rows_at(self, times: Vec<f64>) -> Self {
+    pub fn with_rows_at(self, times: Vec<f64>) -> Self {
         Self { also_at: times, ..self }
     }
 
-    pub(crate) fn simulation(&mut self) -> &mut Simulation {
+    /// The simulation as it stands.
+    pub fn simulation(&mut self) -> &mut Simulation {
         &mut self.simulation
     }
 
     /// The changes between event-driven and time-stepping driver since the last call; only method *auto* has any.
-    pub(crate) fn take_method_switches(&mut self) -> Vec<MethodSwitch> {
+    pub fn take_method_switches(&mut self) -> Vec<MethodSwitch> {
         self.simulation.take_method_switches()
+    }
+
+    /// The warnings since the last call: of phases that ended before their force was reached.
+    pub fn take_warnings(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.warnings)
     }
 
     /// Calls `observe` at the current time, then follows `phases` and calls it at their rows. Returns the actual
     /// durations of the phases, s: a phase that a force ends may be shorter than its nominal duration.
-    pub(crate) fn run(
+    ///
+    /// # Errors
+    /// As for [`Simulation::advance`]; the simulation then stands at the start of the phase that failed.
+    pub fn run(
         &mut self,
         phases: &[Phase],
         mut observe: impl FnMut(CarrierSample, &Snapshot<'_>),
@@ -144,12 +169,15 @@ impl Runner {
     }
 
     /// Calls `observe` at the current time.
-    pub(crate) fn observe_now(&mut self, mut observe: impl FnMut(CarrierSample, &Snapshot<'_>)) {
+    pub fn observe_now(&mut self, mut observe: impl FnMut(CarrierSample, &Snapshot<'_>)) {
         observe(self.carrier, &self.simulation.snapshot());
     }
 
     /// Follows one phase and calls `observe` at its rows. Returns the actual duration, s.
-    pub(crate) fn run_phase(
+    ///
+    /// # Errors
+    /// As for [`run`](Self::run).
+    pub fn run_phase(
         &mut self,
         phase: &Phase,
         mut observe: impl FnMut(CarrierSample, &Snapshot<'_>),
@@ -159,7 +187,7 @@ impl Runner {
         let reached = self.time_of_force(&motion, force)?;
         self.phases += 1;
         if force.is_some() && reached.is_none() {
-            warn_of_force(self.phases, phase);
+            self.warnings.push(missed_force(self.phases, phase));
         }
         let duration = reached.unwrap_or(phase.duration);
         if duration <= 0.0 {
@@ -196,13 +224,13 @@ impl Runner {
     }
 }
 
-/// Warns that phase `number`, counted from 1, ended before its force was reached.
-fn warn_of_force(number: usize, phase: &Phase) {
+/// The warning that phase `number`, counted from 1, ended before its force was reached.
+fn missed_force(number: usize, phase: &Phase) -> String {
     let end = match (phase.until_force, phase.until_pressure) {
         (None, Some(pressure)) => format!("F_z over the layer's area did not rise to until_pressure = {pressure} Pa"),
         (force, _) => format!("F_z did not rise to until_force = {} N", force.unwrap_or_default()),
     };
-    warn(&format!("phase {number} of the excitation: {end} within {} s", phase.duration));
+    format!("phase {number} of the excitation: {end} within {} s", phase.duration)
 }
 
 #[cfg(test)]

@@ -96,6 +96,7 @@ fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<(),
     let runner = Runner::new(shown, Rows::PerPhase(command.points), 0.0).map_err(SimulateError::Start)?;
     let mut runner = runner.with_rows_at(command.contact.iter().map(|&(time, _)| time).collect());
     let result = runner.run(&scene.excitation, |carrier, snapshot| recorder.row(carrier, snapshot));
+    runner.take_warnings().iter().for_each(|warning| warn(warning));
     print_method_switches(&runner.take_method_switches());
     if let Some(inaccuracy) = runner.simulation().inaccuracy() {
         warn(&inaccuracy.to_string());

@@ -15,6 +15,7 @@ mod controller;
 #[cfg(test)]
 mod derivative_tests;
 mod event_driven;
+mod interrupt;
 mod local_regions;
 mod motion;
 mod reference_run;
@@ -35,6 +36,7 @@ use crate::outputs::{Output, Snapshot, Variable};
 use crate::scene::{Axis, ByAxis, ParameterError, Scene};
 use context::Context;
 use controller::WorkLimit;
+pub use interrupt::Interrupt;
 pub use motion::{Inaccuracy, MethodSwitch, ModeChange, Motion, OutOfRange, SimulationError, Start};
 use reference_run::ReferenceRun;
 use run::Run;
@@ -59,6 +61,8 @@ pub struct Simulation {
     run_time: f64,
     /// Of the run and of the reference run, in each motion: see [`limit_work`](Self::limit_work).
     max_mass_steps: u64,
+    /// What may stop it.
+    interrupt: Option<Interrupt>,
 }
 
 impl Simulation {
@@ -96,6 +100,7 @@ impl Simulation {
             scene: scene.temperature_input.then(|| Arc::new(scene.clone())),
             run_time: 0.0,
             max_mass_steps: u64::MAX,
+            interrupt: None,
         }
     }
 
@@ -173,6 +178,11 @@ impl Simulation {
         if let Some(reference) = &mut self.reference_run {
             reference.run.context.model = Arc::clone(&self.run.context.model);
         }
+    }
+
+    /// Lets `interrupt` stop motions from now on, those of clones too; `None`: nothing does.
+    pub fn set_interrupt(&mut self, interrupt: Option<Interrupt>) {
+        self.interrupt = interrupt;
     }
 
     /// The time reached, s.
@@ -276,6 +286,9 @@ impl Simulation {
         let mut work = WorkLimit::new(self.run.context.settings.max_steps, self.max_mass_steps);
         let mut reached = self.run.has_reached(until_force);
         while self.run.context.state.s < motion.duration && !reached {
+            if self.interrupt.as_ref().is_some_and(Interrupt::is_wanted) {
+                return Err(SimulationError::Interrupted { time: self.time() });
+            }
             // A good step, which may end where F_z reaches the force.
             let step = self.run.next_step(motion.duration, &mut work)?;
             let at_force = self.run.cut_at_force(&step, until_force, &mut work)?;

@@ -64,6 +64,12 @@ pub enum SimulationError {
         /// The step size, s.
         step: f64,
     },
+    /// It was stopped from outside.
+    #[error("interrupted at t = {time} s")]
+    Interrupted {
+        /// The time reached, s.
+        time: f64,
+    },
     /// The carrier's motion is out of range.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),

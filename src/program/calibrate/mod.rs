@@ -10,9 +10,9 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use asperity::calibration::{
-    CalibrationError, Fitted, FreeParameter, FrictionModel, FrictionParts, Linearised, Measurements, Memo, Outcome,
-    Plan, Problem, Statistics, SteadyModel, Task, TheoryModel, Tolerance, chi_square_per_degree, map_space, minimise,
-    plan, starts_by_theory,
+    CalibrationError, Fitted, FreeParameter, FrictionModel, FrictionParts, Linearised, Measured, Measurements, Memo,
+    NewOutcome, Outcome, Plan, Problem, Statistics, SteadyModel, Task, TheoryModel, Tolerance, chi_square_per_degree,
+    map_space, minimise, plan, starts_by_theory,
 };
 use asperity::element::OperatingPoint;
 use asperity::scene::{Scene, read_text, similar_keys};
@@ -26,14 +26,15 @@ use super::files::{
 use super::interrupt::Farewell;
 use super::measured_friction::{self, CurveGrid, MeasuredFrictionError, ModelCurves};
 use super::overrides::{self, OverrideError, Setting};
-use super::sweep::{Method, MethodError, NeverSteady, relevant, table_fingerprint, with_temperature};
-use super::terminal::{self, real, rounded, warn};
+use super::sweep::{Method, MethodError, NeverSteady, SlidingOptions, relevant, table_fingerprint, with_temperature};
+use super::terminal::{self, note, real, rounded, warn};
 use kept::KeptPoints;
 use layer_model::LayerModel;
 
 /// `asperity calibrate` refused the scene, the data or the parameters.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum CalibrateError {
+#[expect(missing_docs, reason = "the messages say what they are")]
+pub enum CalibrateError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]
@@ -94,10 +95,37 @@ const CURVE: u32 = 25;
 /// How many measurements a plan proposes.
 const PLANNED: usize = 3;
 
+/// What is calibrated, and by what.
+#[derive(Clone, Debug)]
+pub struct CalibrationOptions {
+    /// The scene file: files that the scene names are looked for beside it.
+    pub scene: PathBuf,
+    /// Keys of it that are set, none of them free.
+    pub set: Vec<Setting>,
+    /// The numbers to fit.
+    pub free: Vec<FreeParameter>,
+    /// The table of measured friction.
+    pub data: PathBuf,
+    /// How steady sliding is found.
+    pub sliding: SlidingOptions,
+}
+
+impl From<&Calibrate> for CalibrationOptions {
+    fn from(command: &Calibrate) -> Self {
+        Self {
+            scene: command.scene.clone(),
+            set: command.set.to_vec(),
+            free: command.free.clone(),
+            data: command.data.clone(),
+            sliding: command.sliding.options(),
+        }
+    }
+}
+
 /// A scene whose numbers are free.
 #[derive(Debug)]
 pub(super) struct FreeScene<'a> {
-    command: &'a Calibrate,
+    options: &'a CalibrationOptions,
     text: String,
     scene: Scene,
     /// The area of the layer, m².
@@ -110,18 +138,17 @@ pub(super) struct FreeScene<'a> {
 }
 
 impl<'a> FreeScene<'a> {
-    fn new(command: &'a Calibrate) -> Result<Self, CalibrateError> {
-        let scene = load_without_excitation(&command.scene, &command.set)?;
+    /// Of the `text` of the scene file, which was read as `scene` with its keys set.
+    fn new(options: &'a CalibrationOptions, text: &str, scene: Scene) -> Result<Self, CalibrateError> {
         if scene.carrier.x.is_some() {
             return Err(CalibrateError::BodyAlongX);
         }
         let area = scene.layer.area().filter(|_| scene.material.is_some()).ok_or(CalibrateError::NoArea)?;
-        let text = read_text(&command.scene).map_err(FileError::io("read", &command.scene))?;
-        let text = overrides::overridden(&text, &command.set).map_err(FileError::from)?.text;
-        let (method, of_method) = command.sliding.asked().choose(&scene)?;
+        let text = overrides::overridden(text, &options.set).map_err(FileError::from)?.text;
+        let (method, of_method) = options.sliding.choose(&scene)?;
         method.check(&scene)?;
         let mut free =
-            Self { command, text, scene, area, parameters: command.free.clone(), own: Vec::new(), method, of_method };
+            Self { options, text, scene, area, parameters: options.free.clone(), own: Vec::new(), method, of_method };
         free.check_parameters()?;
         Ok(free)
     }
@@ -162,7 +189,7 @@ impl<'a> FreeScene<'a> {
     /// The scene at some values.
     fn at(&self, values: &[f64]) -> Result<Scene, CalibrationError> {
         let settings = self.settings(values);
-        overrides::scene(&self.text, &self.command.scene, &settings).map_err(|refusal| {
+        overrides::scene(&self.text, &self.options.scene, &settings).map_err(|refusal| {
             let named: Vec<String> = settings.iter().map(|(key, value)| format!("{key} = {value}")).collect();
             let problem = FileError::from(refusal).to_string();
             CalibrationError::Scene { parameters: named.join(", "), problem }
@@ -171,7 +198,7 @@ impl<'a> FreeScene<'a> {
 
     /// The measurements at temperatures that the scene can have: its own where they have none.
     fn measurements(&self) -> Result<Measurements, CalibrateError> {
-        let path = &self.command.data;
+        let path = &self.options.data;
         let mut measurements = measured_friction::read(path, self.area)?;
         let wlf = self.scene.material.as_ref().and_then(|material| material.wlf.as_ref());
         let Some(own) = wlf.map(|wlf| wlf.temperature) else {
@@ -192,7 +219,7 @@ impl<'a> FreeScene<'a> {
     }
 
     fn fingerprint(&self) -> Result<String, CalibrateError> {
-        let settings = self.method.settings(|| format!("{:?}", self.command.sliding.bounds()));
+        let settings = self.method.settings(|| format!("{:?}", self.options.sliding.bounds()));
         Ok(table_fingerprint(&relevant(self.scene.clone()), &format!("calibrate {settings}"))?)
     }
 }
@@ -217,6 +244,12 @@ impl Calibrated {
         self.problem.values(&self.fitted.places).iter().map(|value| rounded(*value, DIGITS)).collect()
     }
 
+    /// Friction at a point that was measured; `None` where it was left out.
+    fn friction_at(&self, point: &OperatingPoint) -> Option<f64> {
+        let index = self.problem.points.iter().position(|other| other == point)?;
+        Some(self.frictions[index].friction())
+    }
+
     fn is_whole(&self) -> bool {
         self.fitted.has_converged && self.statistics.tell_all()
     }
@@ -227,8 +260,12 @@ const DIGITS: usize = 7;
 
 /// Fits, writes the scene and the picture, and says what the data tell.
 pub(crate) fn calibrate(command: &Calibrate) -> Result<ExitCode, CalibrateError> {
-    let free = FreeScene::new(command)?;
+    let scene = load_without_excitation(&command.scene, &command.set)?;
+    let text = read_text(&command.scene).map_err(FileError::io("read", &command.scene))?;
+    let options = command.into();
+    let free = FreeScene::new(&options, &text, scene)?;
     let measurements = free.measurements()?;
+    measurements.notes.iter().for_each(|text| note(text));
     let output = command.output.clone().unwrap_or_else(|| command.scene.with_extension("calibrated.toml"));
     let picture = picture_beside(&output, command.plot.as_ref());
     let table = (!is_standard_output(&output)).then(|| output.with_extension("points.csv"));
@@ -249,34 +286,127 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<ExitCode, CalibrateError>
         let added = kept.as_ref().map_or(Ok(()), |kept| kept.add(task, outcome));
         added.map_err(|error| CalibrationError::NotKept(error.to_string()))
     };
+    with_models(&free, known, &add, &|text| bar.set_message(text), |work| {
+        let calibrated = work.calibrate(&measurements)?;
+        let planned = if command.plan { Some(work.plan(&calibrated, command)?) } else { None };
+        bar.finish_and_clear();
+        files::write(&output, written::text(&free, &calibrated, &measurements)?)?;
+        if let Some(picture) = &picture {
+            let grid = CurveGrid::new(calibrated.problem.points.iter());
+            let curves = work.curves(&grid, &calibrated)?;
+            measured_friction::picture(&grid, &measurements.rows, &curves).write(picture)?;
+        }
+        let files: Vec<&Path> =
+            [Some(&output), picture.as_ref(), table.as_ref()].into_iter().flatten().map(PathBuf::as_path).collect();
+        print_beside([&output], &summary::text(&free, &calibrated, &measurements, planned.as_ref(), &files))?;
+        summary::warnings(&calibrated, &measurements).iter().for_each(|warning| warn(warning));
+        Ok(if calibrated.is_whole() { ExitCode::SUCCESS } else { ExitCode::from(OPEN) })
+    })
+}
+
+/// A number that was fitted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CalibratedParameter {
+    /// The path of its key.
+    pub key: String,
+    /// Its value in the scene.
+    pub before: f64,
+    /// Its value now.
+    pub value: f64,
+    /// Its standard error; `None` at a bound, and where the data do not tell it.
+    pub standard_error: Option<f64>,
+    /// Its 95 % interval; `None` as for the error.
+    pub interval: Option<(f64, f64)>,
+    /// Whether the data tell it.
+    pub is_identifiable: bool,
+}
+
+/// What a calibration found, as data.
+#[derive(Clone, Debug)]
+pub struct Calibration {
+    /// The fitted numbers.
+    pub parameters: Vec<CalibratedParameter>,
+    /// Their correlations, a row for each.
+    pub correlation: Vec<Vec<f64>>,
+    /// χ² per degree of freedom.
+    pub chi_square: f64,
+    /// Whether the fit has converged, and all numbers are identifiable.
+    pub is_whole: bool,
+    /// The measurements, each with the friction that the scene has there; `None` of a point that was left out.
+    pub measurements: Vec<(Measured, Option<f64>)>,
+    /// What to look at.
+    pub warnings: Vec<String>,
+    /// How the table was read.
+    pub notes: Vec<String>,
+    /// The text of the scene with the numbers found.
+    pub text: String,
+}
+
+/// Fits numbers of a scene, of which this is the `text`, to measured friction. `found` is called for every point that was
+/// found, and says whether to go on.
+///
+/// # Errors
+/// Where the scene, the parameters or the measurements are refused, and where `found` says to stop.
+pub fn calibrate_scene(
+    text: &str,
+    options: &CalibrationOptions,
+    found: impl Fn() -> bool + Sync,
+) -> Result<Calibration, CalibrateError> {
+    let scene = overrides::scene(text, &options.scene, &options.set).map_err(FileError::from)?;
+    let free = FreeScene::new(options, text, scene)?;
+    let measurements = free.measurements()?;
+    let add = |_: &Task, _: &Outcome| match found() {
+        true => Ok(()),
+        false => Err(CalibrationError::NotKept("stopped".to_owned())),
+    };
+    let calibrated = with_models(&free, Vec::new(), &add, &|_| (), |work| work.calibrate(&measurements))?;
+    let (statistics, values) = (&calibrated.statistics, calibrated.values());
+    let parameter = |(index, parameter): (usize, &FreeParameter)| {
+        let is_identifiable = statistics.is_identifiable(index);
+        let error = statistics.errors[index].map(|error| parameter.error_of_value(values[index], error));
+        CalibratedParameter {
+            key: parameter.key.clone(),
+            before: free.own[index],
+            value: values[index],
+            standard_error: error.filter(|_| is_identifiable),
+            interval: statistics.intervals[index].filter(|_| is_identifiable),
+            is_identifiable,
+        }
+    };
+    Ok(Calibration {
+        parameters: free.parameters.iter().enumerate().map(parameter).collect(),
+        correlation: statistics.correlation.row_iter().map(|row| row.iter().copied().collect()).collect(),
+        chi_square: chi_square_per_degree(statistics.chi_square, statistics.degrees),
+        is_whole: calibrated.is_whole(),
+        measurements: measurements.rows.iter().map(|row| (*row, calibrated.friction_at(&row.point))).collect(),
+        warnings: summary::warnings(&calibrated, &measurements),
+        notes: measurements.notes.clone(),
+        text: written::text(&free, &calibrated, &measurements)?,
+    })
+}
+
+/// Does `work` with the models of a scene, of which the dear one has `known` points and hands new ones to `add`.
+fn with_models<T>(
+    free: &FreeScene<'_>,
+    known: Vec<(Task, Outcome)>,
+    add: &NewOutcome<'_>,
+    progress: &dyn Fn(String),
+    work: impl FnOnce(Work<'_>) -> Result<T, CalibrateError>,
+) -> Result<T, CalibrateError> {
+    let sliding = free.options.sliding;
     let scene_at = |values: &[f64]| free.at(values);
-    let grid_of = |scene: &Scene| match command.sliding.asked().choose(scene) {
+    let grid_of = |scene: &Scene| match sliding.choose(scene) {
         Ok((Method::Steady(grid), _)) => Ok(grid),
         Ok((Method::Layer, of_method)) => Err(CalibrationError::Model(of_method)),
         Err(error) => Err(CalibrationError::Model(error.to_string())),
     };
     let theory = TheoryModel::new(&scene_at);
     let steady = SteadyModel::new(&scene_at, &grid_of);
-    let layer = LayerModel { scene_at: &scene_at, area: free.area, bounds: command.sliding.bounds() };
+    let layer = LayerModel { scene_at: &scene_at, area: free.area, bounds: sliding.bounds() };
     let is_solved = matches!(free.method, Method::Steady(_));
     let model: &dyn FrictionModel = if is_solved { &steady } else { &layer };
-    let model = Memo::new(model, known, &add);
-
-    let work = Work { free: &free, theory: &theory, model: &model, bar: &bar };
-    let calibrated = work.calibrate(&measurements)?;
-    let planned = if command.plan { Some(work.plan(&calibrated)?) } else { None };
-    bar.finish_and_clear();
-    files::write(&output, written::text(&free, &calibrated, &measurements)?)?;
-    if let Some(picture) = &picture {
-        let grid = CurveGrid::new(calibrated.problem.points.iter());
-        let curves = work.curves(&grid, &calibrated)?;
-        measured_friction::picture(&grid, &measurements.rows, &curves).write(picture)?;
-    }
-    let files: Vec<&Path> =
-        [Some(&output), picture.as_ref(), table.as_ref()].into_iter().flatten().map(PathBuf::as_path).collect();
-    print_beside([&output], &summary::text(&free, &calibrated, &measurements, planned.as_ref(), &files))?;
-    summary::warnings(&calibrated, &measurements).iter().for_each(|warning| warn(warning));
-    Ok(if calibrated.is_whole() { ExitCode::SUCCESS } else { ExitCode::from(OPEN) })
+    let model = Memo::new(model, known, add);
+    work(Work { free, theory: &theory, model: &model, progress })
 }
 
 fn progress_bar() -> ProgressBar {
@@ -301,7 +431,8 @@ struct Work<'a> {
     free: &'a FreeScene<'a>,
     theory: &'a TheoryModel<'a>,
     model: &'a Memo<'a>,
-    bar: &'a ProgressBar,
+    /// Told what is done now.
+    progress: &'a dyn Fn(String),
 }
 
 /// How many of the fits by the theory are tried as starts.
@@ -337,7 +468,7 @@ impl Work<'_> {
         let progress = |chi_square: f64| {
             let degrees = problem.rows.len().saturating_sub(problem.parameters.len());
             let cost = rounded(chi_square_per_degree(chi_square, degrees), 4);
-            self.bar.set_message(format!("χ² per degree of freedom now {cost}"));
+            (self.progress)(format!("χ² per degree of freedom now {cost}"));
         };
         if matches!(self.free.method, Method::Steady(_)) {
             let fitted = minimise(problem, self.model, &start, Tolerance::USUAL, &progress)?;
@@ -401,10 +532,10 @@ impl Work<'_> {
     }
 
     /// What to measure next.
-    fn plan(&self, calibrated: &Calibrated) -> Result<Plan, CalibrateError> {
-        self.bar.set_message("what to measure next");
+    fn plan(&self, calibrated: &Calibrated, command: &Calibrate) -> Result<Plan, CalibrateError> {
+        (self.progress)("what to measure next".to_owned());
         let Calibrated { problem, fitted, linearised, statistics, .. } = calibrated;
-        let candidates = self.candidates(&problem.points);
+        let candidates = self.candidates(&problem.points, command);
         // The layer is too dear for a grid.
         let is_solved = matches!(self.free.method, Method::Steady(_));
         let model: &dyn FrictionModel = if is_solved { self.model } else { self.theory };
@@ -413,8 +544,7 @@ impl Work<'_> {
 
     /// The grid that is asked for; else one that reaches a decade of speed, a factor of two of pressure and 20 K beyond
     /// the measurements.
-    fn candidates(&self, measured: &[OperatingPoint]) -> Vec<OperatingPoint> {
-        let command = self.free.command;
+    fn candidates(&self, measured: &[OperatingPoint], command: &Calibrate) -> Vec<OperatingPoint> {
         let range = |value: &dyn Fn(&OperatingPoint) -> Option<f64>| {
             let values = measured.iter().filter_map(value);
             values.fold(None, |range: Option<(f64, f64)>, value| {

@@ -60,7 +60,7 @@ fn data(free: &FreeScene<'_>, calibrated: &Calibrated, measurements: &Measuremen
     };
     format!(
         "{}: {} measurements at {} points, {deviations}",
-        name_of(&free.command.data),
+        name_of(&free.options.data),
         measurements.rows.len(),
         problem.points.len()
     )
@@ -173,17 +173,11 @@ fn rests_on(calibrated: &Calibrated) -> Vec<LabelledLine> {
     labelled("Rests on", kinds.into_iter().map(row))
 }
 
-/// The model's friction at a measurement; `None` where it is left out.
-fn friction_at(calibrated: &Calibrated, measured: &Measured) -> Option<f64> {
-    let index = calibrated.problem.points.iter().position(|point| *point == measured.point)?;
-    Some(calibrated.frictions[index].friction())
-}
-
 /// The measurements that are off by more than three standard deviations, the worst first.
 fn far_off(calibrated: &Calibrated, measurements: &Measurements) -> Vec<String> {
     let scale = calibrated.statistics.scale.sqrt();
     let deviation = |measured: &Measured| {
-        let model = friction_at(calibrated, measured)?;
+        let model = calibrated.friction_at(&measured.point)?;
         let deviations = (model - measured.friction) / (scale * measured.sigma_or_assumed());
         (deviations.abs() > FAR_OFF).then(|| (deviations, off(measured, model, deviations)))
     };

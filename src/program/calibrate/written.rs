@@ -50,7 +50,7 @@ fn number(value: f64) -> String {
 
 fn header(free: &FreeScene<'_>, calibrated: &Calibrated, measurements: &Measurements) -> Vec<String> {
     let statistics = &calibrated.statistics;
-    let data = name_of(&free.command.data);
+    let data = name_of(&free.options.data);
     let rows = match measurements.rows.len() - calibrated.problem.rows.len() {
         0 => format!("{} measurements", calibrated.problem.rows.len()),
         left_out => {

@@ -14,7 +14,8 @@ use super::files::default_output;
 use super::overrides::Setting;
 use super::sweep::SweepMethod;
 use super::sweep::values::{Shard, Values};
-pub(crate) use values::{Condition, PlotAxis, WlfConstants, tenth};
+pub use values::WlfConstants;
+pub(crate) use values::{Condition, PlotAxis, tenth};
 use values::{
     Frequencies, Tolerances, animation, arrays, column_unit, count, fit_error, free_parameter, frequency,
     key_and_value, length, moment, picture, picture_or_table, poisson_ratio, powers, pressure, seconds, seeds, share,

@@ -212,13 +212,13 @@ fn ending_in(endings: &'static [&str], expected: &'static str) -> impl TypedValu
 
 /// Constants of the Williams-Landel-Ferry equation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct WlfConstants {
+pub struct WlfConstants {
     /// C_1, 1.
-    pub(crate) c1: f64,
+    pub c1: f64,
     /// C_2, K.
-    pub(crate) c2: f64,
+    pub c2: f64,
     /// T_ref, K.
-    pub(crate) reference_temperature: f64,
+    pub reference_temperature: f64,
 }
 
 impl WlfConstants {

@@ -5,11 +5,11 @@ use std::fmt::Write as _;
 
 use zip::result::ZipResult;
 
-use super::Fields;
+use super::ContactFields;
 use crate::program::npz::{self, Array, Values};
 
 /// A table with a line for each point.
-pub(super) fn csv(fields: &Fields) -> String {
+pub(super) fn csv(fields: &ContactFields) -> String {
     let mut text = "x [m],y [m],height [m],pressure [Pa],gap [m]\n".to_owned();
     let places = fields.y.iter().flat_map(|y| fields.x.iter().map(move |x| (x, y)));
     let values = fields.heights.iter().zip(&fields.pressures).zip(&fields.gaps);
@@ -21,7 +21,7 @@ pub(super) fn csv(fields: &Fields) -> String {
 }
 
 /// The arrays x and y, and height, pressure and gap with a row for each y, as `numpy.load` reads them.
-pub(super) fn npz(fields: &Fields) -> ZipResult<Vec<u8>> {
+pub(super) fn npz(fields: &ContactFields) -> ZipResult<Vec<u8>> {
     let shape = vec![fields.y.len(), fields.x.len()];
     let field = |name, values| Array { name, shape: shape.clone(), values: Values::Reals(Cow::Borrowed(values)) };
     npz::npz([

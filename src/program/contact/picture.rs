@@ -4,7 +4,7 @@ use std::path::Path;
 
 use asperity::steady::SurfaceGrid;
 
-use super::Fields;
+use super::ContactFields;
 use crate::program::figure::{
     Colours, Curve, FieldMap, Figure as _, LinearPanel, LinearStack, Marks, Stroke, SurfaceMaps,
 };
@@ -12,12 +12,12 @@ use crate::program::files::FileError;
 use crate::program::terminal::rounded;
 
 /// Draws the fields on a surface of which the share `area` is in contact.
-pub(super) fn write(surface: &SurfaceGrid, fields: &Fields, area: f64, path: &Path) -> Result<(), FileError> {
+pub(super) fn write(surface: &SurfaceGrid, fields: &ContactFields, area: f64, path: &Path) -> Result<(), FileError> {
     if surface.size.ny > 1 { maps(surface, fields, area).write(path) } else { curves(fields).write(path) }
 }
 
 /// The profile with the rubber's surface above it, and the pressure below.
-fn curves(fields: &Fields) -> LinearStack {
+fn curves(fields: &ContactFields) -> LinearStack {
     let curve = |name: &str, look: usize, values: Vec<f64>| Curve {
         name: name.to_owned(),
         look,
@@ -37,7 +37,7 @@ fn curves(fields: &Fields) -> LinearStack {
 }
 
 /// Pressure, gap, and where on the heights the contact is.
-fn maps(surface: &SurfaceGrid, fields: &Fields, area: f64) -> SurfaceMaps {
+fn maps(surface: &SurfaceGrid, fields: &ContactFields, area: f64) -> SurfaceMaps {
     let is_touched = |pressure: &f64| *pressure > 0.0;
     let marks = |name: String, stand_out: bool, of: &dyn Fn(&f64) -> bool| {
         Some(Marks { name, stand_out, points: fields.pressures.iter().map(of).collect() })

@@ -24,7 +24,7 @@ use super::figure::Figure as _;
 use super::files::{FileError, check_outputs, default_output, picture_beside, print_beside, sources};
 use super::interrupt::Farewell;
 use super::sweep::{
-    Asked, Method, MethodError, NeverSteady, StopBounds, SweepMethod, relevant, solved_status, steady_sliding,
+    Method, MethodError, NeverSteady, SlidingOptions, StopBounds, SweepMethod, relevant, solved_status, steady_sliding,
     table_fingerprint,
 };
 use super::terminal::{self, warn};
@@ -120,9 +120,9 @@ const SEEDS: u32 = 4;
 /// What a halved spacing may come to where nothing is asked for: masses of a layer, points of a surface.
 const MOST: (u32, u32) = (4096, 1 << 21);
 
-fn asked(command: &Converge) -> Asked {
+fn asked(command: &Converge) -> SlidingOptions {
     let Converge { method, points, distance, .. } = *command;
-    Asked { method, points, has_error: false, has_distance: distance.is_some() }
+    SlidingOptions { method, points, error: None, distance }
 }
 
 fn plan(command: &Converge, template: &Template) -> Result<Plan, ConvergeError> {
@@ -229,7 +229,7 @@ impl Work<'_> {
     /// Friction and area in steady sliding on so many points along x, or why there is none.
     fn solve(&self, scene: &Scene, points: u64) -> Result<Measured, String> {
         let points = u32::try_from(points).map_err(|_| format!("{points} points are too many"))?;
-        let asked = Asked { method: Some(SweepMethod::Steady), points: Some(points), ..asked(self.command) };
+        let asked = SlidingOptions { method: Some(SweepMethod::Steady), points: Some(points), ..asked(self.command) };
         let (method, _) = asked.choose(scene).map_err(|error| error.to_string())?;
         let (Method::Steady(surface), Some(rubber)) = (method, SlidingRubber::new(scene)) else {
             return Err("not to be solved for".into());

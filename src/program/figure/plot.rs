@@ -14,7 +14,7 @@ use crate::program::terminal::warn;
 
 /// `asperity plot` failed.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum PlotError {
+pub enum PlotError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]

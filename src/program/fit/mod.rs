@@ -16,8 +16,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use asperity::scene::PronyTerm;
+use asperity::scene::text_table::Unit;
 
-use super::cli::Fit;
+use super::cli::{Fit, WlfConstants};
 use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
 use super::files::{self, FileError, check_outputs, name_of, named, picture_beside, print_beside};
 use super::terminal::{decimal, lines, note, rounded, warn};
@@ -28,7 +29,8 @@ use temperatures::{Shift, ShiftError};
 
 /// `asperity fit` failed.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum FitError {
+#[expect(missing_docs, reason = "the messages say what they are")]
+pub enum FitError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error("{}:{error}", .path.display())]
@@ -51,6 +53,85 @@ const POINTS_PER_DECADE: f64 = 20.0;
 /// The exit status of a fit that is written but worse than asked for: it is to be looked at.
 const WORSE: u8 = 3;
 
+/// How moduli are read and fitted.
+#[derive(Clone, Debug)]
+pub struct FitOptions {
+    /// The file of the moduli: its name stands in messages and in what is written.
+    pub data: PathBuf,
+    /// The sheet of a workbook; `None`: the only one with moduli.
+    pub sheet: Option<String>,
+    /// Columns to ignore, by their headings.
+    pub ignored: Vec<String>,
+    /// Units of columns, by their headings.
+    pub units: Vec<(String, Unit)>,
+    /// The frequency of all rows where the table has no column of it, rad/s.
+    pub frequency: Option<f64>,
+    /// Poisson's ratio, by which moduli of shear become moduli of tension.
+    pub poisson_ratio: f64,
+    /// Whether moduli whose headings have no letter are of shear.
+    pub shear: bool,
+    /// The admissible root mean square of the relative errors.
+    pub error: f64,
+    /// Whether a viscosity in parallel to the terms is fitted too.
+    pub viscosity: bool,
+    /// Constants that shift rows at other temperatures.
+    pub wlf: Option<WlfConstants>,
+    /// A table of shift factors in their place.
+    pub shifts: Option<PathBuf>,
+    /// Where the master curve is made without either, K.
+    pub reference: Option<f64>,
+}
+
+impl Default for FitOptions {
+    /// Those of `asperity fit`, of no file.
+    fn default() -> Self {
+        Self {
+            data: PathBuf::new(),
+            sheet: None,
+            ignored: Vec::new(),
+            units: Vec::new(),
+            frequency: None,
+            poisson_ratio: 0.5,
+            shear: false,
+            error: 0.02,
+            viscosity: false,
+            wlf: None,
+            shifts: None,
+            reference: None,
+        }
+    }
+}
+
+impl From<&Fit> for FitOptions {
+    fn from(command: &Fit) -> Self {
+        Self {
+            data: command.data.clone(),
+            sheet: command.sheet.clone(),
+            ignored: command.ignore.clone(),
+            units: command.unit.clone(),
+            frequency: command.frequency,
+            poisson_ratio: command.poisson_ratio,
+            shear: command.shear,
+            error: command.error,
+            viscosity: command.viscosity,
+            wlf: command.wlf,
+            shifts: command.shifts.clone(),
+            reference: command.reference,
+        }
+    }
+}
+
+/// Reads the moduli, puts those of several temperatures together and fits a Prony series.
+///
+/// # Errors
+/// Where the table cannot be read, or its temperatures cannot be put together.
+pub fn fit_moduli(options: &FitOptions) -> Result<FittedModuli, FitError> {
+    let measured = read_moduli(options)?;
+    let shift = Shift::of(options, &measured)?;
+    let samples = shift.samples(&measured).map_err(|error| in_data(options, error))?;
+    Ok(FittedModuli::new(options.clone(), measured, shift, samples))
+}
+
 /// Reads the moduli, puts those of several temperatures together, fits, writes the terms and the plot, and prints a
 /// summary. Where the requested error cannot be reached, the best fit is written, with a warning and an exit status of
 /// its own.
@@ -58,47 +139,44 @@ pub(crate) fn fit(command: &Fit) -> Result<ExitCode, FitError> {
     let picture = picture_beside(&command.output, command.plot.as_ref());
     let read: Vec<PathBuf> = std::iter::once(&command.data).chain(&command.shifts).cloned().collect();
     check_outputs([&command.output].into_iter().chain(&picture), read)?;
-    let measured = read_moduli(command)?;
-    measured.notes.iter().for_each(|text| note(text));
-    let shift = Shift::of(command, &measured)?;
-    shift.warnings().iter().for_each(|text| warn(text));
-    let samples = shift.samples(&measured).map_err(|error| in_data(command, error))?;
-    let result = FitResult::new(command, &measured, &shift, samples);
+    let result = fit_moduli(&command.into())?;
+    result.notes().iter().for_each(|text| note(text));
+    result.warnings().iter().for_each(|text| warn(text));
     files::write(&command.output, result.file())?;
     if let Some(picture) = &picture {
         result.picture().write(picture)?;
     }
-    print_beside([&command.output], &result.text(picture.as_deref()))?;
+    print_beside([&command.output], &result.text(&command.output, picture.as_deref()))?;
     if result.errors.both.rms <= command.error {
         return Ok(ExitCode::SUCCESS);
     }
-    warn(&result.not_reached());
+    warn(&result.not_reached(&command.output));
     Ok(ExitCode::from(WORSE))
 }
 
-fn in_data(command: &Fit, error: ModuliError) -> FitError {
-    FitError::Moduli { path: command.data.clone(), error }
+fn in_data(options: &FitOptions, error: ModuliError) -> FitError {
+    FitError::Moduli { path: options.data.clone(), error }
 }
 
 /// The moduli in a text or in a sheet of a workbook.
-fn read_moduli(command: &Fit) -> Result<MeasuredModuli, FitError> {
-    let bytes = files::read(&command.data)?;
+fn read_moduli(options: &FitOptions) -> Result<MeasuredModuli, FitError> {
+    let bytes = files::read(&options.data)?;
     let reading = Reading {
-        ignored: &command.ignore,
-        units: &command.unit,
-        frequency: command.frequency,
-        poisson_ratio: command.poisson_ratio,
-        shear: command.shear,
+        ignored: &options.ignored,
+        units: &options.units,
+        frequency: options.frequency,
+        poisson_ratio: options.poisson_ratio,
+        shear: options.shear,
     };
-    if !workbook::is_workbook(&bytes, &command.data) {
-        return MeasuredModuli::parse(&bytes, &reading).map_err(|error| in_data(command, error));
+    if !workbook::is_workbook(&bytes, &options.data) {
+        return MeasuredModuli::parse(&bytes, &reading).map_err(|error| in_data(options, error));
     }
-    let in_workbook = |error| FitError::Workbook { path: command.data.clone(), error: Box::new(error) };
+    let in_workbook = |error| FitError::Workbook { path: options.data.clone(), error: Box::new(error) };
     let sheets = workbook::sheets(&bytes).map_err(in_workbook)?;
     let names: Vec<String> = sheets.iter().map(|(name, _)| name.clone()).collect();
-    let wanted = |(name, _): &&(String, String)| command.sheet.as_ref().is_none_or(|wanted| wanted == name);
+    let wanted = |(name, _): &&(String, String)| options.sheet.as_ref().is_none_or(|wanted| wanted == name);
     let chosen: Vec<&(String, String)> = sheets.iter().filter(wanted).collect();
-    let refuse = |expected| FitError::Sheets { path: command.data.clone(), found: names.clone(), expected };
+    let refuse = |expected| FitError::Sheets { path: options.data.clone(), found: names.clone(), expected };
     let mut read: Vec<(&str, Result<MeasuredModuli, ModuliError>)> =
         chosen.iter().map(|(name, text)| (name.as_str(), MeasuredModuli::parse_text(text, &reading))).collect();
     if read.len() > 1 {
@@ -109,50 +187,97 @@ fn read_moduli(command: &Fit) -> Result<MeasuredModuli, FitError> {
         0 => Err(refuse("moduli in one of them; --sheet NAME says what one lacks")),
         1 => {
             let (name, measured) = read.remove(0);
-            let mut measured = measured.map_err(|error| in_data(command, error))?;
-            measured.notes.insert(0, format!("sheet {name} of {}", name_of(&command.data)));
+            let mut measured = measured.map_err(|error| in_data(options, error))?;
+            measured.notes.insert(0, format!("sheet {name} of {}", name_of(&options.data)));
             Ok(measured)
         }
         _ => Err(refuse("moduli in one of them alone, or --sheet NAME")),
     }
 }
 
+/// A Prony series fitted to measured moduli.
 #[derive(Debug)]
-struct FitResult<'a> {
-    command: &'a Fit,
-    measured: &'a MeasuredModuli,
-    shift: &'a Shift,
+pub struct FittedModuli {
+    options: FitOptions,
+    measured: MeasuredModuli,
+    shift: Shift,
     /// At the reference temperature.
     samples: Vec<Sample>,
     compound: Compound,
     errors: FitErrors,
 }
 
-impl<'a> FitResult<'a> {
-    fn new(command: &'a Fit, measured: &'a MeasuredModuli, shift: &'a Shift, samples: Vec<Sample>) -> Self {
+impl FittedModuli {
+    fn new(options: FitOptions, measured: MeasuredModuli, shift: Shift, samples: Vec<Sample>) -> Self {
         let test = measured.test;
-        let exact = search(&samples, &Target { error: command.error, viscosity: command.viscosity, test });
+        let exact = search(&samples, &Target { error: options.error, viscosity: options.viscosity, test });
         let compound = exact.rounded(FitErrors::of(&exact, &samples, test).both.rms);
         let errors = FitErrors::of(&compound, &samples, test);
-        Self { command, measured, shift, samples, compound, errors }
+        Self { options, measured, shift, samples, compound, errors }
+    }
+
+    /// How the table was read, and what was assumed.
+    pub fn notes(&self) -> &[String] {
+        &self.measured.notes
+    }
+
+    /// What to look at in how temperatures were put together.
+    pub fn warnings(&self) -> Vec<String> {
+        self.shift.warnings()
+    }
+
+    /// E_∞, Pa.
+    pub fn equilibrium_modulus(&self) -> f64 {
+        self.compound.equilibrium_modulus
+    }
+
+    /// The viscosity in parallel, Pa s; 0 where none was asked for.
+    pub fn viscosity(&self) -> f64 {
+        self.compound.viscosity
+    }
+
+    /// The terms, from short to long relaxation times.
+    pub fn terms(&self) -> &[PronyTerm] {
+        &self.compound.terms
+    }
+
+    /// Root mean square of the relative errors of all moduli, 1.
+    pub fn error(&self) -> f64 {
+        self.errors.both.rms
+    }
+
+    /// The constants that put the temperatures together, where they are known.
+    pub fn wlf(&self) -> Option<WlfConstants> {
+        self.shift.constants().or(self.options.wlf)
+    }
+
+    /// The measured points at the reference temperature: angular frequency in rad/s, E' and E'' in Pa; or time in s, E(t)
+    /// in Pa and 0.
+    pub fn points(&self) -> Vec<[f64; 3]> {
+        self.samples.iter().map(|sample| [sample.at, sample.storage, sample.loss]).collect()
+    }
+
+    /// E' and E'' at an angular frequency (rad/s), or E(t) at a time (s) and 0, Pa.
+    pub fn response(&self, at: f64) -> (f64, f64) {
+        self.compound.response(self.measured.test, at)
     }
 
     /// Why the error asked for was not reached: the data scatter, or known constants do not put them together.
-    fn not_reached(&self) -> String {
-        let (wanted, reached) = (percent(self.command.error), percent(self.errors.both.rms));
+    fn not_reached(&self, output: &Path) -> String {
+        let (wanted, reached) = (percent(self.options.error), percent(self.errors.both.rms));
         let why = self
             .shift
-            .blame(self.measured)
+            .blame(&self.measured)
             .unwrap_or_else(|| "the data scatter too much for less, and --error sets what is enough".to_owned());
         format!(
             "the error asked for, {wanted}, cannot be reached: {reached} is about the smallest of any series with \
              moduli of 0 or more, and {} has such a series; {why}",
-            self.command.output.display()
+            output.display()
         )
     }
 
     /// The file of Prony terms, with the fit's figures as comments.
-    fn file(&self) -> String {
+    pub fn file(&self) -> String {
         let mut text =
             String::from("# A generalised Maxwell model: Prony terms fitted to measured moduli by `asperity fit`\n");
         for (name, value) in self.facts() {
@@ -169,13 +294,13 @@ impl<'a> FitResult<'a> {
         let mut facts = vec![
             ("equilibrium_modulus", format!("{} Pa", written(self.compound.equilibrium_modulus))),
             ("units", "relaxation_time in s, modulus in Pa".into()),
-            ("source", name_of(&self.command.data)),
+            ("source", name_of(&self.options.data)),
             ("data", self.data()),
             ("options", self.options()),
             ("error", format!("{rms} (root mean square of the relative errors of {} at all rows)", self.quantities())),
             ("largest_error", format!("{largest} at {}", self.place(both.at))),
         ];
-        if self.command.viscosity {
+        if self.options.viscosity {
             facts.insert(1, ("viscosity", format!("{} Pa s", written(self.compound.viscosity))));
         }
         facts
@@ -200,36 +325,36 @@ impl<'a> FitResult<'a> {
     }
 
     fn options(&self) -> String {
-        let mut text = format!("--error {}", written(self.command.error));
-        if let Some(wlf) = self.command.wlf {
+        let mut text = format!("--error {}", written(self.options.error));
+        if let Some(wlf) = self.options.wlf {
             text += &format!(" --wlf {},{},{}", written(wlf.c1), written(wlf.c2), written(wlf.reference_temperature));
         }
-        if self.command.viscosity {
+        if self.options.viscosity {
             text += " --viscosity";
         }
-        if let Some(shifts) = &self.command.shifts {
+        if let Some(shifts) = &self.options.shifts {
             text += &format!(" --shifts {}", name_of(shifts));
         }
-        if let Some(frequency) = self.command.frequency {
+        if let Some(frequency) = self.options.frequency {
             text += &format!(" --frequency {}Hz", written(frequency / TAU));
         }
-        if self.command.shear {
+        if self.options.shear {
             text += " --shear";
         }
-        text + &self.command.ignore.iter().map(|name| format!(" --ignore '{name}'")).collect::<String>()
+        text + &self.options.ignored.iter().map(|name| format!(" --ignore '{name}'")).collect::<String>()
     }
 
     /// The printed summary, and the lines for a scene.
-    fn text(&self, picture: Option<&Path>) -> String {
+    fn text(&self, output: &Path, picture: Option<&Path>) -> String {
         let (compound, errors) = (&self.compound, &self.errors);
         let mut rows = vec![("Data", self.data()), ("E_inf", format!("{} Pa", written(compound.equilibrium_modulus)))];
-        if self.command.viscosity {
+        if self.options.viscosity {
             rows.push(("Viscosity", format!("{} Pa s", written(compound.viscosity))));
         }
         let glassy: f64 = compound.terms.iter().map(|term| term.modulus).sum::<f64>() + compound.equilibrium_modulus;
         rows.push(("Glassy", format!("{} Pa, the sum of all moduli", short(glassy))));
-        rows.push(("Terms", self.terms()));
-        let (rms, requested) = (percent(errors.both.rms), percent(self.command.error));
+        rows.push(("Terms", self.terms_in_words()));
+        let (rms, requested) = (percent(errors.both.rms), percent(self.options.error));
         let together = if self.measured.test == Test::Oscillation { "E' and E'' together" } else { "E(t)" };
         rows.push(("Error", format!("{rms} rms of {together}; {requested} requested")));
         rows.push(("", format!("{:<11}{:<11}{:<11}at", "", "rms", "largest")));
@@ -244,14 +369,14 @@ impl<'a> FitResult<'a> {
             }
             Test::Relaxation => rows.push(row("E(t)", &errors.storage)),
         }
-        rows.extend(self.shift.rows(self.measured, &self.samples, &self.compound));
-        let written = [Some(self.command.output.as_path()), picture].into_iter().flatten().map(named);
+        rows.extend(self.shift.rows(&self.measured, &self.samples, &self.compound));
+        let written = [Some(output), picture].into_iter().flatten().map(named);
         rows.push(("Written", written.collect::<Vec<_>>().join(", ")));
         let figures = lines(&rows);
-        format!("{figures}\nFor a scene in the folder of {}:\n\n{}", name_of(&self.command.output), self.scene())
+        format!("{figures}\nFor a scene in the folder of {}:\n\n{}", name_of(output), self.scene(output))
     }
 
-    fn terms(&self) -> String {
+    fn terms_in_words(&self) -> String {
         match &self.compound.terms[..] {
             [] => "none".into(),
             [only] => format!("1, at {} s", short(only.relaxation_time)),
@@ -262,7 +387,7 @@ impl<'a> FitResult<'a> {
         }
     }
 
-    fn scene(&self) -> String {
+    fn scene(&self, output: &Path) -> String {
         let mut lines = vec![
             "[material]".to_owned(),
             "# density (kg/m³) and poisson_ratio are not in the data".into(),
@@ -273,9 +398,9 @@ impl<'a> FitResult<'a> {
         }
         lines.push(match self.compound.terms[..] {
             [] => "prony = []".into(),
-            _ => format!("prony = {:?}", name_of(&self.command.output)),
+            _ => format!("prony = {:?}", name_of(output)),
         });
-        if let Some(wlf) = self.shift.constants().or(self.command.wlf) {
+        if let Some(wlf) = self.wlf() {
             let reference = written(wlf.reference_temperature);
             let (c1, c2) = (written(wlf.c1), written(wlf.c2));
             lines.push(format!(
@@ -311,7 +436,7 @@ impl<'a> FitResult<'a> {
         Stacked {
             title: format!(
                 "{}: {} terms, {} rms",
-                name_of(&self.command.data),
+                name_of(&self.options.data),
                 self.compound.terms.len(),
                 percent(self.errors.both.rms)
             ),

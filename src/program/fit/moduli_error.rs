@@ -6,7 +6,7 @@ use super::columns::Column;
 
 /// A table cannot be used: where, what was found and what was expected.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub(crate) struct ModuliError {
+pub struct ModuliError {
     line: usize,
     /// Its number from 1, and its heading.
     column: Option<(usize, String)>,

@@ -10,8 +10,8 @@ use super::measured::{MeasuredModuli, MeasuredPoint};
 use super::moduli_error::ModuliError;
 use super::search::{Compound, FitErrors, Sample};
 use super::shift::{Factor, Isotherm, Superposition, law_of, rms_with, superpose};
-use super::{FitError, percent, short, written};
-use crate::program::cli::{Fit, WlfConstants};
+use super::{FitError, FitOptions, percent, short, written};
+use crate::program::cli::WlfConstants;
 use crate::program::files;
 use crate::program::terminal::{LabelledLine, rounded};
 
@@ -30,7 +30,7 @@ pub(super) enum Shift {
 
 /// Moduli of several temperatures cannot be put together.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum ShiftError {
+pub enum ShiftError {
     #[error(
         "the temperatures run through from {from:.2} to {to:.2} K: rows of one temperature each have no range in \
          common; expected --wlf C1,C2,TREF or --shifts SHIFTS.csv, or rows at a few temperatures"
@@ -59,13 +59,13 @@ const WIDEST: f64 = 3.0;
 const ROOM: f64 = 293.15;
 
 impl Shift {
-    /// What the command line and the table say.
-    pub(super) fn of(command: &Fit, measured: &MeasuredModuli) -> Result<Self, FitError> {
-        let in_data = |error: ShiftError| FitError::Shift { path: command.data.clone(), error };
+    /// What the options and the table say.
+    pub(super) fn of(options: &FitOptions, measured: &MeasuredModuli) -> Result<Self, FitError> {
+        let in_data = |error: ShiftError| FitError::Shift { path: options.data.clone(), error };
         let is_known = |point: &MeasuredPoint| point.temperature.is_some();
         let all = measured.points.iter().all(is_known);
         if measured.reduced || !measured.points.iter().any(is_known) {
-            return match command.shifts {
+            return match options.shifts {
                 Some(_) if !measured.reduced => Err(in_data(ShiftError::NoTemperatures)),
                 _ => Ok(Self::None),
             };
@@ -74,19 +74,19 @@ impl Shift {
             return Err(in_data(ShiftError::Mixed));
         }
         let isotherms = isotherms(measured);
-        if let Some(wlf) = command.wlf {
+        if let Some(wlf) = options.wlf {
             return Ok(Self::Known(wlf, isotherms));
         }
-        if let Some(path) = &command.shifts {
-            return given(path, command, isotherms);
+        if let Some(path) = &options.shifts {
+            return given(path, options, isotherms);
         }
         if measured.points.iter().all(|point| point.shift.is_some()) {
             let factors = factors_of(measured, &isotherms).map_err(in_data)?;
-            return Ok(Self::with_factors(factors, isotherms, command.reference));
+            return Ok(Self::with_factors(factors, isotherms, options.reference));
         }
         let [first, .., last] = &isotherms[..] else { return Ok(Self::None) };
         check(measured, &isotherms, (first.temperature, last.temperature)).map_err(in_data)?;
-        let found = superpose(&isotherms, measured.test, command.reference.unwrap_or(ROOM));
+        let found = superpose(&isotherms, measured.test, options.reference.unwrap_or(ROOM));
         Ok(Self::Found { found, isotherms })
     }
 
@@ -325,10 +325,10 @@ fn factors_of(measured: &MeasuredModuli, isotherms: &[Isotherm]) -> Result<Vec<F
 }
 
 /// Reads factors from a table: columns temperature and a_T.
-fn given(path: &Path, command: &Fit, isotherms: Vec<Isotherm>) -> Result<Shift, FitError> {
+fn given(path: &Path, options: &FitOptions, isotherms: Vec<Isotherm>) -> Result<Shift, FitError> {
     let bytes = files::read(path)?;
     let in_file = |error: ModuliError| FitError::Moduli { path: path.to_owned(), error };
-    let table = shift_table(&bytes, command).map_err(in_file)?;
+    let table = shift_table(&bytes, options).map_err(in_file)?;
     let factor = |isotherm: &Isotherm| {
         let distance = |(kelvin, _): &&(f64, f64)| (kelvin - isotherm.temperature).abs();
         let nearest = table.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
@@ -338,19 +338,19 @@ fn given(path: &Path, command: &Fit, isotherms: Vec<Isotherm>) -> Result<Shift, 
         Ok(Factor { temperature: isotherm.temperature, ln, error: 0.0 })
     };
     let factors: Result<Vec<Factor>, ShiftError> = isotherms.iter().map(factor).collect();
-    let factors = factors.map_err(|error| FitError::Shift { path: command.data.clone(), error })?;
-    Ok(Shift::with_factors(factors, isotherms, command.reference))
+    let factors = factors.map_err(|error| FitError::Shift { path: options.data.clone(), error })?;
+    Ok(Shift::with_factors(factors, isotherms, options.reference))
 }
 
 /// Temperatures in K and their factors.
-fn shift_table(bytes: &[u8], command: &Fit) -> Result<Vec<(f64, f64)>, ModuliError> {
+fn shift_table(bytes: &[u8], options: &FitOptions) -> Result<Vec<(f64, f64)>, ModuliError> {
     let text = decode(bytes).map_err(|error| ModuliError::in_line(1, error.to_string(), "a table of shift factors"))?;
     const EXPECTED: &str = "columns temperature [°C] and a_T, or log a_T";
     let blocks = Block::all(&text, false);
     let block = blocks.iter().max_by_key(|block| block.rows);
     let block = block.ok_or_else(|| ModuliError::in_line(1, "", EXPECTED))?;
     let missing = || ModuliError::in_line(block.first, "", EXPECTED);
-    let columns = Columns::read(block, &[], &command.unit)?.ok_or_else(missing)?;
+    let columns = Columns::read(block, &[], &options.units)?.ok_or_else(missing)?;
     let [temperature] = columns.all(&[Quantity::Temperature])[..] else { return Err(missing()) };
     let [factor] = columns.all(&[Quantity::ShiftFactor])[..] else { return Err(missing()) };
     let (mut rows, mut style) = (Vec::new(), NumberStyle::of(block));

@@ -6,6 +6,7 @@ mod description;
 mod documentation;
 mod picture;
 
+use std::ffi::OsString;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
@@ -22,7 +23,8 @@ use check::CheckError;
 
 /// `asperity pack` failed.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum PackError {
+#[expect(missing_docs, reason = "the messages say what they are")]
+pub enum PackError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]
@@ -43,15 +45,32 @@ pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
     let taken =
         [definition.sources(&path), archive::libraries(&command.library), command.check.iter().cloned().collect()];
     check_outputs([&command.output], taken.concat())?;
-    let mut entries = archive::binaries(&definition.identifier(), &command.library)?;
-    let needs = labelled("Needs", entries.iter().filter_map(archive::needs));
-    entries.extend(resources(&definition, &path)?);
+    let binaries = archive::binaries(&definition.identifier(), &command.library)?;
+    let needs = labelled("Needs", binaries.iter().filter_map(archive::needs));
     let summary = summary(command, &definition)?;
-    entries.extend(documents(&definition, &path, &summary)?);
-    let bytes = archive::zip(entries).map_err(ArchiveError::from)?;
-    write(&command.output, bytes)?;
+    write(&command.output, archive(&definition, &path, binaries, &summary)?)?;
     let shown = if matches!(definition, Definition::Layer(_)) { needs } else { [summary, needs].concat() };
     Ok(print(&lines(&shown))?)
+}
+
+/// The FMU of a `definition`, which was read from the file at `path`, with these shared libraries, each as
+/// `asperity pack --library` takes it.
+///
+/// # Errors
+/// Where a library or a file cannot be read, or does not lie where an FMU can carry it.
+pub fn fmu(definition: &Definition, path: &Path, libraries: &[OsString]) -> Result<Vec<u8>, PackError> {
+    let binaries = archive::binaries(&definition.identifier(), libraries)?;
+    archive(definition, path, binaries, &what_is_there(definition))
+}
+
+fn archive(
+    definition: &Definition,
+    path: &Path,
+    binaries: Vec<ArchiveEntry>,
+    summary: &[LabelledLine],
+) -> Result<Vec<u8>, PackError> {
+    let entries = [binaries, resources(definition, path)?, documents(definition, path, summary)?].concat();
+    Ok(archive::zip(entries).map_err(ArchiveError::from)?)
 }
 
 /// What is packed, and the file that it is read from.
@@ -85,17 +104,22 @@ fn warn_of(basis: &Basis) {
 
 /// What there is in the scene or in the table, and the errors of an element or a patch.
 fn summary(command: &Pack, definition: &Definition) -> Result<Vec<LabelledLine>, PackError> {
-    let mut rows = match definition {
-        Definition::Layer(scene) => return Ok(describe::rows(scene)),
-        Definition::Element(contact) => documentation::table_rows(contact.table()),
-        Definition::Patch(patch) => [patch::rows(patch), documentation::table_rows(patch.table())].concat(),
-    };
+    let mut rows = what_is_there(definition);
     match (definition, &command.check) {
         (Definition::Element(contact), Some(scene)) => rows.extend(check::check_element(command, contact, scene)?),
         (Definition::Patch(patch), Some(scene)) => rows.extend(check::check_patch(command, patch, scene)?),
         _ => (),
     }
     Ok(rows)
+}
+
+/// What there is in the scene or in the table.
+fn what_is_there(definition: &Definition) -> Vec<LabelledLine> {
+    match definition {
+        Definition::Layer(scene) => describe::rows(scene),
+        Definition::Element(contact) => documentation::table_rows(contact.table()),
+        Definition::Patch(patch) => [patch::rows(patch), documentation::table_rows(patch.table())].concat(),
+    }
 }
 
 /// The scene or the table, under a fixed name, and the files that a scene reads.

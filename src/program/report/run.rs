@@ -12,7 +12,7 @@ use indicatif::ProgressBar;
 
 use super::trace::{Errors, Trace};
 use crate::program::runner::{CarrierSample, Rows, Runner};
-use crate::program::terminal::bar;
+use crate::program::terminal::{bar, warn};
 
 /// No limit but the scene's own.
 pub(super) const UNLIMITED: Budget = Budget(u64::MAX);
@@ -152,6 +152,7 @@ pub(super) fn follow(
         recorder.end_phase();
         recorder.check(budget)?;
     }
+    runner.take_warnings().iter().for_each(|warning| warn(warning));
     Ok(recorder.finish(runner.simulation(), clock.elapsed().as_secs_f64(), durations))
 }
 

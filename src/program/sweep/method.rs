@@ -4,10 +4,11 @@ use asperity::scene::{FoundationKind, HeightMap, Scene};
 use asperity::steady::{GridSize, SurfaceGrid};
 
 use super::NeverSteady;
+use super::point::StopBounds;
 
-/// A method as the command line names it.
+/// A method that is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum SweepMethod {
+pub enum SweepMethod {
     /// Solves for steady sliding over one period of the surface.
     Steady,
     /// Lets the layer slide until its means are steady.
@@ -25,7 +26,8 @@ pub(crate) enum Method {
 
 /// The scene or an option does not go with the method.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum MethodError {
+#[expect(missing_docs, reason = "the messages say what they are")]
+pub enum MethodError {
     #[error("--method steady: {0}, which it does not have; give --method layer")]
     Lacks(&'static str),
     #[error(
@@ -42,21 +44,34 @@ pub(crate) enum MethodError {
     FewPoints { least: usize, found: usize },
 }
 
-/// What the command line says of the method.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Asked {
-    pub(crate) method: Option<SweepMethod>,
-    pub(crate) points: Option<u32>,
-    pub(crate) has_error: bool,
-    pub(crate) has_distance: bool,
+/// How steady sliding is to be found; without any of it as the scene allows.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SlidingOptions {
+    /// By solving for it, or by letting the layer slide; `None`: solved for where the scene can be.
+    pub method: Option<SweepMethod>,
+    /// Points of a period along x, where it is solved for; `None`: the surface's own, or of a profile 8 to its shortest
+    /// wave where they are uneven or fewer.
+    pub points: Option<u32>,
+    /// Standard error of a sliding layer's friction coefficient over it; `None`: 5e-3.
+    pub error: Option<f64>,
+    /// Longest distance that a layer slides, m; `None`: 100 blocks.
+    pub distance: Option<f64>,
 }
 
-impl Asked {
+/// Standard error of the layer's friction coefficient over it where none is given.
+const LAYER_ERROR: f64 = 5e-3;
+
+impl SlidingOptions {
+    /// When the layer's runs end.
+    pub(crate) fn bounds(&self) -> StopBounds {
+        StopBounds { error: self.error.unwrap_or(LAYER_ERROR), distance: self.distance }
+    }
+
     /// What a table was asked for with this line of its header; `None` where a layer slid.
     pub(super) fn of_table(method: Option<&str>) -> Option<Self> {
         let mut numbers = method?.strip_prefix("steady")?.split(|c: char| !c.is_ascii_digit());
         let points = numbers.find_map(|number| number.parse().ok());
-        Some(Self { method: Some(SweepMethod::Steady), points, has_error: false, has_distance: false })
+        Some(Self { method: Some(SweepMethod::Steady), points, ..Self::default() })
     }
 
     /// The method of a sweep of `scene`, and what the table's header says of it.
@@ -78,7 +93,7 @@ impl Asked {
         if let Some(lacks) = lacks {
             return Err(MethodError::Lacks(lacks));
         }
-        let of_the_layer = [(self.has_error, "--error"), (self.has_distance, "--distance")];
+        let of_the_layer = [(self.error.is_some(), "--error"), (self.distance.is_some(), "--distance")];
         if let Some((_, option)) = of_the_layer.into_iter().find(|(is_given, _)| *is_given) {
             return Err(MethodError::OfTheLayer(option));
         }
@@ -173,16 +188,18 @@ mod tests {
                     surface = { kind = 'sinusoid', amplitude = 1e-5, wavelength = 1e-3, points_per_wavelength = 6 }";
         let scene = Scene::parse(text, "sine.toml".as_ref()).unwrap();
         let asked = |method: &str, points: Option<u32>| {
-            let asked = Asked::of_table(Some(method)).map(|asked| (asked.method, asked.points));
+            let asked = SlidingOptions::of_table(Some(method)).map(|asked| (asked.method, asked.points));
             assert_eq!(asked, Some((Some(SweepMethod::Steady), points)), "{method}");
         };
         for points in [None, Some(24)] {
-            let ours = Asked { method: None, points, has_error: false, has_distance: false };
+            let ours = SlidingOptions { points, ..SlidingOptions::default() };
             let (_, header) = ours.choose(&scene).unwrap();
             asked(&header, Some(points.unwrap_or(16)));
         }
         asked("steady, on the map's own 128 x 64 points", Some(128));
         asked("steady, on 256 x 128 points by the waves of the map, which has 128 x 64", Some(256));
-        assert!(Asked::of_table(Some("layer: as asked for")).is_none() && Asked::of_table(None).is_none());
+        assert!(
+            SlidingOptions::of_table(Some("layer: as asked for")).is_none() && SlidingOptions::of_table(None).is_none()
+        );
     }
 }

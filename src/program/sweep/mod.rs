@@ -4,6 +4,7 @@ mod convergence;
 mod load_search;
 mod low_end;
 mod method;
+mod plan;
 mod plot;
 mod point;
 mod slide;
@@ -15,10 +16,9 @@ pub(super) mod values;
 
 use std::path::{Path, PathBuf};
 
-use asperity::element::{Basis, Load, OperatingPoint, SweepGrid, TableHeader, TableRow};
+use asperity::element::{Load, OperatingPoint};
 use asperity::model::Model;
-use asperity::scene::{FineRoughness, Initial, OutputGroup, ParameterError, Path as Displacement, Phase, Scene};
-use rayon::prelude::*;
+use asperity::scene::{Initial, OutputGroup, ParameterError, Path as Displacement, Phase, Scene};
 
 use super::cli::{Sliding, Sweep};
 use super::draft::TablePlace;
@@ -28,23 +28,25 @@ use super::files::{
 use super::interrupt::Farewell;
 use super::terminal::{self, lines, warn};
 use load_search::{heights, rest_separation};
-pub(crate) use method::{Asked, Method, MethodError, SweepMethod};
+pub(crate) use method::Method;
+pub use method::{MethodError, SlidingOptions, SweepMethod};
+pub use plan::{Loads, SweepOptions, SweepPlan};
 pub(crate) use plot::with_prefix;
 use point::SteadySliding;
 use point::{MIN_BLOCKS, PointResult};
 pub(crate) use point::{SMALL as SMALL_FRICTION, StopBounds};
 use slide::Blocks;
-use solved::SolvedPoints;
 pub(crate) use solved::status as solved_status;
 pub(crate) use swept::{Swept, SweptPoint};
 use table_file::TableFile;
 pub(crate) use table_file::fingerprint as table_fingerprint;
-pub(crate) use table_file::{SweepTable, TableFileError};
+pub use table_file::{StoredRow, SweepTable, TableFileError};
 use values::Values;
 
 /// `asperity sweep` failed, or not all of its points are steady.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum SweepError {
+#[expect(missing_docs, reason = "the messages say what they are")]
+pub enum SweepError {
     #[error("the scene has [carrier.x]; expected none, since a sweep prescribes the speed")]
     BodyAlongX,
     #[error(transparent)]
@@ -76,7 +78,8 @@ pub(crate) enum SweepError {
 
 /// No slide of the layer could become steady.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum NeverSteady {
+#[expect(missing_docs, reason = "the messages say what they are")]
+pub enum NeverSteady {
     /// The profile, which reaches `longest` (m) from where the layer starts, is too short for the `needed` way (m) of a
     /// point.
     #[error(
@@ -124,47 +127,20 @@ fn merge(command: &Sweep, output: &PathBuf) -> Result<(), SweepError> {
 
 fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepError> {
     let scene = load_without_excitation(path, &command.set)?;
-    if scene.carrier.x.is_some() {
-        return Err(SweepError::BodyAlongX);
-    }
-    let (load, loads) = loads(command, &scene)?;
-    let (method, of_method) = command.sliding.asked().choose(&scene)?;
-    let warning = if matches!(method, Method::Layer) { hard_pressure(&scene, load, &loads) } else { None };
-    warning.iter().for_each(|warning| warn(warning));
-    let grid = SweepGrid { speeds: speeds.0.clone(), loads, temperatures: temperatures(command, &scene)? };
     let output = command.output.clone().unwrap_or_else(|| default_output(path, "sweep.csv"));
     let picture = picture(command, &output);
     let study = convergence::file(command.converged.as_ref(), path);
     let taken = sources(path, &scene).into_iter().chain(study.clone()).collect();
     check_outputs([&output].into_iter().chain(&picture), taken)?;
-    method.check(&scene)?;
-    let scene = relevant(scene);
-    let header = TableHeader {
-        fingerprint: fingerprint(&scene, command, load, &method)?,
-        scene: scene.name.clone(),
-        load,
-        rest_separation: separation_at_rest(&scene),
-        basis: Basis { method: Some(of_method), ..basis(&scene, convergence::found(study.as_deref(), &scene.name)?) },
-        grid,
-        low_end: None,
-    };
+    let convergence = convergence::found(study.as_deref(), &scene.name)?;
+    let plan = SweepPlan::new(scene, &options(command, speeds)?, convergence)?;
+    plan.warning().iter().for_each(|warning| warn(warning));
     let place = TablePlace::new(&output)?;
-    let file = TableFile::open(&place.path, &header, command.force)?;
-    let solved = match method {
-        Method::Steady(surface) => Some(SolvedPoints::new(&scene, &header.grid.temperatures, surface)?),
-        Method::Layer => None,
-    };
-    let find = |point: &OperatingPoint| match &solved {
-        Some(solved) => solved.row(*point, &header),
-        None => {
-            let scene = scene_at(&scene, point);
-            point::find(&scene, point.speed, load.force(point.load), command.sliding.bounds()).row(*point, &header)
-        }
-    };
-    run(command, find, &header, &file, &output)?;
-    let mut table = SweepTable { header, ..SweepTable::read(&place.path)? };
+    let file = TableFile::open(&place.path, plan.header(), command.force)?;
+    run(command, &plan, &file, &output)?;
+    let mut table = SweepTable { header: plan.header().clone(), ..SweepTable::read(&place.path)? };
     table.sort();
-    let few = solved.and_then(|solved| solved.few_points(table.rows.iter().map(|stored| &stored.row), &table.header));
+    let few = plan.few_points(table.rows.iter().map(|stored| &stored.row));
     few.iter().for_each(|warning| warn(warning));
     table.find_low_end(&output);
     table.write(&place.path)?;
@@ -173,24 +149,24 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
     finish(&output, picture.as_deref(), &table)
 }
 
-/// What the table rests on, for those who use it.
-fn basis(scene: &Scene, convergence: Option<String>) -> Basis {
-    let foundation = scene.layer.foundation.map(|kind| kind.word().to_owned());
-    let fine = scene.fine.as_ref().map(FineRoughness::describe);
-    let held = scene.carrier.z.map(|body| format!("load, on a carrier of {} kg", body.mass));
-    Basis { method: None, foundation, fine, convergence, held }
+fn options(command: &Sweep, speeds: &Values) -> Result<SweepOptions, SweepError> {
+    let loads = match (&command.pressures, &command.forces) {
+        (_, Some(forces)) => Loads::Forces(forces.0.clone()),
+        (Some(pressures), None) => Loads::Pressures(pressures.0.clone()),
+        (None, None) => return Err(SweepError::NoLoad),
+    };
+    Ok(SweepOptions {
+        speeds: speeds.0.clone(),
+        loads,
+        temperatures: command.temperatures.as_ref().map(|values| values.0.clone()),
+        sliding: command.sliding.options(),
+    })
 }
 
 /// Computes the points that are not done yet, on all cores.
-fn run(
-    command: &Sweep,
-    find: impl Fn(&OperatingPoint) -> TableRow + Sync,
-    header: &TableHeader,
-    file: &TableFile,
-    output: &Path,
-) -> Result<(), FileError> {
+fn run(command: &Sweep, plan: &SweepPlan, file: &TableFile, output: &Path) -> Result<(), FileError> {
     let in_shard = |index: usize| command.shard.is_none_or(|shard| shard.has(index));
-    let points = header.grid.points().enumerate().filter(|(index, _)| in_shard(*index)).map(|(_, point)| point);
+    let points = plan.header().grid.points().enumerate().filter(|(index, _)| in_shard(*index)).map(|(_, point)| point);
     let points: Vec<OperatingPoint> = points.collect();
     let is_done = |point: &OperatingPoint| file.done.iter().any(|stored| stored.row.point == *point);
     let left: Vec<OperatingPoint> = points.iter().filter(|point| !is_done(point)).copied().collect();
@@ -205,8 +181,8 @@ fn run(
         done.finish_and_clear();
         format!("{points} of {all} points are done")
     });
-    let work = left.par_iter().with_max_len(1).try_for_each(|point| {
-        file.add(&find(point))?;
+    let work = plan.find(&left, |row| {
+        file.add(&row)?;
         bar.inc(1);
         Ok(())
     });
@@ -214,19 +190,11 @@ fn run(
     work
 }
 
-/// Standard error of the layer's friction coefficient over it where none is given.
-const LAYER_ERROR: f64 = 5e-3;
-
 impl Sliding {
-    /// When the layer's runs end.
-    pub(crate) fn bounds(&self) -> StopBounds {
-        StopBounds { error: self.error.unwrap_or(LAYER_ERROR), distance: self.distance }
-    }
-
-    /// What decides the method.
-    pub(crate) fn asked(&self) -> Asked {
+    /// What of it is not the command line's.
+    pub(crate) fn options(&self) -> SlidingOptions {
         let Self { method, points, error, distance } = *self;
-        Asked { method, points, has_error: error.is_some(), has_distance: distance.is_some() }
+        SlidingOptions { method, points, error, distance }
     }
 }
 
@@ -245,39 +213,6 @@ fn finish(output: &PathBuf, picture: Option<&Path>, table: &SweepTable) -> Resul
     }
     let (failed, total) = (table.rows.iter().filter(|stored| !stored.row.is_steady()).count(), table.rows.len());
     if failed == 0 { Ok(()) } else { Err(SweepError::NotSteady { failed, total, path: output.to_owned() }) }
-}
-
-fn loads(command: &Sweep, scene: &Scene) -> Result<(Load, Vec<f64>), SweepError> {
-    match (&command.pressures, &command.forces) {
-        (_, Some(forces)) => Ok((Load::Force, forces.0.clone())),
-        (Some(pressures), None) => {
-            let area = scene.layer.area().ok_or(SweepError::NoArea)?;
-            Ok((Load::Pressure { area }, pressures.0.clone()))
-        }
-        (None, None) => Err(SweepError::NoLoad),
-    }
-}
-
-/// The warning where the largest of `loads` presses the layer harder than its links stand for.
-fn hard_pressure(scene: &Scene, load: Load, loads: &[f64]) -> Option<String> {
-    let largest = loads.iter().copied().fold(0.0, f64::max);
-    match load {
-        Load::Pressure { .. } => scene.hard_pressure("the largest of --pressures", largest),
-        Load::Force => scene.hard_pressure("the largest of --forces over the area", largest / scene.layer.area()?),
-    }
-}
-
-/// Those asked for, or the scene's own; none where it has none.
-fn temperatures(command: &Sweep, scene: &Scene) -> Result<Vec<f64>, SweepError> {
-    let own = scene.material.as_ref().and_then(|material| material.wlf.as_ref()).map(|wlf| wlf.temperature);
-    let Some(own) = own else {
-        return if command.temperatures.is_some() { Err(SweepError::NoWlf) } else { Ok(Vec::new()) };
-    };
-    let values = command.temperatures.clone().map_or_else(|| vec![own], |values| values.0);
-    for &temperature in &values {
-        with_temperature(scene, temperature).check().map_err(SweepError::Temperature)?;
-    }
-    Ok(values)
 }
 
 pub(crate) fn with_temperature(scene: &Scene, temperature: f64) -> Scene {
@@ -320,14 +255,6 @@ fn scene_at(scene: &Scene, point: &OperatingPoint) -> Scene {
         ..Phase::default()
     }];
     scene
-}
-
-fn fingerprint(scene: &Scene, command: &Sweep, load: Load, method: &Method) -> Result<String, serde_json::Error> {
-    // The same for all temperatures: each point has its own.
-    let scene = with_temperature(scene, 0.0);
-    let StopBounds { error, distance } = command.sliding.bounds();
-    let settings = method.settings(|| format!("{error:?} {distance:?}"));
-    table_file::fingerprint(&scene, &format!("{} {settings}", load.name()))
 }
 
 /// Steady sliding at one point, known to `bounds`; where the layer does not become steady, the status of the point.

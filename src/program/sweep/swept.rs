@@ -6,7 +6,7 @@ use asperity::steady::SteadySlide;
 
 use super::point::{SteadySliding, StopBounds};
 use super::solved::{self, SolvedPoints};
-use super::{Asked, Method, SweepError, relevant, steady_sliding, steady_sliding_at};
+use super::{Method, SlidingOptions, SweepError, relevant, steady_sliding, steady_sliding_at};
 
 /// What a table was swept with.
 #[derive(Debug)]
@@ -39,7 +39,7 @@ const LARGEST_CHANGE: f64 = 4.0;
 impl Swept {
     /// That of the `table` of a `scene`, for points at `temperatures` (K).
     pub(crate) fn of_table(scene: &Scene, table: &Table, temperatures: &[f64]) -> Result<Self, SweepError> {
-        let Some(asked) = Asked::of_table(table.basis.method.as_deref()) else { return Ok(Self::Layer) };
+        let Some(asked) = SlidingOptions::of_table(table.basis.method.as_deref()) else { return Ok(Self::Layer) };
         let (Method::Steady(surface), _) = asked.choose(scene)? else { return Ok(Self::Layer) };
         let points = Box::new(SolvedPoints::new(&relevant(scene.clone()), temperatures, surface)?);
         Ok(Self::Solved { points, rest_separation: table.rest_separation })

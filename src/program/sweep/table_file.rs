@@ -14,7 +14,8 @@ use crate::program::terminal::warn;
 
 /// A table cannot be read, continued or merged.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum TableFileError {
+#[expect(missing_docs, reason = "the messages say what they are")]
+pub enum TableFileError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]
@@ -56,20 +57,36 @@ fn some_of(points: &[String]) -> String {
 
 /// A row as it stands in a file: a table that is continued or merged keeps it to the letter.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct StoredRow {
-    pub(crate) row: TableRow,
+pub struct StoredRow {
+    /// The row.
+    pub row: TableRow,
     text: String,
 }
 
 /// A table read from a file.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct SweepTable {
-    pub(crate) header: TableHeader,
-    pub(crate) rows: Vec<StoredRow>,
+pub struct SweepTable {
+    /// What stands before the rows.
+    pub header: TableHeader,
+    /// The rows, those of points not yet found missing.
+    pub rows: Vec<StoredRow>,
 }
 
 impl SweepTable {
-    pub(crate) fn read(path: &Path) -> Result<Self, TableFileError> {
+    /// The table of rows that were found, in the order of the points.
+    pub fn new(header: TableHeader, rows: Vec<TableRow>) -> Self {
+        let rows = rows.into_iter().map(|row| StoredRow { text: row.line(), row });
+        let mut table = Self { header, rows: rows.collect() };
+        table.sort();
+        table.find_low_end(Path::new("table"));
+        table
+    }
+
+    /// Reads a table.
+    ///
+    /// # Errors
+    /// Where the file cannot be read, or is no such table.
+    pub fn read(path: &Path) -> Result<Self, TableFileError> {
         let text = read_text(path).map_err(FileError::io("read", path))?;
         let (table, corrupt) = Self::parse(&text, path)?;
         corrupt.into_iter().next().map_or(Ok(table), |error| Err(error.into()))
@@ -97,7 +114,8 @@ impl SweepTable {
         self.header.low_end = Table::parse(&self.text(), path).ok().map(|table| low_end(&table));
     }
 
-    fn text(&self) -> String {
+    /// The table as files have it.
+    pub fn text(&self) -> String {
         self.header.text() + &self.rows.iter().map(|stored| stored.text.as_str()).collect::<String>()
     }
 

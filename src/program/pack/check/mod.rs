@@ -28,7 +28,7 @@ const ROUNDING: f64 = 1e-6;
 
 /// An element or a patch cannot be compared with its layer.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum CheckError {
+pub enum CheckError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]
