@@ -25,6 +25,7 @@ mod patch;
 mod reference;
 mod report;
 mod result_file;
+mod run_summary;
 mod runner;
 mod simulate;
 mod surface;
@@ -67,9 +68,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>, library: Option<PathBuf>)
 
 /// Executes the command of the command line.
 fn run(arguments: Arguments, library: Option<PathBuf>) -> Result<ExitCode, Box<dyn Error>> {
-    if arguments.quiet {
-        terminal::be_quiet();
-    }
+    terminal::set_verbosity(arguments.quiet, arguments.verbose);
     match arguments.command {
         Command::Simulate(command) => run_simulate(&command)?,
         Command::Calibrate(command) => return Ok(calibrate::calibrate(&command)?),

@@ -53,8 +53,7 @@ fn page() -> String {
         // Writing to a text cannot fail.
         let _ = writeln!(page, "| `{}` | {unit} | {description} |", output.name);
     }
-    page +=
-        "\n## Commands\n\nAll of them take `-q`, `--quiet`: results and warnings alone, neither notes nor progress.\n";
+    page += "\n## Commands\n\nAll of them take `-q`, `--quiet`: results and warnings alone, neither notes nor progress; and `-v`,\n`--verbose`: every note where only some or their number would be printed.\n";
     let mut command = Arguments::command();
     command.build();
     for of in command.get_subcommands().filter(|of| !of.is_hide_set() && of.get_name() != "help") {

@@ -10,11 +10,12 @@ use indicatif::ProgressBar;
 use super::cli::Simulate;
 use super::elements::{ArraysError, ElementHistory, Span};
 use super::figure::{Figure as _, LayerPicture, TimeHistory, write_film};
-use super::files::{FileError, check_outputs, ends_in, load, named, sources};
+use super::files::{FileError, check_outputs, ends_in, load, named, print_beside, sources};
 use super::interrupt::fail;
 use super::result_file::ResultWriter;
+use super::run_summary::RunSummary;
 use super::runner::{CarrierSample, Rows, Runner};
-use super::terminal::{bar, note, warn};
+use super::terminal::{LabelledLine, bar, is_quiet, is_verbose, lines, note, warn};
 
 /// `asperity simulate` failed.
 #[derive(Debug, thiserror::Error)]
@@ -48,11 +49,23 @@ pub(crate) fn simulate(command: &Simulate, path: &Path) -> Result<(), SimulateEr
         return Err(error);
     }
     let (history, elements) = recorder.finish()?;
-    result?;
+    let mut summary = result?;
     if let (Some(path), Some(history)) = (&command.plot, history) {
         history.write(path)?;
     }
-    elements.map_or(Ok(()), |elements| write_elements(&elements, command))
+    if let Some(elements) = elements {
+        write_elements(&elements, command)?;
+    }
+    summary.push(("Written", written(command, &output)));
+    if is_quiet() { Ok(()) } else { Ok(print_beside([&output], &lines(&summary))?) }
+}
+
+/// The files of a run.
+fn written(command: &Simulate, output: &Path) -> String {
+    let pictures = command.contact.iter().map(|(_, picture)| picture);
+    let others = [&command.plot, &command.animate, &command.elements].into_iter().flatten();
+    let files = others.chain(pictures).map(|path| path.display().to_string());
+    [named(output)].into_iter().chain(files).collect::<Vec<_>>().join(", ")
 }
 
 /// Refuses a picture of a time after the run's `end` (s).
@@ -91,9 +104,10 @@ fn write_frames(elements: &ElementHistory, path: &Path) -> Result<(), FileError>
     write_film(rows.len(), |i| LayerPicture::in_film(elements, rows[i], span), path)
 }
 
-fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<(), SimulateError> {
-    let shown = recorder.history.as_ref().map_or(scene, TimeHistory::scene);
-    let runner = Runner::new(shown, Rows::PerPhase(command.points), 0.0).map_err(SimulateError::Start)?;
+/// Runs the scene; what the run comes to.
+fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<Vec<LabelledLine>, SimulateError> {
+    let shown = recorder.history.as_ref().map_or_else(|| scene.clone(), |history| history.scene().clone());
+    let runner = Runner::new(&shown, Rows::PerPhase(command.points), 0.0).map_err(SimulateError::Start)?;
     let mut runner = runner.with_rows_at(command.contact.iter().map(|&(time, _)| time).collect());
     let result = runner.run(&scene.excitation, |carrier, snapshot| recorder.row(carrier, snapshot));
     runner.take_warnings().iter().for_each(|warning| warn(warning));
@@ -101,19 +115,33 @@ fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<(),
     if let Some(inaccuracy) = runner.simulation().inaccuracy() {
         warn(&inaccuracy.to_string());
     }
-    match result {
-        Ok(_) => Ok(()),
-        Err(source) => Err(SimulateError::Run { source, time: recorder.time, output: recorder.output.clone() }),
+    if let Err(source) = result {
+        return Err(SimulateError::Run { source, time: recorder.time, output: recorder.output.clone() });
     }
+    let mut summary = recorder.summary.lines(&shown, runner.simulation());
+    if command.stats {
+        summary.extend(recorder.summary.statistics(&shown, runner.simulation()));
+    }
+    Ok(summary)
 }
 
+/// The switches of method *auto* in one line, each with why where every note is asked for.
 fn print_method_switches(switches: &[MethodSwitch]) {
-    const MOST: usize = 10;
-    for switch in switches.iter().take(MOST) {
-        note(&switch.to_string());
+    const MOST: usize = 4;
+    if is_verbose() {
+        switches.iter().for_each(|switch| note(&switch.to_string()));
+        return;
     }
+    let brief = |switch: &MethodSwitch| {
+        let driver = if switch.to_time_stepping { "time-stepping" } else { "event-driven" };
+        format!("{driver} from t = {:.4e} s on", switch.time)
+    };
+    let mut texts: Vec<String> = switches.iter().take(MOST).map(brief).collect();
     if switches.len() > MOST {
-        note(&format!("and {} more method switches", switches.len() - MOST));
+        texts.push(format!("and {} more switches (-v prints all)", switches.len() - MOST));
+    }
+    if !texts.is_empty() {
+        note(&format!("method auto: {}", texts.join(", ")));
     }
 }
 
@@ -125,6 +153,7 @@ struct Recorder {
     writer: ResultWriter,
     history: Option<TimeHistory>,
     elements: Option<ElementHistory>,
+    summary: RunSummary,
     progress: ProgressBar,
     duration: f64,
     time: f64,
@@ -143,6 +172,7 @@ impl Recorder {
             variables,
             history: command.plot.is_some().then(|| TimeHistory::new(scene)),
             elements: shows_elements.then(|| ElementHistory::new(scene)),
+            summary: RunSummary::new(),
             progress: bar(PROGRESS_LENGTH as u64),
             duration: scene.duration(),
             time: 0.0,
@@ -161,6 +191,7 @@ impl Recorder {
         if let Some(elements) = &mut self.elements {
             elements.add(carrier.time, snapshot);
         }
+        self.summary.add(snapshot);
         self.time = carrier.time;
         if self.duration > 0.0 && !self.progress.is_hidden() {
             self.progress.set_position((PROGRESS_LENGTH * self.time / self.duration) as u64);

@@ -82,17 +82,30 @@ pub(crate) fn warn(message: &str) {
 /// Prints a note to standard error.
 #[expect(clippy::print_stderr, reason = "standard output holds results only")]
 pub(crate) fn note(message: &str) {
-    if !QUIET.load(Ordering::Relaxed) {
+    if !is_quiet() {
         eprintln!("asperity: {message}");
     }
 }
 
 /// Whether notes and progress are left out: `--quiet`.
 static QUIET: AtomicBool = AtomicBool::new(false);
+/// Whether every note is printed: `--verbose`.
+static VERBOSE: AtomicBool = AtomicBool::new(false);
 
-/// Leaves notes and progress out from now on; warnings stay.
-pub(crate) fn be_quiet() {
-    QUIET.store(true, Ordering::Relaxed);
+/// From now on leaves notes and progress out where `quiet`, and prints every note where `verbose`; warnings stay.
+pub(crate) fn set_verbosity(quiet: bool, verbose: bool) {
+    QUIET.store(quiet, Ordering::Relaxed);
+    VERBOSE.store(verbose, Ordering::Relaxed);
+}
+
+/// Whether notes and progress are left out.
+pub(crate) fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
+
+/// Whether every note is to be printed.
+pub(crate) fn is_verbose() -> bool {
+    VERBOSE.load(Ordering::Relaxed)
 }
 
 /// A progress bar of `length` positions; where standard error is no terminal a line every ten seconds.
@@ -110,7 +123,7 @@ pub(crate) fn counter(what: &str) -> ProgressBar {
 }
 
 fn progress(length: Option<u64>, for_terminals: &str, as_lines: &str) -> ProgressBar {
-    let (target, template) = match QUIET.load(Ordering::Relaxed) {
+    let (target, template) = match is_quiet() {
         true => (ProgressDrawTarget::hidden(), for_terminals),
         false if io::stderr().is_terminal() => (ProgressDrawTarget::stderr(), for_terminals),
         false => (ProgressDrawTarget::term_like(Box::new(ProgressLines::new())), as_lines),

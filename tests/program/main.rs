@@ -29,6 +29,7 @@ mod program;
 mod report;
 mod scene_errors;
 mod seal_ring;
+mod spoken;
 mod steady;
 mod surface;
 mod sweep;

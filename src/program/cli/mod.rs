@@ -31,6 +31,9 @@ pub(crate) struct Arguments {
     /// Prints results and warnings alone, neither notes nor progress.
     #[arg(short, long, global = true)]
     pub(crate) quiet: bool,
+    /// Prints every note where only some or their number would be printed.
+    #[arg(short, long, global = true, conflicts_with = "quiet")]
+    pub(crate) verbose: bool,
 }
 
 #[derive(Debug, Subcommand)]
@@ -125,6 +128,9 @@ pub(crate) struct Simulate {
     /// row, and the profile.
     #[arg(long, value_name = "OUT.npz", value_parser = arrays(), conflicts_with = "patch")]
     pub(crate) elements: Option<PathBuf>,
+    /// Also prints what the run cost, and what would make it cheaper.
+    #[arg(long, conflicts_with = "patch")]
+    pub(crate) stats: bool,
 }
 
 impl Simulate {

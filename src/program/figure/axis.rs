@@ -190,7 +190,7 @@ fn prefix(largest: f64, unit: &str) -> (&'static str, f64) {
 }
 
 /// A quantity in three digits, with the prefix of its unit that suits `largest`: `1.23 mN`.
-pub(super) fn with_prefix(value: f64, largest: f64, unit: &str) -> String {
+pub(crate) fn with_prefix(value: f64, largest: f64, unit: &str) -> String {
     let (prefix, factor) = prefix(largest.abs(), unit);
     format!("{} {prefix}{unit}", rounded(value / factor, 3))
 }

@@ -24,6 +24,7 @@ use plotters::style::register_font;
 use plotters::style::text_anchor::{HPos, VPos};
 use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingErrorKind};
 
+pub(crate) use axis::with_prefix;
 pub(crate) use chart::{Curve, Stroke};
 pub(crate) use film::write_film;
 pub(crate) use ladders::{Ladder, LadderPanel, Ladders, Rung};

@@ -8,10 +8,10 @@ use asperity::patch::{MotionError, Patch, PatchRun, PatchVariable};
 use super::motion::MotionFile;
 use super::sources;
 use crate::program::cli::Simulate;
-use crate::program::figure::{Figure as _, PatchHistory};
-use crate::program::files::{FileError, check_outputs, load_patch, named};
+use crate::program::figure::{Figure as _, PatchHistory, with_prefix};
+use crate::program::files::{FileError, check_outputs, load_patch, named, print_beside};
 use crate::program::result_file::{CsvWriter, Field, ResultFileError};
-use crate::program::terminal::warn;
+use crate::program::terminal::{is_quiet, lines, warn};
 
 /// `asperity simulate --patch` failed.
 #[derive(Debug, thiserror::Error)]
@@ -40,17 +40,21 @@ pub(crate) fn simulate(command: &Simulate, patch_file: &Path, motion_file: &Path
     let mut result = Ok(());
     for (step, row) in motion.motions() {
         if let Err(source) = run.advance(&step) {
-            result = Err(PatchSimulateError::Run { source, time: run.time(), output });
+            result = Err(PatchSimulateError::Run { source, time: run.time(), output: output.clone() });
             break;
         }
         recorder.row(&mut run, motion.values(row))?;
     }
+    let forces = recorder.forces();
     let history = recorder.finish()?;
     result?;
-    match (&command.plot, history) {
-        (Some(path), Some(history)) => Ok(history.write(path)?),
-        _ => Ok(()),
+    if let (Some(path), Some(history)) = (&command.plot, history) {
+        history.write(path)?;
     }
+    let steps = format!("{} steps to t = {} s", motion.rows().len() - 1, run.time());
+    let files = [output.as_path()].into_iter().chain(command.plot.as_deref()).map(named).collect::<Vec<_>>();
+    let summary = lines(&[("At the end", forces), ("Run", steps), ("Written", files.join(", "))]);
+    if is_quiet() { Ok(()) } else { Ok(print_beside([&output], &summary)?) }
 }
 
 /// Writes the rows of a run to the file and keeps them for the plot.
@@ -85,6 +89,16 @@ impl PatchRecorder {
             history.add(run);
         }
         Ok(())
+    }
+
+    /// The forces of the last row.
+    fn forces(&self) -> String {
+        let is_shown = |variable: &PatchVariable| matches!(variable.name.as_str(), "F_x" | "F_y" | "F_z");
+        let shown = self.variables.iter().zip(&self.values).filter(|(variable, _)| is_shown(variable));
+        let text = |(variable, &value): (&PatchVariable, &f64)| {
+            format!("{} {}", variable.name, with_prefix(value, value, variable.unit.name()))
+        };
+        shown.map(text).collect::<Vec<_>>().join(", ")
     }
 
     fn finish(self) -> Result<Option<PatchHistory>, FileError> {

@@ -7,6 +7,7 @@ mod method;
 mod plan;
 mod plot;
 mod point;
+mod printed;
 mod slide;
 mod solved;
 mod steady;
@@ -203,14 +204,18 @@ fn picture(command: &Sweep, output: &Path) -> Option<PathBuf> {
     if command.shard.is_some() { None } else { picture_beside(output, command.plot.as_ref()) }
 }
 
-/// Draws the plot, says what lies at the low end and counts the points that are not steady.
+/// Draws the plot, prints friction and what lies at the low end, and counts the points that are not steady.
 fn finish(output: &PathBuf, picture: Option<&Path>, table: &SweepTable) -> Result<(), SweepError> {
     if let Some(picture) = picture {
         plot::draw(picture, table)?;
     }
-    if let Some(low_end) = &table.header.low_end {
-        print_beside([output], &lines(&[("Low end", low_end.clone())]))?;
+    let mut summary = if terminal::is_quiet() { Vec::new() } else { printed::lines(table) };
+    summary.extend(table.header.low_end.iter().map(|low_end| ("Low end", low_end.clone())));
+    if !terminal::is_quiet() {
+        let files = [output.as_path()].into_iter().chain(picture).map(named);
+        summary.push(("Written", files.collect::<Vec<_>>().join(", ")));
     }
+    print_beside([output], &lines(&summary))?;
     let (failed, total) = (table.rows.iter().filter(|stored| !stored.row.is_steady()).count(), table.rows.len());
     if failed == 0 { Ok(()) } else { Err(SweepError::NotSteady { failed, total, path: output.to_owned() }) }
 }
