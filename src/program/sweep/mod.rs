@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::element::{Basis, Load, OperatingPoint, SweepGrid, TableHeader, TableRow};
 use asperity::model::Model;
-use asperity::scene::{FineRoughness, Initial, OutputGroup, ParameterError, Path as Displacement, Phase, Scene};
+use asperity::scene::{FineRoughness, Initial, OutputGroup, ParameterError, Path as Displacement, Phase, Scene, Wlf};
 use rayon::prelude::*;
 
 use super::cli::{Sliding, Sweep};
@@ -62,6 +62,8 @@ pub(crate) enum SweepError {
     NoLoad,
     #[error("--temperatures: the scene has no material.wlf, so nothing in it depends on the temperature")]
     NoWlf,
+    #[error("--master: the scene has no material.wlf, by whose factors speeds would be shifted")]
+    NoMaster,
     #[error("--temperatures: {0}")]
     Temperature(ParameterError),
     #[error("{}: not a study of this scene's convergence: {problem}", .path.display())]
@@ -119,7 +121,8 @@ fn merge(command: &Sweep, output: &PathBuf) -> Result<(), SweepError> {
     let place = TablePlace::new(output)?;
     let table = SweepTable::merge(&command.merge, &place.path, command.force)?;
     place.finish()?;
-    finish(output, picture.as_deref(), &table)
+    draw(&table, picture.as_deref(), None)?;
+    finish(output, &table)
 }
 
 fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepError> {
@@ -136,7 +139,11 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
     let picture = picture(command, &output);
     let study = convergence::file(command.converged.as_ref(), path);
     let taken = sources(path, &scene).into_iter().chain(study.clone()).collect();
-    check_outputs([&output].into_iter().chain(&picture), taken)?;
+    check_outputs([&output].into_iter().chain(&picture).chain(&command.master), taken)?;
+    let master = match &command.master {
+        Some(path) => Some((path.as_path(), wlf(&scene).ok_or(SweepError::NoMaster)?)),
+        None => None,
+    };
     method.check(&scene)?;
     let scene = relevant(scene);
     let header = TableHeader {
@@ -170,7 +177,14 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
     table.write(&place.path)?;
     drop(file);
     place.finish()?;
-    finish(&output, picture.as_deref(), &table)
+    draw(&table, picture.as_deref(), master)?;
+    finish(&output, &table)
+}
+
+/// Draws friction over speed and, with the compound's shift, the master curve.
+fn draw(table: &SweepTable, picture: Option<&Path>, master: Option<(&Path, Wlf)>) -> Result<(), FileError> {
+    picture.map_or(Ok(()), |path| plot::draw(path, table))?;
+    master.map_or(Ok(()), |(path, wlf)| plot::draw_master(path, table, &wlf))
 }
 
 /// What the table rests on, for those who use it.
@@ -235,11 +249,8 @@ fn picture(command: &Sweep, output: &Path) -> Option<PathBuf> {
     if command.shard.is_some() { None } else { picture_beside(output, command.plot.as_ref()) }
 }
 
-/// Draws the plot, says what lies at the low end and counts the points that are not steady.
-fn finish(output: &PathBuf, picture: Option<&Path>, table: &SweepTable) -> Result<(), SweepError> {
-    if let Some(picture) = picture {
-        plot::draw(picture, table)?;
-    }
+/// Says what lies at the low end and counts the points that are not steady.
+fn finish(output: &PathBuf, table: &SweepTable) -> Result<(), SweepError> {
     if let Some(low_end) = &table.header.low_end {
         print_beside([output], &lines(&[("Low end", low_end.clone())]))?;
     }
@@ -269,15 +280,19 @@ fn hard_pressure(scene: &Scene, load: Load, loads: &[f64]) -> Option<String> {
 
 /// Those asked for, or the scene's own; none where it has none.
 fn temperatures(command: &Sweep, scene: &Scene) -> Result<Vec<f64>, SweepError> {
-    let own = scene.material.as_ref().and_then(|material| material.wlf.as_ref()).map(|wlf| wlf.temperature);
-    let Some(own) = own else {
+    let Some(wlf) = wlf(scene) else {
         return if command.temperatures.is_some() { Err(SweepError::NoWlf) } else { Ok(Vec::new()) };
     };
-    let values = command.temperatures.clone().map_or_else(|| vec![own], |values| values.0);
+    let values = command.temperatures.clone().map_or_else(|| vec![wlf.temperature], |values| values.0);
     for &temperature in &values {
         with_temperature(scene, temperature).check().map_err(SweepError::Temperature)?;
     }
     Ok(values)
+}
+
+/// The shift of the compound with temperature.
+fn wlf(scene: &Scene) -> Option<Wlf> {
+    scene.material.as_ref().and_then(|material| material.wlf)
 }
 
 pub(crate) fn with_temperature(scene: &Scene, temperature: f64) -> Scene {
