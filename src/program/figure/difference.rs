@@ -86,7 +86,8 @@ impl Comparison {
 
     /// The differences of some columns, which have the same unit, over the axis of their curves.
     pub(super) fn chart(&self, columns: &[&str], x: &Axis) -> Chart {
-        let shown = self.differences.iter().filter(|difference| columns.contains(&&*difference.column.name));
+        let find = |name: &&str| self.differences.iter().find(|difference| difference.column.name == *name);
+        let shown: Vec<&Difference> = columns.iter().filter_map(find).collect();
         let curve = |(look, difference): (usize, &Difference)| {
             let name = difference.column.name.clone();
             let [of_one, of_several] = ["largest".to_owned(), format!("largest of {name}")];
@@ -101,9 +102,8 @@ impl Comparison {
                 Curve { name: largest, look, stroke: Stroke::Rings, points: vec![difference.largest()] },
             ]
         };
-        let unit = self.differences.iter().find(|difference| columns.contains(&&*difference.column.name));
-        let unit = unit.map_or("", |difference| &difference.column.unit);
-        let curves: Vec<Curve> = shown.enumerate().flat_map(curve).collect();
+        let unit = shown.first().map_or("", |difference| &difference.column.unit);
+        let curves: Vec<Curve> = shown.iter().copied().enumerate().flat_map(curve).collect();
         let values = curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
         let y = Axis::linear(&format!("{} less {}", self.names[1], self.names[0]), unit, values, Fit::Round);
         Chart { title: String::new(), x: x.clone(), y, curves }
