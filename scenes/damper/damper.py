@@ -2,8 +2,8 @@
 
     damper.py ASPERITY FOLDER [--loads 0.01,0.02,...]
 
-ASPERITY is the program. FOLDER gets damper.csv: load (N), the largest amplitude (µm) over the frequency and the
-frequency (Hz) of it, and the amplitude (µm) of a Jenkins element by one harmonic. Loads run on all cores.
+ASPERITY is the program. FOLDER gets damper.csv: load, the largest amplitude over the frequency and the frequency of
+it, and the amplitude of a Jenkins element by one harmonic. Loads run on all cores.
 """
 
 import argparse
@@ -106,9 +106,9 @@ def main():
         found = list(pool.map(lambda load: largest(arguments.program, arguments.folder, load), arguments.loads))
     with open(arguments.folder / "damper.csv", "w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["load", "amplitude_um", "frequency", "jenkins_one_harmonic_um"])
+        writer.writerow(["load [N]", "amplitude [m]", "frequency [Hz]", "one_harmonic [m]"])
         for load, (peak, frequency) in zip(arguments.loads, found):
-            row = [load, 1e6 * peak, frequency, 1e6 * one_harmonic(load)[0]]
+            row = [load, peak, frequency, one_harmonic(load)[0]]
             writer.writerow([f"{value:.6g}" for value in row])
             print("  ".join(f"{value:12.5g}" for value in row))
 

@@ -13,9 +13,8 @@ if [ $# -gt 0 ] && [ "${1#-}" = "$1" ]; then
 fi
 mkdir -p "$folder"
 
-cargo build --release --locked --manifest-path "$root/Cargo.toml"
-asperity=${CARGO_TARGET_DIR:-$root/target}/release/asperity
+asperity=$("$root/scenes/program")
 python3 "$here/damper.py" "$asperity" "$folder" "$@"
-"$asperity" plot "$folder/damper.csv" --x load --y amplitude_um --y jenkins_one_harmonic_um --labels damper -o "$folder/damper.svg" \
-    --title "Largest amplitude over frequency in micrometres"
+"$asperity" plot "$folder/damper.csv" --x load --y amplitude --y one_harmonic -o "$folder/damper.svg" \
+    --title "Largest amplitude over frequency: the scene, and a Jenkins element by one harmonic"
 echo "$folder/damper.svg"

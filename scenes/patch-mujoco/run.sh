@@ -12,9 +12,8 @@ mkdir -p "$folder"
 folder=$(cd "$folder" && pwd)
 
 python=$("$root/tests/python/environment.sh" "$folder/venv" "$here/requirements.txt")
-cargo build --release --locked --bin asperity --manifest-path "$root/Cargo.toml"
 cargo rustc --release --locked --lib --no-default-features --crate-type cdylib --manifest-path "$root/Cargo.toml"
-asperity=${CARGO_TARGET_DIR:-$root/target}/release/asperity
+asperity=$("$root/scenes/program")
 "$asperity" sweep "$here/road.toml" --speeds 1e-3..10/13 --pressures 5e3,2e4,5e4,1e5,2e5,4e5 \
     --temperatures 293.15,308.15,323.15,343.15,363.15,393.15 --points 4096 -o "$here/tread.table.csv" \
     --plot "$folder/sweep.svg"

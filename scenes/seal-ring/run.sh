@@ -10,8 +10,7 @@ root=$(cd "$here/../.." && pwd)
 folder=${1:-$root/target/seal-ring}
 mkdir -p "$folder"
 
-cargo build --release --locked --manifest-path "$root/Cargo.toml"
-asperity=${CARGO_TARGET_DIR:-$root/target}/release/asperity
+asperity=$("$root/scenes/program")
 python3 "$here/ring.py" motion > "$folder/motion.csv"
 "$asperity" simulate --patch "$here/ring.toml" --motion "$folder/motion.csv" -o "$folder/ring.csv" --plot "$folder/ring.svg"
 # At two opposite places, near the inner edge.

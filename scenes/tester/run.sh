@@ -9,14 +9,13 @@ root=$(cd "$here/../.." && pwd)
 folder=${1:-$root/target/tester}
 mkdir -p "$folder"
 
-cargo build --release --locked --manifest-path "$root/Cargo.toml"
-asperity=${CARGO_TARGET_DIR:-$root/target}/release/asperity
+asperity=$("$root/scenes/program")
 "$asperity" simulate "$here/tester.toml" -o "$folder/tester.csv" --points 4000
 "$asperity" plot "$folder/tester.csv" --y carrier.drive_x --labels tester --title "Force of the arm on the block" -o "$folder/force.svg"
 
 # The law of the ten masses together under 20 N: 6 N + 10 N exp(-0.3 log10(v/v_0)^2), constant up to v_0 = 1 mm/s.
 awk 'BEGIN {
-    print "speed,friction"
+    print "speed [m/s],friction [N]"
     for (i = 0; i <= 200; i++) {
         v = 0.0025 * i
         decades = v > 0.001 ? log(v / 0.001) / log(10) : 0

@@ -65,7 +65,7 @@ pub(crate) fn compare(command: &Compare) -> Result<(), CompareError> {
     points.extend(rows.iter().map(|row| row.point));
     let points = points.into_iter().filter_map(|point| Some((point, curves.at(&point)?))).collect();
     let swept = ModelCurves { name: "swept", stroke: Stroke::Line, points };
-    measured_friction::picture(&grid, &rows, &[swept]).write(&picture)?;
+    measured_friction::picture(&table.header.scene, &grid, &rows, &[swept]).write(&picture)?;
     Ok(print_beside([&picture], &summary(command, &within, &picture))?)
 }
 

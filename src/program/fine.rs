@@ -7,7 +7,7 @@ use asperity::model::{FineFriction, Flash, FlashKernel, FrictionLaw};
 use asperity::scene::{FineRoughness, Scene, Spectrum};
 use asperity::steady::persson::WholeFriction;
 
-use super::figure::{Curve, Panel, SideBySide, Stroke};
+use super::figure::{Curve, Panel, PanelRow, SideBySide, Stroke};
 use super::terminal::{decimal, rounded};
 
 /// Speeds (m/s) and pressures (Pa) at which the law is printed.
@@ -236,8 +236,8 @@ pub(super) fn picture(scene: &Scene) -> Option<SideBySide> {
     };
     let curves = temperatures.into_iter().enumerate().filter_map(curve).collect();
     let title = format!("friction below the profile, mu_h, under {} MPa", MIDDLE / 1e6);
-    let panels = vec![Panel { title, curves }];
-    Some(SideBySide { x_title: "speed in m/s".into(), y_title: "friction coefficient".into(), panels })
+    let row = PanelRow { y_title: "friction coefficient".into(), panels: vec![Panel { title, curves }] };
+    Some(SideBySide { title: String::new(), x_title: "speed in m/s".into(), rows: vec![row] })
 }
 
 #[cfg(test)]

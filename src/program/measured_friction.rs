@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use asperity::calibration::{Measured, Measurements, MeasurementsError};
 use asperity::element::{Load, OperatingPoint};
 
-use super::figure::{Curve, Panel, SideBySide, Stroke};
+use super::figure::{Curve, Panel, PanelRow, SideBySide, Stroke};
 use super::files::{self, FileError};
 use super::sweep::with_prefix;
 use super::terminal::rounded;
@@ -139,7 +139,7 @@ pub(crate) struct ModelCurves {
 
 /// Measured points with bars of a standard deviation to each side, and curves: a panel a temperature and a colour a
 /// pressure, or of one temperature a panel a pressure.
-pub(crate) fn picture(grid: &CurveGrid, measured: &[Measured], curves: &[ModelCurves]) -> SideBySide {
+pub(crate) fn picture(title: &str, grid: &CurveGrid, measured: &[Measured], curves: &[ModelCurves]) -> SideBySide {
     let kelvin = |temperature: &Option<Cluster>| {
         temperature.map(|cluster| format!("{} K", rounded(cluster.mean, 5))).unwrap_or_default()
     };
@@ -187,7 +187,8 @@ pub(crate) fn picture(grid: &CurveGrid, measured: &[Measured], curves: &[ModelCu
             })
             .collect(),
     };
-    SideBySide { x_title: "speed in m/s".into(), y_title: "friction coefficient".into(), panels }
+    let row = PanelRow { y_title: "friction coefficient".into(), panels };
+    SideBySide { title: title.to_owned(), x_title: "speed in m/s".into(), rows: vec![row] }
 }
 
 #[cfg(test)]

@@ -25,6 +25,7 @@ mod patch_check;
 mod patch_maps;
 mod patch_simulate;
 mod peers;
+mod pictures;
 mod program;
 mod report;
 mod scene_errors;

@@ -56,6 +56,34 @@ fn options_that_do_not_go_together_are_refused() {
     assert!(message.contains("make a profile periodic, and it is"), "{message}");
 }
 
+/// Two files are compared where their rows can be: at the same places, or along an axis that increases in both.
+#[test]
+fn a_plot_compares_two_files_in_words() {
+    let folder = scratch("options-compare");
+    let [first, second, picture] = ["first.csv", "second.csv", "out.svg"].map(|name| folder.join(name));
+    fs::write(&first, "time,u,F_x,mode\n0,0,0,free\n1,1,-10,stick\n2,0,-20,slip\n").unwrap();
+    fs::write(&second, "time,u,F_x,mode\n0,0,0,free\n0.5,1,-5,stick\n1.5,1,-16,stick\n2,0,-20,slip\n").unwrap();
+    let compared = |files: &[&Path], options: &[&str]| {
+        let mut command = asperity();
+        command.arg("plot").args(files).arg("--compare").args(options).arg("-o").arg(&picture);
+        command
+    };
+    let text = run(&mut compared(&[&first, &second], &["--y", "F_x"]));
+    // Straight from -5 to -16 N: -10.5 N at 1 s.
+    assert!(text.contains("F_x: -0.5 N at time = 1 s, 2.5 % of its range in first, -20 to 0 N"), "{text}");
+    let drawn = fs::read_to_string(&picture).unwrap();
+    assert!(drawn.contains("second less first in mN\n") && drawn.contains("difference of F_x\n"), "{drawn}");
+    // All columns of numbers, and of them the one that differs most.
+    let text = run(&mut compared(&[&first, &first], &[]));
+    assert!(text.contains("2 columns are the same to the last digit"), "{text}");
+    let refused = |files: &[&Path], options: &[&str]| {
+        String::from_utf8(compared(files, options).output().unwrap().stderr).unwrap()
+    };
+    let message = refused(&[&first, &second], &["--x", "u", "--y", "F_x"]);
+    assert!(message.contains("expected u to increase from row to row in both files"), "{message}");
+    assert!(refused(&[&first], &["--y", "F_x"]).contains("--compare: expected two files, found 1"));
+}
+
 /// The first line of a command's help says what the command does, not what its options share.
 #[test]
 fn help_begins_with_what_the_command_does() {

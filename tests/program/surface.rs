@@ -219,6 +219,10 @@ fn a_profile_is_smoothed() {
     // 100 points a wave, and the filter's weights end at 7e-7.
     near(&found["rms_slope"], slope(0.5, 0.5_f64.powi(16)), 1e-4);
     near(&found["removed"]["rms_slope"], slope(0.5, 1.0 - 0.5_f64.powi(16)), 1e-4);
+    let picture = folder.join("smooth.svg");
+    findings(&source, &[&options[..3], &["-o", picture.to_str().unwrap()]].concat());
+    let drawn = fs::read_to_string(picture).unwrap();
+    assert!(drawn.contains("as read\n") && drawn.contains("smoothed\n"), "both are drawn: {drawn}");
     near(&findings(&written, &["--periodic"])["rms_slope"], slope(0.5, 0.5_f64.powi(16)), 1e-4);
     assert!(failure(&["surface", source.to_str().unwrap(), "--smooth", "0"]).contains("--smooth"));
 }

@@ -250,6 +250,7 @@ fn invalid_commands_are_refused() {
     assert!(asked(&["--speeds", "1", "--pressures", "1e5"]).contains("give --forces"));
     assert!(asked(&["--speeds", "1"]).contains("expected --pressures or --forces"));
     assert!(asked(&["--speeds", "1", "--forces", "1", "--temperatures", "300"]).contains("no material.wlf"));
+    assert!(asked(&["--speeds", "1", "--forces", "1", "--master", "master.svg"]).contains("no material.wlf"));
     assert!(asked(&["--speeds", "2..1/3", "--forces", "1"]).contains("a < b"));
     assert!(asked(&["--speeds", "1", "--forces", "1", "--shard", "3/2"]).contains("I from 1 to N"));
     assert!(!table.exists());
@@ -334,6 +335,26 @@ fn two_maxima_move_with_the_temperature() {
     for (here, (i, bound)) in shifted.iter().zip([(1, 0.01), (5, 0.01), (6, 0.04)]) {
         let there = reference[i];
         assert!((here[0] - there[0]).abs() <= bound * there[0], "{} m/s: {here:?}, {there:?}", speeds[i]);
+    }
+}
+
+/// The picture of a sweep has the scene's name, markers at its points and a chart for each part of friction; that of the
+/// master curve has the speed at the reference temperature.
+#[test]
+fn a_sweep_is_drawn_over_speed_and_over_the_shifted_speed() {
+    let folder = scratch("sweep-drawn");
+    let scene = crate::common::root().join("scenes/road/road.toml");
+    let pictures = ["speed.svg", "master.svg"].map(|name| folder.join(name));
+    let [plot, master] = pictures.each_ref().map(|path| path.to_str().unwrap());
+    let points = ["--speeds", "1e-3..1/3", "--pressures", "3e5", "--temperatures", "283.15,303.15"];
+    sweep(&scene, &folder.join("table.csv"), &[&points[..], &["--plot", plot, "--master", master]].concat());
+    let texts = pictures.map(|path| fs::read_to_string(path).unwrap());
+    for (text, x) in texts.iter().zip(["speed in m/s", "a_T v in m/s, at 293.15 K"]) {
+        for part in ["road", "friction coefficient", "hysteresis", "adhesion", "283.15 K", "303.15 K", x] {
+            assert!(text.contains(&format!("\n{part}\n")), "{part}: {text}");
+        }
+        // Discs of the first temperature, each with its edge, at three points of three charts and in the legend.
+        assert_eq!(text.matches("<circle").count(), 2 * (3 * 3 + 1), "{text}");
     }
 }
 

@@ -294,7 +294,7 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<ExitCode, CalibrateError>
         if let Some(picture) = &picture {
             let grid = CurveGrid::new(calibrated.problem.points.iter());
             let curves = work.curves(&grid, &calibrated)?;
-            measured_friction::picture(&grid, &measurements.rows, &curves).write(picture)?;
+            measured_friction::picture(&free.scene.name, &grid, &measurements.rows, &curves).write(picture)?;
         }
         let files: Vec<&Path> =
             [Some(&output), picture.as_ref(), table.as_ref()].into_iter().flatten().map(PathBuf::as_path).collect();

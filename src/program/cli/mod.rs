@@ -167,8 +167,13 @@ pub(crate) struct Plot {
     #[arg(long, value_name = "COLUMN", default_value = "time")]
     pub(crate) x: String,
     /// A column for the vertical axis. May be repeated; columns of another unit have a chart of their own below.
-    #[arg(long, value_name = "COLUMN", required = true)]
+    #[arg(long, value_name = "COLUMN", required_unless_present = "compare")]
     pub(crate) y: Vec<String>,
+    /// Compares two files: draws the second less the first below the curves, and says how large that gets, and where.
+    /// Rows of the second are interpolated to those of the first. Without --y all columns are compared, and that which
+    /// differs most is drawn.
+    #[arg(long, conflicts_with = "from_motion")]
+    pub(crate) compare: bool,
     /// Draws the rows alone in which a column has this value, a number or a text: pressure=2e5, status=steady. May be
     /// repeated.
     #[arg(long = "where", value_name = "COLUMN=VALUE", value_parser = Condition::parse)]
@@ -447,7 +452,7 @@ impl Reading {
 }
 
 /// Options of a sweep that --merge does not take.
-const OF_A_SCENE: [&str; 11] = [
+const OF_A_SCENE: [&str; 12] = [
     "speeds",
     "pressures",
     "forces",
@@ -457,6 +462,7 @@ const OF_A_SCENE: [&str; 11] = [
     "error",
     "distance",
     "shard",
+    "master",
     "converged",
     "set",
 ];
@@ -483,9 +489,13 @@ pub(crate) struct Sweep {
     /// scene's file name with .sweep.csv.
     #[arg(short, long, value_name = "TABLE.csv")]
     pub(crate) output: Option<PathBuf>,
-    /// The plot to write, as SVG or PNG according to the file name. Default: the table's name with .svg.
+    /// The plot to write, as SVG or PNG according to the file name. Points that are not steady, or not converged, are
+    /// hollow. Default: the table's name with .svg.
     #[arg(long, value_name = "OUT.svg", value_parser = picture(), conflicts_with = "shard")]
     pub(crate) plot: Option<PathBuf>,
+    /// Also plots the master curve: friction over a_T v, the speed at the reference temperature of material.wlf.
+    #[arg(long, value_name = "OUT.svg", value_parser = picture(), conflicts_with = "shard")]
+    pub(crate) master: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) sliding: Sliding,
     /// Computes only share I of N of the points, I from 1 to N.

@@ -40,7 +40,7 @@ fn measured(runs: &[RunRow], value: fn(&Pair) -> f64) -> [Curve; 4] {
         Curve { name: name.into(), look, stroke, points }
     };
     [
-        curve("this scene", 0, Stroke::Line, |run| run.variant.is_of_ladder()),
+        curve("this scene", 0, Stroke::Marked, |run| run.variant.is_of_ladder()),
         curve("twice the length", 1, Stroke::Rings, |run| run.variant.doubled),
         curve("another split", 4, Stroke::Rings, |run| run.variant.split),
         curve("other seeds", 2, Stroke::Rings, |run| run.variant.seed_shift > 0),

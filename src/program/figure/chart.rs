@@ -7,7 +7,8 @@ use plotters::prelude::*;
 
 use super::axis::Axis;
 use super::{
-    Backend, Canvas, DrawResult, FINE, GRID, INK, LINE_WIDTH, TEXT_SIZE, TICK_SIZE, colour, text_style, text_width,
+    Backend, Canvas, DrawResult, FINE, GRID, INK, LINE_WIDTH, SHARP, TEXT_SIZE, TICK_SIZE, colour, text_style,
+    text_width,
 };
 
 /// Between the edges of a chart and its axes; more at the right, where half of a tick's label stands.
@@ -23,6 +24,7 @@ const TICK: u32 = 5 * FINE;
 const LABEL: (u32, u32) = (42 * FINE, 28 * FINE);
 /// Radius of a circle at a point.
 const CIRCLE: i32 = 4 * FINE as i32;
+const DOT: i32 = 3 * FINE as i32 / 2;
 pub(super) const MARKER: i32 = 5 * FINE as i32;
 
 pub(super) const LEGEND_LINE: u32 = 30 * FINE;
@@ -37,8 +39,12 @@ pub(crate) enum Stroke {
     Dotted,
     /// A circle at every point, and no line.
     Rings,
+    /// A dot at every point, and no line.
+    Dots,
     /// A line with a marker at every point.
     Marked,
+    /// The outline of a marker at every point, and no line.
+    Hollow,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -79,10 +85,42 @@ impl Chart {
         self.curves.iter().try_for_each(|curve| {
             let drawn = |point: &(f64, f64)| Some((self.x.coordinate(point.0)?, self.y.coordinate(point.1)?));
             let points: Vec<_> = curve.points.iter().filter_map(drawn).collect();
-            draw_line(&mut context, points.clone(), curve.stroke, curve.look)?;
-            if curve.stroke == Stroke::Marked { draw_markers(canvas, &context, &points, curve.look) } else { Ok(()) }
+            match curve.stroke {
+                Stroke::Hollow => draw_markers(canvas, &context, &points, curve.look, MarkerFill::Hollow),
+                Stroke::Marked => {
+                    draw_line(&mut context, points.clone(), curve.stroke, curve.look)?;
+                    draw_markers(canvas, &context, &points, curve.look, MarkerFill::Full)
+                }
+                stroke => {
+                    let column = |point: &(f64, f64)| context.backend_coord(point).0 / COLUMN;
+                    let points = outline(&points, column);
+                    draw_line(&mut context, points, stroke, curve.look)
+                }
+            }
         })
     }
+}
+
+/// Subpixels of a column of a PNG's pixels.
+const COLUMN: i32 = (FINE / SHARP) as i32;
+
+/// Points that look like all of `points`: of those that follow each other within a column the first, the lowest, the
+/// highest and the last. What swings within a column keeps its height, however many rows it takes.
+fn outline(points: &[(f64, f64)], column: impl Fn(&(f64, f64)) -> i32) -> Vec<(f64, f64)> {
+    let columns: Vec<i32> = points.iter().map(column).collect();
+    let mut kept = Vec::new();
+    let mut start = 0;
+    for part in columns.chunk_by(|a, b| a == b) {
+        let part = &points[start..start + part.len()];
+        let by_height = |a: &usize, b: &usize| part[*a].1.total_cmp(&part[*b].1);
+        let [low, high] =
+            [(0..part.len()).min_by(by_height), (0..part.len()).max_by(by_height)].map(Option::unwrap_or_default);
+        let mut seen = [0, low, high, part.len() - 1];
+        seen.sort_unstable();
+        kept.extend(seen.chunk_by(|a, b| a == b).map(|same| part[same[0]]));
+        start += part.len();
+    }
+    kept
 }
 
 /// The plotting area of a chart, with nothing drawn but the title.
@@ -128,6 +166,8 @@ pub(super) fn draw_line<B: Backend>(
     let line = colour(look).stroke_width(LINE_WIDTH);
     if stroke == Stroke::Rings {
         context.draw_series(points.into_iter().map(|point| Circle::new(point, CIRCLE, translucent(colour(look)))))?;
+    } else if stroke == Stroke::Dots {
+        context.draw_series(points.into_iter().map(|point| Circle::new(point, DOT, colour(look).filled())))?;
     } else if let Some((dash, gap)) = stroke.dashes() {
         context.draw_series([DashedPathElement::new(points, dash, gap, line)])?;
     } else {
@@ -142,10 +182,11 @@ fn draw_markers<B: Backend>(
     context: &Context<'_, B>,
     points: &[(f64, f64)],
     look: usize,
+    fill: MarkerFill,
 ) -> DrawResult {
     let (left, top) = canvas.get_base_pixel();
     let places = points.iter().map(|point| context.backend_coord(point));
-    places.into_iter().try_for_each(|(x, y)| draw_marker(canvas, (x - left, y - top), look, MarkerFill::Full))
+    places.into_iter().try_for_each(|(x, y)| draw_marker(canvas, (x - left, y - top), look, fill))
 }
 
 /// A line through many circles is seen behind them.
@@ -159,7 +200,7 @@ impl Stroke {
         match self {
             Self::Dashed => Some((6 * FINE, 4 * FINE)),
             Self::Dotted => Some((2 * FINE, 4 * FINE)),
-            Self::Line | Self::Rings | Self::Marked => None,
+            Self::Line | Self::Rings | Self::Dots | Self::Marked | Self::Hollow => None,
         }
     }
 }
@@ -289,6 +330,15 @@ impl Symbol {
             Self::Line(Stroke::Rings, colour) => {
                 canvas.draw(&Circle::new((centre, middle), CIRCLE, translucent(colour)))?;
             }
+            Self::Line(Stroke::Dots, colour) => {
+                let places = [left, i32::midpoint(left, centre), centre, i32::midpoint(centre, right), right];
+                let dot = |x: i32| canvas.draw(&Circle::new((x, middle), DOT, colour.filled()));
+                places.into_iter().try_for_each(dot)?;
+            }
+            Self::Line(Stroke::Hollow, colour) => {
+                canvas.draw(&Circle::new((centre, middle), MARKER, WHITE.filled()))?;
+                canvas.draw(&Circle::new((centre, middle), MARKER, colour.stroke_width(LINE_WIDTH)))?;
+            }
             Self::Line(stroke, colour) => {
                 let (dash, gap) = stroke.dashes().unwrap_or((SYMBOL, 1));
                 let starts = (left..right).step_by((dash + gap) as usize);
@@ -314,6 +364,22 @@ impl Symbol {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A thousand points a column: those of each that show, and no others, in their order.
+    #[test]
+    fn an_outline_keeps_the_extremes_and_the_order() {
+        let points: Vec<(f64, f64)> = (0..100_000).map(|i| (f64::from(i), f64::from(i * 7919 % 100_003))).collect();
+        let drawn = outline(&points, |point| point.0 as i32 / 1000);
+        assert!(drawn.len() <= 400 && drawn.windows(2).all(|pair| pair[0].0 < pair[1].0), "{}", drawn.len());
+        for (part, column) in points.chunks(1000).zip(0..) {
+            let ends = |points: &mut dyn Iterator<Item = &(f64, f64)>| {
+                points.fold((f64::MAX, f64::MIN), |(low, high), point| (low.min(point.1), high.max(point.1)))
+            };
+            let mut kept = drawn.iter().filter(|point| point.0 as i32 / 1000 == column);
+            assert_eq!(ends(&mut kept), ends(&mut part.iter()));
+        }
+        assert_eq!(outline(&points[..3], |point| point.0 as i32), points[..3]);
+    }
 
     #[test]
     fn a_legend_has_each_name_once_and_no_line_too_long() {

@@ -2,6 +2,7 @@
 
 mod axis;
 mod chart;
+mod difference;
 mod film;
 mod ladders;
 mod layer;
@@ -29,7 +30,9 @@ pub(crate) use chart::{Curve, Stroke};
 pub(crate) use film::write_film;
 pub(crate) use ladders::{Ladder, LadderPanel, Ladders, Rung};
 pub(crate) use layer::LayerPicture;
-pub(crate) use panels::{Below, LinearPanel, LinearStack, Panel, ProfilePicture, SideBySide, Stacked, TimeHistory};
+pub(crate) use panels::{
+    Below, LinearPanel, LinearStack, Panel, PanelRow, ProfileCurves, ProfilePicture, SideBySide, Stacked, TimeHistory,
+};
 pub(crate) use patch::PatchHistory;
 pub(crate) use plot::{PlotError, plot_files};
 use raster::Raster;

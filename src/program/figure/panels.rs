@@ -7,6 +7,9 @@ use super::axis::{Axis, Fit, is_loggable};
 use super::chart::{Chart, Curve, Legend, Stroke, Symbol};
 use super::{Backend, Canvas, DrawResult, FINE, Figure};
 
+/// The height of a title, pixels.
+const TITLE: u32 = 36;
+
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Panel {
     /// In [`Stacked`] the title of the vertical axis, in [`SideBySide`] that of the chart.
@@ -51,31 +54,66 @@ impl Figure for Stacked {
     }
 }
 
-/// Charts side by side with the same axes, a logarithmic horizontal and a linear vertical one, and one legend. There, a
-/// solid line stands for its colour, other strokes for those curves in any colour.
+/// Rows of charts side by side, all with the same logarithmic horizontal axis, the charts of a row with the same linear
+/// vertical one, and one legend. There, solid lines and markers stand for their colours, other strokes for those curves
+/// in any colour.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SideBySide {
+    pub(crate) title: String,
     /// The title of the horizontal axes.
     pub(crate) x_title: String,
+    /// From top to bottom, with as many panels each.
+    pub(crate) rows: Vec<PanelRow>,
+}
+
+/// Charts side by side, with the same axes.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct PanelRow {
     /// The title of the vertical axes.
     pub(crate) y_title: String,
+    /// Titles are shown in the first row alone.
     pub(crate) panels: Vec<Panel>,
 }
 
+/// The heights of the first row of charts, alone and with others below it, and of each of these, pixels.
+const ALONE: u32 = 480;
+const FIRST: u32 = 420;
+const OTHER: u32 = 280;
+
 impl Figure for SideBySide {
     fn size(&self) -> (u32, u32) {
-        (self.width(), 480 + self.legend().height() / FINE)
+        let title = if self.title.is_empty() { 0 } else { TITLE };
+        let rows = if self.rows.len() == 1 { ALONE } else { FIRST + OTHER * (self.rows.len() as u32 - 1) };
+        (self.width(), title + rows + self.legend().height() / FINE)
+    }
+
+    fn title(&self) -> &str {
+        &self.title
     }
 
     fn draw<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {
-        let x = Axis::logarithmic(&self.x_title, points(&self.panels).map(|point| point.0));
-        let y = Axis::linear(&self.y_title, "", points(&self.panels).map(|point| point.1), Fit::Round);
+        let all = self.rows.iter().flat_map(|row| &row.panels);
+        let x = Axis::logarithmic(&self.x_title, points(all).map(|point| point.0));
         let legend = self.legend();
-        let (above, below) = canvas.split_vertically(legend.height());
+        let (above, mut below) = canvas.split_vertically(legend.height());
         legend.draw(&above)?;
-        let canvases = below.split_evenly((1, self.panels.len()));
+        for (i, row) in self.rows.iter().enumerate() {
+            let left = (self.rows.len() - 1 - i) as u32;
+            let (own, others) = below.split_vertically(below.dim_in_pixel().1 - left * OTHER * FINE);
+            row.draw(&own, &x, i == 0)?;
+            below = others;
+        }
+        Ok(())
+    }
+}
+
+impl PanelRow {
+    fn draw<B: Backend>(&self, canvas: &Canvas<B>, x: &Axis, is_first: bool) -> DrawResult {
+        let y = Axis::linear(&self.y_title, "", points(&self.panels).map(|point| point.1), Fit::Round);
+        let canvases = canvas.split_evenly((1, self.panels.len()));
         self.panels.iter().zip(&canvases).try_for_each(|(panel, canvas)| {
             let Panel { title, curves } = panel.clone();
+            let title = if is_first { title } else { String::new() };
             Chart { title, x: x.clone(), y: y.clone(), curves }.draw(canvas)
         })
     }
@@ -83,18 +121,19 @@ impl Figure for SideBySide {
 
 impl SideBySide {
     fn width(&self) -> u32 {
-        if self.panels.len() == 1 { 800 } else { 460 * self.panels.len() as u32 }
+        let panels = self.rows.iter().map(|row| row.panels.len()).max().unwrap_or_default();
+        if panels == 1 { 800 } else { 460 * panels as u32 }
     }
 
-    /// Solid lines first.
+    /// Those that stand for their colours first.
     fn legend(&self) -> Legend {
-        let curves = |solid: bool| {
-            let all = self.panels.iter().flat_map(|panel| &panel.curves);
-            all.filter(move |curve| (curve.stroke == Stroke::Line) == solid)
+        let curves = |coloured: bool| {
+            let all = self.rows.iter().flat_map(|row| &row.panels).flat_map(|panel| &panel.curves);
+            all.filter(move |curve| matches!(curve.stroke, Stroke::Line | Stroke::Marked) == coloured)
         };
-        let solid = curves(true).map(|curve| (curve.name.as_str(), Symbol::for_curve(curve)));
+        let coloured = curves(true).map(|curve| (curve.name.as_str(), Symbol::for_curve(curve)));
         let others = curves(false).map(|curve| (curve.name.as_str(), Symbol::for_stroke(curve.stroke)));
-        Legend::new(solid.chain(others), self.width() * FINE)
+        Legend::new(coloured.chain(others), self.width() * FINE)
     }
 }
 
@@ -261,18 +300,23 @@ impl Figure for TimeHistory {
 #[derive(Clone, Debug)]
 pub(crate) struct ProfilePicture {
     pub(crate) title: String,
-    /// x and z, m.
-    pub(crate) heights: Vec<(f64, f64)>,
-    /// Wave numbers (rad/m) and densities (m³).
-    pub(crate) spectrum: Vec<(f64, f64)>,
+    /// As it was read; `None` where that is what is used.
+    pub(crate) read: Option<ProfileCurves>,
+    pub(crate) used: ProfileCurves,
     /// Wave numbers (rad/m) and densities (m³) of the fitted power law; empty for none.
     pub(crate) law: Vec<(f64, f64)>,
 }
 
+#[derive(Clone, Debug)]
+pub(crate) struct ProfileCurves {
+    /// x and z, m.
+    pub(crate) heights: Vec<(f64, f64)>,
+    /// Wave numbers (rad/m) and densities (m³).
+    pub(crate) spectrum: Vec<(f64, f64)>,
+}
+
 /// The bottom of the profile's chart, subpixels from the top.
 const SPLIT: u32 = 330 * FINE;
-/// Intervals along the figure; of a profile with many points the highest and the lowest of each are drawn.
-const COLUMNS: usize = 1500;
 
 impl Figure for ProfilePicture {
     fn size(&self) -> (u32, u32) {
@@ -291,57 +335,46 @@ impl Figure for ProfilePicture {
 }
 
 impl ProfilePicture {
+    /// What was read, which what is used is drawn over, and that.
+    fn curves(&self, of: impl Fn(&ProfileCurves) -> Vec<(f64, f64)>) -> Vec<Curve> {
+        let curve = |name: &str, look: usize, stroke: Stroke, curves: &ProfileCurves| Curve {
+            name: name.into(),
+            look,
+            stroke,
+            points: of(curves),
+        };
+        let read = self.read.iter().map(|read| curve("as read", READ, Stroke::Dots, read));
+        let name = if self.read.is_some() { "smoothed" } else { "profile" };
+        read.chain([curve(name, 0, Stroke::Line, &self.used)]).collect()
+    }
+
     fn profile(&self) -> Chart {
-        let points = outline(&self.heights);
+        let curves = self.curves(|curves| curves.heights.clone());
+        let points = || curves.iter().flat_map(|curve| &curve.points);
         Chart {
             title: String::new(),
-            x: Axis::linear("x", "m", points.iter().map(|point| point.0), Fit::Tight),
-            y: Axis::linear("z", "m", points.iter().map(|point| point.1), Fit::Round),
-            curves: vec![Curve { name: "profile".into(), look: 0, stroke: Stroke::Line, points }],
+            x: Axis::linear("x", "m", points().map(|point| point.0), Fit::Tight),
+            y: Axis::linear("z", "m", points().map(|point| point.1), Fit::Round),
+            curves,
         }
     }
 
     fn power_spectrum(&self) -> Chart {
-        // Beyond a cut-off there are rounding errors alone, which are not drawn.
-        let largest = self.spectrum.iter().map(|point| point.1).fold(0.0, f64::max);
-        let spectrum = self.spectrum.iter().copied().filter(|point| point.1 > 1e-16 * largest).collect::<Vec<_>>();
-        let all = || spectrum.iter().chain(&self.law);
+        let mut curves = self.curves(|curves| {
+            // Beyond a cut-off there are rounding errors alone, which are not drawn.
+            let largest = curves.spectrum.iter().map(|point| point.1).fold(0.0, f64::max);
+            curves.spectrum.iter().copied().filter(|point| point.1 > 1e-16 * largest).collect()
+        });
+        curves.push(Curve { name: "power law".into(), look: 1, stroke: Stroke::Dashed, points: self.law.clone() });
+        let points = || curves.iter().flat_map(|curve| &curve.points);
         Chart {
             title: String::new(),
-            x: Axis::logarithmic("wave number in rad/m", all().map(|point| point.0)),
-            y: Axis::logarithmic("power spectrum in m³", all().map(|point| point.1)),
-            curves: vec![
-                Curve { name: "spectrum".into(), look: 0, stroke: Stroke::Line, points: spectrum },
-                Curve { name: "power law".into(), look: 1, stroke: Stroke::Dashed, points: self.law.clone() },
-            ],
+            x: Axis::logarithmic("wave number in rad/m", points().map(|point| point.0)),
+            y: Axis::logarithmic("power spectrum in m³", points().map(|point| point.1)),
+            curves,
         }
     }
 }
 
-/// Points that look like all of `points`: of many, the highest and the lowest of each interval.
-fn outline(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    if points.len() <= 2 * COLUMNS {
-        return points.to_vec();
-    }
-    let ends = |part: &[(f64, f64)]| -> [(f64, f64); 2] {
-        let first = part[0];
-        let low = part.iter().copied().fold(first, |low, point| if point.1 < low.1 { point } else { low });
-        let high = part.iter().copied().fold(first, |high, point| if point.1 > high.1 { point } else { high });
-        if low.0 < high.0 { [low, high] } else { [high, low] }
-    };
-    points.chunks(points.len().div_ceil(COLUMNS)).flat_map(ends).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_outline_keeps_the_extremes_and_the_order() {
-        let points: Vec<(f64, f64)> = (0..100_000).map(|i| (f64::from(i), f64::from(i * 7919 % 1009))).collect();
-        let drawn = outline(&points);
-        assert!(drawn.len() <= 2 * COLUMNS && drawn.windows(2).all(|pair| pair[0].0 <= pair[1].0));
-        let heights = || drawn.iter().map(|point| point.1);
-        assert_eq!((heights().fold(f64::MAX, f64::min), heights().fold(f64::MIN, f64::max)), (0.0, 1008.0));
-    }
-}
+/// The colour of what was read.
+const READ: usize = 4;

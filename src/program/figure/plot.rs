@@ -6,11 +6,12 @@ use asperity::outputs::unit_of;
 
 use super::axis::{Axis, Fit};
 use super::chart::{Chart, Curve, Stroke};
+use super::difference::Comparison;
 use super::{Backend, Canvas, DrawResult, Figure};
 use crate::program::cli::{Condition, Plot, PlotAxis};
-use crate::program::files::{FileError, check_outputs};
+use crate::program::files::{FileError, check_outputs, named, print_beside};
 use crate::program::result_file::{CsvFile, Record, ResultFileError};
-use crate::program::terminal::warn;
+use crate::program::terminal::{lines, warn};
 
 /// `asperity plot` failed.
 #[derive(Debug, thiserror::Error)]
@@ -25,6 +26,12 @@ pub enum PlotError {
     NoSuchRow { file: String, condition: String, column: String, values: String },
     #[error("--where: {file} has no row with all of {conditions}")]
     NoRow { file: String, conditions: String },
+    #[error("--compare: expected two files, found {found}")]
+    NotTwo { found: usize },
+    #[error("--compare: expected {x} to increase from row to row in both files, or to have the same values in both")]
+    NotPaired { x: String },
+    #[error("--compare: expected columns of numbers besides {x} in both of {} and {}, found none", .names[0], .names[1])]
+    NothingInCommon { names: [String; 2], x: String },
 }
 
 /// Curves of up to so many rows have their markers without being asked for.
@@ -65,16 +72,35 @@ struct UnitPanel<'a> {
     curves: Vec<Curve>,
 }
 
-/// Draws one line for each file and y, and a chart for each unit.
+/// Draws one line for each file and y, and a chart for each unit; of two files that are compared their difference too.
 pub(crate) fn plot_files(command: &Plot) -> Result<(), PlotError> {
     if !command.labels.is_empty() && command.labels.len() != command.files.len() {
         return Err(PlotError::Labels { labels: command.labels.len(), files: command.files.len() });
     }
     check_outputs([&command.output], command.files.clone())?;
     let files = command.files.iter().map(|path| Selection::read(path, command)).collect::<Result<Vec<_>, _>>()?;
-    let x_unit = files[0].unit(&command.x)?;
+    let comparison = match command.compare {
+        true => Some(Comparison::new(command, &files, [0, 1].map(|i| file_name(command, i)))?),
+        false => None,
+    };
+    let worst = comparison.as_ref().map(|comparison| comparison.worst().to_owned());
+    let drawn = if command.y.is_empty() { worst.as_slice() } else { &command.y };
+    let panels = panels(command, &files, drawn)?;
+    let title = command.title.clone().unwrap_or_default();
+    let charts = charts(command, &files[0].unit(&command.x)?, panels, comparison.as_ref());
+    Charts { title, charts }.write(&command.output)?;
+    if let Some(comparison) = comparison {
+        let mut text = comparison.text();
+        text.push(("Written", named(&command.output)));
+        print_beside([&command.output], &lines(&text))?;
+    }
+    Ok(())
+}
+
+/// The curves of the columns `drawn`, those of a unit together.
+fn panels<'a>(command: &Plot, files: &[Selection<'_>], drawn: &'a [String]) -> Result<Vec<UnitPanel<'a>>, PlotError> {
     let mut panels: Vec<UnitPanel<'_>> = Vec::new();
-    for column in &command.y {
+    for column in drawn {
         let unit = files[0].unit(column)?;
         match panels.iter_mut().find(|panel| panel.unit == unit) {
             Some(panel) => panel.columns.push(column),
@@ -84,19 +110,17 @@ pub(crate) fn plot_files(command: &Plot) -> Result<(), PlotError> {
     for panel in &mut panels {
         for (i, file) in files.iter().enumerate() {
             for column in &panel.columns {
-                let (name, look) = (curve_name(command, i, file.path, column, &panel.columns), panel.curves.len());
+                let (name, look) = (curve_name(command, i, column, &panel.columns), panel.curves.len());
                 panel.curves.push(file.curve(command, column, name, look)?);
             }
         }
     }
-    let title = command.title.clone().unwrap_or_default();
-    Charts { title, charts: charts(command, &x_unit, panels) }.write(&command.output)?;
-    Ok(())
+    Ok(panels)
 }
 
 /// The rows of a file that are drawn.
 #[derive(Debug)]
-struct Selection<'a> {
+pub(super) struct Selection<'a> {
     path: &'a Path,
     file: CsvFile,
     rows: Vec<usize>,
@@ -125,7 +149,7 @@ impl<'a> Selection<'a> {
     }
 
     /// The unit of a column, from its header or by its name; empty for a plain number or an unknown column.
-    fn unit(&self, column: &str) -> Result<String, PlotError> {
+    pub(super) fn unit(&self, column: &str) -> Result<String, PlotError> {
         let header = &self.file.names()[self.file.column(column)?];
         let unit = match header.rsplit_once('[').and_then(|(name, rest)| Some((name, rest.strip_suffix(']')?))) {
             Some((name, unit)) if name.ends_with(' ') => unit,
@@ -134,8 +158,13 @@ impl<'a> Selection<'a> {
         Ok(if unit == "1" { String::new() } else { unit.to_owned() })
     }
 
+    /// The names of all columns, without their units.
+    pub(super) fn columns(&self) -> impl Iterator<Item = &str> {
+        self.file.names().iter().map(|name| name.split_once(" [").map_or(name.as_str(), |(name, _)| name))
+    }
+
     /// The numbers of a column; where a field is empty, none is.
-    fn numbers(&self, column: &str) -> Result<Vec<f64>, PlotError> {
+    pub(super) fn numbers(&self, column: &str) -> Result<Vec<f64>, PlotError> {
         let index = self.file.column(column)?;
         let number = |record: &Record| match record.fields[index].trim() {
             "" => Ok(f64::NAN),
@@ -187,10 +216,15 @@ fn last_before_motion(x: &[f64]) -> usize {
     x.iter().position(|value| *value != x[0]).map_or(0, |moved| moved - 1)
 }
 
+/// What a file is called: its label or its name.
+fn file_name(command: &Plot, index: usize) -> String {
+    let stem = || command.files.get(index)?.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    command.labels.get(index).cloned().or_else(stem).unwrap_or_default()
+}
+
 /// The name of a curve among those of the `columns` of its chart.
-fn curve_name(command: &Plot, index: usize, path: &Path, column: &str, columns: &[&str]) -> String {
-    let stem = || path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-    let file = command.labels.get(index).cloned().unwrap_or_else(stem);
+fn curve_name(command: &Plot, index: usize, column: &str, columns: &[&str]) -> String {
+    let file = file_name(command, index);
     match (columns.len(), command.files.len()) {
         (_, 1) if command.y.len() > 1 => column.to_owned(),
         (1, _) => file,
@@ -198,16 +232,19 @@ fn curve_name(command: &Plot, index: usize, path: &Path, column: &str, columns: 
     }
 }
 
-fn charts(command: &Plot, x_unit: &str, panels: Vec<UnitPanel<'_>>) -> Vec<Chart> {
+/// A chart for each panel and below it one of the differences.
+fn charts(command: &Plot, x_unit: &str, panels: Vec<UnitPanel<'_>>, comparison: Option<&Comparison>) -> Vec<Chart> {
     let x = panels.iter().flat_map(|panel| &panel.curves).flat_map(|curve| &curve.points).map(|point| point.0);
     let x = axis(command, PlotAxis::X, &command.x, x_unit, x);
     let chart = |panel: UnitPanel<'_>| {
         let quantity = format!("{}{}", if command.negate { "-" } else { "" }, panel.columns.join(", "));
         let y = panel.curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
         let y = axis(command, PlotAxis::Y, &quantity, &panel.unit, y);
-        Chart { title: String::new(), x: x.clone(), y, curves: panel.curves }
+        let difference = comparison.map(|comparison| comparison.chart(&panel.columns, &x));
+        let chart = Chart { title: String::new(), x: x.clone(), y, curves: panel.curves };
+        std::iter::once(chart).chain(difference)
     };
-    panels.into_iter().map(chart).collect()
+    panels.into_iter().flat_map(chart).collect()
 }
 
 fn axis(command: &Plot, which: PlotAxis, quantity: &str, unit: &str, values: impl Iterator<Item = f64>) -> Axis {

@@ -9,7 +9,7 @@ use asperity::scene::{self, Band, PowerLaw, RoughnessSpectrum, Spectrum};
 use serde::Serialize;
 
 use super::cli::{Reading, Surface};
-use super::figure::{Figure as _, ProfilePicture};
+use super::figure::{Figure as _, ProfileCurves, ProfilePicture};
 use super::files::{
     self, FileError, check_outputs, ends_in, load_without_excitation, name_of, named, print_beside, sources,
 };
@@ -62,7 +62,9 @@ pub(crate) fn surface(command: &Surface) -> Result<(), SurfaceError> {
     }
     print_beside(&command.write, &text)?;
     if let Some(path) = &command.output {
-        picture(&surface, &analysis, &command.file).write(path)?;
+        let unsmoothed = removed.is_some().then(|| Analysis::of(&read, command));
+        let read = unsmoothed.map(|unsmoothed| curves(&read, &unsmoothed));
+        picture(read, curves(&surface, &analysis), &analysis, &command.file).write(path)?;
     }
     write_surface(&surface, command)?;
     write_spectrum(finer.as_ref(), analysis.map.as_ref(), command)
@@ -308,7 +310,14 @@ impl Analysis {
     }
 }
 
-fn picture(surface: &scene::Surface, analysis: &Analysis, file: &Path) -> ProfilePicture {
+fn curves(surface: &scene::Surface, analysis: &Analysis) -> ProfileCurves {
+    ProfileCurves {
+        heights: surface.x().iter().copied().zip(surface.z().iter().copied()).collect(),
+        spectrum: analysis.spectrum.iter().map(|band| (band.wave_number, band.density)).collect(),
+    }
+}
+
+fn picture(read: Option<ProfileCurves>, used: ProfileCurves, analysis: &Analysis, file: &Path) -> ProfilePicture {
     let law = analysis.law.as_ref().map_or_else(Vec::new, |law| {
         let shortest = law.wavelengths[0];
         let shown = analysis.spectrum.iter().map(|band| band.wave_number);
@@ -318,8 +327,8 @@ fn picture(surface: &scene::Surface, analysis: &Analysis, file: &Path) -> Profil
     let hurst = analysis.law.map(|law| format!(", Hurst exponent {:.2}", law.hurst)).unwrap_or_default();
     ProfilePicture {
         title: format!("{}: rms height {:.3e} m{hurst}", name_of(file), analysis.statistics.rms_height),
-        heights: surface.x().iter().copied().zip(surface.z().iter().copied()).collect(),
-        spectrum: analysis.spectrum.iter().map(|band| (band.wave_number, band.density)).collect(),
+        read,
+        used,
         law,
     }
 }

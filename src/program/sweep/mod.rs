@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::element::{Load, OperatingPoint};
 use asperity::model::Model;
-use asperity::scene::{Initial, OutputGroup, ParameterError, Path as Displacement, Phase, Scene};
+use asperity::scene::{Initial, OutputGroup, ParameterError, Path as Displacement, Phase, Scene, Wlf};
 
 use super::cli::{Sliding, Sweep};
 use super::draft::TablePlace;
@@ -65,6 +65,8 @@ pub enum SweepError {
     NoLoad,
     #[error("--temperatures: the scene has no material.wlf, so nothing in it depends on the temperature")]
     NoWlf,
+    #[error("--master: the scene has no material.wlf, by whose factors speeds would be shifted")]
+    NoMaster,
     #[error("--temperatures: {0}")]
     Temperature(ParameterError),
     #[error("{}: not a study of this scene's convergence: {problem}", .path.display())]
@@ -123,7 +125,7 @@ fn merge(command: &Sweep, output: &PathBuf) -> Result<(), SweepError> {
     let place = TablePlace::new(output)?;
     let table = SweepTable::merge(&command.merge, &place.path, command.force)?;
     place.finish()?;
-    finish(output, picture.as_deref(), &table)
+    finish(output, &table, picture.as_deref(), None)
 }
 
 fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepError> {
@@ -132,7 +134,11 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
     let picture = picture(command, &output);
     let study = convergence::file(command.converged.as_ref(), path);
     let taken = sources(path, &scene).into_iter().chain(study.clone()).collect();
-    check_outputs([&output].into_iter().chain(&picture), taken)?;
+    check_outputs([&output].into_iter().chain(&picture).chain(&command.master), taken)?;
+    let master = match &command.master {
+        Some(path) => Some((path.as_path(), wlf(&scene).ok_or(SweepError::NoMaster)?)),
+        None => None,
+    };
     let convergence = convergence::found(study.as_deref(), &scene.name)?;
     let plan = SweepPlan::new(scene, &options(command, speeds)?, convergence)?;
     plan.warning().iter().for_each(|warning| warn(warning));
@@ -147,7 +153,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
     table.write(&place.path)?;
     drop(file);
     place.finish()?;
-    finish(&output, picture.as_deref(), &table)
+    finish(&output, &table, picture.as_deref(), master)
 }
 
 fn options(command: &Sweep, speeds: &Values) -> Result<SweepOptions, SweepError> {
@@ -204,20 +210,30 @@ fn picture(command: &Sweep, output: &Path) -> Option<PathBuf> {
     if command.shard.is_some() { None } else { picture_beside(output, command.plot.as_ref()) }
 }
 
-/// Draws the plot, prints friction and what lies at the low end, and counts the points that are not steady.
-fn finish(output: &PathBuf, picture: Option<&Path>, table: &SweepTable) -> Result<(), SweepError> {
-    if let Some(picture) = picture {
-        plot::draw(picture, table)?;
-    }
+/// Draws friction over speed and, with the compound's shift, the master curve; prints friction and what lies at the low
+/// end; counts the points that are not steady.
+fn finish(
+    output: &PathBuf,
+    table: &SweepTable,
+    picture: Option<&Path>,
+    master: Option<(&Path, Wlf)>,
+) -> Result<(), SweepError> {
+    picture.map_or(Ok(()), |path| plot::draw(path, table))?;
+    master.map_or(Ok(()), |(path, wlf)| plot::draw_master(path, table, &wlf))?;
     let mut summary = if terminal::is_quiet() { Vec::new() } else { printed::lines(table) };
     summary.extend(table.header.low_end.iter().map(|low_end| ("Low end", low_end.clone())));
     if !terminal::is_quiet() {
-        let files = [output.as_path()].into_iter().chain(picture).map(named);
+        let files = [output.as_path()].into_iter().chain(picture).chain(master.map(|(path, _)| path)).map(named);
         summary.push(("Written", files.collect::<Vec<_>>().join(", ")));
     }
     print_beside([output], &lines(&summary))?;
     let (failed, total) = (table.rows.iter().filter(|stored| !stored.row.is_steady()).count(), table.rows.len());
     if failed == 0 { Ok(()) } else { Err(SweepError::NotSteady { failed, total, path: output.to_owned() }) }
+}
+
+/// The shift of the compound with temperature.
+fn wlf(scene: &Scene) -> Option<Wlf> {
+    scene.material.as_ref().and_then(|material| material.wlf)
 }
 
 pub(crate) fn with_temperature(scene: &Scene, temperature: f64) -> Scene {

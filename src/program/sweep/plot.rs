@@ -1,75 +1,172 @@
-//! The plot of a table: friction over speed, its parts dashed.
+//! The plots of a table: friction over speed with its parts in panels of their own below, and its master curve.
 
 use std::path::Path;
 
-use asperity::element::Quantity;
+use asperity::element::{OperatingPoint, Quantity, TableRow};
+use asperity::scene::Wlf;
 
-use super::table_file::{StoredRow, SweepTable};
-use crate::program::figure::{Curve, Figure as _, Panel, SideBySide, Stroke};
+use super::table_file::SweepTable;
+use crate::program::figure::{Curve, Figure as _, Panel, PanelRow, SideBySide, Stroke};
 use crate::program::files::FileError;
 
 /// Draws friction over speed at `path`: a panel for each temperature, a colour for each load; with one load, one panel
 /// and a colour for each temperature.
 pub(super) fn draw(path: &Path, table: &SweepTable) -> Result<(), FileError> {
-    plot(table).write(path)
+    let panels = match table.header.grid.loads[..] {
+        [_] => panels_of_loads(table),
+        _ => panels_of_temperatures(table),
+    };
+    plot(table, "speed in m/s".into(), panels, |point| point.speed).write(path)
 }
 
-fn plot(table: &SweepTable) -> SideBySide {
-    let (grid, unit) = (&table.header.grid, table.header.load.unit());
-    let temperatures = match grid.temperatures.as_slice() {
+/// Draws friction over the speed at the reference temperature of the compound's shift, a_T v: a panel for each load, a
+/// colour for each temperature. Where friction follows the compound's times alone, temperatures lie on one curve.
+pub(super) fn draw_master(path: &Path, table: &SweepTable, wlf: &Wlf) -> Result<(), FileError> {
+    let x_title = format!("a_T v in m/s, at {} K", wlf.reference_temperature);
+    let shift = |temperature: f64| Wlf { temperature, ..*wlf }.shift_factor();
+    let shifted = |point: &OperatingPoint| point.temperature.map_or(1.0, shift) * point.speed;
+    plot(table, x_title, panels_of_loads(table), shifted).write(path)
+}
+
+/// The rows of one curve, and the curve's name.
+#[derive(Debug)]
+struct Group<'a> {
+    name: String,
+    rows: Vec<&'a TableRow>,
+}
+
+/// The title of a panel, and what has a colour in it.
+type GroupedPanel<'a> = (String, Vec<Group<'a>>);
+
+fn panels_of_loads(table: &SweepTable) -> Vec<GroupedPanel<'_>> {
+    let panel = |&load: &f64| {
+        let name = load_name(table, load);
+        let group = |&kelvin: &Option<f64>| Group {
+            name: temperature_name(kelvin).unwrap_or_else(|| name.clone()),
+            rows: rows(table, load, kelvin),
+        };
+        let groups = temperatures(table).iter().map(group).collect();
+        (if table.header.grid.temperatures.is_empty() { String::new() } else { name.clone() }, groups)
+    };
+    table.header.grid.loads.iter().map(panel).collect()
+}
+
+fn panels_of_temperatures(table: &SweepTable) -> Vec<GroupedPanel<'_>> {
+    let panel = |kelvin: Option<f64>| {
+        let group = |&load: &f64| Group { name: load_name(table, load), rows: rows(table, load, kelvin) };
+        (temperature_name(kelvin).unwrap_or_default(), table.header.grid.loads.iter().map(group).collect())
+    };
+    temperatures(table).into_iter().map(panel).collect()
+}
+
+fn temperatures(table: &SweepTable) -> Vec<Option<f64>> {
+    match table.header.grid.temperatures.as_slice() {
         [] => vec![None],
         values => values.iter().copied().map(Some).collect(),
-    };
-    let of = |load: f64, temperature: Option<f64>| {
-        let rows = table.rows.iter().filter(|stored| stored.row.is_steady());
-        rows.filter(move |stored| stored.row.point.load == load && stored.row.point.temperature == temperature)
-    };
-    let kelvin = |temperature: Option<f64>| temperature.map(|kelvin| format!("{kelvin} K"));
-    let panels = if let [load] = grid.loads[..] {
-        let load_name = with_prefix(load, unit);
-        let curves = temperatures.iter().enumerate().flat_map(|(look, &temperature)| {
-            curves(&kelvin(temperature).unwrap_or_else(|| load_name.clone()), look, of(load, temperature))
-        });
-        let curves = curves.collect();
-        vec![Panel { title: temperatures[0].map(|_| load_name).unwrap_or_default(), curves }]
-    } else {
-        let panel = |&temperature: &Option<f64>| {
-            let loads = grid.loads.iter().enumerate();
-            let curves =
-                loads.flat_map(|(look, &load)| curves(&with_prefix(load, unit), look, of(load, temperature))).collect();
-            Panel { title: kelvin(temperature).unwrap_or_default(), curves }
-        };
-        temperatures.iter().map(panel).collect()
-    };
-    SideBySide { x_title: "speed in m/s".into(), y_title: "friction coefficient".into(), panels }
+    }
 }
 
-/// The friction coefficient and those of its parts that are there and not 0.
-fn curves<'a>(name: &str, look: usize, rows: impl Iterator<Item = &'a StoredRow>) -> Vec<Curve> {
-    let parts = [Quantity::Friction, Quantity::Hysteresis, Quantity::Adhesion, Quantity::FineHysteresis];
-    let mut points = parts.map(|_| Vec::new());
-    for row in rows.map(|stored| &stored.row) {
-        let values = parts.map(|part| row.value(part));
-        if let [Some(_), Some(_), Some(_), _] = values {
-            points
-                .iter_mut()
-                .zip(values)
-                .for_each(|(points, value)| points.extend(value.map(|y| (row.point.speed, y))));
+fn temperature_name(kelvin: Option<f64>) -> Option<String> {
+    kelvin.map(|kelvin| format!("{kelvin} K"))
+}
+
+fn load_name(table: &SweepTable, load: f64) -> String {
+    with_prefix(load, table.header.load.unit())
+}
+
+fn rows(table: &SweepTable, load: f64, temperature: Option<f64>) -> Vec<&TableRow> {
+    let all = table.rows.iter().map(|stored| &stored.row);
+    all.filter(|row| row.point.load == load && row.point.temperature == temperature).collect()
+}
+
+/// The friction coefficient and, below it, each part of it that is there and not all of it.
+fn plot(
+    table: &SweepTable,
+    x_title: String,
+    panels: Vec<GroupedPanel<'_>>,
+    x: impl Fn(&OperatingPoint) -> f64,
+) -> SideBySide {
+    let points = Points { x: &x, hollow: Hollow::of(table) };
+    let row = |y_title: &str, quantity: Quantity, part: Option<(&str, Quantity)>| PanelRow {
+        y_title: y_title.into(),
+        panels: panels.iter().map(|panel| points.panel(panel, quantity, part)).collect(),
+    };
+    let fine =
+        is_there(table, Quantity::FineHysteresis).then_some(("of it below the profile", Quantity::FineHysteresis));
+    let mut rows = vec![row("friction coefficient", Quantity::Friction, None)];
+    let has_parts = is_there(table, Quantity::Adhesion);
+    if has_parts || fine.is_some() {
+        rows.push(row("hysteresis", Quantity::Hysteresis, fine));
+    }
+    if has_parts {
+        rows.push(row("adhesion", Quantity::Adhesion, None));
+    }
+    SideBySide { title: table.header.scene.clone(), x_title, rows }
+}
+
+/// Whether a part of the friction is not 0 everywhere.
+fn is_there(table: &SweepTable, part: Quantity) -> bool {
+    table.rows.iter().any(|stored| stored.row.value(part).is_some_and(|value| value != 0.0))
+}
+
+/// Which points cannot be relied on, in a word: they are hollow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Hollow {
+    NotSteady,
+    /// All points, since the study of the table's scene found them to depend on the spacing.
+    NotConverged,
+}
+
+impl Hollow {
+    fn of(table: &SweepTable) -> Self {
+        let basis = &table.header.basis;
+        if basis.convergence.is_some() && !basis.is_converged() { Self::NotConverged } else { Self::NotSteady }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::NotSteady => "not steady: see the table's status",
+            Self::NotConverged => "not converged or not steady: see the table",
         }
     }
-    let looks = [
-        (name, Stroke::Line),
-        ("hysteresis", Stroke::Dashed),
-        ("adhesion", Stroke::Dotted),
-        ("of it below the profile", Stroke::Rings),
-    ];
-    let curves =
-        looks.into_iter().zip(points).map(|((name, stroke), points)| Curve { name: name.into(), look, stroke, points });
-    curves
-        .enumerate()
-        .filter(|(i, curve)| *i == 0 || curve.points.iter().any(|point| point.1 != 0.0))
-        .map(|(_, curve)| curve)
-        .collect()
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Points<X> {
+    /// The value of the horizontal axis at a point.
+    x: X,
+    hollow: Hollow,
+}
+
+impl<X: Fn(&OperatingPoint) -> f64> Points<X> {
+    /// The curves of a quantity, and dashed those of a part of it.
+    fn panel(&self, (title, groups): &GroupedPanel<'_>, quantity: Quantity, part: Option<(&str, Quantity)>) -> Panel {
+        let curves = groups.iter().enumerate().flat_map(|(look, Group { name, rows })| {
+            let steady = self.points(quantity, rows, TableRow::is_steady);
+            let (stroke, hollow) = match self.hollow {
+                Hollow::NotSteady => (Stroke::Marked, self.points(quantity, rows, |row| !row.is_steady())),
+                Hollow::NotConverged => (Stroke::Line, self.points(quantity, rows, |_| true)),
+            };
+            let whole = Curve { name: name.clone(), look, stroke, points: steady };
+            let part = part.map(|(name, part)| {
+                let points = self.points(part, rows, TableRow::is_steady);
+                Curve { name: name.into(), look, stroke: Stroke::Dashed, points }
+            });
+            let hollow = (!hollow.is_empty()).then(|| Curve {
+                name: self.hollow.name().into(),
+                look,
+                stroke: Stroke::Hollow,
+                points: hollow,
+            });
+            std::iter::once(whole).chain(part).chain(hollow)
+        });
+        Panel { title: title.clone(), curves: curves.collect() }
+    }
+
+    fn points(&self, quantity: Quantity, rows: &[&TableRow], is_drawn: impl Fn(&TableRow) -> bool) -> Vec<(f64, f64)> {
+        let drawn = rows.iter().filter(|row| is_drawn(row));
+        drawn.filter_map(|row| Some(((self.x)(&row.point), row.value(quantity)?))).collect()
+    }
 }
 
 /// A quantity with a prefix of its unit: `0.2 MPa`.
@@ -87,11 +184,64 @@ pub(crate) fn with_prefix(value: f64, unit: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use asperity::element::{Basis, Load, STEADY, SweepGrid, TableHeader};
+
     use super::*;
 
     #[test]
     fn loads_have_a_prefix_of_their_unit() {
         let names = [2e5, 4e4, 20.0, 0.05].map(|value| with_prefix(value, "Pa"));
         assert_eq!(names, ["0.2 MPa", "40 kPa", "20 Pa", "50 mPa"]);
+    }
+
+    /// Friction 1 + v, of which `adhesion`, at two speeds and temperatures, the last point not steady.
+    fn table(adhesion: f64, convergence: Option<&str>) -> SweepTable {
+        let grid = SweepGrid { speeds: vec![0.1, 1.0], loads: vec![1e5], temperatures: vec![293.15, 313.15] };
+        let row = |(i, point): (usize, OperatingPoint)| {
+            let mut row = TableRow::new(point, if i == 3 { "stick-slip".into() } else { STEADY.into() });
+            row.set(Quantity::Friction, Some(1.0 + point.speed));
+            row.set(Quantity::Hysteresis, Some(1.0 + point.speed - adhesion));
+            row.set(Quantity::Adhesion, Some(adhesion));
+            row
+        };
+        let rows = grid.points().enumerate().map(row).collect::<Vec<_>>();
+        let header = TableHeader {
+            scene: "block".into(),
+            fingerprint: String::new(),
+            load: Load::Pressure { area: 1.0 },
+            rest_separation: 0.0,
+            basis: Basis { convergence: convergence.map(String::from), ..Basis::default() },
+            grid,
+            low_end: None,
+        };
+        SweepTable::of_rows(header, rows)
+    }
+
+    fn drawn(table: &SweepTable) -> SideBySide {
+        plot(table, String::new(), panels_of_loads(table), |point| point.speed)
+    }
+
+    #[test]
+    fn points_that_are_not_steady_are_hollow_and_off_the_line() {
+        let picture = drawn(&table(0.0, None));
+        assert_eq!((picture.title.as_str(), picture.rows.len()), ("block", 1), "hysteresis alone has no panel");
+        let strokes = |picture: &SideBySide| {
+            let curves = picture.rows[0].panels[0].curves.clone();
+            curves.iter().map(|curve| (curve.stroke, curve.points.len())).collect::<Vec<_>>()
+        };
+        assert_eq!(strokes(&picture), [(Stroke::Marked, 2), (Stroke::Marked, 1), (Stroke::Hollow, 1)]);
+        let converged = drawn(&table(0.0, Some("converged: spacing")));
+        assert_eq!(strokes(&converged), strokes(&picture));
+        let open = drawn(&table(0.0, Some("not converged: spacing")));
+        let all = [(Stroke::Line, 2), (Stroke::Hollow, 2), (Stroke::Line, 1), (Stroke::Hollow, 2)];
+        assert_eq!(strokes(&open), all);
+    }
+
+    #[test]
+    fn parts_have_panels_of_their_own() {
+        let picture = drawn(&table(0.25, None));
+        let titles: Vec<&str> = picture.rows.iter().map(|row| row.y_title.as_str()).collect();
+        assert_eq!(titles, ["friction coefficient", "hysteresis", "adhesion"]);
+        assert_eq!(picture.rows[2].panels[0].curves[0].points, [(0.1, 0.25), (1.0, 0.25)]);
     }
 }

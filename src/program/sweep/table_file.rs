@@ -103,6 +103,12 @@ impl SweepTable {
         Ok((Self { header, rows }, corrupt))
     }
 
+    #[cfg(test)]
+    pub(super) fn of_rows(header: TableHeader, rows: Vec<TableRow>) -> Self {
+        let rows = rows.into_iter().map(|row| StoredRow { text: row.line(), row }).collect();
+        Self { header, rows }
+    }
+
     /// Sorts the rows in the order of the points.
     pub(super) fn sort(&mut self) {
         let grid = &self.header.grid;

@@ -217,6 +217,7 @@ fn to_and_fro(
     rows.write(&files[0], &variables, &rows.layer)?;
     rows.write(&files[1], &variables, &rows.element)?;
     plot_files(&Plot {
+        compare: false,
         conditions: Vec::new(),
         log: Vec::new(),
         markers: false,
