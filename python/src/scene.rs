@@ -124,9 +124,16 @@ impl Scene {
         fs::write(&output, bytes).map_err(|error| PyOSError::new_err(format!("{}: {error}", output.display())))
     }
 
-    /// Whether the scene is the same as another, whatever its text.
+    /// Whether the scene is the same as another, whatever text and files it is read from.
     fn is_same(&self, other: &Self) -> bool {
-        self.scene == other.scene
+        let content = |scene: &asperity::scene::Scene| asperity::scene::Scene {
+            files: Vec::new(),
+            extracts: Vec::new(),
+            warnings: Vec::new(),
+            notes: Vec::new(),
+            ..scene.clone()
+        };
+        content(&self.scene) == content(&other.scene)
     }
 }
 

@@ -48,7 +48,7 @@ def axis(name: str, values: ArrayLike) -> list[float]:
     found = np.unique(numbers(name, values))
     if found.size == 0 or not np.all(np.isfinite(found)) or found[0] <= 0.0:
         raise ValueError(f"{name}: expected numbers above 0, found {values!r}")
-    return found.tolist()
+    return [float(value) for value in found]
 
 
 def positive(name: str, value: float) -> float:

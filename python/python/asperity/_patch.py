@@ -17,7 +17,7 @@ _AT_REST: Six = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 class Patch:
     """A contact patch, and its motion.
 
-    ``patch["F_z"]`` is the present value of an output. The pose is x, y, z (m), roll, pitch, yaw (rad).
+    ``patch["force.z"]`` is the present value of an output. The pose is x, y, z (m), roll, pitch, yaw (rad).
     """
 
     def __init__(

@@ -141,24 +141,36 @@ class Scene:
         if array.ndim != 2:
             raise ValueError(f"heights: expected an array of shape (ny, nx), found {array.shape}")
         dx, dy = spacing if isinstance(spacing, tuple) else (spacing, spacing)
-        surface = {"kind": "file", "path": "map.csv", "spacing": [float(dx), float(dy)], "periodic": periodic}
+        surface = {"kind": "file", "path": "with_map.csv", "spacing": [float(dx), float(dy)], "periodic": periodic}
         units = {"x_unit": "m", "z_unit": "m"}
         text = "\n".join(",".join(map(repr, line)) for line in array.tolist()) + "\n"
         keys = {**self._fine(), **surface, **units, **keys}
-        return self._changed({"surface": to_toml(keys)}, {"map.csv": text.encode()})
+        return self._changed({"surface": to_toml(keys)}, {"with_map.csv": text.encode()})
 
-    def with_spectrum(self, q: ArrayLike, C: ArrayLike, **keys: object) -> Scene:  # noqa: N803
+    def with_spectrum(
+        self,
+        q: ArrayLike,
+        C: ArrayLike,  # noqa: N803
+        longest: float | None = None,
+        shortest: float | None = None,
+        **keys: object,
+    ) -> Scene:
         """A copy whose surface has, below its profile, the roughness of a spectrum.
 
         Args:
             q: Wave numbers, 1/m, shape (n,), rising.
             C: Spectrum of an isotropic surface, m⁴, shape (n,).
+            longest: Longest wave of that roughness, m: where the profile ends; None: that of the first q.
+            shortest: Shortest wave, m; None: that of the last q.
             keys: Other keys of ``surface.fine``, such as ``convention`` ("persson" or "contact.engineering") and
                 ``hysteresis``.
         """
-        text = table_text({"q [1/m]": numbers("q", q), "C [m^4]": numbers("C", C)})
-        fine = {"spectrum": "spectrum.csv", **keys}
-        return self._changed({"surface.fine": to_toml(fine)}, {"spectrum.csv": text.encode()})
+        waves = numbers("q", q)
+        text = table_text({"q [1/m]": waves, "C [m^4]": numbers("C", C)})
+        first, last = 2.0 * np.pi / waves[0], 2.0 * np.pi / waves[-1]
+        ends = {"longest": first if longest is None else longest, "shortest": last if shortest is None else shortest}
+        fine = {"spectrum": "with_spectrum.csv", **ends, **keys}
+        return self._changed({"surface.fine": to_toml(fine)}, {"with_spectrum.csv": text.encode()})
 
     def with_prony(self, moduli: ArrayLike, times: ArrayLike, equilibrium: float | None = None) -> Scene:
         """A copy of another compound.
@@ -194,8 +206,8 @@ class Scene:
             motion: A DataFrame, or a mapping of names to arrays of shape (n,): ``time`` (s), ``u`` and ``w`` (m); of a
                 carrier that is a body ``load``, ``pressure`` and ``pull``; ``temperature`` (K) where it is an input.
         """
-        settings = {"excitation": to_toml([{"file": "motion.csv"}])}
-        return self._changed(settings, {"motion.csv": table_text(motion).encode()})
+        settings = {"excitation": to_toml([{"file": "with_motion.csv"}])}
+        return self._changed(settings, {"with_motion.csv": table_text(motion).encode()})
 
     def _fine(self) -> dict[str, Any]:
         return {"fine": self["surface.fine"]} if "surface.fine" in self else {}
