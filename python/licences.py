@@ -2,8 +2,8 @@
 
     licences.py CARGO.toml OUT.txt
 
-Packages come from cargo's own resolution: normal dependencies of asperity-python, without procedural macros, which are no
-part of what is linked. A text that several packages have stands there once.
+Packages come from cargo's own resolution: normal dependencies of asperity-python, without procedural macros, which are
+no part of what is linked. A text that several packages have stands there once.
 """
 
 import json
@@ -26,7 +26,10 @@ def linked(found):
     """The packages that are linked, without this repository's own, by name and version."""
     packages = {package["id"]: package for package in found["packages"]}
     nodes = {node["id"]: node for node in found["resolve"]["nodes"]}
-    is_macro = lambda package: any("proc-macro" in target["kind"] for target in package["targets"])
+
+    def is_macro(package):
+        return any("proc-macro" in target["kind"] for target in package["targets"])
+
     left, seen = [one["id"] for one in packages.values() if one["name"] == ROOT], set()
     while left:
         package = left.pop()
@@ -51,6 +54,10 @@ def main():
     """Writes the file."""
     manifest, output = sys.argv[1:]
     holders, lines = {}, ["Packages that the native part of this wheel links, and their licences.", ""]
+    # The figures' font is no package.
+    font = Path(manifest).parent / "src/program/figure/font/LICENSE.txt"
+    holders[font.read_text(encoding="utf-8").strip()] = ["DejaVu Sans"]
+    lines.append("DejaVu Sans, the font of the program's figures")
     for package in linked(metadata(manifest)):
         name = f"{package['name']} {package['version']}"
         lines.append(f"{name}: {package['license'] or 'see its text'}, {package['repository'] or ''}")

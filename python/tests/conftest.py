@@ -5,10 +5,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+import asperity
 import matplotlib
 import pytest
-
-import asperity
 
 matplotlib.use("Agg")
 

@@ -1,10 +1,9 @@
 """The module and the program are one: the same numbers, to the last bit."""
 
+import asperity
 import numpy as np
 import pytest
 from conftest import SCENES, program
-
-import asperity
 
 # All shipped scenes that have a motion and run within some seconds.
 MOVED = [

@@ -3,11 +3,10 @@
 import copy
 import pickle
 
+import asperity
 import numpy as np
 import pytest
 from conftest import SCENES, SMALL
-
-import asperity
 
 
 def test_keys_are_read_set_and_added(small):
@@ -51,7 +50,9 @@ def test_a_key_that_is_refused_leaves_the_scene(small):
 def test_an_error_in_a_file_that_is_named_has_its_line(tmp_path):
     (tmp_path / "road.csv").write_text("x,z\n0,0\n1e-3,up\n")
     keys = {"kind": "file", "path": "road.csv"}
-    text = SMALL.replace('kind = "sinusoid"\namplitude = 1e-5\nwavelength = 4e-4', f'kind = "file"\npath = "{keys["path"]}"')
+    text = SMALL.replace(
+        'kind = "sinusoid"\namplitude = 1e-5\nwavelength = 4e-4', f'kind = "file"\npath = "{keys["path"]}"'
+    )
     with pytest.raises(asperity.SceneError) as raised:
         asperity.Scene(text, tmp_path / "scene.toml")
     assert (raised.value.line, raised.value.file) == (3, tmp_path / "road.csv")

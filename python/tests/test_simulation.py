@@ -7,11 +7,10 @@ import subprocess
 import sys
 import threading
 
+import asperity
 import numpy as np
 import pytest
 from conftest import SCENES
-
-import asperity
 
 
 def pressed(scene):
@@ -115,7 +114,9 @@ LONG = {
 @pytest.mark.skipif(sys.platform == "win32", reason="a process is not sent Ctrl-C there")
 def test_ctrl_c_ends_what_is_going_on(what):
     file = SCENES / "road" / ("slide.toml" if what == "simulate" else "road.toml")
-    code = f"import asperity\nscene = asperity.Scene.from_toml({str(file)!r})\nprint('begun', flush=True)\n{LONG[what]}\n"
+    code = (
+        f"import asperity\nscene = asperity.Scene.from_toml({str(file)!r})\nprint('begun', flush=True)\n{LONG[what]}\n"
+    )
     child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert child.stdout.readline() == "begun\n"
     with pytest.raises(subprocess.TimeoutExpired):

@@ -3,12 +3,10 @@
 import inspect
 import sys
 
+import asperity
 import numpy as np
 import pandas as pd
 import pytest
-from conftest import SCENES
-
-import asperity
 
 
 def test_a_road_as_an_array(block):
@@ -39,7 +37,9 @@ def test_a_curve_of_friction(block):
 
 def test_a_calibration(block):
     measured = block.sweep([1e-3, 1e-2, 0.1, 1.0], [1e5, 2e5]).to_pandas()
-    data = measured.rename(columns={"speed": "speed [m/s]", "pressure": "pressure [Pa]", "temperature": "temperature [K]"})
+    data = measured.rename(
+        columns={"speed": "speed [m/s]", "pressure": "pressure [Pa]", "temperature": "temperature [K]"}
+    )
     data = data[["speed [m/s]", "pressure [Pa]", "temperature [K]", "friction"]]
     guess = block.with_keys({"friction.shear_strength": 3e6})
     found = guess.calibrate(data, {"friction.shear_strength": (1e6, 2e7)})

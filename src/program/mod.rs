@@ -56,9 +56,8 @@ const SUCCESS: u8 = 0;
 const FAILURE: u8 = 1;
 
 /// Executes a command line, the program's name first; prints its results, and the error that ended it. Returns the exit
-/// status. Does not return
-/// from `--help` and from a command line that cannot be understood. `library` is the shared library that FMUs are packed
-/// with where none is named; without it the one beside the program.
+/// status. Does not return from `--help` and from a command line that cannot be understood. `library` is the shared
+/// library that FMUs are packed with where none is named; without it the one beside the program.
 #[expect(clippy::print_stderr, reason = "the one place where the program prints the error that ended it")]
 pub fn execute(words: impl IntoIterator<Item = OsString>, library: Option<PathBuf>) -> u8 {
     match run(Arguments::parse_from(words), library) {

@@ -4,7 +4,8 @@
     result = scene.simulate(points=200)
     result["F_x"], result.time
 
-All numbers are in SI units. The manual is docs/python.md of the repository, the keys of a scene are in docs/reference.md.
+All numbers are in SI units. The manual is docs/python.md of the repository, the keys of a scene are in
+docs/reference.md.
 """
 
 from . import fmi

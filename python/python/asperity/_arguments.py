@@ -6,6 +6,7 @@ import json
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -58,14 +59,23 @@ def positive(name: str, value: float) -> float:
     return float(value)
 
 
+def columns_of(data: object) -> dict[str, Any]:
+    """The columns of a DataFrame, or of a mapping of names to columns."""
+    if not hasattr(data, "items"):
+        raise TypeError(f"expected a DataFrame or a mapping of names to columns, found {type(data).__name__}")
+    return {str(name): column for name, column in data.items()}
+
+
 def table_text(data: object) -> str:
     """A table with columns as text: a DataFrame, or a mapping of names to columns."""
-    columns = {str(name): np.asarray(column) for name, column in dict(data).items()}  # type: ignore[call-overload]
+    columns = {name: np.asarray(column) for name, column in columns_of(data).items()}
     lengths = {column.shape for column in columns.values()}
     if len(lengths) != 1 or len(next(iter(lengths))) != 1:
-        raise ValueError(f"expected columns of one length, found {({n: c.shape for n, c in columns.items()})}")
+        raise ValueError(f"expected columns of one length, found { ({n: c.shape for n, c in columns.items()}) }")
     lines = [",".join(map(_field, columns))]
-    lines += [",".join(_field(value) for value in row) for row in zip(*(c.tolist() for c in columns.values()), strict=True)]
+    lines += [
+        ",".join(_field(value) for value in row) for row in zip(*(c.tolist() for c in columns.values()), strict=True)
+    ]
     return "\n".join(lines) + "\n"
 
 

@@ -82,8 +82,10 @@ class Calibration:
         """The parameters as a DataFrame over their keys."""
         import pandas as pd
 
-        rows = [{**vars(one), "low": (one.interval or (np.nan, np.nan))[0], "high": (one.interval or (np.nan, np.nan))[1]}
-                for one in self.parameters]
+        rows = [
+            {**vars(one), "low": (one.interval or (np.nan, np.nan))[0], "high": (one.interval or (np.nan, np.nan))[1]}
+            for one in self.parameters
+        ]
         return pd.DataFrame(rows).drop(columns="interval").set_index("key")
 
     def __repr__(self) -> str:

@@ -16,9 +16,7 @@ class SceneError(ValueError):
         key: The path of the key, as in ``"friction.coulomb"``; None where no key is meant.
     """
 
-    def __init__(
-        self, message: str, file: Path | None = None, line: int | None = None, key: str | None = None
-    ) -> None:
+    def __init__(self, message: str, file: Path | None = None, line: int | None = None, key: str | None = None) -> None:
         super().__init__(message)
         self.file = None if file is None else Path(file)
         self.line = line

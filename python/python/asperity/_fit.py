@@ -61,7 +61,10 @@ class Fit:
 
     @property
     def points(self) -> Floats:
-        """The measured points at the reference temperature, shape (n, 3): ω (rad/s), E' and E'' (Pa); or t (s), E(t), 0."""
+        """The measured points at the reference temperature, shape (n, 3).
+
+        Each has ω (rad/s), E' and E'' (Pa); of relaxation t (s), E(t) (Pa) and 0.
+        """
         return self._native.points().reshape(-1, 3)
 
     def complex_modulus(self, omega: ArrayLike) -> np.ndarray[Any, np.dtype[np.complex128]]:

@@ -39,9 +39,7 @@ class Scene:
         SceneError: Where a key or a value is refused: with file, line and key.
     """
 
-    def __init__(
-        self, text: str, file: str | PathLike[str] = _SCENE, settings: Sequence[tuple[str, str]] = ()
-    ) -> None:
+    def __init__(self, text: str, file: str | PathLike[str] = _SCENE, settings: Sequence[tuple[str, str]] = ()) -> None:
         """A scene from the text of a file.
 
         Args:
@@ -150,7 +148,7 @@ class Scene:
     def with_spectrum(
         self,
         q: ArrayLike,
-        C: ArrayLike,  # noqa: N803
+        C: ArrayLike,
         longest: float | None = None,
         shortest: float | None = None,
         **keys: object,
@@ -459,12 +457,14 @@ class Scene:
         given = library_options() if libraries is None else [str(library) for library in libraries]
         packed = _in_own_folder(self.to_toml(), [], self._read_files())
         if packed != self:
-            raise SceneError("a key is set that stands in a file which the scene names: expected it in the text to pack")
+            raise SceneError(
+                "a key is set that stands in a file which the scene names: expected it in the text to pack"
+            )
         packed._native.pack(Path(path), given)
         return Path(path)
 
 
-class table_file:  # noqa: N801
+class table_file:
     """A path as it is; a table in memory in a file for the time being."""
 
     def __init__(self, data: object) -> None:

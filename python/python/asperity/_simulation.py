@@ -14,8 +14,8 @@ State = _native.State
 class Simulation:
     """A run of a scene that is moved step by step, for masters and loops in Python.
 
-    ``sim["F_x"]`` is the present value of an output; ``sim.state`` all that changes, to be kept, pickled and put back. A
-    copy goes on exactly as the original, bit for bit.
+    ``sim["F_x"]`` is the present value of an output; ``sim.state`` is all that changes, to be kept, pickled and put
+    back. A copy goes on exactly as the original, bit for bit.
     """
 
     def __init__(
@@ -43,11 +43,16 @@ class Simulation:
             temperature: Temperature of the layer where it is an input, K; None: the material's.
         """
         self._start: dict[str, Any] = {
-            "u": u, "w": w, "u_rate": u_rate, "w_rate": w_rate, "load": load, "pull": pull, "temperature": temperature
+            "u": u,
+            "w": w,
+            "u_rate": u_rate,
+            "w_rate": w_rate,
+            "load": load,
+            "pull": pull,
+            "temperature": temperature,
         }
         self.scene = scene
         self._native = _native.Simulation(scene._native, **self._start)
-        #: Moves the carrier: see :meth:`_native.Simulation.advance`.
         self._advance = self._native.advance
 
     def advance(
@@ -82,7 +87,15 @@ class Simulation:
             SimulationError: Where the run cannot go on; it is then as it was.
         """
         self._advance(
-            dt, u, w, u_rate=u_rate, w_rate=w_rate, load=load, load_rate=load_rate, pull=pull, pull_rate=pull_rate,
+            dt,
+            u,
+            w,
+            u_rate=u_rate,
+            w_rate=w_rate,
+            load=load,
+            load_rate=load_rate,
+            pull=pull,
+            pull_rate=pull_rate,
             temperature=temperature,
         )
 

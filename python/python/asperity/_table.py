@@ -103,7 +103,9 @@ class Table:
         import xarray as xr
 
         names = ("v", "p" if self.load == "pressure" else "F", "T")
-        axes = zip(names, ("speed", self.load, "temperature"), (self.speeds, self.loads, self.temperatures), strict=True)
+        axes = zip(
+            names, ("speed", self.load, "temperature"), (self.speeds, self.loads, self.temperatures), strict=True
+        )
         coordinates = {name: (name, values, {"units": self.units.get(column, "K")}) for name, column, values in axes}
         data: dict[str, Any] = {
             name: (names, values, {"units": self.units[name]}) for name, values in self._columns.items()

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ._arguments import columns_of
 from ._result import Result
 
 
@@ -36,7 +37,7 @@ def simulate(
     from fmpy.fmi2 import FMU2Slave
 
     description = fmpy.read_model_description(str(fmu))
-    columns = {str(name): np.asarray(column, dtype=np.float64) for name, column in dict(motion).items()}  # type: ignore[call-overload]
+    columns = {name: np.asarray(column, dtype=np.float64) for name, column in columns_of(motion).items()}
     inputs = [variable for variable in description.modelVariables if variable.causality == "input"]
     rows = _rows(columns, [variable.name for variable in inputs])
     folder = fmpy.extract(str(fmu))
