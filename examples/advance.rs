@@ -1,4 +1,4 @@
-//! Many short motions of a small layer, timed: what `python/benches/bench.py` compares the module's with.
+//! Many short motions of a small layer, and the processor time that they take, in s: what `python/benches/bench.py` compares the module's with.
 //!
 //! `cargo run --release --example advance`
 
@@ -6,10 +6,10 @@
 
 use std::error::Error;
 use std::path::Path;
-use std::time::Instant;
 
 use asperity::scene::{Path as Displacement, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
+use cpu_time::ThreadTime;
 
 const CALLS: u32 = 10_000;
 const DURATION: f64 = 1e-6;
@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for _ in 0..REPETITIONS {
         let mut simulation = Simulation::new(&scene, &Start::default())?;
         simulation.advance(&Motion { duration: 1e-3, w: rate(-0.02), ..Motion::default() })?;
-        let start = Instant::now();
+        let start = ThreadTime::now();
         for _ in 0..CALLS {
             simulation.advance(&Motion { duration: DURATION, u: rate(0.1), ..Motion::default() })?;
         }
