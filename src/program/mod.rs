@@ -1,4 +1,8 @@
 //! The commands of the program, one module each, and what they share.
+//!
+//! [`execute`] is the program. What its commands compute is there without command line, files and messages too: runs
+//! along an excitation ([`Runner`]), sweeps ([`SweepPlan`]), contacts ([`solve_contact`]), Prony series ([`fit_moduli`]),
+//! calibrations ([`calibrate_scene`]) and FMUs ([`fmu`]).
 
 mod calibrate;
 mod cli;
