@@ -2,6 +2,7 @@
 # Builds the program and the shared library and packs a scene as an FMU.
 #
 #   ./build-fmu.sh [SCENE.toml] [-o OUT.fmu] [--simulate] [--all-platforms]
+#   ./build-fmu.sh --wheel [--all-platforms]
 #
 # Default: the tread block in scenes/, packed as target/<name of the scene file>.fmu. With --simulate the FMU is run in
 # fmpy along the scene's excitation; a table is printed and a picture drawn beside the FMU.
@@ -9,6 +10,11 @@
 # With --all-platforms, on Linux on x86-64, the FMU has a library for linux64, from glibc 2.17 on, and one for win64.
 # That takes Debian's packages rustc-web, rust-web-src and gcc-mingw-w64-x86-64-win32, and cargo-zigbuild and ziglang,
 # which are fetched from PyPI into target/.
+#
+# With --wheel the Python package asperity is built in place of an FMU, by maturin, which is fetched from PyPI into
+# target/: a wheel with the shared library of the FMUs, and a source distribution, in target/wheels. With --all-platforms
+# there is a wheel for Linux from glibc 2.17 on, on x86-64 and on aarch64, and one for Windows, all linked by zig; that
+# takes the targets of Rust that rustup adds.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -27,12 +33,13 @@ refuse() {
     exit 2
 }
 
-scene='' output='' simulate=false all_platforms=false
+scene='' output='' simulate=false all_platforms=false wheel=false
 while [ $# -gt 0 ]; do
     case $1 in
         -o | --output) [ $# -ge 2 ] || refuse "$1 needs a file name"; output=$2; shift ;;
         --simulate) simulate=true ;;
         --all-platforms) all_platforms=true ;;
+        --wheel) wheel=true ;;
         -h | --help) usage; exit 0 ;;
         -*) refuse "unknown option $1; see --help" ;;
         *) [ -z "$scene" ] || refuse "one scene at a time: $scene or $1"; scene=$1 ;;
@@ -58,13 +65,19 @@ build_library() {
     esac
 }
 
-# zig's linker knows the symbols of every glibc.
-build_linux64() {
-    local glibc=2.17 triple=x86_64-unknown-linux-gnu folder=$target/linux64 python newest
-    local library=$folder/$triple/release/libasperity.so
+# The library by zig's linker, which knows the symbols of every glibc: a target, with the version of glibc behind it, and
+# a folder.
+build_by_zig() {
+    local python
     python=$("$root/tests/python/environment.sh" "$target/zig" "$root/tests/host/zig.txt")
     PATH=$target/zig/bin:$target/zig/packages/bin:$PATH CARGO_ZIGBUILD_PYTHON_PATH=$python \
-        cargo-zigbuild rustc "${library_options[@]}" --target "$triple.$glibc" --target-dir "$folder"
+        cargo-zigbuild rustc "${library_options[@]}" --target "$1" --target-dir "$2"
+}
+
+build_linux64() {
+    local glibc=2.17 triple=x86_64-unknown-linux-gnu folder=$target/linux64 newest
+    local library=$folder/$triple/release/libasperity.so
+    build_by_zig "$triple.$glibc" "$folder"
     newest=$(objdump -T "$library" | grep -o 'GLIBC_[0-9.]*' | sed s/GLIBC_// | sort -V | tail -n 1)
     [ "$(printf '%s\n' "$newest" "$glibc" | sort -V | tail -n 1)" = "$glibc" ] ||
         refuse "$library needs glibc $newest, more than $glibc"
@@ -108,7 +121,55 @@ simulate() {
     echo "$base.png"
 }
 
+package=$root/python/python/asperity
+
+# A wheel with the shared library of a platform, as FMUs name it; the other arguments are options of maturin.
+build_wheel() {
+    local platform=$1 library=$2
+    shift 2
+    rm -rf "$package/binaries"
+    mkdir -p "$package/binaries/$platform"
+    cp "$library" "$package/binaries/$platform/asperity.${library##*.}"
+    PATH=$target/zig/bin:$target/zig/packages/bin:$target/wheel/bin:$target/wheel/packages/bin:$PATH \
+        maturin build --manifest-path "$root/python/Cargo.toml" --locked --release --out "$target/wheels" "$@"
+}
+
+build_wheel_by_zig() {
+    local platform=$1 triple=$2 glibc=$3 library=$4
+    rustup target list --installed | grep -qx "$triple" || refuse "the wheel for $triple needs: rustup target add $triple"
+    build_by_zig "$triple$glibc" "$target/$triple"
+    build_wheel "$platform" "$target/$triple/$triple/release/$library" --zig --target "$triple" \
+        --target-dir "$target/$triple" ${glibc:+--compatibility manylinux2014}
+}
+
+# The licences of what a wheel links are collected from the packages themselves.
+build_wheels() {
+    local python
+    python=$("$root/tests/python/environment.sh" "$target/wheel" wheel.txt)
+    cp "$root"/LICENSE-* "$root/python/"
+    "$python" "$root/python/licences.py" "$root/Cargo.toml" "$root/python/third-party.txt"
+    if $all_platforms; then
+        command -v rustup > /dev/null || refuse "--wheel --all-platforms needs rustup, which adds Rust's targets"
+        build_wheel_by_zig linux64 x86_64-unknown-linux-gnu .2.17 libasperity.so
+        build_wheel_by_zig linux64 aarch64-unknown-linux-gnu .2.17 libasperity.so
+        build_wheel_by_zig win64 x86_64-pc-windows-gnu '' asperity.dll
+    else
+        build_library
+        case $(uname -s) in
+            Darwin) build_wheel darwin64 "${libraries[0]}" --target-dir "$target" ;;
+            MINGW* | MSYS* | CYGWIN*) build_wheel win64 "${libraries[0]}" --target-dir "$target" ;;
+            *) build_wheel linux64 "${libraries[0]}" --target-dir "$target" ;;
+        esac
+    fi
+    PATH=$target/wheel/bin:$target/wheel/packages/bin:$PATH \
+        maturin sdist --manifest-path "$root/python/Cargo.toml" --out "$target/wheels"
+}
+
 libraries=()
+if $wheel; then
+    build_wheels
+    exit
+fi
 if $all_platforms; then
     check_tools
     build_linux64

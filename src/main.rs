@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    asperity::program::main(std::env::args_os(), None)
+    asperity::program::execute(std::env::args_os(), None).into()
 }

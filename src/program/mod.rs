@@ -1,4 +1,8 @@
 //! The commands of the program, one module each, and what they share.
+//!
+//! [`execute`] is the program. What its commands compute is there without command line, files and messages too: runs
+//! along an excitation ([`Runner`]), sweeps ([`SweepPlan`]), contacts ([`solve_contact`]), Prony series ([`fit_moduli`]),
+//! calibrations ([`calibrate_scene`]) and FMUs ([`fmu`]).
 
 mod calibrate;
 mod cli;
@@ -35,7 +39,6 @@ mod terminal;
 use std::error::Error;
 use std::ffi::OsString;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 pub use calibrate::{CalibrateError, CalibratedParameter, Calibration, CalibrationOptions, calibrate_scene};
 use clap::Parser as _;
@@ -52,22 +55,27 @@ pub use sweep::{
     SweepTable, TableFileError,
 };
 
-/// Executes a command line, the program's name first; prints its results, and the error that ended it. Does not return
-/// from `--help` and from a command line that cannot be understood. `library` is the shared library that FMUs are packed
-/// with where none is named; without it the one beside the program.
+/// Exit status of a command that did what was asked for.
+const SUCCESS: u8 = 0;
+/// Exit status of one that did not.
+const FAILURE: u8 = 1;
+
+/// Executes a command line, the program's name first; prints its results, and the error that ended it. Returns the exit
+/// status. Does not return from `--help` and from a command line that cannot be understood. `library` is the shared
+/// library that FMUs are packed with where none is named; without it the one beside the program.
 #[expect(clippy::print_stderr, reason = "the one place where the program prints the error that ended it")]
-pub fn main(words: impl IntoIterator<Item = OsString>, library: Option<PathBuf>) -> ExitCode {
+pub fn execute(words: impl IntoIterator<Item = OsString>, library: Option<PathBuf>) -> u8 {
     match run(Arguments::parse_from(words), library) {
         Ok(status) => status,
         Err(error) => {
             eprintln!("asperity: {error}");
-            ExitCode::FAILURE
+            FAILURE
         }
     }
 }
 
 /// Executes the command of the command line.
-fn run(arguments: Arguments, library: Option<PathBuf>) -> Result<ExitCode, Box<dyn Error>> {
+fn run(arguments: Arguments, library: Option<PathBuf>) -> Result<u8, Box<dyn Error>> {
     terminal::set_verbosity(arguments.quiet, arguments.verbose);
     match arguments.command {
         Command::Simulate(command) => run_simulate(&command)?,
@@ -92,7 +100,7 @@ fn run(arguments: Arguments, library: Option<PathBuf>) -> Result<ExitCode, Box<d
         Command::Surface(command) => surface::surface(&command)?,
         Command::Sweep(command) => sweep::sweep(&command)?,
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(SUCCESS)
 }
 
 /// A scene along its excitation, or a patch along a motion file.

@@ -22,11 +22,25 @@ pub enum OverrideError {
     #[error("{key}: {name} is {found} in the file")]
     NothingBelow { key: String, name: String, found: &'static str },
     #[error("{problem}; did you mean {}?", .similar.join(", "))]
-    Unknown { problem: String, similar: Vec<String> },
-    #[error("{0}")]
-    Refused(String),
+    Unknown { key: String, problem: String, similar: Vec<String> },
+    #[error("{problem}")]
+    Refused { key: String, problem: String },
     #[error(transparent)]
     Parameter(#[from] ParameterError),
+}
+
+impl OverrideError {
+    /// The path of the key.
+    pub fn key(&self) -> &str {
+        match self {
+            Self::NotAPath { key }
+            | Self::NoElement { key, .. }
+            | Self::NothingBelow { key, .. }
+            | Self::Unknown { key, .. }
+            | Self::Refused { key, .. } => key,
+            Self::Parameter(error) => error.name(),
+        }
+    }
 }
 
 /// A file is refused: its own text, or what is set in it.
@@ -78,7 +92,9 @@ pub(crate) fn set_in_named_files(scene: &mut Scene, settings: &[Setting]) -> Res
 fn refusal(error: SceneError, own: Option<SceneError>, file: &Path) -> Refusal<SceneError> {
     match own {
         Some(own) if (own.key(), own.problem()) == (error.key(), error.problem()) => Refusal::Own(own),
-        _ if error.file() != file => Refusal::Set(OverrideError::Refused(error.to_string())),
+        _ if error.file() != file => {
+            Refusal::Set(OverrideError::Refused { key: error.key().to_owned(), problem: error.to_string() })
+        }
         _ => Refusal::Set(refused(&error)),
     }
 }
@@ -86,9 +102,10 @@ fn refusal(error: SceneError, own: Option<SceneError>, file: &Path) -> Refusal<S
 /// A key of the text that was not refused before.
 fn refused(error: &SceneError) -> OverrideError {
     let (problem, similar) = (error.without_place(), similar_keys(error.key()));
+    let key = error.key().to_owned();
     match error.problem() {
-        Problem::Unknown { .. } if !similar.is_empty() => OverrideError::Unknown { problem, similar },
-        _ => OverrideError::Refused(problem),
+        Problem::Unknown { .. } if !similar.is_empty() => OverrideError::Unknown { key, problem, similar },
+        _ => OverrideError::Refused { key, problem },
     }
 }
 

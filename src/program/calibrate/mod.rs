@@ -6,7 +6,6 @@ mod summary;
 mod written;
 
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::time::Duration;
 
 use asperity::calibration::{
@@ -18,6 +17,7 @@ use asperity::element::OperatingPoint;
 use asperity::scene::{Scene, read_text, similar_keys};
 use indicatif::ProgressBar;
 
+use super::SUCCESS;
 use super::cli::Calibrate;
 use super::figure::{Figure as _, Stroke};
 use super::files::{
@@ -259,7 +259,7 @@ impl Calibrated {
 const DIGITS: usize = 7;
 
 /// Fits, writes the scene and the picture, and says what the data tell.
-pub(crate) fn calibrate(command: &Calibrate) -> Result<ExitCode, CalibrateError> {
+pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, CalibrateError> {
     let scene = load_without_excitation(&command.scene, &command.set)?;
     let text = read_text(&command.scene).map_err(FileError::io("read", &command.scene))?;
     let options = command.into();
@@ -300,7 +300,7 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<ExitCode, CalibrateError>
             [Some(&output), picture.as_ref(), table.as_ref()].into_iter().flatten().map(PathBuf::as_path).collect();
         print_beside([&output], &summary::text(&free, &calibrated, &measurements, planned.as_ref(), &files))?;
         summary::warnings(&calibrated, &measurements).iter().for_each(|warning| warn(warning));
-        Ok(if calibrated.is_whole() { ExitCode::SUCCESS } else { ExitCode::from(OPEN) })
+        Ok(if calibrated.is_whole() { SUCCESS } else { OPEN })
     })
 }
 

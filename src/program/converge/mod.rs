@@ -8,7 +8,6 @@ mod variants;
 mod verdict;
 
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::time::Duration;
 
 use asperity::element::{Load, OperatingPoint};
@@ -18,6 +17,7 @@ use cpu_time::ThreadTime;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 
+use super::SUCCESS;
 use super::cli::{Converge, SteadyState};
 use super::draft::TablePlace;
 use super::figure::Figure as _;
@@ -81,7 +81,7 @@ const OPEN: u8 = 3;
 const RUN_ERROR: f64 = 0.1;
 
 /// Makes the runs, prints the study and draws it.
-pub(crate) fn converge(command: &Converge) -> Result<ExitCode, ConvergeError> {
+pub(crate) fn converge(command: &Converge) -> Result<u8, ConvergeError> {
     let (template, scene) = Template::read(&command.scene, &command.set)?;
     let (method, of_method) = asked(command).choose(&scene)?;
     let template = match &method {
@@ -111,7 +111,7 @@ pub(crate) fn converge(command: &Converge) -> Result<ExitCode, ConvergeError> {
     if let Some(picture) = &picture {
         plot::picture(&scene.name, &runs).write(picture)?;
     }
-    Ok(if verdict.is_converged() { ExitCode::SUCCESS } else { ExitCode::from(OPEN) })
+    Ok(if verdict.is_converged() { SUCCESS } else { OPEN })
 }
 
 /// Seeds where none are asked for.

@@ -13,11 +13,11 @@ mod workbook;
 
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use asperity::scene::PronyTerm;
 use asperity::scene::text_table::Unit;
 
+use super::SUCCESS;
 use super::cli::{Fit, WlfConstants};
 use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
 use super::files::{self, FileError, check_outputs, name_of, named, picture_beside, print_beside};
@@ -135,7 +135,7 @@ pub fn fit_moduli(options: &FitOptions) -> Result<FittedModuli, FitError> {
 /// Reads the moduli, puts those of several temperatures together, fits, writes the terms and the plot, and prints a
 /// summary. Where the requested error cannot be reached, the best fit is written, with a warning and an exit status of
 /// its own.
-pub(crate) fn fit(command: &Fit) -> Result<ExitCode, FitError> {
+pub(crate) fn fit(command: &Fit) -> Result<u8, FitError> {
     let picture = picture_beside(&command.output, command.plot.as_ref());
     let read: Vec<PathBuf> = std::iter::once(&command.data).chain(&command.shifts).cloned().collect();
     check_outputs([&command.output].into_iter().chain(&picture), read)?;
@@ -148,10 +148,10 @@ pub(crate) fn fit(command: &Fit) -> Result<ExitCode, FitError> {
     }
     print_beside([&command.output], &result.text(&command.output, picture.as_deref()))?;
     if result.errors.both.rms <= command.error {
-        return Ok(ExitCode::SUCCESS);
+        return Ok(SUCCESS);
     }
     warn(&result.not_reached(&command.output));
-    Ok(ExitCode::from(WORSE))
+    Ok(WORSE)
 }
 
 fn in_data(options: &FitOptions, error: ModuliError) -> FitError {

@@ -1,0 +1,39 @@
+"""Rubber on a rough, hard surface: transient contact, friction, calibration, FMUs.
+
+    scene = asperity.Scene.from_toml("scene.toml")
+    result = scene.simulate(points=200)
+    result["F_x"], result.time
+
+All numbers are in SI units. The manual is docs/python.md of the repository, the keys of a scene are in
+docs/reference.md.
+"""
+
+from . import fmi
+from ._calibration import Calibration, Parameter
+from ._contact import Contact
+from ._errors import SceneError, SimulationError
+from ._fit import Fit, fit
+from ._native import __version__
+from ._patch import Patch
+from ._result import Result
+from ._scene import Scene
+from ._simulation import Simulation, State
+from ._table import Table
+
+__all__ = [
+    "Calibration",
+    "Contact",
+    "Fit",
+    "Parameter",
+    "Patch",
+    "Result",
+    "Scene",
+    "SceneError",
+    "Simulation",
+    "SimulationError",
+    "State",
+    "Table",
+    "__version__",
+    "fit",
+    "fmi",
+]

@@ -1,0 +1,63 @@
+"""Contacts in steady sliding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from ._arguments import Floats
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Contact:
+    """Where the rubber touches in steady sliding, and how hard.
+
+    Attributes:
+        x: Places along x, the direction of sliding, m, shape (nx,).
+        y: Places along y, m, shape (ny,); one of a profile.
+        height: Heights of the surface about their mean, m, shape (ny, nx).
+        pressure: Pressures, Pa, shape (ny, nx); 0 where nothing touches.
+        gap: Gaps between rubber and surface, m, shape (ny, nx).
+        friction: Friction coefficient, 1.
+        friction_profile: The part of it by the slopes of the surface, 1.
+        friction_fine: The part by the waves that the surface lacks, 1; None where it lacks none that rub.
+        friction_adhesion: The part by what acts in the contacts else, 1.
+        area: Points in contact over all, 1.
+        area_real: Area that touches with the waves that the surface lacks over the whole, 1; None without them.
+        separation: Distance of the mean planes of rubber and surface, m.
+        flash_mean: Mean flash temperature over the contact, K; None where friction heats nothing.
+        status: "steady", or why the values cannot be relied on.
+    """
+
+    x: Floats
+    y: Floats
+    height: Floats
+    pressure: Floats
+    gap: Floats
+    friction: float
+    friction_profile: float
+    friction_fine: float | None
+    friction_adhesion: float
+    area: float
+    area_real: float | None
+    separation: float
+    flash_mean: float | None
+    status: str
+
+    @classmethod
+    def _of(cls, found: dict[str, Any]) -> Contact:
+        shape = (len(found["y"]), len(found["x"]))
+        fields = {name: found[name].reshape(shape) for name in ("height", "pressure", "gap")}
+        return cls(**{**found, **fields})
+
+    def plot(self) -> Figure:
+        """Draws it with matplotlib: curves along a profile, maps of pressure and gap over a map."""
+        from ._plots import contact
+
+        return contact(self.x, self.y, self.height, self.pressure, self.gap)
+
+    def __repr__(self) -> str:
+        return f"<asperity.Contact: friction {self.friction:.4g}, area {self.area:.4g}, {self.status}>"

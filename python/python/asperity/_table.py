@@ -1,0 +1,155 @@
+"""Tables of sweeps."""
+
+from __future__ import annotations
+
+import csv
+import tempfile
+from collections.abc import Sequence
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _native
+from ._arguments import Floats
+from ._library import options as library_options
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+
+class Table:
+    """Friction in steady sliding over speed, load and temperature.
+
+    ``table["friction"]`` is a column, an array of shape (speeds, loads, temperatures), nan where a point has no value.
+
+    Attributes:
+        text: The table as ``asperity sweep`` writes it.
+        speeds: Speeds, m/s, shape (nv,).
+        load: What the loads are: "pressure" (Pa) or "force" (N).
+        loads: Mean pressures, Pa, or forces, N, shape (np,).
+        temperatures: Temperatures, K, shape (nT,); one that is nan where the scene has none.
+        units: Units of the columns.
+        status: "steady", or why the values cannot be relied on; shape (nv, np, nT), "" of points not found yet.
+    """
+
+    def __init__(self, text: str) -> None:
+        """The table of this text."""
+        self.text = text
+        lines = [line for line in text.splitlines() if line and not line.startswith("#")]
+        if not lines:
+            raise ValueError("expected the text of a table, found no rows")
+        head, *rows = csv.reader(lines)
+        names = [name.split(" [")[0] for name in head]
+        self.units = {name: full.partition(" [")[2].rstrip("]") for name, full in zip(names, head, strict=True)}
+        columns = dict(zip(names, zip(*rows, strict=True), strict=True))
+        self.load = "pressure" if "pressure" in columns else "force"
+        missing = {"speed", self.load, "status", "friction"} - set(columns)
+        if missing:
+            raise ValueError(f"expected the text of a table of asperity sweep, found none of {sorted(missing)}")
+        kelvin = columns.get("temperature", ("",) * len(rows))
+        axes = [np.unique(_floats(values)) for values in (columns["speed"], columns[self.load], kelvin)]
+        self.speeds, self.loads, self.temperatures = axes
+        places = tuple(
+            np.searchsorted(axis, _floats(values))
+            for axis, values in zip(axes, (columns["speed"], columns[self.load], kelvin), strict=True)
+        )
+        shape = tuple(map(len, axes))
+        self.status = np.full(shape, "", dtype=object)
+        self.status[places] = columns["status"]
+        self._columns: dict[str, Floats] = {}
+        for name in names:
+            if name not in ("speed", self.load, "temperature", "status"):
+                self._columns[name] = np.full(shape, np.nan)
+                self._columns[name][places] = _floats(columns[name])
+
+    @classmethod
+    def read(cls, path: str | PathLike[str]) -> Table:
+        """The table in a file that ``asperity sweep`` or :meth:`to_csv` wrote."""
+        return cls(Path(path).read_text(encoding="utf-8"))
+
+    def __getitem__(self, name: str) -> Floats:
+        """A column, shape (speeds, loads, temperatures)."""
+        try:
+            return self._columns[name]
+        except KeyError:
+            raise KeyError(f"{name}: expected one of {', '.join(self._columns)}") from None
+
+    @property
+    def columns(self) -> list[str]:
+        """The names of the columns."""
+        return list(self._columns)
+
+    def to_csv(self, path: str | PathLike[str]) -> None:
+        """Writes the table, as ``asperity pack --table`` and patches read it."""
+        Path(path).write_text(self.text, encoding="utf-8")
+
+    def to_pandas(self) -> pd.DataFrame:
+        """A row a point: speed, load, temperature, status and the columns."""
+        import pandas as pd
+
+        grid = np.meshgrid(self.speeds, self.loads, self.temperatures, indexing="ij")
+        axes = dict(zip(("speed", self.load, "temperature"), grid, strict=True))
+        values = {**axes, "status": self.status, **self._columns}
+        frame = pd.DataFrame({name: array.ravel() for name, array in values.items()})
+        frame.attrs["units"] = dict(self.units)
+        return frame
+
+    def to_xarray(self) -> xr.Dataset:
+        """The columns with dimensions v, p (or F) and T."""
+        import xarray as xr
+
+        names = ("v", "p" if self.load == "pressure" else "F", "T")
+        axes = zip(
+            names, ("speed", self.load, "temperature"), (self.speeds, self.loads, self.temperatures), strict=True
+        )
+        coordinates = {name: (name, values, {"units": self.units.get(column, "K")}) for name, column, values in axes}
+        data: dict[str, Any] = {
+            name: (names, values, {"units": self.units[name]}) for name, values in self._columns.items()
+        }
+        data["status"] = (names, self.status)
+        return xr.Dataset(data, coords=coordinates)
+
+    def plot(self, column: str = "friction") -> Figure:
+        """Draws a column over the speed with matplotlib, a curve for each load and temperature."""
+        from ._plots import stacked
+
+        unit = "Pa" if self.load == "pressure" else "N"
+        curves = [
+            (_label(load, unit, kelvin), self.speeds, self[column][:, j, k])
+            for k, kelvin in enumerate(self.temperatures)
+            for j, load in enumerate(self.loads)
+        ]
+        return stacked("", "speed [m/s]", [(f"{column} [{self.units[column]}]", curves)], log=True)
+
+    def pack(self, path: str | PathLike[str], libraries: Sequence[str | PathLike[str]] | None = None) -> Path:
+        """Packs the table as an FMU, a point-contact element, and returns its path.
+
+        Args:
+            path: The FMU to write.
+            libraries: As for :meth:`Scene.pack`.
+        """
+        given = library_options() if libraries is None else [str(library) for library in libraries]
+        with tempfile.TemporaryDirectory(prefix="asperity-") as folder:
+            file = Path(folder) / "table.csv"
+            self.to_csv(file)
+            _native.pack_table(file, Path(path), given)
+        return Path(path)
+
+    def __reduce__(self) -> tuple[type[Table], tuple[str]]:
+        return type(self), (self.text,)
+
+    def __repr__(self) -> str:
+        sizes = f"{len(self.speeds)} speeds, {len(self.loads)} loads, {len(self.temperatures)} temperatures"
+        return f"<asperity.Table: {sizes}; {', '.join(self.columns)}>"
+
+
+def _label(load: float, unit: str, kelvin: float) -> str:
+    return f"{load:g} {unit}" + ("" if np.isnan(kelvin) else f", {kelvin:g} K")
+
+
+def _floats(texts: Sequence[str]) -> Floats:
+    return np.array([float(text) if text else np.nan for text in texts], dtype=np.float64)

@@ -1,0 +1,73 @@
+//! Numbers of a scene from measured friction.
+
+use std::path::PathBuf;
+
+use asperity::calibration::FreeParameter;
+use asperity::program::{Calibration, CalibrationOptions, calibrate_scene};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::background::in_background;
+use crate::errors::Raise as _;
+use crate::scene::Scene;
+use crate::sweep::sliding;
+
+/// Fits numbers of the scene to the measured friction in a file.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+pub(crate) fn calibrate<'py>(
+    py: Python<'py>,
+    scene: &Scene,
+    data: PathBuf,
+    free: Vec<(String, f64, f64)>,
+    method: Option<&str>,
+    points: Option<u32>,
+    error: Option<f64>,
+    distance: Option<f64>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let parameter = |(key, low, high): (String, f64, f64)| {
+        let refused = format!("{key}: expected bounds (low, high), low below high, found ({low}, {high})");
+        FreeParameter::new(key, low, high).ok_or_else(|| PyValueError::new_err(refused))
+    };
+    let options = CalibrationOptions {
+        scene: scene.file.clone(),
+        set: scene.settings.clone(),
+        free: free.into_iter().map(parameter).collect::<PyResult<_>>()?,
+        data,
+        sliding: sliding(method, points, error, distance)?,
+    };
+    let text = scene.text.clone();
+    let found = in_background(py, None, move |task| calibrate_scene(&text, &options, || !task.is_stopped()))?;
+    as_dictionary(py, found.map_err(|error| error.raise())?)
+}
+
+fn as_dictionary(py: Python<'_>, found: Calibration) -> PyResult<Bound<'_, PyDict>> {
+    let Calibration { parameters, correlation, chi_square, is_whole, measurements, warnings, notes, text } = found;
+    let rows = PyList::empty(py);
+    for one in parameters {
+        let row = PyDict::new(py);
+        row.set_item("key", one.key)?;
+        row.set_item("before", one.before)?;
+        row.set_item("value", one.value)?;
+        row.set_item("standard_error", one.standard_error)?;
+        row.set_item("interval", one.interval)?;
+        row.set_item("is_identifiable", one.is_identifiable)?;
+        rows.append(row)?;
+    }
+    let measured = PyList::empty(py);
+    for (row, model) in measurements {
+        let point = row.point;
+        measured.append((point.speed, point.load, point.temperature, row.friction, row.sigma, model))?;
+    }
+    let found = PyDict::new(py);
+    found.set_item("parameters", rows)?;
+    found.set_item("correlation", correlation)?;
+    found.set_item("chi_square", chi_square)?;
+    found.set_item("is_whole", is_whole)?;
+    found.set_item("measured", measured)?;
+    found.set_item("warnings", warnings)?;
+    found.set_item("notes", notes)?;
+    found.set_item("text", text)?;
+    Ok(found)
+}

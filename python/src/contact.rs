@@ -1,0 +1,51 @@
+//! Where the rubber touches in steady sliding.
+
+use std::sync::Arc;
+
+use asperity::program::{ContactOptions, SolvedContact, solve_contact};
+use numpy::IntoPyArray as _;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::background::in_background;
+use crate::errors::Raise as _;
+use crate::scene::Scene;
+
+/// Solves for steady sliding.
+#[pyfunction]
+pub(crate) fn contact<'py>(
+    py: Python<'py>,
+    scene: &Scene,
+    pressure: f64,
+    speed: f64,
+    points: Option<u32>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (scene, options) = (Arc::clone(&scene.scene), ContactOptions { pressure, speed, points });
+    let solved = in_background(py, None, move |_| solve_contact(&scene, &options))?;
+    let SolvedContact { slide, fields, status, .. } = solved.map_err(|error| error.raise())?;
+    let found = PyDict::new(py);
+    let (friction, separation) = (slide.friction(), slide.contact.separation);
+    for (name, value) in [
+        ("friction", Some(friction)),
+        ("friction_profile", Some(slide.profile_hysteresis)),
+        ("friction_fine", slide.fine_hysteresis),
+        ("friction_adhesion", Some(slide.adhesion)),
+        ("area", Some(slide.area)),
+        ("area_real", slide.real_area),
+        ("separation", Some(separation)),
+        ("flash_mean", slide.flash_mean),
+    ] {
+        found.set_item(name, value)?;
+    }
+    found.set_item("status", status)?;
+    for (name, values) in [
+        ("x", fields.x),
+        ("y", fields.y),
+        ("height", fields.heights),
+        ("pressure", fields.pressures),
+        ("gap", fields.gaps),
+    ] {
+        found.set_item(name, values.into_pyarray(py))?;
+    }
+    Ok(found)
+}

@@ -1,0 +1,131 @@
+//! Errors of the library as exceptions of `asperity`.
+
+use std::fmt::Display;
+use std::path::Path;
+
+use asperity::patch::PatchError;
+use asperity::program::{CalibrateError, ContactError, FileError, FitError, OverrideError, PackError, SweepError};
+use asperity::scene::{ParameterError, SceneError};
+use asperity::simulation::SimulationError;
+use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::prelude::*;
+
+/// `asperity.SceneError` with file, line and key where they are known.
+fn scene_error(message: &dyn Display, file: Option<&Path>, line: Option<usize>, key: &str) -> PyErr {
+    let key = Some(key).filter(|key| !key.is_empty());
+    Python::attach(|py| {
+        let raised = py
+            .import("asperity._errors")
+            .and_then(|module| module.getattr("SceneError"))
+            .and_then(|class| class.call1((message.to_string(), file, line, key)));
+        raised.map_or_else(|error| error, PyErr::from_value)
+    })
+}
+
+/// `asperity.SimulationError`.
+fn simulation_error(message: &dyn Display) -> PyErr {
+    Python::attach(|py| {
+        let class = py.import("asperity._errors").and_then(|module| module.getattr("SimulationError"));
+        class.and_then(|class| class.call1((message.to_string(),))).map_or_else(|error| error, PyErr::from_value)
+    })
+}
+
+/// An error of the library as an exception.
+pub(crate) trait Raise {
+    /// The exception.
+    fn raise(self) -> PyErr;
+}
+
+impl Raise for SceneError {
+    fn raise(self) -> PyErr {
+        scene_error(&self, Some(self.file()), self.line(), self.key())
+    }
+}
+
+impl Raise for ParameterError {
+    fn raise(self) -> PyErr {
+        scene_error(&self, None, None, self.name())
+    }
+}
+
+impl Raise for OverrideError {
+    fn raise(self) -> PyErr {
+        scene_error(&self, None, None, self.key())
+    }
+}
+
+impl Raise for PatchError {
+    fn raise(self) -> PyErr {
+        match self {
+            Self::File(error) => error.raise(),
+            error => scene_error(&error, None, None, ""),
+        }
+    }
+}
+
+impl Raise for FileError {
+    fn raise(self) -> PyErr {
+        match self {
+            Self::Scene(error) => error.raise(),
+            Self::Set(error) => error.raise(),
+            Self::Patch(error) => error.raise(),
+            Self::Io { .. } => PyOSError::new_err(self.to_string()),
+            error => PyValueError::new_err(error.to_string()),
+        }
+    }
+}
+
+impl Raise for SimulationError {
+    fn raise(self) -> PyErr {
+        match self {
+            Self::Scene(error) => error.raise(),
+            Self::OutOfRange(error) => PyValueError::new_err(error.to_string()),
+            error => simulation_error(&error),
+        }
+    }
+}
+
+impl Raise for SweepError {
+    fn raise(self) -> PyErr {
+        match self {
+            Self::File(error) => error.raise(),
+            error => scene_error(&error, None, None, ""),
+        }
+    }
+}
+
+impl Raise for ContactError {
+    fn raise(self) -> PyErr {
+        match self {
+            Self::File(error) => error.raise(),
+            error => scene_error(&error, None, None, ""),
+        }
+    }
+}
+
+impl Raise for FitError {
+    fn raise(self) -> PyErr {
+        match self {
+            Self::File(error) => error.raise(),
+            error => PyValueError::new_err(error.to_string()),
+        }
+    }
+}
+
+impl Raise for CalibrateError {
+    fn raise(self) -> PyErr {
+        match self {
+            Self::File(error) => error.raise(),
+            error => PyValueError::new_err(error.to_string()),
+        }
+    }
+}
+
+impl Raise for PackError {
+    fn raise(self) -> PyErr {
+        match self {
+            Self::File(error) => error.raise(),
+            error => PyValueError::new_err(error.to_string()),
+        }
+    }
+}

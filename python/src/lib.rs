@@ -1,0 +1,44 @@
+//! `asperity._native`: what the module `asperity` of Python needs of the library. The classes that users see, their
+//! documentation and their types are in `python/asperity`.
+
+mod background;
+mod calibrate;
+mod contact;
+mod errors;
+mod fit;
+mod patch;
+mod program;
+mod run;
+mod scene;
+mod simulation;
+mod sweep;
+
+use pyo3::prelude::*;
+
+/// The native part of the module asperity.
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use super::calibrate::calibrate;
+    #[pymodule_export]
+    use super::contact::contact;
+    #[pymodule_export]
+    use super::fit::{Fit, fit};
+    #[pymodule_export]
+    use super::patch::{Patch, PatchRun};
+    #[pymodule_export]
+    use super::program::main;
+    #[pymodule_export]
+    use super::run::simulate;
+    #[pymodule_export]
+    use super::scene::Scene;
+    #[pymodule_export]
+    use super::simulation::{Simulation, State};
+    #[pymodule_export]
+    use super::sweep::{pack_table, sweep};
+
+    #[pymodule_init]
+    fn init(module: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {
+        pyo3::types::PyModuleMethods::add(module, "__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,145 @@
+//! A run of a scene along its excitation.
+
+use std::sync::Arc;
+
+use asperity::outputs::{OutputType, Variable, variables};
+use asperity::program::{CarrierSample, Rows, Runner};
+use asperity::scene::{OutputGroup, Scene as SceneData, Unit};
+use asperity::simulation::SimulationError;
+use numpy::{IntoPyArray as _, PyArray1};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::background::{Task, in_background};
+use crate::errors::Raise as _;
+use crate::scene::Scene;
+
+/// A column of a result.
+pub(crate) struct Column {
+    name: String,
+    unit: String,
+    kind: OutputType,
+    values: Vec<f64>,
+}
+
+impl Column {
+    pub(crate) fn of(variable: &Variable) -> Self {
+        Self::new(&variable.name, variable.unit, variable.kind)
+    }
+
+    fn new(name: &str, unit: Unit, kind: OutputType) -> Self {
+        Self { name: name.to_owned(), unit: unit.name().to_owned(), kind, values: Vec::new() }
+    }
+
+    /// The values as an array, which takes them over.
+    fn array(self, py: Python<'_>) -> Bound<'_, PyAny> {
+        match self.kind {
+            OutputType::Real => self.values.into_pyarray(py).into_any(),
+            OutputType::Integer => {
+                PyArray1::from_iter(py, self.values.into_iter().map(|value| value as i64)).into_any()
+            }
+        }
+    }
+}
+
+/// Arrays and units by the columns' names.
+pub(crate) fn arrays<'py>(py: Python<'py>, columns: Vec<Column>) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
+    let (arrays, units) = (PyDict::new(py), PyDict::new(py));
+    for column in columns {
+        units.set_item(&column.name, &column.unit)?;
+        arrays.set_item(column.name.clone(), column.array(py))?;
+    }
+    Ok((arrays, units))
+}
+
+/// What a run leaves.
+struct Recorded {
+    columns: Vec<Column>,
+    /// Of the masses, row by row.
+    elements: Vec<Column>,
+    warnings: Vec<String>,
+}
+
+/// What a run is asked for.
+struct Asked {
+    /// Rows for each phase.
+    points: u32,
+    /// Times of rows besides, s.
+    times: Vec<f64>,
+    elements: bool,
+}
+
+fn run(scene: &SceneData, asked: Asked, task: &Task) -> Result<Recorded, SimulationError> {
+    let (inputs, variables) = (scene.inputs(), variables(scene));
+    let time = Column { name: "time".into(), unit: "s".into(), kind: OutputType::Real, values: Vec::new() };
+    let of_input = inputs.iter().map(|input| Column::new(input.name(), input.unit(), OutputType::Real));
+    let mut columns: Vec<Column> =
+        std::iter::once(time).chain(of_input).chain(variables.iter().map(Column::of)).collect();
+    let mut elements = Elements::new(scene, asked.elements);
+    let mut values = vec![0.0; variables.len()];
+    let duration = scene.duration();
+
+    let mut runner = Runner::new(scene, Rows::PerPhase(asked.points), 0.0)?.with_rows_at(asked.times);
+    runner.simulation().set_interrupt(Some(task.interrupt()));
+    runner.run(&scene.excitation, |carrier: CarrierSample, snapshot| {
+        snapshot.evaluate(&variables, &mut values);
+        let row = std::iter::once(carrier.time).chain(inputs.iter().map(|&input| carrier.input(input)));
+        columns.iter_mut().zip(row.chain(values.iter().copied())).for_each(|(column, value)| column.values.push(value));
+        elements.add(snapshot);
+        task.report(if duration > 0.0 { carrier.time / duration } else { 1.0 });
+    })?;
+    let mut warnings = runner.take_warnings();
+    warnings.extend(runner.simulation().inaccuracy().map(|inaccuracy| inaccuracy.to_string()));
+    Ok(Recorded { columns, elements: elements.columns, warnings })
+}
+
+/// The masses over the rows.
+struct Elements {
+    variables: Vec<Variable>,
+    values: Vec<f64>,
+    columns: Vec<Column>,
+}
+
+impl Elements {
+    fn new(scene: &SceneData, are_asked_for: bool) -> Self {
+        if !are_asked_for {
+            return Self { variables: Vec::new(), values: Vec::new(), columns: Vec::new() };
+        }
+        let variables = variables(&SceneData { outputs: vec![OutputGroup::Elements], ..scene.clone() });
+        let of_mass = &variables[..variables.len() / scene.layer.masses];
+        let column = |variable: &Variable| Column {
+            name: variable.name.rsplit('.').next().unwrap_or_default().to_owned(),
+            ..Column::of(variable)
+        };
+        Self { columns: of_mass.iter().map(column).collect(), values: vec![0.0; variables.len()], variables }
+    }
+
+    fn add(&mut self, snapshot: &asperity::outputs::Snapshot<'_>) {
+        snapshot.evaluate(&self.variables, &mut self.values);
+        let count = self.columns.len();
+        for (i, column) in self.columns.iter_mut().enumerate() {
+            column.values.extend(self.values.iter().skip(i).step_by(count));
+        }
+    }
+}
+
+/// Arrays and units of the rows, those of the masses, and the warnings.
+type Found<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>, Bound<'py, PyDict>, Bound<'py, PyDict>, Vec<String>);
+
+/// Runs the scene along its excitation.
+#[pyfunction]
+pub(crate) fn simulate<'py>(
+    py: Python<'py>,
+    scene: &Scene,
+    points: u32,
+    times: Vec<f64>,
+    elements: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Found<'py>> {
+    let (scene, asked) = (Arc::clone(&scene.scene), Asked { points, times, elements });
+    let recorded = in_background(py, progress, move |task| run(&scene, asked, task))?;
+    let Recorded { columns, elements, warnings } = recorded.map_err(|error| error.raise())?;
+    let (columns, units) = arrays(py, columns)?;
+    let (elements, element_units) = arrays(py, elements)?;
+    Ok((columns, units, elements, element_units, warnings))
+}

@@ -1,0 +1,199 @@
+//! A scene: the text of a file, keys set in it, and what it says.
+
+use std::ffi::OsString;
+use std::fs;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use asperity::program::{Setting, fmu, parse_scene, with_settings};
+use numpy::{PyArray1, PyArrayMethods as _, ToPyArray as _};
+use pyo3::IntoPyObjectExt as _;
+use pyo3::exceptions::{PyKeyError, PyOSError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use toml_edit::{DocumentMut, Item, Value};
+
+use crate::errors::Raise as _;
+
+/// The text of a scene file with keys set, read and checked.
+#[pyclass(frozen, module = "asperity._native")]
+#[derive(Debug)]
+pub(crate) struct Scene {
+    pub(crate) text: String,
+    pub(crate) file: PathBuf,
+    pub(crate) settings: Vec<Setting>,
+    pub(crate) scene: Arc<asperity::scene::Scene>,
+}
+
+/// Heights line by line, points of a line, distances along x and y.
+type Map<'py> = (Bound<'py, PyArray1<f64>>, usize, [f64; 2]);
+
+#[pymethods]
+impl Scene {
+    #[new]
+    fn new(text: String, file: PathBuf, settings: Vec<Setting>) -> PyResult<Self> {
+        let scene = parse_scene(&text, &file, &settings).map_err(|error| error.raise())?;
+        Ok(Self { text, file, settings, scene: Arc::new(scene) })
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.scene.name
+    }
+
+    #[getter]
+    fn file(&self) -> PathBuf {
+        self.file.clone()
+    }
+
+    #[getter]
+    fn source(&self) -> &str {
+        &self.text
+    }
+
+    #[getter]
+    fn settings(&self) -> Vec<Setting> {
+        self.settings.clone()
+    }
+
+    #[getter]
+    fn duration(&self) -> f64 {
+        self.scene.duration()
+    }
+
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.scene.warnings.clone()
+    }
+
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.scene.notes.iter().map(|note| note.text.clone()).collect()
+    }
+
+    /// The text with the keys set.
+    fn text(&self) -> PyResult<String> {
+        with_settings(&self.text, &self.settings).map_err(|error| error.raise())
+    }
+
+    /// The files that the scene reads, as it names them.
+    fn files(&self) -> Vec<PathBuf> {
+        let mut files = self.scene.files.clone();
+        for extract in &self.scene.extracts {
+            files.retain(|file| *file != extract.name);
+            files.push(extract.source.clone());
+        }
+        files
+    }
+
+    /// What stands at a key of the text, tables as dictionaries.
+    fn get<'py>(&self, py: Python<'py>, key: &str) -> PyResult<Bound<'py, PyAny>> {
+        let text = self.text()?;
+        let document: DocumentMut = text.parse().map_err(|_| PyKeyError::new_err(key.to_owned()))?;
+        let found = find(document.as_item(), key).ok_or_else(|| PyKeyError::new_err(key.to_owned()))?;
+        to_python(py, found)
+    }
+
+    /// x and z of the data points of the profile.
+    fn profile<'py>(&self, py: Python<'py>) -> (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>) {
+        (self.scene.surface.x().to_pyarray(py), self.scene.surface.z().to_pyarray(py))
+    }
+
+    /// The map that the profile is a line of.
+    fn map<'py>(&self, py: Python<'py>) -> Option<Map<'py>> {
+        let map = self.scene.surface.map()?;
+        Some((map.heights().to_pyarray(py), map.nx(), map.spacing()))
+    }
+
+    /// E' and E'' at angular frequencies; of the material alone.
+    fn modulus<'py>(&self, py: Python<'py>, omega: &Bound<'py, PyArray1<f64>>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let missing = || PyKeyError::new_err("material");
+        let material = self.scene.material.as_ref().ok_or_else(missing)?;
+        let omega = omega.readonly();
+        let values = omega.as_slice()?.iter().flat_map(|&omega| {
+            let (storage, loss) = material.complex_modulus(omega);
+            [storage, loss]
+        });
+        Ok(PyArray1::from_iter(py, values))
+    }
+
+    /// Writes an FMU. The file of the scene has to hold what the scene is.
+    fn pack(&self, output: PathBuf, libraries: Vec<OsString>) -> PyResult<()> {
+        let definition = (*self.scene).clone().into();
+        let bytes = fmu(&definition, &self.file, &libraries).map_err(|error| error.raise())?;
+        fs::write(&output, bytes).map_err(|error| PyOSError::new_err(format!("{}: {error}", output.display())))
+    }
+
+    /// Whether the scene is the same as another, whatever text and files it is read from.
+    fn is_same(&self, other: &Self) -> bool {
+        let content = |scene: &asperity::scene::Scene| asperity::scene::Scene {
+            files: Vec::new(),
+            extracts: Vec::new(),
+            warnings: Vec::new(),
+            notes: Vec::new(),
+            ..scene.clone()
+        };
+        content(&self.scene) == content(&other.scene)
+    }
+}
+
+/// The item at a path, elements of lists counted from 1.
+fn find<'a>(mut item: &'a Item, key: &str) -> Option<&'a Item> {
+    for part in key.split('.') {
+        let (name, element) = match part.split_once('[') {
+            Some((name, rest)) => (name, Some(rest.strip_suffix(']')?.parse::<usize>().ok()?.checked_sub(1)?)),
+            None => (part, None),
+        };
+        item = item.get(name)?;
+        if let Some(element) = element {
+            // Elements of a list of values are no items: they are found below their list.
+            item = item.get(element)?;
+        }
+    }
+    Some(item)
+}
+
+fn to_python<'py>(py: Python<'py>, item: &Item) -> PyResult<Bound<'py, PyAny>> {
+    match item {
+        Item::None => Ok(py.None().into_bound(py)),
+        Item::Value(value) => value_to_python(py, value),
+        Item::Table(table) => {
+            let dictionary = PyDict::new(py);
+            for (key, item) in table {
+                dictionary.set_item(key, to_python(py, item)?)?;
+            }
+            Ok(dictionary.into_any())
+        }
+        Item::ArrayOfTables(tables) => {
+            let list = PyList::empty(py);
+            for table in tables {
+                list.append(to_python(py, &Item::Table(table.clone()))?)?;
+            }
+            Ok(list.into_any())
+        }
+    }
+}
+
+fn value_to_python<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
+    match value {
+        Value::String(text) => text.value().into_bound_py_any(py),
+        Value::Integer(whole) => whole.value().into_bound_py_any(py),
+        Value::Float(number) => number.value().into_bound_py_any(py),
+        Value::Boolean(flag) => flag.value().into_bound_py_any(py),
+        Value::Datetime(time) => time.value().to_string().into_bound_py_any(py),
+        Value::Array(values) => {
+            let list = PyList::empty(py);
+            for value in values {
+                list.append(value_to_python(py, value)?)?;
+            }
+            Ok(list.into_any())
+        }
+        Value::InlineTable(table) => {
+            let dictionary = PyDict::new(py);
+            for (key, value) in table {
+                dictionary.set_item(key, value_to_python(py, value)?)?;
+            }
+            Ok(dictionary.into_any())
+        }
+    }
+}

@@ -1,0 +1,151 @@
+"""Scenes: keys, arrays, errors, copies."""
+
+import copy
+import pickle
+
+import asperity
+import numpy as np
+import pytest
+from conftest import SCENES, SMALL
+
+
+def test_keys_are_read_set_and_added(small):
+    assert small["layer.masses"] == 8 and "friction.shear_force" not in small
+    small["friction.coulomb"] = np.float64(0.4)
+    small["solver.relative_tolerance"] = 1e-4
+    assert small["friction"] == {"coulomb": 0.4}
+    assert small["layer.vertical.maxwell[1].stiffness"] == 1.5e3
+    assert small["excitation[2].duration"] == 2e-3
+    assert asperity.Scene(small.to_toml()) == small
+    with pytest.raises(KeyError, match="layer.height"):
+        small["layer.height"]
+
+
+def test_a_dictionary_is_a_scene(small):
+    keys = {name: small[name] for name in ("name", "layer", "surface", "friction", "fmu", "excitation")}
+    keys["layer"]["masses"] = np.int64(8)
+    assert asperity.Scene.from_dict(keys) == small
+
+
+def test_errors_say_where():
+    with pytest.raises(asperity.SceneError, match="expected a whole number") as raised:
+        asperity.Scene(SMALL.replace("masses = 8", "masses = 0"), "small.toml")
+    error = raised.value
+    assert (error.key, error.line, error.file.name) == ("layer.masses", 4, "small.toml")
+    assert str(pickle.loads(pickle.dumps(error))) == str(error)
+
+
+def test_a_key_that_is_refused_leaves_the_scene(small):
+    before = copy.copy(small)
+    with pytest.raises(asperity.SceneError, match=r"did you mean friction.coulomb\?") as raised:
+        small["friction.coulom"] = 0.4
+    assert raised.value.key == "friction.coulom" and small == before
+    with pytest.raises(asperity.SceneError, match="expected"):
+        small["friction.coulomb"] = -1.0
+    assert small == before
+    with pytest.raises(TypeError, match="expected a number"):
+        small["friction.coulomb"] = object()
+
+
+def test_an_error_in_a_file_that_is_named_has_its_line(tmp_path):
+    (tmp_path / "road.csv").write_text("x,z\n0,0\n1e-3,up\n")
+    keys = {"kind": "file", "path": "road.csv"}
+    text = SMALL.replace(
+        'kind = "sinusoid"\namplitude = 1e-5\nwavelength = 4e-4', f'kind = "file"\npath = "{keys["path"]}"'
+    )
+    with pytest.raises(asperity.SceneError) as raised:
+        asperity.Scene(text, tmp_path / "scene.toml")
+    assert (raised.value.line, raised.value.file) == (3, tmp_path / "road.csv")
+
+
+def test_a_profile_of_arrays_is_the_one_of_a_file(block):
+    x, z = block.profile
+    same = block.with_profile(x, z, periodic=True)
+    assert same == block and same["surface.fine"] == block["surface.fine"]
+    with pytest.raises(asperity.SceneError, match="expected"):
+        block.with_profile(x, z[::-1] + np.arange(len(z)), periodic=True)
+
+
+def test_a_map_keeps_its_bits(block):
+    heights = 1e-5 * np.random.default_rng(1).normal(size=(16, 32))
+    scene = block.with_map(heights, (2e-5, 4e-5))
+    found, spacing = scene.map
+    np.testing.assert_array_equal(found, heights)
+    assert spacing == (2e-5, 4e-5)
+    with pytest.raises(ValueError, match="shape"):
+        block.with_map(heights[0], 2e-5)
+
+
+def test_a_spectrum_and_a_prony_series_come_in_as_arrays(block):
+    q = np.geomspace(1e5, 1e8, 40)
+    scene = block.with_spectrum(q, 1e-6 * q**-3.6, longest=2e-5)
+    assert scene["surface.fine"]["spectrum"] == "with_spectrum.csv"
+    scene = scene.with_prony([2e7, 3e6], [1e-6, 1e-3], equilibrium=4e6)
+    # What one mode of each term gives: halfway at ω = 1/τ, by (2) of the paper.
+    omega, shift = np.array([1.0, 1e4]), 1.0
+    terms = sum(modulus * 1j * omega * time / (1 + 1j * omega * time) for modulus, time in ((2e7, 1e-6), (3e6, 1e-3)))
+    np.testing.assert_allclose(scene.complex_modulus(omega * shift), 4e6 + terms, rtol=1e-12)
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda scene: pickle.loads(pickle.dumps(scene))])
+def test_copies_carry_their_files_and_are_independent(block, copied):
+    other = copied(block.with_map(1e-6 * np.eye(16), 1e-5))
+    del block
+    again = copied(other)
+    again["friction.shear_strength"] = 1e6
+    assert other["friction.shear_strength"] == 6.5e6 and again != other
+    assert again.map[0].shape == (16, 16)
+
+
+def test_a_motion_is_followed_row_by_row(small):
+    motion = {"time": [0.0, 1e-3, 3e-3], "u": [0.0, 0.0, 2e-4], "w": [0.0, -2e-5, -2e-5]}
+    result = small.simulate(motion=motion)
+    np.testing.assert_allclose(result.time, motion["time"], rtol=1e-15)
+    # The scene's own excitation is the same motion.
+    np.testing.assert_allclose(result["F_z"][-1], small.simulate(points=1)["F_z"][-1], rtol=1e-9)
+
+
+def test_results_go_to_pandas_xarray_and_pictures(small):
+    result = small.simulate(points=10, elements=True, times=[1.23e-3])
+    assert 1.23e-3 in result.time and len(result) == 22
+    assert result.elements["mode"].dtype == np.int64 and result.elements["x"].shape == (22, 8)
+    frame, data = result.to_pandas(), result.to_xarray()
+    assert frame.index.name == "time" and frame.attrs["units"]["F_z"] == "N"
+    assert data["element_x"].dims == ("time", "mass") and data["F_z"].attrs["units"] == "N"
+    assert len(result.plot("F_x", "F_z", "P_diss").axes) == 2
+    assert "<img" in result._repr_html_()
+    with pytest.raises(KeyError, match="fmu.outputs"):
+        result["nothing"]
+
+
+def test_progress_is_told_and_may_end_the_run(block):
+    told = []
+    block.sweep([0.1, 1.0], [1e5], method="layer", error=0.5, progress=told.append)
+    assert all(0.0 <= done <= 1.0 for done in told)
+
+    def refuse(done):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        slow = asperity.Scene.from_toml(SCENES / "road" / "slide.toml")
+        slow.simulate(progress=refuse)
+
+
+def test_a_sweep_of_what_does_not_slide_is_refused(small):
+    with pytest.raises(asperity.SceneError, match="direct form"):
+        small.sweep([0.1], [1e5])
+    with pytest.raises(ValueError, match="speeds: expected numbers above 0"):
+        small.sweep([-0.1], forces=[1.0])
+    with pytest.raises(ValueError, match="steady"):
+        small.sweep([0.1], forces=[1.0], method="fast")
+
+
+def test_a_table_reads_back(block, tmp_path):
+    table = block.sweep([0.1, 1.0], [1e5, 2e5, 4e5], [283.15, 293.15])
+    assert table["friction"].shape == (2, 3, 2) and np.all(table.status == "steady")
+    table.to_csv(tmp_path / "table.csv")
+    again = asperity.Table.read(tmp_path / "table.csv")
+    np.testing.assert_array_equal(again["friction"], table["friction"])
+    data = pickle.loads(pickle.dumps(table)).to_xarray()
+    assert data["friction"].dims == ("v", "p", "T") and float(data["p"][1]) == 2e5
+    assert len(table.to_pandas()) == 12 and len(table.plot().axes[0].lines) == 6
