@@ -52,7 +52,6 @@ class PatchFmu:
             raise ValueError(f"{path}: expected the FMU of a patch with the outputs `forces`, found none of {missing}")
         self.has_tread = TREAD_SPEED in self.references
         folder = fmpy.extract(path)
-        weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
         self.fmu = FMU2Slave(
             guid=description.guid,
             modelIdentifier=description.coSimulation.modelIdentifier,
@@ -60,6 +59,7 @@ class PatchFmu:
             instanceName=description.modelName,
         )
         self.fmu.instantiate()
+        weakref.finalize(self, _discard, self.fmu, folder)
         self.set(parameters or {})
         self._pose, self._wrench = self._numbers(POSE), self._numbers(WRENCH)
         self._inputs = self._numbers((*POSE, TREAD_SPEED) if self.has_tread else POSE)
@@ -118,6 +118,11 @@ class PatchFmu:
     def restore(self):
         """Goes back to the state kept."""
         self.fmu.setFMUstate(self._state)
+
+
+def _discard(fmu, folder):
+    fmu.freeInstance()
+    shutil.rmtree(folder, ignore_errors=True)
 
 
 class Pad:
@@ -313,7 +318,7 @@ class _Trial:
     def mobility(self):
         """How that changes with the loads: of the masses and of the constraints that were active."""
         constraints = _constraint_jacobian(self.model, self.data)
-        active = np.isin(self.data.efc_state, (_QUADRATIC, _CONE))
+        active = (self.data.efc_state == _QUADRATIC) | (self.data.efc_state == _CONE)
         rows = np.vstack([self._jacobian, constraints[active]])
         solved = np.zeros_like(rows)
         mujoco.mj_solveM(self.model, self._data, solved, rows)

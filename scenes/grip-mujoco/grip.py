@@ -207,13 +207,13 @@ def limit():
     return force
 
 
-def order(fmu, steps=(4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4), reference=3.125e-5):
+def order(fmu, steps=(2e-3, 1e-3, 5e-4, 2.5e-4), reference=3.125e-5):
     """The largest errors of place (m) and force (N) of the pads while the box is lifted, by the step."""
 
     def lift(h):
         plan, grip, found = Plan(short=True), Grip(fmu, "patch", h), []
-        for k in range(round(0.6 / h)):
-            grip.step(plan.control((k + 1) * h))
+        for k in range(round(0.42 / h)):
+            grip.step(plan.control(k * h))
             if round((k + 1) * h / 4e-3, 6).is_integer() and (k + 1) * h > plan.closed:
                 found.append([grip.place()[2], grip.forces()[1]])
         return np.array(found)
@@ -282,7 +282,7 @@ def draw(path, runs, plan):
     for name, end in plan.phases():
         for axis in (drift, forces):
             axis.axvline(end, color="0.8", linewidth=0.8)
-        forces.text(0.5 * (begin + end), 27.5, name, ha="center", fontsize="small")
+        forces.text(0.5 * (begin + end), 27.5, name, ha="center", va="center", rotation=90, fontsize="small")
         begin = end
     forces.set_ylim(0, 30)
     for axis in (drift, forces):
