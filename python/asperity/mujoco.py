@@ -135,8 +135,8 @@ class Pad:
         patch: the patch itself
     """
 
-    def __init__(self, model, data, patch, body, geom, spin, damping):
-        self.patch, self.damping = patch, damping
+    def __init__(self, model, data, patch, body, geom, spin):
+        self.patch = patch
         self._body, self._geom = body, geom
         self._joint, self._radius = spin or (None, 0.0)
         self._origin, self._axes = _ground(model, data, body, geom)
@@ -190,9 +190,10 @@ class Pad:
         self._reached = pose, inputs, self.patch.follow(time, h, self._inputs, inputs)
         return self._reached[2]
 
-    def accept(self):
-        """Ends a step where `follow` has led."""
+    def accept(self, stiffness):
+        """Ends a step where `follow` has led; the next begins with this stiffness."""
         self.pose, self._inputs, self.loads = self._reached
+        self.stiffness = stiffness
 
     def refresh(self):
         """Finds the stiffness anew, where the patch is."""
@@ -215,7 +216,7 @@ class Pad:
         return np.block([[tangent, column[:, None]], [row[None], np.array([[-ahead @ column[:3]]])]])
 
 
-def attach(model, data, patch, body, geom, spin=None, damping=0.0):
+def attach(model, data, patch, body, geom, spin=None):
     """Gives a body a pad that rubs on a geom, where both are in `data` now; returns the pad.
 
     Args:
@@ -223,8 +224,6 @@ def attach(model, data, patch, body, geom, spin=None, damping=0.0):
         body: name or number of the body that carries the pad; its axes are the patch's
         geom: name or number of the geom on which it rubs, a plane or a box
         spin: of a patch with a tread, the name of the hinge that drives it and the radius of the tread (m)
-        damping: s, by how much the pad's loads lag their deflection: c = damping * k. At the angular frequency w the
-            loss factor is w * damping. 0 leaves the step's own, half as much as that of `damping` equal to the step
 
     Raises:
         ValueError: of a geom of another type, a patch with a tread without `spin`, an integrator that `step` has not
@@ -236,12 +235,10 @@ def attach(model, data, patch, body, geom, spin=None, damping=0.0):
         raise ValueError("`spin` is expected of a patch with a tread, and of no other")
     if model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4:
         raise ValueError("integrator: expected Euler, implicit or implicitfast, found RK4")
-    if damping < 0.0:
-        raise ValueError(f"damping: expected a number >= 0, found {damping}")
     mujoco.mj_kinematics(model, data)
     if spin is not None:
         spin = model.joint(spin[0]).dofadr[0], spin[1]
-    return Pad(model, data, patch, body, geom, spin, damping)
+    return Pad(model, data, patch, body, geom, spin)
 
 
 def step(model, data, pads):
@@ -258,7 +255,7 @@ def step(model, data, pads):
     loads = np.concatenate([pad.loads for pad in pads])
     displacement = trial.step(loads)
     mobility = trial.mobility()
-    stiffness = _stiffness(pads, h)
+    stiffness = _diagonal([pad.stiffness for pad in pads])
     wanted = loads + stiffness @ displacement
     for pad in pads:
         pad.patch.save()
@@ -268,7 +265,6 @@ def step(model, data, pads):
         loads = loads + correction
         before, displacement = displacement, trial.step(loads)
         last, wanted = wanted, np.concatenate([pad.follow(time, h, trial.data) for pad in pads])
-        wanted = wanted + _damping(pads, h) @ displacement
         corrections += 1
         rest = wanted - loads
         if corrections == MOST_CORRECTIONS or rest @ mobility @ rest <= TOLERANCE**2 * (loads @ mobility @ loads):
@@ -282,13 +278,16 @@ def step(model, data, pads):
         if corrections % REFRESH_AFTER == 0:
             for pad in pads:
                 pad.refresh()
-            stiffness = _stiffness(pads, h)
+            stiffness = _diagonal([pad.stiffness for pad in pads])
         for pad in pads:
             pad.patch.restore()
 
     # The same once more, for good.
+    first = 0
     for pad in pads:
-        pad.accept()
+        last = first + len(pad.loads)
+        pad.accept(stiffness[first:last, first:last])
+        first = last
     applied = data.qfrc_applied.copy()
     data.qfrc_applied += jacobian.T @ loads
     mujoco.mj_step2(model, data)
@@ -349,15 +348,6 @@ def _diagonal(blocks):
         matrix[first : first + len(block), first : first + len(block)] = block
         first += len(block)
     return matrix
-
-
-def _stiffness(pads, h):
-    """By how much the pads' loads change with the displacement in a step: by their springs and their damping."""
-    return _diagonal([pad.stiffness * (1.0 + pad.damping / h) for pad in pads])
-
-
-def _damping(pads, h):
-    return _diagonal([pad.stiffness * (pad.damping / h) for pad in pads])
 
 
 def _ground(model, data, body, geom):
