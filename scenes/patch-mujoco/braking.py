@@ -15,7 +15,7 @@ import matplotlib
 import mujoco
 
 import contact
-from patch import OUTPUTS, Patch
+from library import PatchFmu
 
 matplotlib.use("Agg")
 from matplotlib import pyplot  # noqa: E402
@@ -33,6 +33,9 @@ FREE, ON = 0.05, 0.1
 LONGEST = 3.0
 # m: this way the wheel has slid where friction is compared.
 COMPARED = 1.0
+WRENCH = ("force.x", "force.y", "force.z", "moment.x", "moment.y", "moment.z")
+CONTACT = ("contact.nominal_area", "contact.temperature_largest", "contact.temperature_mean")
+OUTPUTS = (*WRENCH, "transport.force", "E_diss", *CONTACT)
 COLUMNS = ("time", "x", "speed", "tread", *OUTPUTS, "E_brake", "E_damper", "E_kinetic")
 
 
@@ -65,7 +68,7 @@ class Wheel:
 
     def step(self, loads):
         """A step under the patch's forces: the wrench on the carrier, at its centre, and the tread's force on the wheel."""
-        self.data.body("carrier").xfrc_applied[:] = [loads[name] for name in OUTPUTS[:6]]
+        self.data.body("carrier").xfrc_applied[:] = [loads[name] for name in WRENCH]
         self.data.joint("spin").qfrc_applied[0] = contact.RADIUS * loads["transport.force"]
         mujoco.mj_step(self.model, self.data)
         self.lost_by_damper -= self.model.opt.timestep * float(self.data.qfrc_damper @ self.data.qvel)
@@ -89,22 +92,23 @@ class Wheel:
 
 def stop(fmu, h, most, share):
     """The rows of a stop. MuJoCo goes first, by a half-implicit step; the patch follows straight to where it has gone."""
-    wheel = Wheel(h, most)
+    wheel, patch = Wheel(h, most), PatchFmu(fmu, {"patch.heat.share": share})
+
+    def loads_now():
+        return dict(zip(OUTPUTS, patch.get(*OUTPUTS)))
+
     start = wheel.pose()
-    patch = Patch(fmu, start, {"patch.heat.share": share})
-    try:
-        loads = patch.values()
-        rows = [wheel.row(loads)]
-        while wheel.data.joint("x").qvel[0] > 0 and wheel.data.time < LONGEST:
-            time = wheel.data.time
-            wheel.step(loads)
-            end = wheel.pose()
-            patch.follow(time, h, start, end)
-            start, loads = end, patch.values()
-            rows.append(wheel.row(loads))
-        return rows
-    finally:
-        patch.close()
+    patch.start(0.0, start)
+    loads = loads_now()
+    rows = [wheel.row(loads)]
+    while wheel.data.joint("x").qvel[0] > 0 and wheel.data.time < LONGEST:
+        time = wheel.data.time
+        wheel.step(loads)
+        end = wheel.pose()
+        patch.follow(time, h, start, end)
+        start, loads = end, loads_now()
+        rows.append(wheel.row(loads))
+    return rows
 
 
 def write(path, names, rows):

@@ -18,6 +18,7 @@ mod dask;
 #[allow(unsafe_code, reason = "calls the functions of the C interface")]
 mod fmi_interface;
 mod fmpy;
+mod grip_mujoco;
 mod host;
 mod masters;
 mod patch_mujoco;

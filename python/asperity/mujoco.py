@@ -1,0 +1,365 @@
+"""Contact patches in MuJoCo: a pad on a body, which rubs on a geom.
+
+    from asperity.mujoco import attach, step
+
+    pad = attach(model, data, "pad.fmu", body="pad", geom="box")
+    while data.time < 1.0:
+        step(model, data, [pad])  # in place of mujoco.mj_step(model, data)
+
+The body's axes are those of the patch: its face looks along -z. The geom is a plane or a box; of a box it is the face
+that the pad looks at when it is attached, without its edges. What the body carries there must not collide with the
+geom in MuJoCo too (contype, conaffinity or exclude). Units are SI, as in the model.
+
+A step is implicit in the pads' loads. They belong to where the bodies are at its end: a stiff pad neither rings nor asks
+for short steps, and one that sticks holds. MuJoCo knows no derivatives of forces that it has not made, and its matrices
+have no place for those between two trees of bodies. So `step` finds the loads by Newton's method over MuJoCo's own step,
+with all constraints in it, on a copy of the data. It is of first order.
+"""
+
+import shutil
+import weakref
+from ctypes import c_double, c_int, c_uint
+
+import fmpy
+import mujoco
+import numpy as np
+from fmpy.fmi2 import FMU2Slave
+
+POSE = ("x", "y", "z", "roll", "pitch", "yaw")
+WRENCH = ("force.x", "force.y", "force.z", "moment.x", "moment.y", "moment.z")
+TREAD_SPEED, TREAD_FORCE = "transport.speed", "transport.force"
+
+# Newton's method ends where what is left of the loads moves the bodies by this share of what the loads do.
+TOLERANCE = 1e-4
+# Corrections of the loads in a step. The last are taken as they are: the pads are then where the bodies are, and the
+# loads those of a little before.
+MOST_CORRECTIONS = 24
+# After so many the pads' stiffness is found anew.
+REFRESH_AFTER = 3
+
+
+class PatchFmu:
+    """The FMU of a patch, unpacked; what `Pad` needs of it.
+
+    `inputs` are the pose and, with a tread, its speed; `loads` the wrench and the force on the tread.
+    """
+
+    def __init__(self, path, parameters=None):
+        description = fmpy.read_model_description(path)
+        self.references = {variable.name: variable.valueReference for variable in description.modelVariables}
+        missing = [name for name in (*POSE, *WRENCH) if name not in self.references]
+        if missing:
+            raise ValueError(f"{path}: expected the FMU of a patch with the outputs `forces`, found none of {missing}")
+        self.has_tread = TREAD_SPEED in self.references
+        folder = fmpy.extract(path)
+        self.fmu = FMU2Slave(
+            guid=description.guid,
+            modelIdentifier=description.coSimulation.modelIdentifier,
+            unzipDirectory=folder,
+            instanceName=description.modelName,
+        )
+        self.fmu.instantiate()
+        weakref.finalize(self, _discard, self.fmu, folder)
+        self.set(parameters or {})
+        self._pose, self._wrench = self._numbers(POSE), self._numbers(WRENCH)
+        self._inputs = self._numbers((*POSE, TREAD_SPEED) if self.has_tread else POSE)
+        self._loads = self._numbers((*WRENCH, TREAD_FORCE) if self.has_tread else WRENCH)
+        self._values = (c_double * len(self._inputs))()
+        self._rates = (c_double * len(self._inputs))()
+        self._orders = (c_int * len(self._inputs))(*[1] * len(self._inputs))
+        self._state = None
+
+    def _numbers(self, names):
+        return (c_uint * len(names))(*[self.references[name] for name in names])
+
+    def set(self, values):
+        """Sets variables by their names."""
+        self.fmu.setReal([self.references[name] for name in values], list(values.values()))
+
+    def get(self, *names):
+        """The values of variables by their names."""
+        return self.fmu.getReal([self.references[name] for name in names])
+
+    def start(self, time, inputs):
+        """Begins a run, its springs relaxed."""
+        self.fmu.setupExperiment(startTime=time)
+        self.fmu.enterInitializationMode()
+        self._values[:] = inputs
+        self.fmu.fmi2SetReal(self.fmu.component, self._inputs, len(self._inputs), self._values)
+        self.fmu.exitInitializationMode()
+
+    def follow(self, time, h, start, end):
+        """Steps along the straight way from one set of inputs to another; returns the loads at its end."""
+        component, count = self.fmu.component, len(self._inputs)
+        self._values[:], self._rates[:] = start, [(b - a) / h for a, b in zip(start, end)]
+        self.fmu.fmi2SetReal(component, self._inputs, count, self._values)
+        self.fmu.fmi2SetRealInputDerivatives(component, self._inputs, count, self._orders, self._rates)
+        self.fmu.doStep(time, h)
+        return self.loads()
+
+    def loads(self):
+        """Force (N), moment (N m) and, with a tread, the force on it (N)."""
+        values = (c_double * len(self._loads))()
+        self.fmu.fmi2GetReal(self.fmu.component, self._loads, len(self._loads), values)
+        return np.array(values)
+
+    def tangent(self):
+        """The change of the wrench (rows) with the pose's coordinates, what sticks and what slips held."""
+        columns = [self.fmu.getDirectionalDerivative(self._wrench, [one], [1.0]) for one in self._pose]
+        return np.array(columns).T
+
+    def save(self):
+        """Keeps the state."""
+        if self._state is None:
+            self._state = self.fmu.getFMUstate()
+        else:
+            self.fmu.fmi2GetFMUstate(self.fmu.component, self._state)
+
+    def restore(self):
+        """Goes back to the state kept."""
+        self.fmu.setFMUstate(self._state)
+
+
+def _discard(fmu, folder):
+    fmu.freeInstance()
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+class Pad:
+    """A patch on a body of a model that rubs on a geom. `attach` makes it.
+
+    Attributes:
+        pose: of the body in the geom's axes, z along the normal: x, y, z (m), roll, pitch, yaw (rad)
+        loads: of the patch on the body in the geom's axes: force (N), moment (N m) about the body's origin and, with a
+            tread, the force on it (N)
+        patch: the patch itself
+    """
+
+    def __init__(self, model, data, patch, body, geom, spin):
+        self.patch = patch
+        self._body, self._geom = body, geom
+        self._joint, self._radius = spin or (None, 0.0)
+        self._origin, self._axes = _ground(model, data, body, geom)
+        self.pose = np.zeros(6)
+        self.pose = self._pose_of(data)
+        self._inputs = self._inputs_of(data, self.pose)
+        patch.start(data.time, self._inputs)
+        self.loads = patch.loads()
+        self.stiffness = self._tangent()
+
+    def _ground_of(self, data):
+        """Origin and axes of the ground in the world."""
+        axes = data.geom_xmat[self._geom].reshape(3, 3)
+        return data.geom_xpos[self._geom] + axes @ self._origin, axes @ self._axes
+
+    def _pose_of(self, data):
+        origin, axes = self._ground_of(data)
+        place = axes.T @ (data.xpos[self._body] - origin)
+        turned = axes.T @ data.xmat[self._body].reshape(3, 3)
+        roll, pitch = np.arctan2(turned[2, 1], turned[2, 2]), np.arcsin(np.clip(-turned[2, 0], -1.0, 1.0))
+        yaw = np.arctan2(turned[1, 0], turned[0, 0])
+        angles = np.array([roll, pitch, yaw])
+        # Angles go on where a turn is full.
+        angles += 2 * np.pi * np.round((self.pose[3:] - angles) / (2 * np.pi))
+        return np.concatenate([place, angles])
+
+    def _inputs_of(self, data, pose):
+        if self._joint is None:
+            return pose
+        return np.append(pose, self._radius * data.qvel[self._joint])
+
+    def jacobian(self, model, data):
+        """From the velocities of the joints to those of the body over the ground, in the ground's axes, and, with a
+        tread, to its speed."""
+        _, axes = self._ground_of(data)
+        point = data.xpos[self._body]
+        body, ground = np.zeros((2, 3, model.nv)), np.zeros((2, 3, model.nv))
+        mujoco.mj_jac(model, data, body[0], body[1], point, self._body)
+        mujoco.mj_jac(model, data, ground[0], ground[1], point, model.geom_bodyid[self._geom])
+        rows = np.concatenate(axes.T @ (body - ground))
+        if self._joint is None:
+            return rows
+        tread = np.zeros(model.nv)
+        tread[self._joint] = self._radius
+        return np.vstack([rows, tread])
+
+    def follow(self, time, h, data):
+        """Takes the patch to where the bodies of `data` are; returns its loads there."""
+        pose = self._pose_of(data)
+        inputs = self._inputs_of(data, pose)
+        self._reached = pose, inputs, self.patch.follow(time, h, self._inputs, inputs)
+        return self._reached[2]
+
+    def accept(self, stiffness):
+        """Ends a step where `follow` has led; the next begins with this stiffness."""
+        self.pose, self._inputs, self.loads = self._reached
+        self.stiffness = stiffness
+
+    def refresh(self):
+        """Finds the stiffness anew, where the patch is."""
+        self.stiffness = self._tangent()
+
+    def _tangent(self):
+        """The change of the loads with the displacement and the turn of the body along the ground's axes."""
+        tangent = self.patch.tangent()
+        _, pitch, yaw = self.pose[3:]
+        c, s = np.cos(yaw), np.sin(yaw)
+        # Rates of roll, pitch and yaw of an angular velocity.
+        rates = np.array([[c / np.cos(pitch), s / np.cos(pitch), 0.0], [-s, c, 0.0], [c * np.tan(pitch), s * np.tan(pitch), 1.0]])
+        tangent[:, 3:] = tangent[:, 3:] @ rates
+        if self._joint is None:
+            return tangent
+        # A tread that runs to the rear drags its springs as a body that moves ahead does, the other way round.
+        ahead = np.array([c, s, 0.0])
+        column = -tangent[:, :3] @ ahead
+        row = -ahead @ tangent[:3]
+        return np.block([[tangent, column[:, None]], [row[None], np.array([[-ahead @ column[:3]]])]])
+
+
+def attach(model, data, patch, body, geom, spin=None):
+    """Gives a body a pad that rubs on a geom, where both are in `data` now; returns the pad.
+
+    Args:
+        patch: path of a patch's FMU (`asperity pack --patch`), or a `PatchFmu`, which takes parameters
+        body: name or number of the body that carries the pad; its axes are the patch's
+        geom: name or number of the geom on which it rubs, a plane or a box
+        spin: of a patch with a tread, the name of the hinge that drives it and the radius of the tread (m)
+
+    Raises:
+        ValueError: of a geom of another type, a patch with a tread without `spin`, an integrator that `step` has not
+    """
+    body, geom = model.body(body).id, model.geom(geom).id
+    if not hasattr(patch, "follow"):
+        patch = PatchFmu(patch)
+    if patch.has_tread != (spin is not None):
+        raise ValueError("`spin` is expected of a patch with a tread, and of no other")
+    if model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4:
+        raise ValueError("integrator: expected Euler, implicit or implicitfast, found RK4")
+    mujoco.mj_kinematics(model, data)
+    if spin is not None:
+        spin = model.joint(spin[0]).dofadr[0], spin[1]
+    return Pad(model, data, patch, body, geom, spin)
+
+
+def step(model, data, pads):
+    """A step of MuJoCo under the loads of its pads, in place of `mujoco.mj_step`; returns how often it corrected them.
+
+    `pads` are all those of the model: those that press on the same bodies are solved together.
+    """
+    time, h = data.time, model.opt.timestep
+    mujoco.mj_step1(model, data)
+    jacobian = np.vstack([pad.jacobian(model, data) for pad in pads])
+    trial = _Trial(model, data, jacobian)
+
+    # With the loads of the step before; what the pads' stiffness makes of them.
+    loads = np.concatenate([pad.loads for pad in pads])
+    displacement = trial.step(loads)
+    mobility = trial.mobility()
+    stiffness = _diagonal([pad.stiffness for pad in pads])
+    wanted = loads + stiffness @ displacement
+    for pad in pads:
+        pad.patch.save()
+    corrections = 0
+    while True:
+        correction = np.linalg.solve(np.eye(len(loads)) - stiffness @ mobility, wanted - loads)
+        loads = loads + correction
+        before, displacement = displacement, trial.step(loads)
+        last, wanted = wanted, np.concatenate([pad.follow(time, h, trial.data) for pad in pads])
+        corrections += 1
+        rest = wanted - loads
+        if corrections == MOST_CORRECTIONS or rest @ mobility @ rest <= TOLERANCE**2 * (loads @ mobility @ loads):
+            break
+        # Where elements begin to slip or to stick, the stiffness is another: by the secant, which costs nothing, and where
+        # that does not suffice, from the patch. The loads weigh displacements and turns, which have different units.
+        change = displacement - before
+        work = correction @ change
+        if work > 0.0:
+            stiffness = stiffness + np.outer(wanted - last - stiffness @ change, correction) / work
+        if corrections % REFRESH_AFTER == 0:
+            for pad in pads:
+                pad.refresh()
+            stiffness = _diagonal([pad.stiffness for pad in pads])
+        for pad in pads:
+            pad.patch.restore()
+
+    # The same once more, for good.
+    first = 0
+    for pad in pads:
+        last = first + len(pad.loads)
+        pad.accept(stiffness[first:last, first:last])
+        first = last
+    applied = data.qfrc_applied.copy()
+    data.qfrc_applied += jacobian.T @ loads
+    mujoco.mj_step2(model, data)
+    data.qfrc_applied[:] = applied
+    return corrections
+
+
+class _Trial:
+    """The second half of a step on a copy of the data."""
+
+    _scratch = weakref.WeakKeyDictionary()
+
+    def __init__(self, model, data, jacobian):
+        self.model, self._data, self._jacobian = model, data, jacobian
+        if model not in self._scratch:
+            self._scratch[model] = mujoco.MjData(model)
+        self.data = self._scratch[model]
+
+    def step(self, loads):
+        """With these loads; returns by how much it moves the bodies over the grounds."""
+        mujoco.mj_copyData(self.data, self.model, self._data)
+        self.data.qfrc_applied += self._jacobian.T @ loads
+        mujoco.mj_step2(self.model, self.data)
+        mujoco.mj_kinematics(self.model, self.data)
+        return self.model.opt.timestep * (self._jacobian @ self.data.qvel)
+
+    def mobility(self):
+        """How that changes with the loads: of the masses and of the constraints that were active."""
+        constraints = _constraint_jacobian(self.model, self.data)
+        active = (self.data.efc_state == _QUADRATIC) | (self.data.efc_state == _CONE)
+        rows = np.vstack([self._jacobian, constraints[active]])
+        solved = np.zeros_like(rows)
+        mujoco.mj_solveM(self.model, self._data, solved, rows)
+        inverse, count = rows @ solved.T, len(self._jacobian)
+        free, across, within = inverse[:count, :count], inverse[:count, count:], inverse[count:, count:]
+        held = across @ np.linalg.solve(within + np.diag(self.data.efc_R[active]), across.T)
+        return self.model.opt.timestep**2 * (free - held)
+
+
+_QUADRATIC = int(mujoco.mjtConstraintState.mjCNSTRSTATE_QUADRATIC)
+_CONE = int(mujoco.mjtConstraintState.mjCNSTRSTATE_CONE)
+
+
+def _constraint_jacobian(model, data):
+    """One row a constraint."""
+    rows = np.zeros((data.nefc, model.nv))
+    if not mujoco.mj_isSparse(model):
+        return data.efc_J.reshape(rows.shape)
+    for i, (first, count) in enumerate(zip(data.efc_J_rowadr, data.efc_J_rownnz)):
+        rows[i, data.efc_J_colind[first : first + count]] = data.efc_J[first : first + count]
+    return rows
+
+
+def _diagonal(blocks):
+    size = sum(len(block) for block in blocks)
+    matrix, first = np.zeros((size, size)), 0
+    for block in blocks:
+        matrix[first : first + len(block), first : first + len(block)] = block
+        first += len(block)
+    return matrix
+
+
+def _ground(model, data, body, geom):
+    """Origin and axes of a geom's face in its own: a plane, or the side of a box at which the pad looks."""
+    kind = model.geom_type[geom]
+    if kind == mujoco.mjtGeom.mjGEOM_PLANE:
+        return np.zeros(3), np.eye(3)
+    if kind != mujoco.mjtGeom.mjGEOM_BOX:
+        raise ValueError(f"geom {model.geom(geom).name!r}: expected a plane or a box, found {mujoco.mjtGeom(kind).name}")
+    # The pad looks along -z of its body.
+    normal = data.geom_xmat[geom].reshape(3, 3).T @ data.xmat[body].reshape(3, 3)[:, 2]
+    axis = int(np.argmax(np.abs(normal)))
+    z = np.sign(normal[axis]) * np.eye(3)[axis]
+    x = np.eye(3)[(axis + 1) % 3]
+    return model.geom_size[geom][axis] * z, np.column_stack([x, np.cross(z, x), z])
