@@ -18,7 +18,7 @@ import numpy as np
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
-from matplotlib.ticker import EngFormatter
+from matplotlib.ticker import FuncFormatter
 
 from body import PARAMETERS
 from master import METHODS, Master
@@ -172,9 +172,9 @@ def draw_panel(ax, heading: str, h, table):
         ax.loglog(h, guide, ":", color="0.6")
         ax.annotate(f"h{'²' if slope == 2 else ''}", (h[-1], guide[-1]), color="0.4", ha="right")
     ax.set_title(heading, fontsize="medium")
-    ax.set_xlabel("communication step in s")
+    ax.set_xlabel("communication step in µs")
     ax.set_ylabel("share of the largest")
-    ax.xaxis.set_major_formatter(EngFormatter("s"))
+    ax.xaxis.set_major_formatter(FuncFormatter(lambda step, _: f"{1e6 * step:g}"))
     ax.grid(color="0.9")
     ax.spines[["top", "right"]].set_visible(False)
 
