@@ -10,10 +10,10 @@ The body's axes are those of the patch: its face looks along -z. The geom is a p
 that the pad looks at when it is attached, without its edges. What the body carries there must not collide with the
 geom in MuJoCo too (contype, conaffinity or exclude). Units are SI, as in the model.
 
-A step is implicit in the pads' loads. They belong to where the bodies are at its end: a stiff pad neither rings nor asks
-for short steps, and one that sticks holds. MuJoCo knows no derivatives of forces that it has not made, and its matrices
-have no place for those between two trees of bodies. So `step` finds the loads by Newton's method over MuJoCo's own step,
-with all constraints in it, on a copy of the data. It is of first order.
+A step is implicit in the pads' loads. They belong to where the bodies are at its end: a stiff pad neither rings nor
+asks for short steps, and one that sticks holds. MuJoCo knows no derivatives of forces that it has not made, and its
+matrices have no place for those between two trees of bodies. So `step` finds the loads by Newton's method over MuJoCo's
+own step, with all constraints in it, on a copy of the data. It is of first order.
 """
 
 import shutil
@@ -29,8 +29,10 @@ POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 WRENCH = ("force.x", "force.y", "force.z", "moment.x", "moment.y", "moment.z")
 TREAD_SPEED, TREAD_FORCE = "transport.speed", "transport.force"
 
-# Newton's method ends where what is left of the loads moves the bodies by this share of what the loads do.
-TOLERANCE = 1e-4
+# Newton's method ends where what is left of the loads moves the bodies by this share of what the change of the loads in
+# the step does, or by that of what the loads do. A share of the loads alone would leave small swings to an explicit step,
+# which does not damp them.
+OF_CHANGE, OF_LOADS = 1e-2, 1e-9
 # Corrections of the loads in a step. The last are taken as they are: the pads are then where the bodies are, and the
 # loads those of a little before.
 MOST_CORRECTIONS = 24
@@ -145,7 +147,7 @@ class Pad:
         self._inputs = self._inputs_of(data, self.pose)
         patch.start(data.time, self._inputs)
         self.loads = patch.loads()
-        self.stiffness = self._tangent()
+        self.stiffness = self.tangent()
 
     def _ground_of(self, data):
         """Origin and axes of the ground in the world."""
@@ -195,17 +197,14 @@ class Pad:
         self.pose, self._inputs, self.loads = self._reached
         self.stiffness = stiffness
 
-    def refresh(self):
-        """Finds the stiffness anew, where the patch is."""
-        self.stiffness = self._tangent()
-
-    def _tangent(self):
+    def tangent(self):
         """The change of the loads with the displacement and the turn of the body along the ground's axes."""
         tangent = self.patch.tangent()
         _, pitch, yaw = self.pose[3:]
         c, s = np.cos(yaw), np.sin(yaw)
         # Rates of roll, pitch and yaw of an angular velocity.
-        rates = np.array([[c / np.cos(pitch), s / np.cos(pitch), 0.0], [-s, c, 0.0], [c * np.tan(pitch), s * np.tan(pitch), 1.0]])
+        cosine, slope = np.cos(pitch), np.tan(pitch)
+        rates = np.array([[c / cosine, s / cosine, 0.0], [-s, c, 0.0], [c * slope, s * slope, 1.0]])
         tangent[:, 3:] = tangent[:, 3:] @ rates
         if self._joint is None:
             return tangent
@@ -213,7 +212,7 @@ class Pad:
         ahead = np.array([c, s, 0.0])
         column = -tangent[:, :3] @ ahead
         row = -ahead @ tangent[:3]
-        return np.block([[tangent, column[:, None]], [row[None], np.array([[-ahead @ column[:3]]])]])
+        return np.block([[tangent, column[:, None]], [row, -ahead @ column[:3]]])
 
 
 def attach(model, data, patch, body, geom, spin=None):
@@ -246,53 +245,63 @@ def step(model, data, pads):
 
     `pads` are all those of the model: those that press on the same bodies are solved together.
     """
-    time, h = data.time, model.opt.timestep
+    if not pads:
+        mujoco.mj_step(model, data)
+        return 0
     mujoco.mj_step1(model, data)
-    jacobian = np.vstack([pad.jacobian(model, data) for pad in pads])
-    trial = _Trial(model, data, jacobian)
+    trial = _Trial(model, data, np.vstack([pad.jacobian(model, data) for pad in pads]))
+    loads, stiffness, corrections = _solve(trial, pads)
+    first = 0
+    for pad in pads:
+        end = first + len(pad.loads)
+        pad.accept(stiffness[first:end, first:end])
+        first = end
+    # The step that was tried last once more, for good.
+    applied = data.qfrc_applied.copy()
+    data.qfrc_applied += trial.jacobian.T @ loads
+    mujoco.mj_step2(model, data)
+    data.qfrc_applied[:] = applied
+    return corrections
 
-    # With the loads of the step before; what the pads' stiffness makes of them.
-    loads = np.concatenate([pad.loads for pad in pads])
+
+def _solve(trial, pads):
+    """The loads that belong to where they move the bodies, by Newton's method; leaves the patches there. Also returns
+    the change of the loads with a displacement that it ended with, and how many corrections it took."""
+    # What the loads of the step before do, and what the pads' stiffness makes of that.
+    begin = loads = np.concatenate([pad.loads for pad in pads])
     displacement = trial.step(loads)
     mobility = trial.mobility()
     stiffness = _diagonal([pad.stiffness for pad in pads])
     wanted = loads + stiffness @ displacement
     for pad in pads:
         pad.patch.save()
-    corrections = 0
-    while True:
+    for corrections in range(1, MOST_CORRECTIONS + 1):
         correction = np.linalg.solve(np.eye(len(loads)) - stiffness @ mobility, wanted - loads)
         loads = loads + correction
-        before, displacement = displacement, trial.step(loads)
-        last, wanted = wanted, np.concatenate([pad.follow(time, h, trial.data) for pad in pads])
-        corrections += 1
-        rest = wanted - loads
-        if corrections == MOST_CORRECTIONS or rest @ mobility @ rest <= TOLERANCE**2 * (loads @ mobility @ loads):
+        wanted_before, displacement_before = wanted, displacement
+        displacement = trial.step(loads)
+        wanted = np.concatenate([pad.follow(trial.time, trial.h, trial.data) for pad in pads])
+        if _reach(mobility, wanted - loads) <= (
+            OF_CHANGE * _reach(mobility, wanted - begin) + OF_LOADS * _reach(mobility, wanted)
+        ) or corrections == MOST_CORRECTIONS:
             break
-        # Where elements begin to slip or to stick, the stiffness is another: by the secant, which costs nothing, and where
-        # that does not suffice, from the patch. The loads weigh displacements and turns, which have different units.
-        change = displacement - before
+        # Where elements begin to slip or to stick, the stiffness is another: by the secant, which costs nothing, and
+        # where that does not suffice, from the patch. The correction's work weighs lengths and angles alike.
+        change = displacement - displacement_before
         work = correction @ change
         if work > 0.0:
-            stiffness = stiffness + np.outer(wanted - last - stiffness @ change, correction) / work
+            error = wanted - wanted_before - stiffness @ change
+            stiffness = stiffness + np.outer(error, correction) / work
         if corrections % REFRESH_AFTER == 0:
-            for pad in pads:
-                pad.refresh()
-            stiffness = _diagonal([pad.stiffness for pad in pads])
+            stiffness = _diagonal([pad.tangent() for pad in pads])
         for pad in pads:
             pad.patch.restore()
+    return loads, stiffness, corrections
 
-    # The same once more, for good.
-    first = 0
-    for pad in pads:
-        last = first + len(pad.loads)
-        pad.accept(stiffness[first:last, first:last])
-        first = last
-    applied = data.qfrc_applied.copy()
-    data.qfrc_applied += jacobian.T @ loads
-    mujoco.mj_step2(model, data)
-    data.qfrc_applied[:] = applied
-    return corrections
+
+def _reach(mobility, loads):
+    """How much loads move the bodies, as the root of twice their work."""
+    return np.sqrt(max(loads @ mobility @ loads, 0.0))
 
 
 class _Trial:
@@ -301,7 +310,8 @@ class _Trial:
     _scratch = weakref.WeakKeyDictionary()
 
     def __init__(self, model, data, jacobian):
-        self.model, self._data, self._jacobian = model, data, jacobian
+        self.model, self._data, self.jacobian = model, data, jacobian
+        self.time, self.h = data.time, model.opt.timestep
         if model not in self._scratch:
             self._scratch[model] = mujoco.MjData(model)
         self.data = self._scratch[model]
@@ -309,22 +319,22 @@ class _Trial:
     def step(self, loads):
         """With these loads; returns by how much it moves the bodies over the grounds."""
         mujoco.mj_copyData(self.data, self.model, self._data)
-        self.data.qfrc_applied += self._jacobian.T @ loads
+        self.data.qfrc_applied += self.jacobian.T @ loads
         mujoco.mj_step2(self.model, self.data)
         mujoco.mj_kinematics(self.model, self.data)
-        return self.model.opt.timestep * (self._jacobian @ self.data.qvel)
+        return self.h * (self.jacobian @ self.data.qvel)
 
     def mobility(self):
         """How that changes with the loads: of the masses and of the constraints that were active."""
         constraints = _constraint_jacobian(self.model, self.data)
         active = (self.data.efc_state == _QUADRATIC) | (self.data.efc_state == _CONE)
-        rows = np.vstack([self._jacobian, constraints[active]])
+        rows = np.vstack([self.jacobian, constraints[active]])
         solved = np.zeros_like(rows)
         mujoco.mj_solveM(self.model, self._data, solved, rows)
-        inverse, count = rows @ solved.T, len(self._jacobian)
+        inverse, count = rows @ solved.T, len(self.jacobian)
         free, across, within = inverse[:count, :count], inverse[:count, count:], inverse[count:, count:]
         held = across @ np.linalg.solve(within + np.diag(self.data.efc_R[active]), across.T)
-        return self.model.opt.timestep**2 * (free - held)
+        return self.h**2 * (free - held)
 
 
 _QUADRATIC = int(mujoco.mjtConstraintState.mjCNSTRSTATE_QUADRATIC)
@@ -356,7 +366,8 @@ def _ground(model, data, body, geom):
     if kind == mujoco.mjtGeom.mjGEOM_PLANE:
         return np.zeros(3), np.eye(3)
     if kind != mujoco.mjtGeom.mjGEOM_BOX:
-        raise ValueError(f"geom {model.geom(geom).name!r}: expected a plane or a box, found {mujoco.mjtGeom(kind).name}")
+        name, found = model.geom(geom).name, mujoco.mjtGeom(kind).name
+        raise ValueError(f"geom {name!r}: expected a plane or a box, found {found}")
     # The pad looks along -z of its body.
     normal = data.geom_xmat[geom].reshape(3, 3).T @ data.xmat[body].reshape(3, 3)[:, 2]
     axis = int(np.argmax(np.abs(normal)))
