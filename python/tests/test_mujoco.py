@@ -1,11 +1,10 @@
 """Pads in MuJoCo against closed solutions."""
 
 import math
-import os
 import shutil
-import subprocess
 from pathlib import Path
 
+import asperity
 import numpy as np
 import pytest
 
@@ -15,7 +14,7 @@ pytest.importorskip("fmpy")
 from asperity.mujoco import PatchFmu, attach, step  # noqa: E402
 
 REFERENCE = Path(__file__).resolve().parents[2] / "tests/reference/patch"
-# Of that table, at all speeds and pressures: the friction coefficient, the stiffness along the plane and normal to it, Pa/m.
+# Of that table, at all speeds and pressures: friction coefficient, stiffness along the plane and normal to it (Pa/m).
 FRICTION, STIFFNESS, BED = 0.9, 1.5e9, 5e9
 GRAVITY = 9.81
 
@@ -29,11 +28,10 @@ def pack(tmp_path_factory):
         shutil.copy(REFERENCE / "winkler.table.csv", folder)
         for name, text in files.items():
             (folder / f"{name}.csv").write_text(text)
-        text = f'name = "pad"\ntable = {{ path = "winkler.table.csv" }}\n[patch]\n{patch}\n[fmu]\noutputs = ["forces"]\n'
+        table = 'table = { path = "winkler.table.csv" }'
+        text = f'name = "pad"\n{table}\n[patch]\n{patch}\n[fmu]\noutputs = ["forces"]\n'
         (folder / "pad.toml").write_text(text)
-        program = os.environ.get("ASPERITY", "asperity")
-        command = [program, "pack", "--patch", folder / "pad.toml", "-o", folder / "pad.fmu"]
-        subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        asperity.Patch.from_toml(folder / "pad.toml").pack(folder / "pad.fmu")
         return folder / "pad.fmu"
 
     return packed

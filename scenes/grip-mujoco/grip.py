@@ -2,8 +2,8 @@
 
     grip.py FOLDER [--short]
 
-FOLDER has pad.fmu. It gets CONTACT.csv of each contact, drift.csv, order.csv, cost.csv, release.csv, grip.svg and, where
-MuJoCo can render, frames.png. With --short the gripper stands for two seconds and shakes less.
+FOLDER has pad.fmu. It gets CONTACT.csv of each contact, drift.csv, order.csv, cost.csv, release.csv, grip.svg and,
+where MuJoCo can render, frames.png. With --short the gripper stands for three seconds and shakes less.
 """
 
 import csv
@@ -117,8 +117,7 @@ class Grip:
         """How far the pads' faces have slipped along the box, without what their springs are stretched, in the mean."""
         slips = []
         for pad in self.pads:
-            pad.refresh()
-            slips.append(pad.pose[:2] - np.linalg.pinv(pad.stiffness[:2, :2]) @ pad.loads[:2])
+            slips.append(pad.pose[:2] - np.linalg.pinv(pad.tangent()[:2, :2]) @ pad.loads[:2])
         # Both in the axes of the left pad's face: those of the other look the other way.
         (a, b), (c, d) = slips
         return np.array([0.5 * (a + c), 0.5 * (b - d)])
@@ -157,7 +156,7 @@ def friction(pressure):
 
 
 def run(fmu, contact, plan):
-    """The rows of a run, the mean places of the pads in the box's axes in each second of standing, frames' positions."""
+    """The rows of a run, the pads' mean places in the box's axes in each second of standing, positions of frames."""
     grip, rows, frames = Grip(fmu, contact), [], []
     seconds = [[] for _ in range(int(plan.end - plan.turned))]
     pending = list(plan.frames())
@@ -321,8 +320,8 @@ def main():
         write(folder / f"{contact}.csv", COLUMNS, rows)
         for i, change in enumerate(np.linalg.norm(np.diff(seconds, axis=0), axis=1)):
             drifts.append([contact, i + 1, change])
-        print(f"{contact:7} moved by {1e6 * displacement(rows, plan)[-1]:.4g} µm since closed, of which the last second "
-              f"{1e6 * drifts[-1][2]:.3g} µm")
+        moved = 1e6 * displacement(rows, plan)[-1]
+        print(f"{contact:7} moved by {moved:.4g} µm since closed, in the last second by {1e6 * drifts[-1][2]:.3g} µm")
     write(folder / "drift.csv", ("contact", "second", "change"), drifts)
     found, expected = release(fmu)
     write(folder / "release.csv", ("found", "expected"), [[found, expected]])

@@ -201,7 +201,7 @@ fn the_low_end_is_named() {
     // One force has no slope, so nothing is known below it.
     assert_eq!(
         run(asperity()
-            .arg("sweep")
+            .args(["-q", "sweep"])
             .arg(&scene)
             .arg("-o")
             .arg(folder.join("one.csv"))

@@ -10,27 +10,37 @@ The body's axes are those of the patch: its face looks along -z. The geom is a p
 that the pad looks at when it is attached, without its edges. What the body carries there must not collide with the
 geom in MuJoCo too (contype, conaffinity or exclude). Units are SI, as in the model.
 
-A step is implicit in the pads' loads. They belong to where the bodies are at its end: a stiff pad neither rings nor asks
-for short steps, and one that sticks holds. MuJoCo knows no derivatives of forces that it has not made, and its matrices
-have no place for those between two trees of bodies. So `step` finds the loads by Newton's method over MuJoCo's own step,
-with all constraints in it, on a copy of the data. It is of first order.
+A step is implicit in the pads' loads. They belong to where the bodies are at its end: a stiff pad neither rings nor
+asks for short steps, and one that sticks holds. MuJoCo knows no derivatives of forces that it has not made, and its
+matrices have no place for those between two trees of bodies. So `step` finds the loads by Newton's method over MuJoCo's
+own step, with all constraints in it, on a copy of the data. It is of first order.
 """
+
+from __future__ import annotations
 
 import shutil
 import weakref
-from ctypes import c_double, c_int, c_uint
+from collections.abc import Mapping, Sequence
+from ctypes import Array, c_double, c_int, c_uint
+from os import PathLike
+from typing import Any
 
 import fmpy
 import mujoco
 import numpy as np
 from fmpy.fmi2 import FMU2Slave
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
 
 POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 WRENCH = ("force.x", "force.y", "force.z", "moment.x", "moment.y", "moment.z")
 TREAD_SPEED, TREAD_FORCE = "transport.speed", "transport.force"
 
-# Newton's method ends where what is left of the loads moves the bodies by this share of what the loads do.
-TOLERANCE = 1e-4
+# Newton's method ends where what is left of the loads moves the bodies by this share of what the change of the loads in
+# the step does, or by that of what the loads do. A share of the loads alone would leave small swings to an explicit step,
+# which does not damp them.
+OF_CHANGE, OF_LOADS = 1e-2, 1e-9
 # Corrections of the loads in a step. The last are taken as they are: the pads are then where the bodies are, and the
 # loads those of a little before.
 MOST_CORRECTIONS = 24
@@ -44,7 +54,7 @@ class PatchFmu:
     `inputs` are the pose and, with a tread, its speed; `loads` the wrench and the force on the tread.
     """
 
-    def __init__(self, path, parameters=None):
+    def __init__(self, path: str | PathLike[str], parameters: Mapping[str, float] | None = None) -> None:
         description = fmpy.read_model_description(path)
         self.references = {variable.name: variable.valueReference for variable in description.modelVariables}
         missing = [name for name in (*POSE, *WRENCH) if name not in self.references]
@@ -67,20 +77,20 @@ class PatchFmu:
         self._values = (c_double * len(self._inputs))()
         self._rates = (c_double * len(self._inputs))()
         self._orders = (c_int * len(self._inputs))(*[1] * len(self._inputs))
-        self._state = None
+        self._state: Any = None
 
-    def _numbers(self, names):
+    def _numbers(self, names: Sequence[str]) -> Array[c_uint]:
         return (c_uint * len(names))(*[self.references[name] for name in names])
 
-    def set(self, values):
+    def set(self, values: Mapping[str, float]) -> None:
         """Sets variables by their names."""
         self.fmu.setReal([self.references[name] for name in values], list(values.values()))
 
-    def get(self, *names):
+    def get(self, *names: str) -> list[float]:
         """The values of variables by their names."""
-        return self.fmu.getReal([self.references[name] for name in names])
+        return list(self.fmu.getReal([self.references[name] for name in names]))
 
-    def start(self, time, inputs):
+    def start(self, time: float, inputs: Floats) -> None:
         """Begins a run, its springs relaxed."""
         self.fmu.setupExperiment(startTime=time)
         self.fmu.enterInitializationMode()
@@ -88,7 +98,7 @@ class PatchFmu:
         self.fmu.fmi2SetReal(self.fmu.component, self._inputs, len(self._inputs), self._values)
         self.fmu.exitInitializationMode()
 
-    def follow(self, time, h, start, end):
+    def follow(self, time: float, h: float, start: Floats, end: Floats) -> Floats:
         """Steps along the straight way from one set of inputs to another; returns the loads at its end."""
         component, count = self.fmu.component, len(self._inputs)
         self._values[:], self._rates[:] = start, [(b - a) / h for a, b in zip(start, end)]
@@ -97,30 +107,30 @@ class PatchFmu:
         self.fmu.doStep(time, h)
         return self.loads()
 
-    def loads(self):
+    def loads(self) -> Floats:
         """Force (N), moment (N m) and, with a tread, the force on it (N)."""
         values = (c_double * len(self._loads))()
         self.fmu.fmi2GetReal(self.fmu.component, self._loads, len(self._loads), values)
         return np.array(values)
 
-    def tangent(self):
+    def tangent(self) -> Floats:
         """The change of the wrench (rows) with the pose's coordinates, what sticks and what slips held."""
         columns = [self.fmu.getDirectionalDerivative(self._wrench, [one], [1.0]) for one in self._pose]
         return np.array(columns).T
 
-    def save(self):
+    def save(self) -> None:
         """Keeps the state."""
         if self._state is None:
             self._state = self.fmu.getFMUstate()
         else:
             self.fmu.fmi2GetFMUstate(self.fmu.component, self._state)
 
-    def restore(self):
+    def restore(self) -> None:
         """Goes back to the state kept."""
         self.fmu.setFMUstate(self._state)
 
 
-def _discard(fmu, folder):
+def _discard(fmu: Any, folder: str) -> None:
     fmu.freeInstance()
     shutil.rmtree(folder, ignore_errors=True)
 
@@ -135,24 +145,26 @@ class Pad:
         patch: the patch itself
     """
 
-    def __init__(self, model, data, patch, body, geom, spin):
+    def __init__(
+        self, model: Any, data: Any, patch: PatchFmu, body: int, geom: int, spin: tuple[int, float] | None
+    ) -> None:
         self.patch = patch
         self._body, self._geom = body, geom
-        self._joint, self._radius = spin or (None, 0.0)
+        self._joint, self._radius = (None, 0.0) if spin is None else spin
         self._origin, self._axes = _ground(model, data, body, geom)
-        self.pose = np.zeros(6)
+        self.pose: Floats = np.zeros(6)
         self.pose = self._pose_of(data)
         self._inputs = self._inputs_of(data, self.pose)
         patch.start(data.time, self._inputs)
         self.loads = patch.loads()
-        self.stiffness = self._tangent()
+        self.stiffness = self.tangent()
 
-    def _ground_of(self, data):
+    def _ground_of(self, data: Any) -> tuple[Floats, Floats]:
         """Origin and axes of the ground in the world."""
         axes = data.geom_xmat[self._geom].reshape(3, 3)
         return data.geom_xpos[self._geom] + axes @ self._origin, axes @ self._axes
 
-    def _pose_of(self, data):
+    def _pose_of(self, data: Any) -> Floats:
         origin, axes = self._ground_of(data)
         place = axes.T @ (data.xpos[self._body] - origin)
         turned = axes.T @ data.xmat[self._body].reshape(3, 3)
@@ -163,12 +175,12 @@ class Pad:
         angles += 2 * np.pi * np.round((self.pose[3:] - angles) / (2 * np.pi))
         return np.concatenate([place, angles])
 
-    def _inputs_of(self, data, pose):
+    def _inputs_of(self, data: Any, pose: Floats) -> Floats:
         if self._joint is None:
             return pose
         return np.append(pose, self._radius * data.qvel[self._joint])
 
-    def jacobian(self, model, data):
+    def jacobian(self, model: Any, data: Any) -> Floats:
         """From the velocities of the joints to those of the body over the ground, in the ground's axes, and, with a
         tread, to its speed."""
         _, axes = self._ground_of(data)
@@ -183,29 +195,26 @@ class Pad:
         tread[self._joint] = self._radius
         return np.vstack([rows, tread])
 
-    def follow(self, time, h, data):
+    def follow(self, time: float, h: float, data: Any) -> Floats:
         """Takes the patch to where the bodies of `data` are; returns its loads there."""
         pose = self._pose_of(data)
         inputs = self._inputs_of(data, pose)
         self._reached = pose, inputs, self.patch.follow(time, h, self._inputs, inputs)
         return self._reached[2]
 
-    def accept(self, stiffness):
+    def accept(self, stiffness: Floats) -> None:
         """Ends a step where `follow` has led; the next begins with this stiffness."""
         self.pose, self._inputs, self.loads = self._reached
         self.stiffness = stiffness
 
-    def refresh(self):
-        """Finds the stiffness anew, where the patch is."""
-        self.stiffness = self._tangent()
-
-    def _tangent(self):
+    def tangent(self) -> Floats:
         """The change of the loads with the displacement and the turn of the body along the ground's axes."""
         tangent = self.patch.tangent()
         _, pitch, yaw = self.pose[3:]
         c, s = np.cos(yaw), np.sin(yaw)
         # Rates of roll, pitch and yaw of an angular velocity.
-        rates = np.array([[c / np.cos(pitch), s / np.cos(pitch), 0.0], [-s, c, 0.0], [c * np.tan(pitch), s * np.tan(pitch), 1.0]])
+        cosine, slope = np.cos(pitch), np.tan(pitch)
+        rates = np.array([[c / cosine, s / cosine, 0.0], [-s, c, 0.0], [c * slope, s * slope, 1.0]])
         tangent[:, 3:] = tangent[:, 3:] @ rates
         if self._joint is None:
             return tangent
@@ -213,10 +222,17 @@ class Pad:
         ahead = np.array([c, s, 0.0])
         column = -tangent[:, :3] @ ahead
         row = -ahead @ tangent[:3]
-        return np.block([[tangent, column[:, None]], [row[None], np.array([[-ahead @ column[:3]]])]])
+        return np.block([[tangent, column[:, None]], [row, -ahead @ column[:3]]])
 
 
-def attach(model, data, patch, body, geom, spin=None):
+def attach(
+    model: Any,
+    data: Any,
+    patch: str | PathLike[str] | PatchFmu,
+    body: str | int,
+    geom: str | int,
+    spin: tuple[str, float] | None = None,
+) -> Pad:
     """Gives a body a pad that rubs on a geom, where both are in `data` now; returns the pad.
 
     Args:
@@ -228,120 +244,130 @@ def attach(model, data, patch, body, geom, spin=None):
     Raises:
         ValueError: of a geom of another type, a patch with a tread without `spin`, an integrator that `step` has not
     """
-    body, geom = model.body(body).id, model.geom(geom).id
-    if not hasattr(patch, "follow"):
+    carrier, ground = model.body(body).id, model.geom(geom).id
+    if not isinstance(patch, PatchFmu):
         patch = PatchFmu(patch)
     if patch.has_tread != (spin is not None):
         raise ValueError("`spin` is expected of a patch with a tread, and of no other")
     if model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4:
         raise ValueError("integrator: expected Euler, implicit or implicitfast, found RK4")
     mujoco.mj_kinematics(model, data)
-    if spin is not None:
-        spin = model.joint(spin[0]).dofadr[0], spin[1]
-    return Pad(model, data, patch, body, geom, spin)
+    driven = None if spin is None else (int(model.joint(spin[0]).dofadr[0]), spin[1])
+    return Pad(model, data, patch, carrier, ground, driven)
 
 
-def step(model, data, pads):
+def step(model: Any, data: Any, pads: Sequence[Pad]) -> int:
     """A step of MuJoCo under the loads of its pads, in place of `mujoco.mj_step`; returns how often it corrected them.
 
     `pads` are all those of the model: those that press on the same bodies are solved together.
     """
-    time, h = data.time, model.opt.timestep
+    if not pads:
+        mujoco.mj_step(model, data)
+        return 0
     mujoco.mj_step1(model, data)
-    jacobian = np.vstack([pad.jacobian(model, data) for pad in pads])
-    trial = _Trial(model, data, jacobian)
+    trial = _Trial(model, data, np.vstack([pad.jacobian(model, data) for pad in pads]))
+    loads, stiffness, corrections = _solve(trial, pads)
+    first = 0
+    for pad in pads:
+        end = first + len(pad.loads)
+        pad.accept(stiffness[first:end, first:end])
+        first = end
+    # The step that was tried last once more, for good.
+    applied = data.qfrc_applied.copy()
+    data.qfrc_applied += trial.jacobian.T @ loads
+    mujoco.mj_step2(model, data)
+    data.qfrc_applied[:] = applied
+    return corrections
 
-    # With the loads of the step before; what the pads' stiffness makes of them.
-    loads = np.concatenate([pad.loads for pad in pads])
+
+def _solve(trial: _Trial, pads: Sequence[Pad]) -> tuple[Floats, Floats, int]:
+    """The loads that belong to where they move the bodies, by Newton's method; leaves the patches there. Also returns
+    the change of the loads with a displacement that it ended with, and how many corrections it took."""
+    # What the loads of the step before do, and what the pads' stiffness makes of that.
+    begin = loads = np.concatenate([pad.loads for pad in pads])
     displacement = trial.step(loads)
     mobility = trial.mobility()
     stiffness = _diagonal([pad.stiffness for pad in pads])
     wanted = loads + stiffness @ displacement
     for pad in pads:
         pad.patch.save()
-    corrections = 0
-    while True:
+    for corrections in range(1, MOST_CORRECTIONS + 1):
         correction = np.linalg.solve(np.eye(len(loads)) - stiffness @ mobility, wanted - loads)
         loads = loads + correction
-        before, displacement = displacement, trial.step(loads)
-        last, wanted = wanted, np.concatenate([pad.follow(time, h, trial.data) for pad in pads])
-        corrections += 1
-        rest = wanted - loads
-        if corrections == MOST_CORRECTIONS or rest @ mobility @ rest <= TOLERANCE**2 * (loads @ mobility @ loads):
+        wanted_before, displacement_before = wanted, displacement
+        displacement = trial.step(loads)
+        wanted = np.concatenate([pad.follow(trial.time, trial.h, trial.data) for pad in pads])
+        if _reach(mobility, wanted - loads) <= (
+            OF_CHANGE * _reach(mobility, wanted - begin) + OF_LOADS * _reach(mobility, wanted)
+        ) or corrections == MOST_CORRECTIONS:
             break
-        # Where elements begin to slip or to stick, the stiffness is another: by the secant, which costs nothing, and where
-        # that does not suffice, from the patch. The loads weigh displacements and turns, which have different units.
-        change = displacement - before
+        # Where elements begin to slip or to stick, the stiffness is another: by the secant, which costs nothing, and
+        # where that does not suffice, from the patch. The correction's work weighs lengths and angles alike.
+        change = displacement - displacement_before
         work = correction @ change
         if work > 0.0:
-            stiffness = stiffness + np.outer(wanted - last - stiffness @ change, correction) / work
+            error = wanted - wanted_before - stiffness @ change
+            stiffness = stiffness + np.outer(error, correction) / work
         if corrections % REFRESH_AFTER == 0:
-            for pad in pads:
-                pad.refresh()
-            stiffness = _diagonal([pad.stiffness for pad in pads])
+            stiffness = _diagonal([pad.tangent() for pad in pads])
         for pad in pads:
             pad.patch.restore()
+    return loads, stiffness, corrections
 
-    # The same once more, for good.
-    first = 0
-    for pad in pads:
-        last = first + len(pad.loads)
-        pad.accept(stiffness[first:last, first:last])
-        first = last
-    applied = data.qfrc_applied.copy()
-    data.qfrc_applied += jacobian.T @ loads
-    mujoco.mj_step2(model, data)
-    data.qfrc_applied[:] = applied
-    return corrections
+
+def _reach(mobility: Floats, loads: Floats) -> float:
+    """How much loads move the bodies, as the root of twice their work."""
+    return float(np.sqrt(max(loads @ mobility @ loads, 0.0)))
 
 
 class _Trial:
     """The second half of a step on a copy of the data."""
 
-    _scratch = weakref.WeakKeyDictionary()
+    _scratch: weakref.WeakKeyDictionary[Any, Any] = weakref.WeakKeyDictionary()
 
-    def __init__(self, model, data, jacobian):
-        self.model, self._data, self._jacobian = model, data, jacobian
+    def __init__(self, model: Any, data: Any, jacobian: Floats) -> None:
+        self.model, self._data, self.jacobian = model, data, jacobian
+        self.time, self.h = data.time, model.opt.timestep
         if model not in self._scratch:
             self._scratch[model] = mujoco.MjData(model)
         self.data = self._scratch[model]
 
-    def step(self, loads):
+    def step(self, loads: Floats) -> Floats:
         """With these loads; returns by how much it moves the bodies over the grounds."""
         mujoco.mj_copyData(self.data, self.model, self._data)
-        self.data.qfrc_applied += self._jacobian.T @ loads
+        self.data.qfrc_applied += self.jacobian.T @ loads
         mujoco.mj_step2(self.model, self.data)
         mujoco.mj_kinematics(self.model, self.data)
-        return self.model.opt.timestep * (self._jacobian @ self.data.qvel)
+        return self.h * (self.jacobian @ self.data.qvel)
 
-    def mobility(self):
+    def mobility(self) -> Floats:
         """How that changes with the loads: of the masses and of the constraints that were active."""
         constraints = _constraint_jacobian(self.model, self.data)
         active = (self.data.efc_state == _QUADRATIC) | (self.data.efc_state == _CONE)
-        rows = np.vstack([self._jacobian, constraints[active]])
+        rows = np.vstack([self.jacobian, constraints[active]])
         solved = np.zeros_like(rows)
         mujoco.mj_solveM(self.model, self._data, solved, rows)
-        inverse, count = rows @ solved.T, len(self._jacobian)
+        inverse, count = rows @ solved.T, len(self.jacobian)
         free, across, within = inverse[:count, :count], inverse[:count, count:], inverse[count:, count:]
         held = across @ np.linalg.solve(within + np.diag(self.data.efc_R[active]), across.T)
-        return self.model.opt.timestep**2 * (free - held)
+        return self.h**2 * (free - held)
 
 
 _QUADRATIC = int(mujoco.mjtConstraintState.mjCNSTRSTATE_QUADRATIC)
 _CONE = int(mujoco.mjtConstraintState.mjCNSTRSTATE_CONE)
 
 
-def _constraint_jacobian(model, data):
+def _constraint_jacobian(model: Any, data: Any) -> Floats:
     """One row a constraint."""
     rows = np.zeros((data.nefc, model.nv))
     if not mujoco.mj_isSparse(model):
-        return data.efc_J.reshape(rows.shape)
+        return np.asarray(data.efc_J).reshape(rows.shape)
     for i, (first, count) in enumerate(zip(data.efc_J_rowadr, data.efc_J_rownnz)):
         rows[i, data.efc_J_colind[first : first + count]] = data.efc_J[first : first + count]
     return rows
 
 
-def _diagonal(blocks):
+def _diagonal(blocks: Sequence[Floats]) -> Floats:
     size = sum(len(block) for block in blocks)
     matrix, first = np.zeros((size, size)), 0
     for block in blocks:
@@ -350,13 +376,14 @@ def _diagonal(blocks):
     return matrix
 
 
-def _ground(model, data, body, geom):
+def _ground(model: Any, data: Any, body: int, geom: int) -> tuple[Floats, Floats]:
     """Origin and axes of a geom's face in its own: a plane, or the side of a box at which the pad looks."""
     kind = model.geom_type[geom]
     if kind == mujoco.mjtGeom.mjGEOM_PLANE:
         return np.zeros(3), np.eye(3)
     if kind != mujoco.mjtGeom.mjGEOM_BOX:
-        raise ValueError(f"geom {model.geom(geom).name!r}: expected a plane or a box, found {mujoco.mjtGeom(kind).name}")
+        name, found = model.geom(geom).name, mujoco.mjtGeom(kind).name
+        raise ValueError(f"geom {name!r}: expected a plane or a box, found {found}")
     # The pad looks along -z of its body.
     normal = data.geom_xmat[geom].reshape(3, 3).T @ data.xmat[body].reshape(3, 3)[:, 2]
     axis = int(np.argmax(np.abs(normal)))
