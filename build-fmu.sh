@@ -146,8 +146,9 @@ build_wheel_by_zig() {
 build_wheels() {
     local python
     python=$("$root/tests/python/environment.sh" "$target/wheel" wheel.txt)
-    cp "$root"/LICENSE-* "$root/python/"
-    "$python" "$root/python/licences.py" "$root/Cargo.toml" "$root/python/third-party.txt"
+    mkdir -p "$root/python/licenses"
+    cp "$root"/LICENSE-* "$root/python/licenses/"
+    "$python" "$root/python/licences.py" "$root/Cargo.toml" "$root/python/licenses/third-party.txt"
     if $all_platforms; then
         command -v rustup > /dev/null || refuse "--wheel --all-platforms needs rustup, which adds Rust's targets"
         build_wheel_by_zig linux64 x86_64-unknown-linux-gnu .2.17 libasperity.so
