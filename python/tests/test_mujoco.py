@@ -31,7 +31,7 @@ def pack(tmp_path_factory):
         table = 'table = { path = "winkler.table.csv" }'
         text = f'name = "pad"\n{table}\n[patch]\n{patch}\n[fmu]\noutputs = ["forces"]\n'
         (folder / "pad.toml").write_text(text)
-        asperity.Patch.from_toml(folder / "pad.toml").pack(folder / "pad.fmu")
+        asperity.Patch(folder / "pad.toml").pack(folder / "pad.fmu")
         return folder / "pad.fmu"
 
     return packed
