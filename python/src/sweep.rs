@@ -40,7 +40,7 @@ struct Stopped;
 fn find(plan: &SweepPlan, task: &Task) -> Result<SweepTable, Stopped> {
     let points: Vec<OperatingPoint> = plan.header().grid.points().collect();
     let (rows, done) = (Mutex::new(Vec::new()), AtomicUsize::new(0));
-    plan.find(&points, |row| {
+    plan.find(&points, Some(&task.interrupt()), |row| {
         if task.is_stopped() {
             return Err(Stopped);
         }

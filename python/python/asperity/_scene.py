@@ -352,7 +352,7 @@ class Scene:
     ) -> Table:
         """Friction in steady sliding over speed, load and temperature, on all cores.
 
-        Ctrl-C is raised at once; points that have been begun end in the background.
+        Ctrl-C is raised at once. A point that is being solved for as it comes ends in the background.
 
         Args:
             speeds: Speeds, m/s.

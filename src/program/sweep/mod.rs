@@ -188,7 +188,7 @@ fn run(command: &Sweep, plan: &SweepPlan, file: &TableFile, output: &Path) -> Re
         done.finish_and_clear();
         format!("{points} of {all} points are done")
     });
-    let work = plan.find(&left, |row| {
+    let work = plan.find(&left, None, |row| {
         file.add(&row)?;
         bar.inc(1);
         Ok(())
@@ -286,7 +286,7 @@ pub(crate) fn steady_sliding(
     bounds: StopBounds,
 ) -> Result<SteadySliding, String> {
     let scene = scene_at(&relevant(scene.clone()), point);
-    steady(point::sliding(&scene, point.speed, load.force(point.load), bounds))
+    steady(point::sliding(&scene, point.speed, load.force(point.load), bounds, None))
 }
 
 /// Steady sliding at one point with the carrier held at `w` (m), where the load is near that of the point.

@@ -2,6 +2,7 @@
 
 use asperity::element::{Basis, Load, OperatingPoint, SweepGrid, TableHeader, TableRow};
 use asperity::scene::{FineRoughness, Scene};
+use asperity::simulation::Interrupt;
 use rayon::prelude::*;
 
 use super::method::{Method, SlidingOptions};
@@ -85,14 +86,14 @@ impl SweepPlan {
         self.warning.as_deref()
     }
 
-    /// The row of a point.
-    pub fn row(&self, point: &OperatingPoint) -> TableRow {
+    /// The row of a point; one of a layer that `interrupt` stops as it slides says so in its status.
+    pub fn row(&self, point: &OperatingPoint, interrupt: Option<&Interrupt>) -> TableRow {
         match &self.solved {
             Some(solved) => solved.row(*point, &self.header),
             None => {
                 let scene = scene_at(&self.scene, point);
                 let force = self.header.load.force(point.load);
-                point::find(&scene, point.speed, force, self.bounds).row(*point, &self.header)
+                point::find(&scene, point.speed, force, self.bounds, interrupt).row(*point, &self.header)
             }
         }
     }
@@ -104,9 +105,10 @@ impl SweepPlan {
     pub fn find<E: Send>(
         &self,
         points: &[OperatingPoint],
+        interrupt: Option<&Interrupt>,
         found: impl Fn(TableRow) -> Result<(), E> + Sync,
     ) -> Result<(), E> {
-        points.par_iter().with_max_len(1).try_for_each(|point| found(self.row(point)))
+        points.par_iter().with_max_len(1).try_for_each(|point| found(self.row(point, interrupt)))
     }
 
     /// The warning where some of the rows have few points of the surface in contact.

@@ -19,7 +19,7 @@
 use asperity::element::{OperatingPoint, Quantity, STEADY, TableHeader, TableRow};
 use asperity::model::{LinkKind, Model};
 use asperity::scene::{CarrierBodies, CarrierBody, CarrierInitial, Scene};
-use asperity::simulation::SimulationError;
+use asperity::simulation::{Interrupt, SimulationError};
 
 use super::load_search::LoadSearch;
 use super::slide::{BlockMeans, Blocks, Slide, tangential_stiffness};
@@ -207,17 +207,25 @@ struct Search<'a> {
     /// Stiffness of all vertical springs in the long term, N/m.
     stiffness: f64,
     runs: u32,
+    /// What may stop the runs.
+    interrupt: Option<&'a Interrupt>,
     /// Distance of the slides before the present one, m.
     distance_before: f64,
 }
 
 /// Steady sliding of the layer of `scene` at `speed` (m/s) under the force `load` (N).
-pub(super) fn sliding(scene: &Scene, speed: f64, load: f64, bounds: StopBounds) -> PointResult {
+pub(super) fn sliding(
+    scene: &Scene,
+    speed: f64,
+    load: f64,
+    bounds: StopBounds,
+    interrupt: Option<&Interrupt>,
+) -> PointResult {
     let loaded = under_load(scene, load);
     let scene = &loaded;
     let load = LoadSearch::estimated(load, scene, &Model::new(scene));
     let held = scene.carrier.z.map_or(Held::Searched, |body| Held::Load(body.mass));
-    search(scene, speed, bounds, load, held)
+    search((scene, speed), bounds, load, held, interrupt)
 }
 
 /// Steady sliding of the layer of `scene` at `speed` (m/s) with the carrier held at `w` (m), where F_z is near `load`
@@ -226,11 +234,17 @@ pub(super) fn sliding_at(scene: &Scene, speed: f64, w: f64, load: f64, bounds: S
     let scene = &Scene { carrier: CarrierBodies::default(), ..scene.clone() };
     let mut load = LoadSearch::estimated(load, scene, &Model::new(scene));
     load.w = w;
-    search(scene, speed, bounds, load, Held::Given)
+    search((scene, speed), bounds, load, Held::Given, None)
 }
 
-fn search(scene: &Scene, speed: f64, bounds: StopBounds, load: LoadSearch, held: Held) -> PointResult {
-    let search = Search::new(scene, Blocks::new(scene, speed), bounds, load, held);
+fn search(
+    (scene, speed): (&Scene, f64),
+    bounds: StopBounds,
+    load: LoadSearch,
+    held: Held,
+    interrupt: Option<&Interrupt>,
+) -> PointResult {
+    let search = Search::new((scene, Blocks::new(scene, speed)), bounds, load, held, interrupt);
     search.and_then(Search::finish).unwrap_or_else(|error| PointResult::failed(error.to_string()))
 }
 
@@ -244,8 +258,14 @@ fn under_load(scene: &Scene, load: f64) -> Scene {
 }
 
 /// Steady sliding, and the tangential stiffness at its start, w held.
-pub(super) fn find(scene: &Scene, speed: f64, load: f64, bounds: StopBounds) -> PointResult {
-    let result = sliding(scene, speed, load, bounds);
+pub(super) fn find(
+    scene: &Scene,
+    speed: f64,
+    load: f64,
+    bounds: StopBounds,
+    interrupt: Option<&Interrupt>,
+) -> PointResult {
+    let result = sliding(scene, speed, load, bounds, interrupt);
     if result.sliding.is_none() {
         return result;
     }
@@ -254,7 +274,7 @@ pub(super) fn find(scene: &Scene, speed: f64, load: f64, bounds: StopBounds) -> 
     let (load, blocks) = (LoadSearch::estimated(load, scene, &model), Blocks::new(scene, speed));
     let stiffness = model.links[LinkKind::Vertical].stiffness;
     let frequency = if stiffness > 0.0 { (stiffness / model.mass).sqrt() } else { model.stiffest_frequency() };
-    match tangential_stiffness(scene, blocks, load, frequency) {
+    match tangential_stiffness(scene, blocks, load, frequency, interrupt) {
         Ok(found) => result.with_stiffness(found),
         Err(error) if result.status == STEADY => {
             PointResult { status: format!("tangential stiffness: {error}"), ..result }
@@ -272,16 +292,16 @@ impl Held {
 
 impl<'a> Search<'a> {
     fn new(
-        scene: &'a Scene,
-        blocks: Blocks,
+        (scene, blocks): (&'a Scene, Blocks),
         bounds: StopBounds,
         load: LoadSearch,
         held: Held,
+        interrupt: Option<&'a Interrupt>,
     ) -> Result<Self, SimulationError> {
         let distance = bounds.distance.unwrap_or(BLOCKS * blocks.length);
         let vertical = scene.link(LinkKind::Vertical).and_then(|link| link.stiffness).unwrap_or(0.0);
         let stiffness = scene.layer.masses as f64 * vertical;
-        let slide = Slide::new(scene, blocks, held.start(&load))?;
+        let slide = Slide::new(scene, blocks, held.start(&load), interrupt)?;
         Ok(Self {
             scene,
             blocks,
@@ -292,6 +312,7 @@ impl<'a> Search<'a> {
             held,
             stiffness,
             runs: 1,
+            interrupt,
             distance_before: 0.0,
         })
     }
@@ -367,7 +388,7 @@ impl<'a> Search<'a> {
     /// A new slide from the start of a profile that ends.
     fn restart(&mut self) -> Result<(), SimulationError> {
         self.distance_before += self.slide.distance();
-        self.slide = Slide::new(self.scene, self.blocks, self.held.start(&self.load))?;
+        self.slide = Slide::new(self.scene, self.blocks, self.held.start(&self.load), self.interrupt)?;
         self.slide.press(RAMP + CALM, 0.0)
     }
 

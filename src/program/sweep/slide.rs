@@ -2,7 +2,7 @@
 
 use asperity::outputs::{Output, Variable, variables};
 use asperity::scene::{Path, Scene};
-use asperity::simulation::{Motion, Simulation, SimulationError, Start};
+use asperity::simulation::{Interrupt, Motion, Simulation, SimulationError, Start};
 
 use super::load_search::{LoadSearch, ends};
 
@@ -138,10 +138,16 @@ pub(super) struct Slide {
 }
 
 impl Slide {
-    /// Starts at the displacement `w` (m), relaxed and at full speed.
-    pub(super) fn new(scene: &Scene, blocks: Blocks, w: f64) -> Result<Self, SimulationError> {
+    /// Starts at the displacement `w` (m), relaxed and at full speed; what may stop it.
+    pub(super) fn new(
+        scene: &Scene,
+        blocks: Blocks,
+        w: f64,
+        interrupt: Option<&Interrupt>,
+    ) -> Result<Self, SimulationError> {
         let start = Start { u: blocks.start, u_rate: blocks.speed, w, ..Start::default() };
-        let simulation = Simulation::new(scene, &start)?;
+        let mut simulation = Simulation::new(scene, &start)?;
+        simulation.set_interrupt(interrupt.cloned());
         let duration = blocks.length / blocks.speed;
         Ok(Self {
             elongations: vec![0.0; simulation.maxwell_elongations().len()],
@@ -268,13 +274,14 @@ pub(super) fn tangential_stiffness(
     blocks: Blocks,
     mut search: LoadSearch,
     frequency: f64,
+    interrupt: Option<&Interrupt>,
 ) -> Result<Option<f64>, SimulationError> {
     if scene.friction.is_none() {
         return Ok(None);
     }
     let forces = chosen(scene, &[Output::ForceX, Output::ForceZ]);
     for _ in 0..TRIES {
-        let mut simulation = at_rest(scene, blocks, search.w, REST / frequency)?;
+        let mut simulation = at_rest(scene, blocks, (search.w, REST / frequency), interrupt)?;
         let mut values = [0.0; 2];
         simulation.evaluate(&forces, &mut values);
         let [before, load] = values;
@@ -286,9 +293,15 @@ pub(super) fn tangential_stiffness(
     Ok(None)
 }
 
-/// The layer at rest at w, its dashpots relaxed.
-fn at_rest(scene: &Scene, blocks: Blocks, w: f64, duration: f64) -> Result<Simulation, SimulationError> {
+/// The layer at rest at w (m) after some time (s), its dashpots relaxed.
+fn at_rest(
+    scene: &Scene,
+    blocks: Blocks,
+    (w, duration): (f64, f64),
+    interrupt: Option<&Interrupt>,
+) -> Result<Simulation, SimulationError> {
     let mut simulation = Simulation::new(scene, &Start { u: blocks.start, w, ..Start::default() })?;
+    simulation.set_interrupt(interrupt.cloned());
     for _ in 0..RELAXATIONS {
         simulation.advance(&Motion { duration, u: Path::default(), w: Path::default(), ..Motion::default() })?;
         let elongations = simulation.maxwell_elongations().to_vec();
