@@ -117,8 +117,8 @@ def test_a_step_is_the_implicit_one(square):
         step(model, data, [pad])
         v = (v + h * (-100.0 - spring * z)) / (1.0 + spring * h**2)
         z += h * v
-        # The table's bed is one of straight springs within 3e-5.
-        assert data.qpos[2] == pytest.approx(z, abs=1e-4 * pressed(100.0))
+        # Newton's method ends at 2 % of the change of the loads in a step, here of 13 N in the first.
+        assert data.qpos[2] == pytest.approx(z, abs=2e-3 * pressed(100.0))
 
 
 def test_halving_the_step_halves_the_error(square):

@@ -40,7 +40,7 @@ TREAD_SPEED, TREAD_FORCE = "transport.speed", "transport.force"
 # Newton's method ends where what is left of the loads moves the bodies by this share of what the change of the loads in
 # the step does, or by that of what the loads do. A share of the loads alone would leave small swings to an explicit step,
 # which does not damp them.
-OF_CHANGE, OF_LOADS = 1e-2, 1e-9
+OF_CHANGE, OF_LOADS = 2e-2, 1e-9
 # Corrections of the loads in a step. The last are taken as they are: the pads are then where the bodies are, and the
 # loads those of a little before.
 MOST_CORRECTIONS = 24
