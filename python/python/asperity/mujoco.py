@@ -245,7 +245,7 @@ def attach(
         ValueError: of a geom of another type, a patch with a tread without `spin`, an integrator that `step` has not
     """
     carrier, ground = model.body(body).id, model.geom(geom).id
-    if not isinstance(patch, PatchFmu):
+    if isinstance(patch, (str, PathLike)):
         patch = PatchFmu(patch)
     if patch.has_tread != (spin is not None):
         raise ValueError("`spin` is expected of a patch with a tread, and of no other")
