@@ -137,6 +137,9 @@ def test_the_command_is_the_program(tmp_path):
     child = subprocess.Popen([*command, "simulate", file, "-o", "out.csv"], cwd=tmp_path, stderr=subprocess.PIPE)
     while not list(tmp_path.iterdir()):
         assert child.poll() is None
+    # The file may be there before the program is ready to remove it.
+    with pytest.raises(subprocess.TimeoutExpired):
+        child.wait(timeout=1.0)
     child.send_signal(signal.SIGINT)
     child.communicate(timeout=60)
     # What it had begun to write is gone.
