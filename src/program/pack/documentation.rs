@@ -85,7 +85,7 @@ pub(super) fn table_rows(table: &Table) -> Vec<LabelledLine> {
     let basis = &table.basis;
     let stated = [
         ("Foundation", &basis.foundation),
-        ("Roughness below the profile", &basis.fine),
+        ("Fine waves", &basis.fine),
         ("Converged", &basis.convergence),
     ];
     rows.extend(stated.into_iter().filter_map(|(label, text)| Some((label, text.clone()?))));
