@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use asperity::patch::{Patch, PatchError};
+use asperity::scene::text_table::quantity_with_unit;
 use asperity::scene::{ParameterError, Problem, Scene, SceneError, similar_keys};
 use toml_edit::{Array, DocumentMut, Item, Table, TableLike, Value};
 
@@ -137,7 +138,7 @@ pub(crate) fn overridden(text: &str, set: &[Setting]) -> Result<Overridden, Over
     Ok(Overridden { text: document.to_string(), in_named_files })
 }
 
-/// The number at a key of the text; `None` where there is none.
+/// The number at a key of the text, in SI units where it is a text with a unit; `None` where there is none.
 pub(crate) fn number(text: &str, key: &str) -> Option<f64> {
     let document: DocumentMut = text.strip_prefix('\u{feff}').unwrap_or(text).parse().ok()?;
     let path = segments(key)?;
@@ -158,7 +159,8 @@ pub(crate) fn number(text: &str, key: &str) -> Option<f64> {
         None => item.as_value()?,
         Some(element) => item.as_array()?.get(element)?,
     };
-    value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
+    let plain = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
+    plain.or_else(|| value.as_str().and_then(quantity_with_unit))
 }
 
 /// A value of TOML; what is none is a text, so that words need no quotation marks, or a number such as `.5`.

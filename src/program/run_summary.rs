@@ -120,7 +120,8 @@ impl RunSummary {
                 counters.events as f64 / masses as f64
             ),
         ];
-        let mut advice = cheaper(scene, counters.events as f64 / tried, variables);
+        let [events, rejected] = [counters.events, counters.rejected].map(|count| count as f64 / tried);
+        let mut advice = cheaper(scene, events, rejected, variables);
         if advice.is_empty() {
             advice.push("nothing that stands out".to_owned());
         }
@@ -128,16 +129,20 @@ impl RunSummary {
     }
 }
 
-/// What would make a run of the scene with so many `events` a step and Maxwell variables cheaper, the largest first.
-fn cheaper(scene: &Scene, events: f64, variables: usize) -> Vec<String> {
+/// What would make a run of the scene with so many events and rejected steps a step and Maxwell variables cheaper, the
+/// largest first.
+fn cheaper(scene: &Scene, events: f64, rejected: f64, variables: usize) -> Vec<String> {
     /// An event ends a step; with fewer than this share of them the events are not what costs.
     const FEW_EVENTS: f64 = 0.3;
     /// Relative change of a link's force that most uses stand.
     const REDUCE: f64 = 1e-3;
     /// A reduction to be worth a line leaves less than this share of the variables.
     const WORTH: f64 = 0.9;
-    /// Tolerances above do not gain much by a looser one.
+    /// Tolerances above do not gain much by a looser one, with events and without.
     const LOOSE: f64 = 1e-4;
+    const LOOSE_WITHOUT_EVENTS: f64 = 1e-2;
+    /// So many rejected steps are a part of the cost that a reader should know.
+    const MANY_REJECTED: f64 = 0.2;
     let solver = &scene.solver;
     let mut advice = Vec::new();
     if Accounts::new(scene).solver {
@@ -147,17 +152,24 @@ fn cheaper(scene: &Scene, events: f64, variables: usize) -> Vec<String> {
     if solver.method == Method::Event && events > FEW_EVENTS {
         advice.push("solver.method = \"step\" with relative_tolerance = 1e-3: its steps do not end at events".into());
     }
+    let loose = if solver.method == Method::Event { LOOSE } else { LOOSE_WITHOUT_EVENTS };
+    if solver.relative_tolerance < loose {
+        let rejected = match rejected > MANY_REJECTED {
+            true => format!("; {:.0} % of the steps were rejected", 100.0 * rejected),
+            false => String::new(),
+        };
+        advice
+            .push(format!("solver.relative_tolerance up to {loose:e}, from {:e}{rejected}", solver.relative_tolerance));
+    }
     let mut reduced = scene.clone();
     reduced.solver.reduce = REDUCE;
     let left = Model::new(&reduced).maxwell_variables();
     if solver.reduce < REDUCE && (left as f64) < WORTH * variables as f64 {
         advice.push(format!("solver.reduce = {REDUCE}: {left} of {variables} Maxwell variables are left"));
     }
-    if solver.relative_tolerance < LOOSE && events < FEW_EVENTS {
-        advice.push(format!("solver.relative_tolerance above {:e}", solver.relative_tolerance));
-    }
-    if scene.layer.masses > 1 {
-        advice.push("fewer masses: `asperity converge` tells whether friction stands twice the spacing".into());
+    if scene.layer.masses > 1 && !scene.has_coarse_spacing() {
+        advice
+            .push("fewer masses: `asperity converge --method layer` tells how friction depends on the spacing".into());
     }
     advice
 }

@@ -57,7 +57,7 @@ pub(crate) fn simulate(command: &Simulate, path: &Path) -> Result<(), SimulateEr
         write_elements(&elements, command)?;
     }
     summary.push(("Written", written(command, &output)));
-    if is_quiet() { Ok(()) } else { Ok(print_beside([&output], &lines(&summary))?) }
+    if is_quiet() && !command.stats { Ok(()) } else { Ok(print_beside([&output], &lines(&summary))?) }
 }
 
 /// The files of a run.

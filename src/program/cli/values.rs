@@ -26,9 +26,9 @@ pub(super) fn free_parameter(text: &str) -> Result<FreeParameter, String> {
         let (low, high) = ends(bounds)?;
         FreeParameter::new(key.trim().to_owned(), low, high)
     });
-    parted
-        .filter(|parameter| !parameter.key.is_empty())
-        .ok_or_else(|| "expected KEY=LOW..HIGH, LOW below HIGH, such as friction.rate_shear.strength=1e5..2e7".into())
+    parted.filter(|parameter| !parameter.key.is_empty()).ok_or_else(|| {
+        "expected KEY=LOW..HIGH in SI units, LOW below HIGH, such as friction.rate_shear.strength=1e5..2e7".into()
+    })
 }
 
 /// Which rows `--where` chooses.
@@ -146,7 +146,10 @@ pub(super) fn temperature(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn seconds(text: &str) -> Result<f64, String> {
-    number(text, |seconds| (0.0..).contains(seconds), "a number of seconds, 0 or more")
+    let found = quantity(text, Dimension::Time).map(|(seconds, _)| seconds);
+    found
+        .filter(|seconds| *seconds >= 0.0)
+        .ok_or_else(|| format!("expected a time of 0 or more in s, or with its unit, found {text:?}"))
 }
 
 /// The two ends of `A..B`.

@@ -55,7 +55,7 @@ pub(crate) enum ConvergeError {
     HeightsAtMasses { path: PathBuf },
     #[error(transparent)]
     NeverSteady(#[from] NeverSteady),
-    #[error("{}: expected numbers for layer.masses and layer.spacing", .path.display())]
+    #[error("{}: layer.masses and layer.spacing: expected plain numbers in the file, which the study varies, no texts with units", .path.display())]
     Unclear { path: PathBuf },
     #[error("--seeds: neither the scene's surface nor its roughness is self_affine, so nothing depends on a seed")]
     NoSeed,

@@ -28,7 +28,9 @@ pub(crate) enum Method {
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say what they are")]
 pub enum MethodError {
-    #[error("--method steady: {0}, which it does not have; give --method layer")]
+    #[error(
+        "steady sliding cannot be solved for: {0}; only the layer can slide (--method layer of sweep, converge and calibrate)"
+    )]
     Lacks(&'static str),
     #[error(
         "{0}: expected none with --method steady, whose points have no scatter and no transient; give --method layer"

@@ -43,12 +43,18 @@ impl Scene {
         })
     }
 
+    /// Whether the spacing is too coarse for the profile's waves.
+    pub(crate) fn has_coarse_spacing(&self) -> bool {
+        self.foundation.as_ref().is_some_and(|foundation| self.coarse_spacing(foundation).is_some())
+    }
+
     fn coarse_spacing(&self, foundation: &Foundation) -> Option<String> {
         let (spacing, shortest) = (self.layer.spacing, foundation.waves.shortest);
         (shortest > 0.0 && spacing > shortest / MASSES_PER_WAVE).then(|| {
             format!(
                 "spacing too coarse: layer.spacing = {spacing:?} m is more than an eighth of {shortest:.3e} m, the \
-                 wavelength beyond which 1 % of the slopes' power lies: areas come out some {:.0} % too large",
+                 wavelength beyond which 1 % of the slopes' power lies: areas come out some {:.0} % too large, and \
+                 friction with them",
                 50.0 * spacing / shortest
             )
         })

@@ -13,7 +13,7 @@ use std::iter;
 
 pub use blocks::{Block, Head, Line, MISSING, MixedDecimals, NumberStyle, Separator, is_missing, number};
 pub use headings::{Heading, HeadingUnit, Words, plain, words};
-pub use units::{Dimension, Unit, quantity};
+pub use units::{Dimension, Unit, quantity, quantity_with_unit};
 
 use super::Problem;
 

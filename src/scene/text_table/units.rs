@@ -170,15 +170,26 @@ impl Dimension {
 /// The number of a text that has a number and, behind it, a unit; in SI units, and `None` beside it where there is no
 /// unit. `None` where the text is anything else, or the unit is one of another quantity.
 pub fn quantity(text: &str, dimension: Dimension) -> Option<(f64, Option<Unit>)> {
-    let text = text.trim();
-    // What is left of a number and a unit begins with the unit, but for exponents: 1e3 and 5 eV.
-    let end = (1..=text.len()).rev().find(|&end| text.is_char_boundary(end) && text[..end].parse::<f64>().is_ok())?;
-    let unit = match text[end..].trim() {
+    let (number, unit) = number_and_unit(text)?;
+    let unit = match unit {
         "" => None,
         unit => Some(Unit::parse(unit).filter(|unit| unit.is_of(dimension))?),
     };
-    let number = unit.unwrap_or(Unit::si(dimension)).to_si(text[..end].parse().ok()?);
+    let number = unit.unwrap_or(Unit::si(dimension)).to_si(number);
     number.is_finite().then_some((number, unit))
+}
+
+/// The number in SI units of a text that has a number and, behind it, a unit of whatever quantity.
+pub fn quantity_with_unit(text: &str) -> Option<f64> {
+    let (number, unit) = number_and_unit(text)?;
+    Some(Unit::parse(unit)?.to_si(number)).filter(|number| number.is_finite())
+}
+
+/// What is left of a number and a unit begins with the unit, but for exponents: 1e3 and 5 eV.
+fn number_and_unit(text: &str) -> Option<(f64, &str)> {
+    let text = text.trim();
+    let end = (1..=text.len()).rev().find(|&end| text.is_char_boundary(end) && text[..end].parse::<f64>().is_ok())?;
+    Some((text[..end].parse().ok()?, text[end..].trim()))
 }
 
 impl fmt::Display for Unit {
@@ -289,6 +300,12 @@ mod tests {
 
     fn si(text: &str) -> Option<(Dimension, f64)> {
         Unit::parse(text).map(|unit| (unit.dimension, unit.to_si(1.0)))
+    }
+
+    #[test]
+    fn a_text_with_any_unit_is_a_number_in_si_units() {
+        let found = ["5 MPa", "0.5mm", "20 °C", "5", "MPa", "5 parsnips"].map(quantity_with_unit);
+        assert_eq!(found, [Some(5e6), Some(5e-4), Some(293.15), None, None, None]);
     }
 
     #[test]
