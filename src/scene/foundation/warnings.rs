@@ -43,8 +43,8 @@ impl Scene {
         })
     }
 
-    /// Whether the spacing is too coarse for the profile's waves.
-    pub(crate) fn has_coarse_spacing(&self) -> bool {
+    /// Whether the spacing is too coarse for the waves of the profile: one of the scene's warnings.
+    pub fn has_coarse_spacing(&self) -> bool {
         self.foundation.as_ref().is_some_and(|foundation| self.coarse_spacing(foundation).is_some())
     }
 
