@@ -6,8 +6,8 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use asperity::outputs::{OutputType, Variable};
-use asperity::scene::Input;
 use asperity::scene::text_table::{self, Row};
+use asperity::scene::{Input, Unit};
 
 use super::draft::Draft;
 use super::files::{FileError, read};
@@ -75,11 +75,14 @@ pub(crate) struct ResultWriter {
 
 impl ResultWriter {
     /// Begins the file for `path` and writes its header.
-    pub(crate) fn create(path: &Path, inputs: &[Input], variables: &[Variable]) -> Result<Self, FileError> {
-        let names = std::iter::once("time").chain(inputs.iter().map(|input| input.name()));
-        let names = names.chain(variables.iter().map(|variable| variable.name.as_str()));
+    pub(crate) fn create(path: &Path, inputs: &[Input], variables: &[Variable], head: Head) -> Result<Self, FileError> {
+        let inputs_and_units = inputs.iter().map(|input| (input.name(), input.unit()));
+        let variables_and_units = variables.iter().map(|variable| (variable.name.as_str(), variable.unit));
+        let columns = std::iter::once(("time", Unit::Second)).chain(inputs_and_units).chain(variables_and_units);
+        let names: Vec<String> = columns.map(|(name, unit)| head.of(name, unit)).collect();
         let kinds = variables.iter().map(|variable| variable.kind).collect();
-        Ok(Self { file: CsvWriter::create(path, names)?, inputs: inputs.to_vec(), kinds })
+        let file = CsvWriter::create(path, names.iter().map(String::as_str))?;
+        Ok(Self { file, inputs: inputs.to_vec(), kinds })
     }
 
     pub(crate) fn write(&mut self, carrier: CarrierSample, values: &[f64]) -> Result<(), FileError> {
@@ -92,6 +95,24 @@ impl ResultWriter {
     /// Puts the file in its place.
     pub(crate) fn finish(self) -> Result<(), FileError> {
         self.file.finish()
+    }
+}
+
+/// What is above a column of a result file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Head {
+    /// Its name.
+    Name,
+    /// Its name and, in brackets, its unit: `F_x [N]`.
+    NameAndUnit,
+}
+
+impl Head {
+    fn of(self, name: &str, unit: Unit) -> String {
+        match self {
+            Self::NameAndUnit if unit != Unit::One => format!("{name} [{}]", unit.name()),
+            _ => name.to_owned(),
+        }
     }
 }
 

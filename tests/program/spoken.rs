@@ -106,3 +106,17 @@ fn a_sweep_ends_with_its_table() {
         }
     }
 }
+
+#[test]
+fn columns_have_their_units_if_asked_for() {
+    let folder = scratch("spoken-units");
+    let block = scene("figure-7/high.toml").to_str().unwrap().to_owned();
+    spoken(&["simulate", &block, "-o", "plain.csv"], &folder);
+    spoken(&["simulate", &block, "-o", "units.csv", "--units"], &folder);
+    let [plain, units] = ["plain.csv", "units.csv"].map(|name| std::fs::read_to_string(folder.join(name)).unwrap());
+    let ((plain_head, plain_rows), (head, rows)) = (plain.split_once('\n').unwrap(), units.split_once('\n').unwrap());
+    assert!(plain_head.starts_with("time,u,w,F_x,F_z"), "{plain_head}");
+    assert!(head.starts_with("time [s],u [m],w [m],F_x [N],F_z [N]"), "{head}");
+    assert_eq!(rows, plain_rows);
+    spoken(&["plot", "units.csv", "plain.csv", "--y", "F_x", "-o", "x.svg"], &folder);
+}

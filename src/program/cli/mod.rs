@@ -128,6 +128,9 @@ pub(crate) struct Simulate {
     /// row, and the profile.
     #[arg(long, value_name = "OUT.npz", value_parser = arrays(), conflicts_with = "patch")]
     pub(crate) elements: Option<PathBuf>,
+    /// Writes units behind the names of the result file's columns: F_x [N].
+    #[arg(long, conflicts_with = "patch")]
+    pub(crate) units: bool,
     /// Also prints what the run cost, and what would make it cheaper.
     #[arg(long, conflicts_with = "patch")]
     pub(crate) stats: bool,

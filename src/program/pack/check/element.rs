@@ -15,7 +15,7 @@ use super::{CheckError, ERROR, SLIDING_DISTANCE, deviation, folder_beside, scene
 use crate::program::cli::{Pack, Plot};
 use crate::program::figure::{Figure as _, Ladder, LadderPanel, Ladders, Rung, Stroke, plot_files};
 use crate::program::files::FileError;
-use crate::program::result_file::{CsvWriter, ResultWriter};
+use crate::program::result_file::{CsvWriter, Head, ResultWriter};
 use crate::program::runner::CarrierSample;
 use crate::program::sweep::{Method, StopBounds, Swept, SweptPoint};
 use crate::program::terminal::{self, LabelledLine, labelled, real};
@@ -286,7 +286,7 @@ impl Loop {
     }
 
     fn write(&self, path: &Path, variables: &[Variable], rows: &[[f64; LOOP_OUTPUTS.len()]]) -> Result<(), FileError> {
-        let mut writer = ResultWriter::create(path, &[Input::U, Input::W], variables)?;
+        let mut writer = ResultWriter::create(path, &[Input::U, Input::W], variables, Head::Name)?;
         self.carriers.iter().zip(rows).try_for_each(|(carrier, row)| writer.write(*carrier, row))?;
         writer.finish()
     }
