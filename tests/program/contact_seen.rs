@@ -159,7 +159,7 @@ fn a_contact_is_drawn_at_its_time_which_is_a_row() {
     let late = format!("{}=late.png", 1.1 * end);
     assert!(failure(&mut simulate(&folder, &["--contact", &late])).contains("the run ends at t = "));
     for (wrong, expected) in
-        [("1e-3", "expected TIME=OUT.svg"), ("1e-3=a.pdf", "ends in .svg or .png"), ("x=a.png", "seconds")]
+        [("1e-3", "expected TIME=OUT.svg"), ("1e-3=a.pdf", "ends in .svg or .png"), ("x=a.png", "expected a time")]
     {
         assert!(failure(&mut simulate(&folder, &["--contact", wrong])).contains(expected), "{wrong}");
     }
