@@ -86,7 +86,7 @@ impl RunSummary {
     fn friction(&self) -> Option<String> {
         let Slide { way, work, load } = self.slide;
         let coefficient = (load > 0.0).then(|| rounded(work.abs() / load, 4))?;
-        Some(format!("{coefficient} in the mean over {} along x", with_prefix(way, way, "m")))
+        Some(format!("{coefficient} in the mean over {} along x, from row to row", with_prefix(way, way, "m")))
     }
 
     fn run(&self, snapshot: &Snapshot<'_>, accounts: Accounts) -> String {
