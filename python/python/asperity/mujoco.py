@@ -18,6 +18,7 @@ own step, with all constraints in it, on a copy of the data. It is of first orde
 
 from __future__ import annotations
 
+import math
 import shutil
 import weakref
 from collections.abc import Mapping, Sequence
@@ -29,7 +30,7 @@ import fmpy
 import mujoco
 import numpy as np
 from fmpy.fmi2 import FMU2Slave
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
 
@@ -90,18 +91,19 @@ class PatchFmu:
         """The values of variables by their names."""
         return list(self.fmu.getReal([self.references[name] for name in names]))
 
-    def start(self, time: float, inputs: Floats) -> None:
+    def start(self, time: float, inputs: ArrayLike) -> None:
         """Begins a run, its springs relaxed."""
         self.fmu.setupExperiment(startTime=time)
         self.fmu.enterInitializationMode()
-        self._values[:] = inputs
+        self._values[:] = np.asarray(inputs, np.float64).tolist()
         self.fmu.fmi2SetReal(self.fmu.component, self._inputs, len(self._inputs), self._values)
         self.fmu.exitInitializationMode()
 
-    def follow(self, time: float, h: float, start: Floats, end: Floats) -> Floats:
+    def follow(self, time: float, h: float, start: ArrayLike, end: ArrayLike) -> Floats:
         """Steps along the straight way from one set of inputs to another; returns the loads at its end."""
         component, count = self.fmu.component, len(self._inputs)
-        self._values[:], self._rates[:] = start, [(b - a) / h for a, b in zip(start, end)]
+        before, after = np.asarray(start, np.float64), np.asarray(end, np.float64)
+        self._values[:], self._rates[:] = before.tolist(), ((after - before) / h).tolist()
         self.fmu.fmi2SetReal(component, self._inputs, count, self._values)
         self.fmu.fmi2SetRealInputDerivatives(component, self._inputs, count, self._orders, self._rates)
         self.fmu.doStep(time, h)
@@ -150,7 +152,8 @@ class Pad:
     ) -> None:
         self.patch = patch
         self._body, self._geom = body, geom
-        self._joint, self._radius = (None, 0.0) if spin is None else spin
+        self._joint: int | None = None if spin is None else spin[0]
+        self._radius = 0.0 if spin is None else spin[1]
         self._origin, self._axes = _ground(model, data, body, geom)
         self.pose: Floats = np.zeros(6)
         self.pose = self._pose_of(data)
@@ -317,7 +320,7 @@ def _solve(trial: _Trial, pads: Sequence[Pad]) -> tuple[Floats, Floats, int]:
 
 def _reach(mobility: Floats, loads: Floats) -> float:
     """How much loads move the bodies, as the root of twice their work."""
-    return float(np.sqrt(max(loads @ mobility @ loads, 0.0)))
+    return math.sqrt(max(float(loads @ mobility @ loads), 0.0))
 
 
 class _Trial:
@@ -327,7 +330,7 @@ class _Trial:
 
     def __init__(self, model: Any, data: Any, jacobian: Floats) -> None:
         self.model, self._data, self.jacobian = model, data, jacobian
-        self.time, self.h = data.time, model.opt.timestep
+        self.time, self.h = float(data.time), float(model.opt.timestep)
         if model not in self._scratch:
             self._scratch[model] = mujoco.MjData(model)
         self.data = self._scratch[model]
@@ -338,7 +341,8 @@ class _Trial:
         self.data.qfrc_applied += self.jacobian.T @ loads
         mujoco.mj_step2(self.model, self.data)
         mujoco.mj_kinematics(self.model, self.data)
-        return self.h * (self.jacobian @ self.data.qvel)
+        moved: Floats = self.h * (self.jacobian @ self.data.qvel)
+        return moved
 
     def mobility(self) -> Floats:
         """How that changes with the loads: of the masses and of the constraints that were active."""
@@ -350,7 +354,8 @@ class _Trial:
         inverse, count = rows @ solved.T, len(self.jacobian)
         free, across, within = inverse[:count, :count], inverse[:count, count:], inverse[count:, count:]
         held = across @ np.linalg.solve(within + np.diag(self.data.efc_R[active]), across.T)
-        return self.h**2 * (free - held)
+        mobility: Floats = self.h**2 * (free - held)
+        return mobility
 
 
 _QUADRATIC = int(mujoco.mjtConstraintState.mjCNSTRSTATE_QUADRATIC)
