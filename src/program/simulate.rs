@@ -106,8 +106,8 @@ fn write_frames(elements: &ElementHistory, path: &Path) -> Result<(), FileError>
 
 /// Runs the scene; what the run comes to.
 fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<Vec<LabelledLine>, SimulateError> {
-    let shown = recorder.history.as_ref().map_or_else(|| scene.clone(), |history| history.scene().clone());
-    let runner = Runner::new(&shown, Rows::PerPhase(command.points), 0.0).map_err(SimulateError::Start)?;
+    let rows = Rows::PerPhase(command.points);
+    let runner = Runner::new(recorder.shown(scene), rows, 0.0).map_err(SimulateError::Start)?;
     let mut runner = runner.with_rows_at(command.contact.iter().map(|&(time, _)| time).collect());
     let result = runner.run(&scene.excitation, |carrier, snapshot| recorder.row(carrier, snapshot));
     runner.take_warnings().iter().for_each(|warning| warn(warning));
@@ -118,9 +118,10 @@ fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<Vec
     if let Err(source) = result {
         return Err(SimulateError::Run { source, time: recorder.time, output: recorder.output.clone() });
     }
-    let mut summary = recorder.summary.lines(&shown, runner.simulation());
+    let shown = recorder.shown(scene);
+    let mut summary = recorder.summary.lines(shown, runner.simulation());
     if command.stats {
-        summary.extend(recorder.summary.statistics(&shown, runner.simulation()));
+        summary.extend(recorder.summary.statistics(shown, runner.simulation()));
     }
     Ok(summary)
 }
@@ -178,6 +179,11 @@ impl Recorder {
             duration: scene.duration(),
             time: 0.0,
         })
+    }
+
+    /// The `scene`, with the output groups that the plot needs.
+    fn shown<'a>(&'a self, scene: &'a Scene) -> &'a Scene {
+        self.history.as_ref().map_or(scene, TimeHistory::scene)
     }
 
     fn row(&mut self, carrier: CarrierSample, snapshot: &Snapshot<'_>) {

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::common::{asperity, root, scratch};
+use crate::common::{Table, asperity, root, run, scratch};
 
 /// A motion that starts beyond the table is warned of, also where there is no step after the start.
 #[test]
@@ -18,4 +18,24 @@ fn a_start_beyond_the_table_is_told() {
     assert!(done.status.success(), "{told}");
     assert_eq!(told.matches("is beyond the table at t = 0 s").count(), 1, "{told}");
     assert_eq!(fs::read_to_string(&output).unwrap().lines().count(), 2);
+}
+
+/// The run ends with the forces of its last row.
+#[test]
+fn a_run_ends_with_its_forces() {
+    let folder = scratch("patch-simulate-end");
+    fs::write(folder.join("motion.csv"), "time,x,y,z,roll,pitch,yaw\n0,0,0,0.001,0,0,0\n1,0,0,0,0,0,0\n").unwrap();
+    let patch = root().join("tests/reference/patch/block.toml");
+    let mut simulate = asperity();
+    simulate.current_dir(&folder).args(["simulate", "--motion", "motion.csv", "-o", "out.csv", "--patch"]).arg(patch);
+    let told = run(&mut simulate);
+    let table = Table::read(&folder.join("out.csv"));
+    assert!(told.starts_with("At the end  force.x 0 N, force.y 0 N, force.z "), "{told}");
+    assert!(told.contains("1 steps to t = 1 s"), "{told}");
+    let words: Vec<&str> = told.split(['\n', ' ']).skip_while(|word| *word != "force.z").collect();
+    let [value, unit] = [words[1], words[2]];
+    let scale = [("N", 1.0), ("kN", 1e3), ("mN", 1e-3)].iter().find(|(name, _)| *name == unit).unwrap().1;
+    // Three digits are printed.
+    let expected = table.column("force.z")[1];
+    assert!((value.parse::<f64>().unwrap() * scale / expected - 1.0).abs() < 5e-3, "{told}, {expected}");
 }

@@ -93,7 +93,7 @@ impl PatchRecorder {
 
     /// The forces of the last row.
     fn forces(&self) -> String {
-        let is_shown = |variable: &PatchVariable| matches!(variable.name.as_str(), "F_x" | "F_y" | "F_z");
+        let is_shown = |variable: &PatchVariable| variable.name.starts_with("force.");
         let shown = self.variables.iter().zip(&self.values).filter(|(variable, _)| is_shown(variable));
         let text = |(variable, &value): (&PatchVariable, &f64)| {
             format!("{} {}", variable.name, with_prefix(value, value, variable.unit.name()))
