@@ -6,9 +6,11 @@
 //! at the start of motion, and nothing between: no relaxation, no inertia, no position on the profile. Along z it is
 //! elastic at each speed and dissipates nothing.
 
+mod backing;
 mod grid;
 mod jenkins;
 mod law;
+mod law_points;
 mod low_end;
 mod point_contact;
 mod resampled;
@@ -21,9 +23,10 @@ mod tests;
 
 pub use grid::{Load, OperatingPoint, SweepGrid};
 pub use law::{LeftOut, left_out};
+pub use law_points::LawPoints;
 pub use low_end::LowEnd;
 pub use point_contact::{PointContact, dependencies, variables};
-pub use resampled::{ElementLaw, LawPlace, LawPoint, ResampledLaw, SpeedCell, SpeedRange};
+pub use resampled::{ElementLaw, LawPlace, ResampledLaw, SpeedCell, SpeedRange};
 pub use run::{Element, ElementError, ElementState, RestoreError};
 pub(crate) use spring::{Advanced, Segment, SpringLaw, advance, apply_jump};
 pub use table::{Node, Table};

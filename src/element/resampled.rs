@@ -8,7 +8,9 @@
 //! Where each element has a temperature of its own, the law is kept at several temperatures, planes, and is linear
 //! between two of them: p, μp and κ at an approach. Cells of a plane are computed when they are first met.
 
+use super::backing::{SeriesBacking, SeriesIntervals};
 use super::law::{Law, LawAtSpeed};
+use super::law_points::{Intervals, LawPoints};
 use super::table::Table;
 use super::table_format::Quantity;
 use crate::math::Number;
@@ -38,27 +40,6 @@ const SAMPLES: usize = 3;
 
 /// Approaches that are compared at once.
 const WIDTH: usize = 4;
-
-/// The law at one speed and approach, of numbers or of numbers with their derivatives.
-#[derive(Clone, Copy, Debug)]
-pub struct LawPoint<T> {
-    /// ln p limited to the pressures of the table, p in Pa.
-    pub log_pressure: T,
-    /// What e to that power is multiplied with: other than 1 beyond the pressures of the table, 0 without contact.
-    pub factor: T,
-    /// Friction coefficient, 1.
-    pub friction: T,
-    /// Tangential stiffness per area, N/m³.
-    pub stiffness: T,
-}
-
-impl<T: Number> LawPoint<T> {
-    /// p, Pa.
-    #[inline(always)]
-    pub fn pressure(&self) -> T {
-        self.log_pressure.exp() * self.factor
-    }
-}
 
 /// The law of an element, of numbers or of numbers with their derivatives.
 #[derive(Clone, Copy, Debug)]
@@ -105,9 +86,8 @@ impl LawPlace<f64> {
     }
 }
 
-/// The law in an interval between two pressures of the table, by power of the fraction of the speed's cell: the
-/// approach where the interval begins; the slope of ln p over the approach from there and the next two coefficients of
-/// its cubic; four of μ and of κ over ln p from there. Above the last pressure: the slope of ln p, and constants.
+/// The coefficients of [`Intervals`] in an interval between two pressures of the table, by power of the fraction of the
+/// speed's cell.
 type Coefficients = [[f64; 12]; SAMPLES];
 
 /// The coefficients of hysteresis and contact ratio over ln p, in such an interval.
@@ -259,28 +239,6 @@ pub struct ResampledLaw {
     earliest_touch: f64,
     /// What stands behind the contact, if that gives way.
     backing: Option<SeriesBacking>,
-}
-
-/// A backing in series with the contact: the approach of the face is that of the contact and p/k_n.
-#[derive(Clone, Debug)]
-struct SeriesBacking {
-    /// p/k_n at the pressures of the table, m.
-    indentations: Vec<f64>,
-    /// 1/k_t, m/Pa.
-    shear_compliance: f64,
-}
-
-impl SeriesBacking {
-    fn new(backing: Backing, log_pressures: &[f64]) -> Self {
-        let indentations = log_pressures.iter().map(|y| y.exp() / backing.normal).collect();
-        Self { indentations, shear_compliance: 1.0 / backing.shear }
-    }
-
-    /// The tangential stiffness per area of a contact of stiffness κ and the backing.
-    #[inline(always)]
-    fn in_series<T: Number>(&self, stiffness: T) -> T {
-        stiffness / (T::constant(1.0) + stiffness.times(self.shear_compliance))
-    }
 }
 
 impl ResampledLaw {
@@ -453,13 +411,13 @@ impl ResampledLaw {
     #[inline(always)]
     fn compute_once(&mut self, cell: &SpeedCell) {
         if self.computed[cell.index] != self.temperature_number {
-            self.compute(cell);
+            self.compute(*cell);
         }
     }
 
     /// Computes the coefficients of a cell.
     #[cold]
-    fn compute(&mut self, cell: &SpeedCell) {
+    fn compute(&mut self, cell: SpeedCell) {
         if let Some(planes) = self.planes {
             self.law.set_temperature(planes.temperature(cell.index / planes.cells));
             self.curve.invalidate_speed();
@@ -547,91 +505,62 @@ impl ResampledLaw {
 
     /// The law at a logarithm of a speed, whose [`speed_cell`](Self::speed_cell) is given, and an approach (m).
     #[inline(always)]
-    pub fn at<T: Number>(&self, cell: &SpeedCell, log_speed: T, approach: T) -> LawPoint<T> {
-        self.at_interval(cell, self.pressure_interval(cell, log_speed.value(), approach.value()), log_speed, approach)
+    pub fn at<T: Number>(&self, cell: &SpeedCell, log_speed: T, approach: T) -> ElementLaw<T> {
+        let points = self.points(1, &[*cell], &[log_speed], &[approach]);
+        let [[log_pressure], [factor]] = [points.log_pressure, points.factor];
+        let ([friction], [stiffness]) = (points.friction, points.stiffness);
+        ElementLaw { pressure: log_pressure.exp() * factor, friction, stiffness }
+    }
+
+    /// As [`at`](Self::at), of elements: the first `count` of N.
+    ///
+    /// In loops over the elements one after the other: each then runs in vectors, where one loop over all would not.
+    #[inline(always)]
+    pub fn points<T: Number, const N: usize>(
+        &self,
+        count: usize,
+        cells: &[SpeedCell; N],
+        log_speeds: &[T; N],
+        approaches: &[T; N],
+    ) -> LawPoints<T, N> {
+        let count = count.min(N);
+        let mut intervals = [0; N];
+        for i in 0..count {
+            intervals[i] = self.pressure_interval(&cells[i], log_speeds[i].value(), approaches[i].value());
+        }
+        let mut laws = Intervals::new(count);
+        for i in 0..count {
+            let (cell, interval) = (&cells[i], intervals[i]);
+            let coefficients = self.coefficients_at(cell.index, cell.fraction(log_speeds[i]), interval);
+            laws.set(i, coefficients, self.log_pressures[interval], interval + 1 == self.log_pressures.len());
+        }
+        let Some(backing) = &self.backing else { return laws.points(&laws.beyond_start(approaches)) };
+        let mut series = SeriesIntervals::new(&laws);
+        for i in 0..count {
+            let next = (intervals[i] + 1).min(self.log_pressures.len() - 1);
+            series.set(i, backing, (intervals[i], next), self.start(&cells[i], next, log_speeds[i].value()));
+        }
+        let mut points = laws.points(&series.contacts_beyond_start(approaches));
+        for i in 0..count {
+            points.stiffness[i] = backing.in_series(points.stiffness[i]);
+        }
+        points
     }
 
     /// The law at a place and an approach (m).
     #[inline(always)]
     pub fn at_place<T: Number>(&self, place: &LawPlace<T>, approach: T) -> ElementLaw<T> {
-        let at = |cell: &SpeedCell| {
-            let point = self.at(cell, place.log_speed, approach);
-            ElementLaw { pressure: point.pressure(), friction: point.friction, stiffness: point.stiffness }
-        };
-        let here = at(&place.cell);
-        place.next.map_or(here, |(next, fraction)| here.towards(&at(&next), fraction))
-    }
-
-    /// The law where the [`pressure_interval`](Self::pressure_interval), `i`, is known.
-    #[inline(always)]
-    pub fn at_interval<T: Number>(&self, cell: &SpeedCell, i: usize, log_speed: T, approach: T) -> LawPoint<T> {
-        let c = self.coefficients_at(cell.index, cell.fraction(log_speed), i);
-        let Some(backing) = &self.backing else { return self.contact(&c, i, approach - c[0]) };
-        let indentation = backing.indentations[i];
-        let from_contact = approach - c[0];
-        let from = from_contact - T::constant(indentation);
-        let contact = if i == 0 && from.value() < 0.0 {
-            self.parabola(&c, i, root_with_backing(c[1], from_contact, indentation))
-        } else {
-            self.contact(&c, i, self.without_backing(backing, cell, i, (&c, from), log_speed.value()))
-        };
-        LawPoint { stiffness: backing.in_series(contact.stiffness), ..contact }
-    }
-
-    /// How far (m) the contact itself is beyond the start of interval `i` where with its backing it is `from` beyond
-    /// that: x in x + (p(x) - p_i)/k_n = `from`, with p_i where the interval starts.
-    #[inline(never)]
-    fn without_backing<T: Number>(
-        &self,
-        backing: &SeriesBacking,
-        cell: &SpeedCell,
-        i: usize,
-        (c, from): (&[T; 12], T),
-        log_speed: f64,
-    ) -> T {
-        let indentation = backing.indentations[i];
-        if i + 1 == self.log_pressures.len() || from.value() < 0.0 {
-            // Straight; so is the little by which rounding may lead out of an interval.
-            return from / (T::constant(1.0) + c[1].times(indentation));
-        }
-        let width = self.start(cell, i + 1, log_speed) - c[0].value();
-        let rise = backing.indentations[i + 1] - indentation;
-        let x = contact_distance(c.map(T::value), from.value(), indentation, (width, rise));
-        // One more step with derivatives gives those of x.
-        let (distance, slope) = distance_and_slope(c, T::constant(x), indentation);
-        T::constant(x) - (distance - from) / slope
+        let here = self.at(&place.cell, place.log_speed, approach);
+        let Some((next, fraction)) = place.next else { return here };
+        here.towards(&self.at(&next, place.log_speed, approach), fraction)
     }
 
     /// Where interval `i` starts without a backing, m.
+    #[inline(always)]
     fn start(&self, cell: &SpeedCell, i: usize, log_speed: f64) -> f64 {
         let (fraction, powers) =
             (cell.fraction(log_speed), &self.coefficients[cell.index * self.log_pressures.len() + i]);
         powers[0][0] + fraction * (powers[1][0] + fraction * powers[2][0])
-    }
-
-    /// The law of the contact alone, `from` (m) beyond the start of interval `i` of the coefficients `c`.
-    #[inline(always)]
-    fn contact<T: Number>(&self, c: &[T; 12], i: usize, from: T) -> LawPoint<T> {
-        let y = self.log_pressures[i];
-        if i + 1 == self.log_pressures.len() {
-            let factor = T::constant(1.0) + from * c[1];
-            LawPoint { log_pressure: T::constant(y), factor, friction: c[4], stiffness: c[8] }
-        } else if from.value() < 0.0 {
-            self.parabola(c, i, (T::constant(1.0) + (from * c[1]).times(0.5)).larger(T::constant(0.0)))
-        } else {
-            let t = from * (c[1] + from * (c[2] + from * c[3]));
-            let along = |i: usize| c[i] + t * (c[i + 1] + t * (c[i + 2] + t * c[i + 3]));
-            let log_pressure = T::constant(y) + t;
-            LawPoint { log_pressure, factor: T::constant(1.0), friction: along(4), stiffness: along(8) }
-        }
-    }
-
-    /// The law below pressure `i` of the table: p is the square of `root` times that.
-    #[inline(always)]
-    fn parabola<T: Number>(&self, c: &[T; 12], i: usize, root: T) -> LawPoint<T> {
-        let factor = root * root;
-        let log_pressure = T::constant(self.log_pressures[i]);
-        LawPoint { log_pressure, factor, friction: c[4], stiffness: c[8] * factor }
     }
 
     /// The approaches (m) at a place where the contact begins and where it reaches the least pressure of the table.
@@ -656,13 +585,13 @@ impl ResampledLaw {
 
     fn shares_in(&self, cell: &SpeedCell, log_speed: f64, approach: f64) -> (f64, f64) {
         let (fraction, i) = (cell.fraction(log_speed), self.pressure_interval(cell, log_speed, approach));
-        let point = self.at_interval(cell, i, log_speed, approach);
-        let t = point.log_pressure - self.log_pressures[i];
+        let points = self.points(1, &[*cell], &[log_speed], &[approach]);
+        let t = points.log_pressure[0] - self.log_pressures[i];
         let powers = &self.shares[cell.index * self.log_pressures.len() + i];
         let at = |k: usize| (0..SAMPLES).rev().fold(0.0, |sum, power| sum * fraction + powers[power][k]);
         let along = |first: usize| (0..4).rev().fold(0.0, |sum, k| sum * t + at(first + k));
-        let (hysteresis, ratio) = (along(0), along(4) * point.factor.min(1.0));
-        (if point.friction > 0.0 { hysteresis / point.friction } else { 0.0 }, ratio)
+        let (hysteresis, ratio) = (along(0), along(4) * points.factor[0].min(1.0));
+        (if points.friction[0] > 0.0 { hysteresis / points.friction[0] } else { 0.0 }, ratio)
     }
 }
 
@@ -673,56 +602,6 @@ fn earliest_touch(law: &mut Law, planes: &Planes) -> f64 {
         law.earliest_touch()
     };
     (0..planes.count).map(touch).fold(f64::INFINITY, f64::min)
-}
-
-/// Steps of Newton's method or halvings: either alone would need fewer.
-const MAX_STEPS: usize = 100;
-
-/// Error of an approach as a share of its interval at which [`contact_distance`] stops; the step that follows squares it.
-const STEP_TOLERANCE: f64 = 1e-7;
-
-/// r on the parabola p = p_0 r² of a contact and its backing, `from` (m) beyond where the contact without one bears p_0.
-/// The contact itself has r = 1 + x s/2 with the slope s of ln p at p_0, so the distance from the touch is
-/// 2r/s + r² p_0/k_n.
-#[inline(always)]
-fn root_with_backing<T: Number>(slope: T, from: T, indentation: f64) -> T {
-    let distance = (from + T::constant(2.0) / slope).larger(T::constant(0.0));
-    let root = (T::constant(1.0) + (slope * slope * distance).times(indentation)).sqrt();
-    slope * distance / (T::constant(1.0) + root)
-}
-
-/// x + (p(x) - p_i)/k_n in an interval with the coefficients `c` that starts with the indentation p_i/k_n (m), and its
-/// slope.
-#[inline(always)]
-fn distance_and_slope<T: Number>(c: &[T; 12], x: T, indentation: f64) -> (T, T) {
-    let growth = (x * (c[1] + x * (c[2] + x * c[3]))).exp();
-    let slope = c[1] + x * (c[2].times(2.0) + (x * c[3]).times(3.0));
-    let one = T::constant(1.0);
-    (x + (growth - one).times(indentation), one + (growth * slope).times(indentation))
-}
-
-/// x where [`distance_and_slope`] is `from`, m: by Newton's method, by halves where that would leave the bracket. Over
-/// the interval x grows by its `width` and the indentation of the backing by its `rise`.
-fn contact_distance(c: [f64; 12], from: f64, indentation: f64, (width, rise): (f64, f64)) -> f64 {
-    // Rounding may have led a little out of the interval.
-    let (mut low, mut high) = (0.0, 1.01 * width);
-    let mut x = (from * width / (width + rise)).min(high);
-    for _ in 0..MAX_STEPS {
-        let (distance, slope) = distance_and_slope(&c, x, indentation);
-        if distance < from {
-            low = x
-        } else {
-            high = x
-        }
-        let next = x - (distance - from) / slope;
-        let next = if (low..=high).contains(&next) { next } else { 0.5 * (low + high) };
-        let step = (next - x).abs();
-        x = next;
-        if step <= STEP_TOLERANCE * width {
-            break;
-        }
-    }
-    x
 }
 
 /// The polynomials that are 1 at one of 0, 1/2 and 1, and 0 at the others, by power.
@@ -849,8 +728,8 @@ mod tests {
                         let close = |value: f64, expected: f64, scale: f64| {
                             assert!((value - expected).abs() <= 1e-6 * scale, "{value} {expected}");
                         };
-                        close(point.pressure() * area, exact.normal.value, largest);
-                        close(point.pressure() * point.friction * area, exact.limit.value, largest);
+                        close(point.pressure * area, exact.normal.value, largest);
+                        close(point.pressure * point.friction * area, exact.limit.value, largest);
                         close(point.stiffness * area, exact.stiffness.value, end.stiffness.value);
                     }
                 }

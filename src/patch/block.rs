@@ -4,9 +4,9 @@
 use super::contact_times::{Endpoint, advance_in_segments, half_turn, size};
 use super::face::{Face, TreadColumn};
 use super::heat::{self, BlockHeat, StepHeat};
-use super::lanes::{BLOCK, Lanes};
+use super::lanes::{BLOCK, Lanes, lanes_of};
 use super::motion::{BodyKinematics, PoseMotion, Substep, Substeps, TreadMotion};
-use crate::element::{ResampledLaw, Segment, SpeedCell, SpringLaw, advance, apply_jump};
+use crate::element::{LawPoints, ResampledLaw, Segment, SpeedCell, SpringLaw, advance, apply_jump};
 use crate::math::Number;
 
 /// What an element does; in states, as a number.
@@ -150,6 +150,8 @@ impl<T: Number> Sums<T> {
 /// The elements of a block at an instant: where they are, how they move, and the contact law there.
 #[derive(Clone, Debug)]
 struct BlockContacts<T> {
+    /// How many elements there are.
+    count: usize,
     /// Positions in the body's axes, m.
     place: [Lanes<f64>; 3],
     /// Of a tread: the direction of the arc in x and z.
@@ -213,6 +215,7 @@ impl<T: Number> BlockContacts<T> {
     fn new() -> Self {
         let zero = [T::constant(0.0); BLOCK];
         Self {
+            count: 0,
             place: [[0.0; BLOCK]; 3],
             direction: [[0.0; BLOCK]; 2],
             arc: [0.0; BLOCK],
@@ -287,19 +290,18 @@ impl<T: Number> BlockContacts<T> {
         self.approach.iter().fold(f64::NEG_INFINITY, |most, a| if a.value() > most { a.value() } else { most }) <= touch
     }
 
-    /// Looks the law up, in loops over the block one after the other: each then runs in vectors, where one loop over
-    /// all would not.
+    /// Looks the law up; in lanes without an element there is no contact.
     #[inline(always)]
     fn look_up(&mut self, law: &mut ResampledLaw) {
         let range = law.range();
-        for i in 0..BLOCK {
+        for i in 0..lanes_of(self.count) {
             self.log_speed[i] = range.logarithm(size([self.velocity[0][i], self.velocity[1][i]]));
         }
         if law.has_planes() {
             return self.look_up_between_planes(law);
         }
         let mut cells = [SpeedCell::default(); BLOCK];
-        for i in 0..BLOCK {
+        for i in 0..lanes_of(self.count) {
             cells[i] = law.speed_cell(self.log_speed[i].value());
         }
         self.look_up_in(law, &cells);
@@ -308,22 +310,14 @@ impl<T: Number> BlockContacts<T> {
     /// Looks the law up in these cells.
     #[inline(always)]
     fn look_up_in(&mut self, law: &ResampledLaw, cells: &[SpeedCell; BLOCK]) {
-        let mut intervals = [0; BLOCK];
-        for i in 0..BLOCK {
-            intervals[i] = law.pressure_interval(&cells[i], self.log_speed[i].value(), self.approach[i].value());
-        }
-        let mut factor = [T::constant(0.0); BLOCK];
-        let mut friction = factor;
-        for i in 0..BLOCK {
-            let point = law.at_interval(&cells[i], intervals[i], self.log_speed[i], self.approach[i]);
-            (self.pressure[i], factor[i]) = (point.log_pressure, point.factor);
-            (friction[i], self.stiffness[i]) = (point.friction, point.stiffness);
-        }
-        for i in 0..BLOCK {
-            let pressure = self.pressure[i].exp() * factor[i];
+        let lanes = lanes_of(self.count);
+        let LawPoints { log_pressure, factor, friction, stiffness } =
+            law.points(lanes, cells, &self.log_speed, &self.approach);
+        for i in 0..lanes {
+            let pressure = log_pressure[i].exp() * factor[i];
             self.pressure[i] = pressure;
             self.limit[i] = (pressure * friction[i]).times(self.area[i]);
-            self.stiffness[i] = self.stiffness[i].times(self.area[i]);
+            self.stiffness[i] = stiffness[i].times(self.area[i]);
         }
     }
 
@@ -332,7 +326,7 @@ impl<T: Number> BlockContacts<T> {
     fn look_up_between_planes(&mut self, law: &mut ResampledLaw) {
         let (mut below, mut above) = ([SpeedCell::default(); BLOCK], [SpeedCell::default(); BLOCK]);
         let mut fraction = [T::constant(0.0); BLOCK];
-        for i in 0..BLOCK {
+        for i in 0..lanes_of(self.count) {
             if let Some((cells, way)) = law.cells_between_planes(self.log_speed[i].value(), self.rise[i]) {
                 (below[i], above[i], fraction[i]) = (cells[0], cells[1], way);
             }
@@ -340,7 +334,7 @@ impl<T: Number> BlockContacts<T> {
         self.look_up_in(law, &above);
         let (pressure, limit, stiffness) = (self.pressure, self.limit, self.stiffness);
         self.look_up_in(law, &below);
-        for i in 0..BLOCK {
+        for i in 0..lanes_of(self.count) {
             self.pressure[i] = self.pressure[i] + (pressure[i] - self.pressure[i]) * fraction[i];
             self.limit[i] = self.limit[i] + (limit[i] - self.limit[i]) * fraction[i];
             self.stiffness[i] = self.stiffness[i] + (stiffness[i] - self.stiffness[i]) * fraction[i];
@@ -397,10 +391,11 @@ impl<T: Number> Block<T> {
         self.slips = [0.0; BLOCK];
         (self.slip, self.release) = ([0.0; BLOCK], [0.0; BLOCK]);
         for contacts in [&mut self.begin, &mut self.end] {
+            contacts.count = count;
             contacts.place.iter_mut().for_each(|lanes| lanes[count..].fill(0.0));
+            contacts.is_free = true;
+            contacts.clear();
         }
-        self.end.is_free = true;
-        self.end.clear();
     }
 
     /// Does the step for the block's elements and adds to the sums.
@@ -716,7 +711,7 @@ fn advance_all<T: Number>(
     (begin, end): (&BlockContacts<T>, &BlockContacts<T>),
     displacement: &[Lanes<T>; 2],
 ) {
-    for i in 0..BLOCK {
+    for i in 0..lanes_of(end.count) {
         let before = [begin.velocity[0][i], begin.velocity[1][i]];
         let after = [end.velocity[0][i], end.velocity[1][i]];
         let segment = Segment {

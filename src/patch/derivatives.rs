@@ -65,7 +65,8 @@ impl PatchRun {
     /// Writes into `values` how `variables` change as the pose's coordinates change by `direction` (m and rad per
     /// unit).
     pub fn directional_derivative(&mut self, variables: &[PatchVariable], direction: [f64; 6], values: &mut [f64]) {
-        let changes = self.changes(&Displacement { pose: direction, entered: 0.0 });
+        let has_shares = variables.iter().any(|variable| variable.output.follows_shares());
+        let changes = self.changes(&Displacement { pose: direction, entered: 0.0 }, has_shares);
         for (variable, value) in variables.iter().zip(values) {
             *value = changes.rate_of(variable.output).slopes[0];
         }
@@ -80,10 +81,11 @@ impl PatchRun {
             Face::Tread(tread) => self.totals.tread_speed / tread.cell,
             Face::Points(_) => 0.0,
         };
-        Some(self.changes(&Displacement { pose: self.totals.rates, entered }).rate_of(output).slopes[0])
+        Some(self.changes(&Displacement { pose: self.totals.rates, entered }, false).rate_of(output).slopes[0])
     }
 
-    fn changes(&mut self, shift: &Displacement) -> Changes {
+    /// The changes of all outputs, or of those alone that do without the shares of elements.
+    fn changes(&mut self, shift: &Displacement, has_shares: bool) -> Changes {
         let (totals, now) = (self.totals, self.totals.instant());
         let start = totals.pose.coordinates();
         let shifted = PoseMotion { start, change: shift.pose.map(|slope| rate(0.0, slope)), duration: 1.0 }.at(1.0);
@@ -102,13 +104,15 @@ impl PatchRun {
             // Its spring, and what both add to the sums.
             let (limit, stiffness) = (normal * law.friction, law.stiffness * element.area);
             let force = self.force(i, limit, stiffness, element.displacement);
-            let (hysteresis, ratio) = self.shares(&here.place, approach);
             changes.add(&element, force, normal);
             let tangential = size(force);
-            changes.real_area = changes.real_area + ratio * element.area;
+            if has_shares {
+                let (hysteresis, ratio) = self.shares(&here.place, approach);
+                changes.real_area = changes.real_area + ratio * element.area;
+                changes.hysteresis = changes.hysteresis + tangential * hysteresis;
+            }
             changes.pressure = changes.pressure.larger(law.pressure);
             changes.tangential = changes.tangential + tangential;
-            changes.hysteresis = changes.hysteresis + tangential * hysteresis;
             changes.elastic = changes.elastic + (tangential * tangential / stiffness).times(0.5);
             if here.pressure > pressure || size(here.velocity) > speed {
                 changes.beyond = changes.beyond + normal;
@@ -214,6 +218,11 @@ impl Changes {
 }
 
 impl PatchOutput {
+    /// Whether its change takes those of hysteresis' share and of the contact ratio.
+    fn follows_shares(self) -> bool {
+        matches!(self, Self::RealArea | Self::Hysteresis)
+    }
+
     /// Whether it follows the pose at once, the springs and modes held.
     pub fn follows_pose(self) -> bool {
         use PatchOutput::{

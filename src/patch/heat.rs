@@ -52,6 +52,8 @@ pub(super) struct BlockHeat<T> {
     /// The ϑ of their laws, K.
     pub(super) of_law: Lanes<T>,
     pub(super) parts: Rises<T>,
+    /// Whether some may be warm.
+    is_warm: bool,
     response: Response,
 }
 
@@ -80,16 +82,20 @@ impl Response {
 impl<T: Number> BlockHeat<T> {
     pub(super) fn new() -> Self {
         let zero = [T::constant(0.0); BLOCK];
-        Self { of_law: zero, parts: [zero; SURFACE_TERMS], response: Response::default() }
+        Self { of_law: zero, parts: [zero; SURFACE_TERMS], is_warm: false, response: Response::default() }
     }
 
     /// All at the temperature of the ground.
     pub(super) fn reset(&mut self) {
+        if !std::mem::take(&mut self.is_warm) {
+            return;
+        }
         let zero = [T::constant(0.0); BLOCK];
         (self.of_law, self.parts) = (zero, [zero; SURFACE_TERMS]);
     }
 
     pub(super) fn load(&mut self, lane: usize, heat: &ElementHeat) {
+        self.is_warm = true;
         self.of_law[lane] = T::constant(heat.of_law);
         for (lanes, part) in self.parts.iter_mut().zip(heat.parts) {
             lanes[lane] = T::constant(part);
@@ -104,6 +110,7 @@ impl<T: Number> BlockHeat<T> {
     /// The parts after a duration (s) in which slip loses `loss` (J) on areas (m²).
     #[inline(always)]
     pub(super) fn after(&mut self, heat: &StepHeat, duration: f64, loss: &Lanes<T>, area: &Lanes<f64>) -> Rises<T> {
+        self.is_warm = true;
         if duration != self.response.duration {
             self.response = Response::new(&heat.kernel, duration);
         }
