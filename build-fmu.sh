@@ -136,10 +136,11 @@ build_wheel() {
 
 build_wheel_by_zig() {
     local platform=$1 triple=$2 glibc=$3 library=$4
+    shift 4
     rustup target list --installed | grep -qx "$triple" || refuse "the wheel for $triple needs: rustup target add $triple"
     build_by_zig "$triple$glibc" "$target/$triple"
     build_wheel "$platform" "$target/$triple/$triple/release/$library" --zig --target "$triple" \
-        --target-dir "$target/$triple" ${glibc:+--compatibility manylinux2014}
+        --target-dir "$target/$triple" ${glibc:+--compatibility manylinux2014} "$@"
 }
 
 # The licences of what a wheel links are collected from the packages themselves.
@@ -153,7 +154,9 @@ build_wheels() {
         command -v rustup > /dev/null || refuse "--wheel --all-platforms needs rustup, which adds Rust's targets"
         build_wheel_by_zig linux64 x86_64-unknown-linux-gnu .2.17 libasperity.so
         build_wheel_by_zig linux64 aarch64-unknown-linux-gnu .2.17 libasperity.so
-        build_wheel_by_zig win64 x86_64-pc-windows-gnu '' asperity.dll
+        # The feature does nothing in this version of pyo3, but this one of maturin asks for it.
+        build_wheel_by_zig win64 x86_64-pc-windows-gnu '' asperity.dll --features pyo3/generate-import-lib \
+            --interpreter 3.10
     else
         build_library
         case $(uname -s) in
