@@ -104,10 +104,6 @@
 //! | E_impact | `Energies::impact` | J | energy lost in impacts |
 //! | T, V | `kinetic_energy()`, `elastic_energy()` | J | energy balance E_in = Δ(T + V + T_c + V_c) + E_damper + E_maxwell + E_friction + E_impact + E_c |
 
-// The commands name the library as whoever else uses it does.
-#[cfg(feature = "program")]
-extern crate self as asperity;
-
 #[cfg(feature = "program")]
 pub mod calibration;
 pub mod contact;

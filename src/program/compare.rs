@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::calibration::{Measured, chi_square_per_degree};
-use asperity::element::{Load, OperatingPoint, Quantity};
+use crate::calibration::{Measured, chi_square_per_degree};
+use crate::element::{Load, OperatingPoint, Quantity};
 
 use super::cli::Compare;
 use super::figure::{Figure as _, Stroke};

@@ -3,14 +3,14 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use asperity::fmi::FmuModel;
-use asperity::model::{Flash, FrictionLaw, Model, Reduction, Replaced, Replacement};
-use asperity::outputs::variables;
-use asperity::scene::{
+use crate::fmi::FmuModel;
+use crate::model::{Flash, FrictionLaw, Model, Reduction, Replaced, Replacement};
+use crate::outputs::variables;
+use crate::scene::{
     Axis, CarrierBody, CarrierInitial, Extrapolation, Force, Friction, Initial, Input, Layer, Link, LinkKind, Material,
     OutputGroup, Parameter, Path, Phase, RateShear, Scene, Surface, Value, Wlf, peak_to_valley,
 };
-use asperity::simulation::{Simulation, SimulationError};
+use crate::simulation::{Simulation, SimulationError};
 use serde::Serialize;
 
 use super::cli::Describe;

@@ -3,8 +3,8 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use asperity::patch::{Patch, PatchError};
-use asperity::scene::{Scene, SceneError, read_file, read_text};
+use crate::patch::{Patch, PatchError};
+use crate::scene::{Scene, SceneError, read_file, read_text};
 
 use super::draft::Draft;
 use super::overrides::{self, OverrideError, Refusal, Setting};

@@ -3,9 +3,9 @@
 
 use std::f64::consts::{SQRT_2, TAU};
 
-use asperity::model::{FineFriction, Flash, FlashKernel, FrictionLaw};
-use asperity::scene::{FineRoughness, Scene, Spectrum};
-use asperity::steady::persson::WholeFriction;
+use crate::model::{FineFriction, Flash, FlashKernel, FrictionLaw};
+use crate::scene::{FineRoughness, Scene, Spectrum};
+use crate::steady::persson::WholeFriction;
 
 use super::figure::{Curve, Panel, PanelRow, SideBySide, Stroke};
 use super::terminal::{decimal, rounded};

@@ -1,6 +1,6 @@
 //! How well the links of a scene stand for the surface of its material: rows of the summary and a picture.
 
-use asperity::scene::{Foundation, FoundationKind, LinkKind, Material, PronyTerm, Quality, Scene};
+use crate::scene::{Foundation, FoundationKind, LinkKind, Material, PronyTerm, Quality, Scene};
 
 use super::figure::{Curve, Panel, Stacked, Stroke};
 use super::terminal::{decimal, rounded};

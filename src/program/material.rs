@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
-use asperity::scene::{Link, LinkKind, MaxwellElement, ParameterError, Scene};
+use crate::scene::{Link, LinkKind, MaxwellElement, ParameterError, Scene};
 
 use super::cli::Material;
 use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::calibration::{Measured, Measurements, MeasurementsError};
-use asperity::element::{Load, OperatingPoint};
+use crate::calibration::{Measured, Measurements, MeasurementsError};
+use crate::element::{Load, OperatingPoint};
 
 use super::figure::{Curve, Panel, PanelRow, SideBySide, Stroke};
 use super::files::{self, FileError};

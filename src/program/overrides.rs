@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use asperity::patch::{Patch, PatchError};
-use asperity::scene::text_table::quantity_with_unit;
-use asperity::scene::{ParameterError, Problem, Scene, SceneError, similar_keys};
+use crate::patch::{Patch, PatchError};
+use crate::scene::text_table::quantity_with_unit;
+use crate::scene::{ParameterError, Problem, Scene, SceneError, similar_keys};
 use toml_edit::{Array, DocumentMut, Item, Table, TableLike, Value};
 
 /// A key's path, elements of lists counted from 1, and its value.

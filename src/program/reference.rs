@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 use std::fs;
 
-use asperity::outputs::catalogue;
-use asperity::scene::{KeyEntry, Unit, patch_keys, scene_keys};
+use crate::outputs::catalogue;
+use crate::scene::{KeyEntry, Unit, patch_keys, scene_keys};
 use clap::{Arg, Command, CommandFactory as _};
 
 use super::Arguments;

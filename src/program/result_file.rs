@@ -5,9 +5,9 @@ use std::fmt::{self, Display, Formatter};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use asperity::outputs::{OutputType, Variable};
-use asperity::scene::text_table::{self, Row};
-use asperity::scene::{Input, Unit};
+use crate::outputs::{OutputType, Variable};
+use crate::scene::text_table::{self, Row};
+use crate::scene::{Input, Unit};
 
 use super::draft::Draft;
 use super::files::{FileError, read};

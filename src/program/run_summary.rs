@@ -3,10 +3,10 @@
 
 use std::time::Instant;
 
-use asperity::model::Model;
-use asperity::outputs::{Accounts, Output, Snapshot, Variable, variable};
-use asperity::scene::{Method, Scene};
-use asperity::simulation::Simulation;
+use crate::model::Model;
+use crate::outputs::{Accounts, Output, Snapshot, Variable, variable};
+use crate::scene::{Method, Scene};
+use crate::simulation::Simulation;
 
 use super::figure::with_prefix;
 use super::terminal::{LabelledLine, labelled, rounded};

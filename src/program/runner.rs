@@ -1,8 +1,8 @@
 //! Runs a scene along its excitation, phase by phase, with rows at even intervals of each phase.
 
-use asperity::outputs::Snapshot;
-use asperity::scene::{Force, Input, Phase, Scene};
-use asperity::simulation::{MethodSwitch, Motion, Simulation, SimulationError, Start};
+use crate::outputs::Snapshot;
+use crate::scene::{Force, Input, Phase, Scene};
+use crate::simulation::{MethodSwitch, Motion, Simulation, SimulationError, Start};
 
 /// Time and inputs at a row: displacements of the carrier or of a body's drive, forces on a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::outputs::{Snapshot, Variable, variables};
-use asperity::scene::Scene;
-use asperity::simulation::{MethodSwitch, SimulationError};
+use crate::outputs::{Snapshot, Variable, variables};
+use crate::scene::Scene;
+use crate::simulation::{MethodSwitch, SimulationError};
 use indicatif::ProgressBar;
 
 use super::cli::Simulate;

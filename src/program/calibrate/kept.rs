@@ -3,9 +3,9 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use asperity::calibration::{FreeParameter, FrictionParts, Outcome, Task};
-use asperity::element::OperatingPoint;
-use asperity::scene::{read_file, text_table};
+use crate::calibration::{FreeParameter, FrictionParts, Outcome, Task};
+use crate::element::OperatingPoint;
+use crate::scene::{read_file, text_table};
 
 use super::CalibrateError;
 use crate::program::draft::LineFile;

@@ -1,7 +1,7 @@
 //! Friction of the layer that slides until it is steady: the dear model of scenes that cannot be solved for.
 
-use asperity::calibration::{CalibrationError, Done, FrictionModel, FrictionParts, SceneAt, Task};
-use asperity::element::Load;
+use crate::calibration::{CalibrationError, Done, FrictionModel, FrictionParts, SceneAt, Task};
+use crate::element::Load;
 use rayon::prelude::*;
 
 use crate::program::sweep::{StopBounds, steady_sliding};

@@ -8,13 +8,13 @@ mod written;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use asperity::calibration::{
+use crate::calibration::{
     CalibrationError, Fitted, FreeParameter, FrictionModel, FrictionParts, Linearised, Measured, Measurements, Memo,
     NewOutcome, Outcome, Plan, Problem, Statistics, SteadyModel, Task, TheoryModel, Tolerance, chi_square_per_degree,
     map_space, minimise, plan, starts_by_theory,
 };
-use asperity::element::OperatingPoint;
-use asperity::scene::{Scene, read_text, similar_keys};
+use crate::element::OperatingPoint;
+use crate::scene::{Scene, read_text, similar_keys};
 use indicatif::ProgressBar;
 
 use super::SUCCESS;
@@ -499,7 +499,7 @@ impl Work<'_> {
         let outcomes = problem.outcomes(self.model, &starts)?;
         // Those at which most points slide steadily, and of these the one with the least square.
         let worth = |outcomes: &Vec<Outcome>| {
-            let residual = |row: &asperity::calibration::Row| {
+            let residual = |row: &crate::calibration::Row| {
                 let friction = outcomes[row.point].as_ref().ok()?.friction();
                 Some(((friction - row.friction) / row.sigma).powi(2))
             };

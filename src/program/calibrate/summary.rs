@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use asperity::calibration::{
+use crate::calibration::{
     Direction, FreeParameter, FrictionParts, Measured, Measurements, Plan, chi_square_per_degree,
 };
 

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::calibration::Measurements;
-use asperity::scene::Scene;
+use crate::calibration::Measurements;
+use crate::scene::Scene;
 
 use super::{CalibrateError, Calibrated, FreeScene};
 use crate::program::cli::Calibrate;

@@ -6,8 +6,8 @@ use std::ffi::OsString;
 use std::ops::{Deref, RangeInclusive};
 use std::path::{Path, PathBuf};
 
-use asperity::calibration::FreeParameter;
-use asperity::scene::{LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt};
+use crate::calibration::FreeParameter;
+use crate::scene::{LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt};
 use clap::{ArgGroup, Args, Parser, Subcommand};
 
 use super::files::default_output;
@@ -293,7 +293,7 @@ pub(crate) struct Fit {
     pub(crate) shear: bool,
     /// The unit of a column, where its heading names none or another one, as in 'Temperature=°C'. May be repeated.
     #[arg(long, value_name = "COLUMN=UNIT", value_parser = column_unit)]
-    pub(crate) unit: Vec<(String, asperity::scene::text_table::Unit)>,
+    pub(crate) unit: Vec<(String, crate::scene::text_table::Unit)>,
     /// The sheet of a workbook. Default: the only one with moduli.
     #[arg(long, value_name = "NAME")]
     pub(crate) sheet: Option<String>,

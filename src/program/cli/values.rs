@@ -5,9 +5,9 @@ use std::fmt::{self, Display, Formatter};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
-use asperity::calibration::FreeParameter;
-use asperity::scene::Wlf;
-use asperity::scene::text_table::{Dimension, Unit, quantity};
+use crate::calibration::FreeParameter;
+use crate::scene::Wlf;
+use crate::scene::text_table::{Dimension, Unit, quantity};
 use clap::builder::{PathBufValueParser, StringValueParser, TypedValueParser};
 
 use crate::program::files::{ends_in, is_standard_output};

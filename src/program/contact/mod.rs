@@ -5,9 +5,9 @@ mod picture;
 
 use std::path::PathBuf;
 
-use asperity::element::STEADY;
-use asperity::scene::Scene;
-use asperity::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
+use crate::element::STEADY;
+use crate::scene::Scene;
+use crate::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 use zip::result::ZipError;
 
 use super::cli::{Contact, SteadyState};

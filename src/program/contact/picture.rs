@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use asperity::steady::SurfaceGrid;
+use crate::steady::SurfaceGrid;
 
 use super::ContactFields;
 use crate::program::figure::{

@@ -10,9 +10,9 @@ mod verdict;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use asperity::element::{Load, OperatingPoint};
-use asperity::scene::{LinkKind, Scene};
-use asperity::steady::{SlidingRubber, SteadySolver};
+use crate::element::{Load, OperatingPoint};
+use crate::scene::{LinkKind, Scene};
+use crate::steady::{SlidingRubber, SteadySolver};
 use cpu_time::ThreadTime;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
@@ -28,7 +28,7 @@ use super::sweep::{
     table_fingerprint,
 };
 use super::terminal::{self, warn};
-use asperity::steady::persson::{Dimension, Theory};
+use crate::steady::persson::{Dimension, Theory};
 use plan::{Next, Plan};
 use table::{Measured, RunRow, StudyHeader, Table};
 use variants::{Parts, Template, Variant};

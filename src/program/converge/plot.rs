@@ -3,7 +3,7 @@
 use super::table::RunRow;
 use super::verdict::Pair;
 use crate::program::figure::{Curve, Panel, Stacked, Stroke};
-use asperity::steady::persson::Theory;
+use crate::steady::persson::Theory;
 
 /// A curve of Persson's theory: its name, which of the two surfaces, and its value.
 type TheoryCurve = (&'static str, usize, fn(&Theory) -> f64);

@@ -4,7 +4,7 @@ use super::table::RunRow;
 use super::variants::Parts;
 use super::verdict::{LargestOpen, Open, Pair, Source, Verdict};
 use crate::program::terminal::{LabelledLine, decimal, labelled, lines, rounded};
-use asperity::steady::persson::Theory;
+use crate::steady::persson::Theory;
 
 /// Titles of the columns after what is counted.
 const TITLES: [&str; 12] = [

@@ -3,7 +3,7 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use asperity::scene::{read_file, text_table};
+use crate::scene::{read_file, text_table};
 
 use super::ConvergeError;
 use super::variants::{Dimensions, Parts, Variant};
@@ -12,7 +12,7 @@ use crate::program::draft::LineFile;
 use crate::program::files::{FileError, write};
 use crate::program::lock::TableLock;
 use crate::program::terminal::{real, warn};
-use asperity::steady::persson::Theory;
+use crate::steady::persson::Theory;
 
 /// The first line of a table; its number grows when readers have to know of a change.
 const FORMAT: &str = "# asperity converge = 3";

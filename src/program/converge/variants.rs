@@ -4,8 +4,8 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use asperity::scene::Scene;
-use asperity::steady::{GridSize, SurfaceGrid};
+use crate::scene::Scene;
+use crate::steady::{GridSize, SurfaceGrid};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-use asperity::outputs::OutputType;
+use crate::outputs::OutputType;
 
 use super::{ElementHistory, Field, Instant};
 use crate::program::files::{self, FileError};

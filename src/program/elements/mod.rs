@@ -3,8 +3,8 @@
 mod arrays;
 mod page;
 
-use asperity::outputs::{Output, OutputType, Snapshot, Variable, variables};
-use asperity::scene::{OutputGroup, Scene, Surface};
+use crate::outputs::{Output, OutputType, Snapshot, Variable, variables};
+use crate::scene::{OutputGroup, Scene, Surface};
 
 pub(crate) use arrays::ArraysError;
 

@@ -175,7 +175,7 @@ impl ElementHistory {
 
 #[cfg(test)]
 mod tests {
-    use asperity::scene::Scene;
+    use crate::scene::Scene;
 
     use super::super::Instant;
     use super::*;

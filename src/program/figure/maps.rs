@@ -3,7 +3,7 @@
 //! Both axes of a face have the same scale, unless one side is more than [`SLENDER`] times as long as the other. All
 //! maps of a figure have the same colours and the same scale of arrows.
 
-use asperity::patch::FaceLayout;
+use crate::patch::FaceLayout;
 use plotters::coord::ranged1d::{Ranged as _, ValueFormatter as _};
 use plotters::prelude::*;
 

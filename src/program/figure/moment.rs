@@ -1,7 +1,7 @@
 //! A moment over the face of a patch: what its elements bear, gathered into as many tiles and arrows as can be told
 //! apart, so that a picture of a million elements is no larger than one of some thousand.
 
-use asperity::patch::{FaceElement, FaceLayout, PatchRun};
+use crate::patch::{FaceElement, FaceLayout, PatchRun};
 
 /// How much is drawn of a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -196,7 +196,7 @@ impl Gathered {
 mod tests {
     use std::path::Path;
 
-    use asperity::patch::{Patch, PatchElement};
+    use crate::patch::{Patch, PatchElement};
 
     use super::super::maps::Maps;
     use super::*;

@@ -1,7 +1,7 @@
 //! Figures of several charts: a run over time, a profile and its spectrum, curves over a logarithmic axis.
 
-use asperity::outputs::{Output, Snapshot, Variable, variables};
-use asperity::scene::{OutputGroup, Scene};
+use crate::outputs::{Output, Snapshot, Variable, variables};
+use crate::scene::{OutputGroup, Scene};
 
 use super::axis::{Axis, Fit, is_loggable};
 use super::chart::{Chart, Curve, Legend, Stroke, Symbol};

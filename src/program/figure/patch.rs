@@ -1,7 +1,7 @@
 //! The figure of a contact patch: its wrench over time, and its face at the moment of the largest force and at some
 //! others.
 
-use asperity::patch::{Patch, PatchOutput, PatchRun, PatchVariable};
+use crate::patch::{Patch, PatchOutput, PatchRun, PatchVariable};
 
 use super::chart::Chart;
 use super::maps::{Maps, STRIP};

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use asperity::outputs::unit_of;
+use crate::outputs::unit_of;
 
 use super::axis::{Axis, Fit};
 use super::chart::{Chart, Curve, Stroke};

@@ -1,7 +1,7 @@
 //! Tables of measured moduli, as people and instruments write them: what each row says, in SI units.
 
-use asperity::scene::Wlf;
-use asperity::scene::text_table::{self, Block};
+use crate::scene::Wlf;
+use crate::scene::text_table::{self, Block};
 
 use super::columns::{EXPECTED, GivenUnits};
 use super::moduli_error::ModuliError;
@@ -173,7 +173,7 @@ fn no_table(text: &str, blocks: &[Block<'_>]) -> ModuliError {
 mod tests {
     use std::f64::consts::TAU;
 
-    use asperity::scene::text_table::Unit;
+    use crate::scene::text_table::Unit;
 
     use super::*;
 

@@ -14,8 +14,8 @@ mod workbook;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
-use asperity::scene::PronyTerm;
-use asperity::scene::text_table::Unit;
+use crate::scene::PronyTerm;
+use crate::scene::text_table::Unit;
 
 use super::SUCCESS;
 use super::cli::{Fit, WlfConstants};

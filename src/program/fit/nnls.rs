@@ -111,7 +111,7 @@ impl<'a> ActiveSet<'a> {
 
 #[cfg(test)]
 mod tests {
-    use asperity::math::SplitMix64;
+    use crate::math::SplitMix64;
 
     use super::*;
 

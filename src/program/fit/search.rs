@@ -12,7 +12,7 @@
 
 use std::f64::consts::LN_10;
 
-use asperity::scene::{MaxwellElement, PronyTerm, complex_stiffness};
+use crate::scene::{MaxwellElement, PronyTerm, complex_stiffness};
 use nalgebra::{DMatrix, DVector};
 
 use super::nnls::non_negative_least_squares;
@@ -406,7 +406,7 @@ impl<'a> Problem<'a> {
 
 #[cfg(test)]
 mod tests {
-    use asperity::math::SplitMix64;
+    use crate::math::SplitMix64;
 
     use super::*;
 

@@ -317,7 +317,7 @@ impl Polyline {
 
 #[cfg(test)]
 mod tests {
-    use asperity::math::SplitMix64;
+    use crate::math::SplitMix64;
 
     use super::*;
     use crate::program::fit::search::Compound;
@@ -328,7 +328,7 @@ mod tests {
     fn rubber() -> Compound {
         let moduli =
             [1538.0, 888.0, 824.0, 495.0, 201.0, 76.3, 31.9, 14.8, 8.12, 4.65, 3.16, 2.26, 1.67, 1.42, 0.969, 1.26];
-        let term = |(i, modulus): (i32, f64)| asperity::scene::PronyTerm {
+        let term = |(i, modulus): (i32, f64)| crate::scene::PronyTerm {
             relaxation_time: 10.0_f64.powi(i),
             modulus: 1e6 * modulus,
         };

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-use asperity::scene::Wlf;
-use asperity::scene::text_table::{Block, Dimension, Unit, number, plain, words};
+use crate::scene::Wlf;
+use crate::scene::text_table::{Block, Dimension, Unit, number, plain, words};
 
 use super::columns::GivenUnits;
 use super::moduli_error::ModuliError;

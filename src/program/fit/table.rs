@@ -2,8 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use asperity::scene::Wlf;
-use asperity::scene::text_table::{Block, Line, NumberStyle, is_missing, words};
+use crate::scene::Wlf;
+use crate::scene::text_table::{Block, Line, NumberStyle, is_missing, words};
 
 use super::columns::{Column, Columns, Quantity};
 use super::measured::{MeasuredPoint, Reading};

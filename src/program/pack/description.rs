@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::io;
 
-use asperity::fmi::{CAPABILITIES, Category, Experiment, FmuModel, Kind, Role, VariableRef, VariableTable};
-use asperity::scene::{DependencyList, Unit, Value};
+use crate::fmi::{CAPABILITIES, Category, Experiment, FmuModel, Kind, Role, VariableRef, VariableTable};
+use crate::scene::{DependencyList, Unit, Value};
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 
@@ -231,10 +231,10 @@ fn unknown(xml: &mut Xml, reference: u32, dependencies: Option<&str>) -> io::Res
 mod tests {
     use std::path::Path;
 
-    use asperity::element::{PointContact, Table};
-    use asperity::fmi::{Definition, Sources, guid};
-    use asperity::patch::Patch;
-    use asperity::scene::Scene;
+    use crate::element::{PointContact, Table};
+    use crate::fmi::{Definition, Sources, guid};
+    use crate::patch::Patch;
+    use crate::scene::Scene;
 
     use super::*;
 

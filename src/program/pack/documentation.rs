@@ -2,8 +2,8 @@
 
 use std::io;
 
-use asperity::element::{LeftOut, Load, OperatingPoint, Table, left_out};
-use asperity::fmi::{Definition, Kind, Role, VariableRef, VariableTable};
+use crate::element::{LeftOut, Load, OperatingPoint, Table, left_out};
+use crate::fmi::{Definition, Kind, Role, VariableRef, VariableTable};
 use quick_xml::escape::escape;
 
 use super::description;

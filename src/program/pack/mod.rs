@@ -10,8 +10,8 @@ use std::ffi::OsString;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-use asperity::element::{Basis, PointContact, Table, TableError};
-use asperity::fmi::{Definition, Sources, guid};
+use crate::element::{Basis, PointContact, Table, TableError};
+use crate::fmi::{Definition, Sources, guid};
 
 use super::cli::Pack;
 use super::describe;

@@ -3,9 +3,9 @@
 
 use std::error::Error;
 
-use asperity::element::{Node, Quantity, Table};
-use asperity::math::Spline;
-use asperity::scene::{LinkKind, Scene};
+use crate::element::{Node, Quantity, Table};
+use crate::math::Spline;
+use crate::scene::{LinkKind, Scene};
 use plotters::prelude::*;
 
 use crate::program::figure::{Backend, Canvas, DrawResult, FINE, Figure};

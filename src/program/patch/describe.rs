@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use asperity::patch::{MotionError, Patch, PatchRun, PatchStart, Pose};
-use asperity::scene::{Backing, FaceHeat, Parameter, ParameterError, TableExtrapolation, Value};
+use crate::patch::{MotionError, Patch, PatchRun, PatchStart, Pose};
+use crate::scene::{Backing, FaceHeat, Parameter, ParameterError, TableExtrapolation, Value};
 
 use crate::program::files::{FileError, load_patch, print};
 use crate::program::overrides::Setting;

@@ -9,7 +9,7 @@ pub(crate) use simulate::simulate;
 
 use std::path::{Path, PathBuf};
 
-use asperity::patch::Patch;
+use crate::patch::Patch;
 
 /// The files that a patch is read from.
 pub(crate) fn sources(path: &Path, patch: &Patch) -> Vec<PathBuf> {

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchStart, Pose};
-use asperity::scene::text_table::{Dimension, Heading, Unit, Words};
+use crate::patch::{COORDINATES, Patch, PatchMotion, PatchStart, Pose};
+use crate::scene::text_table::{Dimension, Heading, Unit, Words};
 
 use crate::program::result_file::{CsvFile, Record, ResultFileError};
 

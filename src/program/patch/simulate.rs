@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::outputs::OutputType;
-use asperity::patch::{MotionError, Patch, PatchRun, PatchVariable};
+use crate::outputs::OutputType;
+use crate::patch::{MotionError, Patch, PatchRun, PatchVariable};
 
 use super::motion::MotionFile;
 use super::sources;

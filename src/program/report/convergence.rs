@@ -1,7 +1,7 @@
 //! Errors against what a run costs: over the tolerances of each method, and over the communication steps of a master.
 
-use asperity::robustness::{RunFailure, at_tolerance, exact};
-use asperity::scene::{Method, Scene};
+use crate::robustness::{RunFailure, at_tolerance, exact};
+use crate::scene::{Method, Scene};
 
 use super::reference::{Comparison, Reference};
 use super::run::{CompletedRun, MasterInputs, Progress, RunFigures, UNLIMITED, drive, estimated, follow, weight};

@@ -1,6 +1,6 @@
 //! Runs held against what they promise: errors over the tolerance asked for, and their own estimates over the errors.
 
-use asperity::robustness::{KEPT, Perturbation, TIGHTER};
+use crate::robustness::{KEPT, Perturbation, TIGHTER};
 
 use super::convergence::{Timed, ToleranceRow};
 use super::reference::Reference;

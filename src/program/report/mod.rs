@@ -14,7 +14,7 @@ mod trace;
 
 use std::path::{Path, PathBuf};
 
-use asperity::robustness::RunFailure;
+use crate::robustness::RunFailure;
 
 use super::cli::Report;
 use super::files::FileError;

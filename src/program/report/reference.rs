@@ -1,7 +1,7 @@
 //! The run that all others are compared with, its own error, and whether runs can be compared row by row at all.
 
-use asperity::robustness::{Budget, DISPLACEMENT, RunFailure, at_tolerance, divergence, exact};
-use asperity::scene::Scene;
+use crate::robustness::{Budget, DISPLACEMENT, RunFailure, at_tolerance, divergence, exact};
+use crate::scene::Scene;
 
 use super::run::{CompletedRun, Counts, Progress, RunFigures, UNLIMITED, follow, weight, with_durations};
 use super::trace::{Errors, OF_ALL_SCENES, QUANTITIES, Trace, WINDOWS};

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use asperity::robustness::{
+use crate::robustness::{
     Accuracy, Budget, DISPLACEMENT, Difference, Perturbation, RunFailure, ScaledQuantity, TIGHTER, Verdict,
     at_tolerance, exact,
 };
-use asperity::scene::Scene;
+use crate::scene::Scene;
 use cpu_time::ThreadTime;
 use rayon::prelude::*;
 

@@ -2,11 +2,11 @@
 
 use std::cell::Cell;
 
-use asperity::fmi::{CommunicationStep, InputOutOfRange, Inputs, layer_motion, layer_start};
-use asperity::outputs::{Output, Snapshot, Variable, variables};
-use asperity::robustness::{Budget, RunFailure};
-use asperity::scene::{Input, OutputGroup, Phase, Scene};
-use asperity::simulation::{Inaccuracy, Motion, Simulation, SimulationError};
+use crate::fmi::{CommunicationStep, InputOutOfRange, Inputs, layer_motion, layer_start};
+use crate::outputs::{Output, Snapshot, Variable, variables};
+use crate::robustness::{Budget, RunFailure};
+use crate::scene::{Input, OutputGroup, Phase, Scene};
+use crate::simulation::{Inaccuracy, Motion, Simulation, SimulationError};
 use cpu_time::ThreadTime;
 use indicatif::ProgressBar;
 

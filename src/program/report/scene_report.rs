@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::scene::Scene;
+use crate::scene::Scene;
 
 use super::convergence::{CommunicationLadder, CommunicationRow, ToleranceLadder, ToleranceRow};
 use super::folder::{COMMUNICATION, ERRORS, INDEX, JUDGEMENTS, ReportFolder, STRESS};

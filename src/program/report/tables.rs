@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use asperity::robustness::{Perturbation, ScaledQuantity};
+use crate::robustness::{Perturbation, ScaledQuantity};
 
 use super::convergence::{CommunicationRow, Timed, ToleranceRow};
 use super::judgement::Judgement;

@@ -1,7 +1,7 @@
 //! What runs are compared by: the forces on the carrier, the energy lost and the motion of a carrier that is a body,
 //! row by row.
 
-use asperity::robustness::{ForceHistory, larger};
+use crate::robustness::{ForceHistory, larger};
 
 /// The quantities whose errors are shown, by the names of their variables.
 pub(super) const QUANTITIES: [&str; COUNT] = ["F_x", "F_z", "E_diss", "u", "w"];

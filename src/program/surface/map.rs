@@ -1,6 +1,6 @@
 //! The analysis of a map: heights and gradients, its isotropic spectrum, Hurst exponents along both directions.
 
-use asperity::scene::{HeightMap, PowerLaw, Spectrum, Surface, peak_to_valley};
+use crate::scene::{HeightMap, PowerLaw, Spectrum, Surface, peak_to_valley};
 use serde::Serialize;
 
 use crate::program::cli;

@@ -5,7 +5,7 @@ mod periodic;
 
 use std::path::{Path, PathBuf};
 
-use asperity::scene::{self, Band, PowerLaw, RoughnessSpectrum, Spectrum};
+use crate::scene::{self, Band, PowerLaw, RoughnessSpectrum, Spectrum};
 use serde::Serialize;
 
 use super::cli::{Reading, Surface};

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use asperity::scene::Surface;
+use crate::scene::Surface;
 
 /// Share of the length over which the end of a tapered profile goes over into its beginning.
 const TAPER: f64 = 0.1;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::scene::text_table;
+use crate::scene::text_table;
 
 use super::SweepError;
 use crate::program::files::read;

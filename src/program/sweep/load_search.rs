@@ -12,8 +12,8 @@
 //! do, and scatter does no harm, they are those of least squares over all runs and over what is known beforehand. The
 //! load is met at B = 0.
 
-use asperity::model::{LinkKind, Model};
-use asperity::scene::Scene;
+use crate::model::{LinkKind, Model};
+use crate::scene::Scene;
 use nalgebra::{Matrix3, Vector3};
 
 /// Halvings of the interval in which w lies.

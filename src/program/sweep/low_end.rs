@@ -1,6 +1,6 @@
 //! What a sweep says of the low end of its table: a contact patch lives at low pressures.
 
-use asperity::element::{LowEnd, Table};
+use crate::element::{LowEnd, Table};
 
 use crate::program::terminal::rounded;
 

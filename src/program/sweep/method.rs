@@ -1,7 +1,7 @@
 //! How steady sliding is found: by solving for it, or by letting the layer slide until it is steady.
 
-use asperity::scene::{FoundationKind, HeightMap, Scene};
-use asperity::steady::{GridSize, SurfaceGrid};
+use crate::scene::{FoundationKind, HeightMap, Scene};
+use crate::steady::{GridSize, SurfaceGrid};
 
 use super::NeverSteady;
 use super::point::StopBounds;

@@ -17,9 +17,9 @@ pub(super) mod values;
 
 use std::path::{Path, PathBuf};
 
-use asperity::element::{Load, OperatingPoint};
-use asperity::model::Model;
-use asperity::scene::{Initial, OutputGroup, ParameterError, Path as Displacement, Phase, Scene, Wlf};
+use crate::element::{Load, OperatingPoint};
+use crate::model::Model;
+use crate::scene::{Initial, OutputGroup, ParameterError, Path as Displacement, Phase, Scene, Wlf};
 
 use super::cli::{Sliding, Sweep};
 use super::draft::TablePlace;
@@ -268,7 +268,7 @@ fn scene_at(scene: &Scene, point: &OperatingPoint) -> Scene {
     };
     let u = Displacement { rate: point.speed, ..Displacement::default() };
     scene.excitation = vec![Phase {
-        duration: asperity::scene::LARGEST,
+        duration: crate::scene::LARGEST,
         u,
         w: Displacement::default(),
         until_force: None,
@@ -303,7 +303,7 @@ fn steady_sliding_at(
 
 fn steady(result: PointResult) -> Result<SteadySliding, String> {
     match result.sliding {
-        Some(sliding) if result.status == asperity::element::STEADY => Ok(sliding),
+        Some(sliding) if result.status == crate::element::STEADY => Ok(sliding),
         _ => Err(result.status),
     }
 }

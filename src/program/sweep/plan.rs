@@ -1,8 +1,8 @@
 //! What a sweep computes: the points of a scene over speed, load and temperature, and the row of each.
 
-use asperity::element::{Basis, Load, OperatingPoint, SweepGrid, TableHeader, TableRow};
-use asperity::scene::{FineRoughness, Scene};
-use asperity::simulation::Interrupt;
+use crate::element::{Basis, Load, OperatingPoint, SweepGrid, TableHeader, TableRow};
+use crate::scene::{FineRoughness, Scene};
+use crate::simulation::Interrupt;
 use rayon::prelude::*;
 
 use super::method::{Method, SlidingOptions};

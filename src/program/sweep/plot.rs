@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use asperity::element::{OperatingPoint, Quantity, TableRow};
-use asperity::scene::Wlf;
+use crate::element::{OperatingPoint, Quantity, TableRow};
+use crate::scene::Wlf;
 
 use super::table_file::SweepTable;
 use crate::program::figure::{Curve, Figure as _, Panel, PanelRow, SideBySide, Stroke};
@@ -184,7 +184,7 @@ pub(crate) fn with_prefix(value: f64, unit: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use asperity::element::{Basis, Load, STEADY, SweepGrid, TableHeader};
+    use crate::element::{Basis, Load, STEADY, SweepGrid, TableHeader};
 
     use super::*;
 

@@ -14,12 +14,12 @@
 //! A point is independent of the others, so a table is the same in whatever order and on however many machines it is
 //! computed.
 //!
-//! [`Simulation::relax_dashpots`]: asperity::simulation::Simulation::relax_dashpots
+//! [`Simulation::relax_dashpots`]: crate::simulation::Simulation::relax_dashpots
 
-use asperity::element::{OperatingPoint, Quantity, STEADY, TableHeader, TableRow};
-use asperity::model::{LinkKind, Model};
-use asperity::scene::{CarrierBodies, CarrierBody, CarrierInitial, Scene};
-use asperity::simulation::{Interrupt, SimulationError};
+use crate::element::{OperatingPoint, Quantity, STEADY, TableHeader, TableRow};
+use crate::model::{LinkKind, Model};
+use crate::scene::{CarrierBodies, CarrierBody, CarrierInitial, Scene};
+use crate::simulation::{Interrupt, SimulationError};
 
 use super::load_search::LoadSearch;
 use super::slide::{BlockMeans, Blocks, Slide, tangential_stiffness};

@@ -1,7 +1,7 @@
 //! The friction of a table as lines of text: a line for each speed, a column for each load, a block for each
 //! temperature.
 
-use asperity::element::Quantity;
+use crate::element::Quantity;
 
 use super::plot::with_prefix;
 use super::table_file::{StoredRow, SweepTable};

@@ -1,8 +1,8 @@
 //! A layer that slides at constant speed, block by block, and its tangential stiffness as it is set in motion.
 
-use asperity::outputs::{Output, Variable, variables};
-use asperity::scene::{Path, Scene};
-use asperity::simulation::{Interrupt, Motion, Simulation, SimulationError, Start};
+use crate::outputs::{Output, Variable, variables};
+use crate::scene::{Path, Scene};
+use crate::simulation::{Interrupt, Motion, Simulation, SimulationError, Start};
 
 use super::load_search::{LoadSearch, ends};
 

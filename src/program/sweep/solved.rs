@@ -2,9 +2,9 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use asperity::element::{Load, OperatingPoint, Quantity, STEADY, TableHeader, TableRow};
-use asperity::scene::Scene;
-use asperity::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
+use crate::element::{Load, OperatingPoint, Quantity, STEADY, TableHeader, TableRow};
+use crate::scene::Scene;
+use crate::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 
 use super::{SweepError, with_temperature};
 

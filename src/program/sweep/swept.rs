@@ -1,8 +1,8 @@
 //! New points of a sweep that is there as a table, by the method that it was swept with.
 
-use asperity::element::{Load, OperatingPoint, STEADY, Table};
-use asperity::scene::Scene;
-use asperity::steady::SteadySlide;
+use crate::element::{Load, OperatingPoint, STEADY, Table};
+use crate::scene::Scene;
+use crate::steady::SteadySlide;
 
 use super::point::{SteadySliding, StopBounds};
 use super::solved::{self, SolvedPoints};

@@ -3,8 +3,8 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use asperity::element::{FORMAT, OperatingPoint, Table, TableError, TableHeader, TableRow, TableText};
-use asperity::scene::{Scene, read_file, read_text};
+use crate::element::{FORMAT, OperatingPoint, Table, TableError, TableHeader, TableRow, TableText};
+use crate::scene::{Scene, read_file, read_text};
 
 use super::low_end::low_end;
 use crate::program::draft::LineFile;

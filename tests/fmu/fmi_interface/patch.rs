@@ -369,3 +369,18 @@ fn a_patch_file_names_what_is_wrong() {
         assert!(found.contains(expected), "{found}");
     }
 }
+
+/// As for a layer, 64 KiB; with tangents every number of a block of elements carries six derivatives.
+#[test]
+fn small_stacks_are_enough() {
+    for (outputs, kibibytes) in [("forces", 64), ("tangent", 256)] {
+        let text = WHEEL.replace("\"forces\", ", "").replace("\"tangent\"", &format!("\"{outputs}\""));
+        let run = move || {
+            let fmu = rolling_of(&text, 2);
+            let state = fmu.state();
+            assert_eq!(fmu.set_state(state), OK);
+        };
+        let thread = std::thread::Builder::new().stack_size(kibibytes << 10).spawn(run).unwrap();
+        thread.join().unwrap();
+    }
+}

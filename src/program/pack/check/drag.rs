@@ -1,8 +1,8 @@
 //! The motion to and fro of a check, and the layer along it.
 
-use asperity::outputs::Variable;
-use asperity::scene::{Initial, OutputGroup, Parameter, Path, Scene, Value};
-use asperity::simulation::{Motion, Simulation, Start};
+use crate::outputs::Variable;
+use crate::scene::{Initial, OutputGroup, Parameter, Path, Scene, Value};
+use crate::simulation::{Motion, Simulation, Start};
 
 use crate::program::runner::CarrierSample;
 

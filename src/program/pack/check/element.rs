@@ -4,10 +4,10 @@
 
 use std::path::Path;
 
-use asperity::element::{Element, Load, OperatingPoint, PointContact, SweepGrid};
-use asperity::outputs::{Output, Variable, variable};
-use asperity::scene::{Input, Parameter, Scene, Value};
-use asperity::simulation::Start;
+use crate::element::{Element, Load, OperatingPoint, PointContact, SweepGrid};
+use crate::outputs::{Output, Variable, variable};
+use crate::scene::{Input, Parameter, Scene, Value};
+use crate::simulation::Start;
 use rayon::prelude::*;
 
 use super::drag::ToAndFro;

@@ -8,9 +8,9 @@ mod patch;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use asperity::element::{Load, Node, Quantity, Table};
-use asperity::patch::MotionError;
-use asperity::scene::{CarrierBodies, ParameterError, Scene};
+use crate::element::{Load, Node, Quantity, Table};
+use crate::patch::MotionError;
+use crate::scene::{CarrierBodies, ParameterError, Scene};
 
 use crate::program::figure::PlotError;
 use crate::program::files::{self, FileError};

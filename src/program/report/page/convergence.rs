@@ -2,8 +2,8 @@
 
 use std::io;
 
-use asperity::robustness::DISPLACEMENT;
-use asperity::scene::{Extrapolation, Scene};
+use crate::robustness::DISPLACEMENT;
+use crate::scene::{Extrapolation, Scene};
 use quick_xml::escape::escape;
 
 use super::{NOTHING, count, errors, grouped, head, method, number, per_cent, reason, seconds, short};

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use asperity::robustness::{KEPT, TIGHTER};
+use crate::robustness::{KEPT, TIGHTER};
 
 use super::robustness::factors;
 use super::{NOTHING, grouped, head, number, short, three_digits};

@@ -6,7 +6,7 @@ mod robustness;
 
 use std::io;
 
-use asperity::scene::{Parameter, Scene};
+use crate::scene::{Parameter, Scene};
 use quick_xml::escape::escape;
 
 use super::machine::{Machine, build};

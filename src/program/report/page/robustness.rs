@@ -2,8 +2,8 @@
 
 use std::io;
 
-use asperity::robustness::{KEPT, NOTABLE, Perturbation, ScaledQuantity, TIGHTER, Verdict, WRONG};
-use asperity::scene::Scene;
+use crate::robustness::{KEPT, NOTABLE, Perturbation, ScaledQuantity, TIGHTER, Verdict, WRONG};
+use crate::scene::Scene;
 use quick_xml::escape::escape;
 
 use super::{NOTHING, head, method, short};

@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use asperity::patch::{MotionError, Patch, PatchOutput, PatchVariable};
-use asperity::scene::{NotDoubled, PatchGroup};
+use crate::patch::{MotionError, Patch, PatchOutput, PatchVariable};
+use crate::scene::{NotDoubled, PatchGroup};
 use indicatif::ProgressBar;
 
 use super::elements::{Drag, write_rows};

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use asperity::outputs::{Output, Variable, variable};
-use asperity::patch::{MotionError, Patch, PatchMotion, PatchOutput, PatchRun, PatchStart, PatchVariable};
-use asperity::scene::PatchGroup;
+use crate::outputs::{Output, Variable, variable};
+use crate::patch::{MotionError, Patch, PatchMotion, PatchOutput, PatchRun, PatchStart, PatchVariable};
+use crate::scene::PatchGroup;
 use rayon::prelude::*;
 
 use super::tilt::{TiltedElement, TiltedFace};

@@ -10,10 +10,10 @@ mod wrench;
 
 use std::path::Path;
 
-use asperity::element::{OperatingPoint, PointContact, SweepGrid};
-use asperity::patch::Patch;
-use asperity::scene::{Parameter, Scene, TableExtrapolation, Value};
-use asperity::simulation::Start;
+use crate::element::{OperatingPoint, PointContact, SweepGrid};
+use crate::patch::Patch;
+use crate::scene::{Parameter, Scene, TableExtrapolation, Value};
+use crate::simulation::Start;
 
 use super::drag::ToAndFro;
 use super::element::element_at;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use asperity::element::OperatingPoint;
-use asperity::patch::MotionError;
+use crate::element::OperatingPoint;
+use crate::patch::MotionError;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 

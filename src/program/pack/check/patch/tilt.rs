@@ -1,7 +1,7 @@
 //! The face of a patch, tilted until its elements stand at the separations of all the pressures of the table.
 
-use asperity::element::{Node, Quantity, Table};
-use asperity::patch::{Patch, PatchElement, Pose};
+use crate::element::{Node, Quantity, Table};
+use crate::patch::{Patch, PatchElement, Pose};
 
 use crate::program::pack::check::selected;
 
