@@ -89,9 +89,22 @@ pub(crate) fn default_output(scene: &Path, extension: &str) -> PathBuf {
 
 /// Reads a scene whose excitation is not used: [`load`] without the warning about it.
 pub(crate) fn load_without_excitation(path: &Path, set: &[Setting]) -> Result<Scene, FileError> {
+    load_for_sliding(path, set, |_| false)
+}
+
+/// Reads a scene that slides steadily: [`load`] without the warnings about its excitation and, where it `is_solved` for,
+/// about the layer's links, neither of which is used.
+pub(crate) fn load_for_sliding(
+    path: &Path,
+    set: &[Setting],
+    is_solved: impl FnOnce(&Scene) -> bool,
+) -> Result<Scene, FileError> {
     let scene = read_scene(path, set)?;
-    let of_excitation = scene.short_profile();
-    scene.warnings.iter().filter(|warning| Some(*warning) != of_excitation.as_ref()).for_each(|text| warn(text));
+    let mut unused = Vec::from_iter(scene.short_profile());
+    if is_solved(&scene) {
+        unused.extend(scene.link_warnings());
+    }
+    scene.warnings.iter().filter(|warning| !unused.contains(warning)).for_each(|text| warn(text));
     print_assumptions(&scene);
     Ok(scene)
 }

@@ -348,3 +348,19 @@ fn an_element_of_solutions_is_checked_with_solutions() {
     // Solutions found at the separations of elements, between the table's pressures.
     assert!(points.column("force.z error").iter().all(|error| error.abs() < 0.05), "{points:?}");
 }
+
+/// What a layer's spacing would spoil is not said where the layer is not used.
+#[test]
+fn the_layers_spacing_is_no_matter_of_the_solver() {
+    let folder = scratch("steady-spacing");
+    let (scene, table) = (reference("steady/steady-layer.toml"), folder.join("table.csv"));
+    let is_warned_of = |arguments: &[&str]| {
+        let coarse = ["--set", "layer.spacing=3.125e-5", "--set", "layer.masses=64"];
+        let output = asperity().args(arguments).arg(&scene).args(coarse).output().unwrap();
+        String::from_utf8_lossy(&output.stderr).contains("spacing too coarse")
+    };
+    let sweep = ["sweep", "--force", "--speeds", "1e-2", "--pressures", "2e5", "-o", table.to_str().unwrap()];
+    assert!(is_warned_of(&["describe"]));
+    assert!(!is_warned_of(&sweep));
+    assert!(is_warned_of(&[&sweep[..], &["--method", "layer", "--error", "0.5", "--distance", "1e-5"]].concat()));
+}

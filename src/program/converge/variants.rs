@@ -138,9 +138,14 @@ pub(super) struct Template {
 }
 
 impl Template {
-    /// The scene at `path`, its parameters overridden by `set`, and what variants of it are made of.
-    pub(super) fn read(path: &Path, set: &[Setting]) -> Result<(Self, Scene), ConvergeError> {
-        let scene = files::load_without_excitation(path, set)?;
+    /// The scene at `path`, its parameters overridden by `set`, and what variants of it are made of; without
+    /// warnings about the layer where it `is_solved` for.
+    pub(super) fn read(
+        path: &Path,
+        set: &[Setting],
+        is_solved: impl FnOnce(&Scene) -> bool,
+    ) -> Result<(Self, Scene), ConvergeError> {
+        let scene = files::load_for_sliding(path, set, is_solved)?;
         if scene.material.is_none() {
             return Err(ConvergeError::DirectForm { path: path.to_owned() });
         }

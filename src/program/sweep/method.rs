@@ -76,6 +76,11 @@ impl SlidingOptions {
         Some(Self { method: Some(SweepMethod::Steady), points, ..Self::default() })
     }
 
+    /// Whether steady sliding of `scene` is solved for, without the layer.
+    pub(crate) fn solves(self, scene: &Scene) -> bool {
+        self.method.map_or_else(|| why_layer(scene).is_none(), |method| method == SweepMethod::Steady)
+    }
+
     /// The method of a sweep of `scene`, and what the table's header says of it.
     pub(crate) fn choose(self, scene: &Scene) -> Result<(Method, String), MethodError> {
         let reason = (self.method == Some(SweepMethod::Layer)).then_some("as asked for").or_else(|| why_layer(scene));

@@ -21,12 +21,18 @@ const ROUNDING: f64 = 1.0e-9;
 impl Scene {
     /// What of this scene is outside the range in which the links stand for the rubber's surface; nothing for springs.
     pub(in crate::scene) fn foundation_warnings(&self) -> Vec<String> {
+        let mut found = self.link_warnings();
+        found.extend(self.foundation.as_ref().and_then(steep_slopes));
+        found
+    }
+
+    /// Those of them about the masses and links that stand for the rubber, which steady sliding is solved for without.
+    pub fn link_warnings(&self) -> Vec<String> {
         let Some(foundation) = &self.foundation else { return Vec::new() };
         let found = [
             self.wide_band(),
             self.coarse_spacing(foundation),
             self.waves_below_the_spacing(foundation),
-            steep_slopes(foundation),
             self.hard_pressure("until_pressure", self.largest_pressure()),
             self.short_layer(),
         ];
