@@ -2,10 +2,12 @@
 # Builds the program and the shared library and packs a scene as an FMU.
 #
 #   ./build-fmu.sh [SCENE.toml] [-o OUT.fmu] [--simulate] [--all-platforms]
+#   ./build-fmu.sh --patch PATCH.toml | --table SWEEP.csv [-o OUT.fmu] [--all-platforms]
 #   ./build-fmu.sh --wheel [--all-platforms]
 #
-# Default: the tread block in scenes/, packed as target/<name of the scene file>.fmu. With --simulate the FMU is run in
-# fmpy along the scene's excitation; a table is printed and a picture drawn beside the FMU.
+# Default: the tread block in scenes/, packed as target/<name of the file>.fmu; a contact patch with --patch, the element
+# of a sweep's table with --table. With --simulate the FMU is run in fmpy along the scene's excitation; a table is
+# printed and a picture drawn beside the FMU.
 #
 # With --all-platforms, on Linux on x86-64, the FMU has a library for linux64, from glibc 2.17 on, and one for win64.
 # That takes Debian's packages rustc-web, rust-web-src and gcc-mingw-w64-x86-64-win32, and cargo-zigbuild and ziglang,
@@ -33,10 +35,11 @@ refuse() {
     exit 2
 }
 
-scene='' output='' simulate=false all_platforms=false wheel=false
+scene='' kind=() output='' simulate=false all_platforms=false wheel=false
 while [ $# -gt 0 ]; do
     case $1 in
         -o | --output) [ $# -ge 2 ] || refuse "$1 needs a file name"; output=$2; shift ;;
+        --patch | --table) kind=("$1") ;;
         --simulate) simulate=true ;;
         --all-platforms) all_platforms=true ;;
         --wheel) wheel=true ;;
@@ -46,10 +49,15 @@ while [ $# -gt 0 ]; do
     esac
     shift
 done
+if [ ${#kind[@]} -gt 0 ]; then
+    [ -n "$scene" ] || refuse "${kind[*]} needs a file"
+    ! $simulate || refuse "--simulate follows the excitation of a scene; ${kind[*]} has none"
+fi
 scene=${scene:-$root/scenes/tread-block/tread-block.toml}
-[ -f "$scene" ] || refuse "no scene at $scene"
+[ -f "$scene" ] || refuse "no file at $scene"
 command -v cargo > /dev/null || refuse "Rust is needed: cargo is not on the PATH"
-name=$(basename "$scene" .toml)
+name=$(basename "$scene")
+name=${name%.*}
 output=${output:-$target/$name.fmu}
 
 # The library alone, without the program's packages and optimised as a whole, which cargo does where nothing else is
@@ -183,6 +191,6 @@ else
 fi
 cargo build --manifest-path "$root/Cargo.toml" --locked --release --bin asperity --target-dir "$target"
 asperity=$target/release/asperity
-"$asperity" pack "$scene" -o "$output" "${libraries[@]/#/--library=}"
+"$asperity" pack ${kind[@]+"${kind[@]}"} "$scene" -o "$output" "${libraries[@]/#/--library=}"
 echo "$output"
 if $simulate; then simulate; fi

@@ -23,8 +23,7 @@ if [ "${2:-}" = --sled ]; then
     ASPERITY='' "$root/build-fmu.sh" "$folder/block.toml" -o "$folder/block.fmu"
     python=$("$root/tests/python/environment.sh" "$folder/venv")
     "$asperity" sweep block.toml --speeds 1e-4..10/11 --pressures 1e5,2e5,4e5 -o block.sweep.csv
-    cargo rustc --release --locked --lib --no-default-features --crate-type cdylib --manifest-path "$root/Cargo.toml"
-    "$asperity" pack --table block.sweep.csv -o element.fmu
+    ASPERITY='' "$root/build-fmu.sh" --table block.sweep.csv -o element.fmu
     "$python" "$here/sled.py" block.fmu 8.2e-5 -o sled-layer.csv
     "$python" "$here/sled.py" element.fmu 6.5e-5 -o sled-element.csv
     "$asperity" plot sled-layer.csv sled-element.csv --y F_x --labels layer,element -o sled.svg

@@ -12,11 +12,9 @@ mkdir -p "$folder"
 folder=$(cd "$folder" && pwd)
 
 python=$("$root/tests/python/environment.sh" "$folder/venv" "$here/../patch-mujoco/requirements.txt")
-cargo build --release --locked --bin asperity --manifest-path "$root/Cargo.toml"
-cargo rustc --release --locked --lib --no-default-features --crate-type cdylib --manifest-path "$root/Cargo.toml"
-asperity=${CARGO_TARGET_DIR:-$root/target}/release/asperity
+asperity=$("$root/scenes/program")
 "$asperity" sweep "$here/face.toml" --speeds 1e-6..1e-1/11 --pressures 5e3,2e4,5e4,1e5,2e5,5e5 --points 1024 \
     -o "$here/pad.table.csv" --plot "$folder/sweep.svg"
-"$asperity" pack --patch "$here/pad.toml" -o "$folder/pad.fmu"
+"$root/build-fmu.sh" --patch "$here/pad.toml" -o "$folder/pad.fmu"
 "$python" -B "$here/grip.py" "$folder"
 echo "$folder/grip.svg"

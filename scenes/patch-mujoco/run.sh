@@ -12,11 +12,10 @@ mkdir -p "$folder"
 folder=$(cd "$folder" && pwd)
 
 python=$("$root/tests/python/environment.sh" "$folder/venv" "$here/requirements.txt")
-cargo rustc --release --locked --lib --no-default-features --crate-type cdylib --manifest-path "$root/Cargo.toml"
 asperity=$("$root/scenes/program")
 "$asperity" sweep "$here/road.toml" --speeds 1e-3..10/13 --pressures 5e3,2e4,5e4,1e5,2e5,4e5 \
     --temperatures 293.15,308.15,323.15,343.15,363.15,393.15 --points 4096 -o "$here/tread.table.csv" \
     --plot "$folder/sweep.svg"
-"$asperity" pack --patch "$here/tread.toml" -o "$folder/tread.fmu"
+"$root/build-fmu.sh" --patch "$here/tread.toml" -o "$folder/tread.fmu"
 "$python" -B "$here/braking.py" "$folder"
 echo "$folder/braking.svg"

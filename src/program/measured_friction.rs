@@ -7,7 +7,7 @@ use crate::element::{Load, OperatingPoint};
 
 use super::figure::{Curve, Panel, PanelRow, SideBySide, Stroke};
 use super::files::{self, FileError};
-use super::sweep::with_prefix;
+use super::sweep::as_given;
 use super::terminal::rounded;
 
 /// A table of measured friction cannot be used.
@@ -143,7 +143,7 @@ pub(crate) fn picture(title: &str, grid: &CurveGrid, measured: &[Measured], curv
     let kelvin = |temperature: &Option<Cluster>| {
         temperature.map(|cluster| format!("{} K", rounded(cluster.mean, 5))).unwrap_or_default()
     };
-    let pascal = |pressure: &Cluster| with_prefix(rounded(pressure.mean, 4), "Pa");
+    let pascal = |pressure: &Cluster| as_given(rounded(pressure.mean, 4), "Pa");
     let of = |pressure: &Cluster, temperature: &Option<Cluster>, look: usize, name: String| {
         let is_on = |point: &OperatingPoint| grid.is_on(point, pressure, temperature);
         let rows = measured.iter().filter(|row| is_on(&row.point));

@@ -170,13 +170,13 @@ class Pad:
     def _pose_of(self, data: Any) -> Floats:
         origin, axes = self._ground_of(data)
         place = axes.T @ (data.xpos[self._body] - origin)
-        turned = axes.T @ data.xmat[self._body].reshape(3, 3)
-        roll, pitch = np.arctan2(turned[2, 1], turned[2, 2]), np.arcsin(np.clip(-turned[2, 0], -1.0, 1.0))
-        yaw = np.arctan2(turned[1, 0], turned[0, 0])
-        angles = np.array([roll, pitch, yaw])
+        x, y, z = (axes.T @ data.xmat[self._body].reshape(3, 3)).tolist()
+        roll, yaw = math.atan2(z[1], z[2]), math.atan2(y[0], x[0])
+        pitch = math.asin(min(max(-z[0], -1.0), 1.0))
         # Angles go on where a turn is full.
-        angles += 2 * np.pi * np.round((self.pose[3:] - angles) / (2 * np.pi))
-        return np.concatenate([place, angles])
+        before = self.pose[3:].tolist()
+        angles = [now + math.tau * round((old - now) / math.tau) for old, now in zip(before, (roll, pitch, yaw))]
+        return np.array([*place, *angles])
 
     def _inputs_of(self, data: Any, pose: Floats) -> Floats:
         if self._joint is None:

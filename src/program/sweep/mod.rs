@@ -32,7 +32,7 @@ use load_search::{heights, rest_separation};
 pub(crate) use method::Method;
 pub use method::{MethodError, SlidingOptions, SweepMethod};
 pub use plan::{Loads, SweepOptions, SweepPlan};
-pub(crate) use plot::with_prefix;
+pub(crate) use plot::as_given;
 use point::SteadySliding;
 use point::{MIN_BLOCKS, PointResult};
 pub(crate) use point::{SMALL as SMALL_FRICTION, StopBounds};

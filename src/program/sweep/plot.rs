@@ -71,7 +71,7 @@ fn temperature_name(kelvin: Option<f64>) -> Option<String> {
 }
 
 fn load_name(table: &SweepTable, load: f64) -> String {
-    with_prefix(load, table.header.load.unit())
+    as_given(load, table.header.load.unit())
 }
 
 fn rows(table: &SweepTable, load: f64, temperature: Option<f64>) -> Vec<&TableRow> {
@@ -169,8 +169,8 @@ impl<X: Fn(&OperatingPoint) -> f64> Points<X> {
     }
 }
 
-/// A quantity with a prefix of its unit: `0.2 MPa`.
-pub(crate) fn with_prefix(value: f64, unit: &str) -> String {
+/// A quantity that was given, in all its digits, with a prefix of its unit: `0.2 MPa`.
+pub(crate) fn as_given(value: f64, unit: &str) -> String {
     let (prefix, factor) = match value {
         value if value >= 1e5 => ("M", 1e6),
         value if value >= 1e3 => ("k", 1e3),
@@ -190,7 +190,7 @@ mod tests {
 
     #[test]
     fn loads_have_a_prefix_of_their_unit() {
-        let names = [2e5, 4e4, 20.0, 0.05].map(|value| with_prefix(value, "Pa"));
+        let names = [2e5, 4e4, 20.0, 0.05].map(|value| as_given(value, "Pa"));
         assert_eq!(names, ["0.2 MPa", "40 kPa", "20 Pa", "50 mPa"]);
     }
 

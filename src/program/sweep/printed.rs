@@ -3,7 +3,7 @@
 
 use crate::element::Quantity;
 
-use super::plot::with_prefix;
+use super::plot::as_given;
 use super::table_file::{StoredRow, SweepTable};
 use crate::program::figure;
 use crate::program::terminal::{LabelledLine, labelled, rounded};
@@ -29,7 +29,7 @@ pub(super) fn lines(table: &SweepTable) -> Vec<LabelledLine> {
     for temperature in temperatures {
         let of_block = || table.rows.iter().filter(move |stored| stored.row.point.temperature == temperature);
         let title = temperature.map_or_else(|| "speed".to_owned(), |kelvin| format!("{kelvin} K"));
-        texts.push(columns(title, grid.loads.iter().map(|&load| with_prefix(load, unit))));
+        texts.push(columns(title, grid.loads.iter().map(|&load| as_given(load, unit))));
         for &speed in &grid.speeds {
             let friction = |&load: &f64| {
                 let found = of_block().find(|one| one.row.point.speed == speed && one.row.point.load == load);
