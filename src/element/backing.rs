@@ -12,7 +12,7 @@ use crate::scene::Backing;
 /// Steps of Halley's method. Of an exponential p one takes an error e of ln p to e³/12: to 1e-12 by two from 1/4.
 const STEPS: usize = 2;
 /// The last of them as a share of the interval, at most; where it is larger the elements are solved for one by one.
-const LAST_STEP: f64 = 1e-3;
+const LAST_STEP: f64 = 1e-4;
 
 /// Steps of Newton's method or halvings: either alone would need fewer.
 const MAX_SAFE_STEPS: usize = 100;
@@ -97,7 +97,8 @@ impl<'a, T: Number, const N: usize> SeriesIntervals<'a, T, N> {
             }
         }
         for i in 0..count {
-            if step[i] > LAST_STEP * self.width[i] {
+            // At 0 it may have been held back.
+            if step[i] > LAST_STEP * self.width[i] || (x[i] <= 0.0 && target[i] > 0.0) {
                 x[i] = self.solve_safely(i, target[i]);
             }
         }
@@ -205,13 +206,15 @@ mod tests {
     use super::*;
     use crate::math::Dual;
 
-    /// Intervals from p_i on in which p grows e^`growth`-fold as the contact approaches by 1 µm, straight or bent in
-    /// ln p, with backings from far stiffer than the contact to far softer.
+    /// Cubics of ln p over an interval of 1 µm, ln p's growth over it, and p_i/k_n (m): of slopes at both ends from almost
+    /// none to the steepest of a monotone cubic, with backings from far stiffer than the contact to far softer.
     fn cases() -> Vec<([f64; 3], f64, f64)> {
         let mut cases = Vec::new();
         for growth in [1e-3, 0.3, 1.4, 4.0, 9.0] {
-            for bend in [-0.3, 0.0, 0.6] {
-                let cubic = [1e6 * growth * (1.0 - bend), 1e12 * growth * bend, 0.0];
+            for (begin, end) in [0.01, 1.0, 2.9].into_iter().flat_map(|begin| [0.01, 1.0, 2.9].map(|end| (begin, end)))
+            {
+                let cubic = [1e6 * begin, 1e12 * (3.0 - 2.0 * begin - end), 1e18 * (begin + end - 2.0)];
+                let cubic = cubic.map(|power| growth * power);
                 cases.extend([1e-6, 0.1, 1.0, 30.0, 1e5].map(|share| (cubic, growth, 1e-6 * share)));
             }
         }
@@ -239,14 +242,14 @@ mod tests {
     /// x of the face at x + p_i/k_n (e^y(x) - 1) and beyond, all over the interval; with the derivative of the inverse.
     #[test]
     fn contact_and_backing_make_up_the_approach_of_the_face() {
-        let cases: [_; 75] = cases().try_into().unwrap();
+        let cases: [_; 225] = cases().try_into().unwrap();
         for step in 0..=40 {
             let x = 1e-6 * f64::from(step) / 40.0;
             let solved = cases.map(|(cubic, _, indentation)| distance_and_slope(cubic, x, indentation));
-            let faces: [f64; 75] = std::array::from_fn(|i| solved[i].0 + cases[i].2);
+            let faces: [f64; 225] = std::array::from_fn(|i| solved[i].0 + cases[i].2);
             let found = contacts(&cases, &faces.map(|face| Dual { value: face, slopes: [1.0] }));
             let plain = contacts(&cases, &faces);
-            for i in 0..75 {
+            for i in 0..225 {
                 let (cubic, growth, indentation) = cases[i];
                 // What rounding of the approach leaves of it, and of its derivative.
                 let (rounding, slope) = (1e-15 * faces[i] / solved[i].1, 1.0 / solved[i].1);
