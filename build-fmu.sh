@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the program and the shared library and packs a scene as an FMU.
+# Builds the program and the shared library and packs a scene, a patch or a table as an FMU.
 #
 #   ./build-fmu.sh [SCENE.toml] [-o OUT.fmu] [--simulate] [--all-platforms]
 #   ./build-fmu.sh --patch PATCH.toml | --table SWEEP.csv [-o OUT.fmu] [--all-platforms]
@@ -39,16 +39,19 @@ scene='' kind=() output='' simulate=false all_platforms=false wheel=false
 while [ $# -gt 0 ]; do
     case $1 in
         -o | --output) [ $# -ge 2 ] || refuse "$1 needs a file name"; output=$2; shift ;;
-        --patch | --table) kind=("$1") ;;
+        --patch | --table) [ ${#kind[@]} -eq 0 ] || refuse "${kind[*]} or $1"; kind=("$1") ;;
         --simulate) simulate=true ;;
         --all-platforms) all_platforms=true ;;
         --wheel) wheel=true ;;
         -h | --help) usage; exit 0 ;;
         -*) refuse "unknown option $1; see --help" ;;
-        *) [ -z "$scene" ] || refuse "one scene at a time: $scene or $1"; scene=$1 ;;
+        *) [ -z "$scene" ] || refuse "one file at a time: $scene or $1"; scene=$1 ;;
     esac
     shift
 done
+if $wheel && { [ -n "$scene$output" ] || [ ${#kind[@]} -gt 0 ] || $simulate; }; then
+    refuse "--wheel builds no FMU: it goes with --all-platforms alone"
+fi
 if [ ${#kind[@]} -gt 0 ]; then
     [ -n "$scene" ] || refuse "${kind[*]} needs a file"
     ! $simulate || refuse "--simulate follows the excitation of a scene; ${kind[*]} has none"
@@ -162,7 +165,8 @@ build_wheels() {
         command -v rustup > /dev/null || refuse "--wheel --all-platforms needs rustup, which adds Rust's targets"
         build_wheel_by_zig linux64 x86_64-unknown-linux-gnu .2.17 libasperity.so
         build_wheel_by_zig linux64 aarch64-unknown-linux-gnu .2.17 libasperity.so
-        # The feature does nothing in this version of pyo3, but this one of maturin asks for it.
+        # The feature does nothing in this version of pyo3, but this one of maturin asks for it; and it would build for
+        # interpreters that the stable interface does not serve, were none named.
         build_wheel_by_zig win64 x86_64-pc-windows-gnu '' asperity.dll --features pyo3/generate-import-lib \
             --interpreter 3.10
     else

@@ -64,9 +64,10 @@ fn pose(k: f64) -> [f64; 6] {
 /// What warms.
 const HEAT: &str = ", heat = { conductivity = 0.25, capacity = 1700.0, density = 1100.0, share = 0.3 }";
 
-/// What gives way behind the face; how much deeper the face then stands for the same pressure, m.
+/// What gives way behind the face.
 const BACKING: &str = ", backing = { height = 5e-3, modulus = 6e6 }";
-const DEEPER: f64 = -2.5e-4;
+/// The lift (m) at which a face on it bears some 300 kPa as one without does at 0.
+const BACKED_LIFT: f64 = -2.5e-4;
 
 /// Seconds an element and step, of the processor and of the clock, of a patch raised by `lift` (m), on a table of
 /// several temperatures or of none and with more keys of `[patch]`.
@@ -146,7 +147,8 @@ fn main() {
     };
     let (cold, warm) = (least(""), least(HEAT));
     println!("{:.1} ns with heat: {:.2} of those without", 1e9 * warm, warm / cold);
-    let backed = (0..RUNS).map(|_| patch_times(side, false, DEEPER, (&[], BACKING))[0]).fold(f64::INFINITY, f64::min);
+    let backed =
+        (0..RUNS).map(|_| patch_times(side, false, BACKED_LIFT, (&[], BACKING))[0]).fold(f64::INFINITY, f64::min);
     println!("{:.1} ns with a backing: {:.2} of those without", 1e9 * backed, backed / own);
     // Large enough for several threads.
     let [work, time] = patch_times(4 * side, false, 0.0, COLD);

@@ -20,10 +20,10 @@ cd "$folder"
 "$asperity" surface road.txt --missing fill --tilt remove --smooth 2.5e-4 -o road.svg --write road.csv
 "$asperity" surface road.csv --mirror --write road-periodic.csv
 if [ "${2:-}" = --sled ]; then
-    ASPERITY='' "$root/build-fmu.sh" "$folder/block.toml" -o "$folder/block.fmu"
+    "$root/build-fmu.sh" "$folder/block.toml" -o "$folder/block.fmu"
     python=$("$root/tests/python/environment.sh" "$folder/venv")
     "$asperity" sweep block.toml --speeds 1e-4..10/11 --pressures 1e5,2e5,4e5 -o block.sweep.csv
-    ASPERITY='' "$root/build-fmu.sh" --table block.sweep.csv -o element.fmu
+    "$root/build-fmu.sh" --table block.sweep.csv -o element.fmu
     "$python" "$here/sled.py" block.fmu 8.2e-5 -o sled-layer.csv
     "$python" "$here/sled.py" element.fmu 6.5e-5 -o sled-element.csv
     "$asperity" plot sled-layer.csv sled-element.csv --y F_x --labels layer,element -o sled.svg

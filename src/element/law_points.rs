@@ -18,9 +18,10 @@ pub struct LawPoints<T, const N: usize> {
     pub stiffness: [T; N],
 }
 
-/// The intervals of the pressure in which elements are, the first `count` of N, at the speeds of these.
+/// The intervals of the pressure in which elements are, and the law there at the elements' speeds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Intervals<T, const N: usize> {
+    /// How many of the N there are.
     pub(super) count: usize,
     /// The law in the interval: the approach (m) where it begins; the slope of ln p over the approach from there and the
     /// next two coefficients of its cubic; four of μ and of κ over ln p from there. Above the last pressure: the slope
@@ -68,8 +69,8 @@ impl<T: Number, const N: usize> Intervals<T, N> {
         for i in 0..self.count {
             let x = beyond[i];
             let (is_above, is_below) = (self.is_last[i] > 0.0, x.value() < 0.0);
-            // Below the least pressure p is the square of this times that; also over the little by which rounding may
-            // lead below an interval.
+            // Below the least pressure p_0 of the table p is root² p_0; likewise over the little by which rounding may
+            // lead below the start of an interval.
             let root = (one + (x * c[1][i]).times(0.5)).larger(zero);
             let parabola = root * root;
             let t = (x * (c[1][i] + x * (c[2][i] + x * c[3][i]))).or(!is_above & !is_below, zero);

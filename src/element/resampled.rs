@@ -2,8 +2,8 @@
 //!
 //! Between two speeds of the table ln v is divided into even cells. At three speeds of each the law is a
 //! [`LawAtSpeed`]; the coefficients of its cubics over the approach and over ln p are interpolated by parabolas of ln
-//! v. So an evaluation takes one logarithm, one exponential and polynomials, no division. Cells are computed when they
-//! are first needed at a temperature.
+//! v. So an evaluation takes one logarithm, one exponential and polynomials, no division; with a backing what that takes
+//! besides. Cells are computed when they are first needed at a temperature.
 //!
 //! Where each element has a temperature of its own, the law is kept at several temperatures, planes, and is linear
 //! between two of them: p, μp and κ at an approach. Cells of a plane are computed when they are first met.
@@ -481,7 +481,7 @@ impl ResampledLaw {
     /// The index of the interval of the pressure at an approach: near the ends of intervals one or the other, which
     /// agree there.
     #[inline(always)]
-    pub fn pressure_interval(&self, cell: &SpeedCell, log_speed: f64, approach: f64) -> usize {
+    fn pressure_interval(&self, cell: &SpeedCell, log_speed: f64, approach: f64) -> usize {
         let (fraction, count) = (cell.fraction(log_speed), starts_of(self.log_pressures.len()));
         let mut passed = [0_u64; WIDTH];
         for IntervalStarts { start, growth } in &self.interval_starts[cell.index * count..(cell.index + 1) * count] {
@@ -513,8 +513,6 @@ impl ResampledLaw {
     }
 
     /// As [`at`](Self::at), of elements: the first `count` of N.
-    ///
-    /// In loops over the elements one after the other: each then runs in vectors, where one loop over all would not.
     #[inline(always)]
     pub fn points<T: Number, const N: usize>(
         &self,

@@ -290,7 +290,8 @@ impl<T: Number> BlockContacts<T> {
         self.approach.iter().fold(f64::NEG_INFINITY, |most, a| if a.value() > most { a.value() } else { most }) <= touch
     }
 
-    /// Looks the law up; in lanes without an element there is no contact.
+    /// Looks the law up, in whole vectors. The lanes behind the last element have no area; those behind the last vector
+    /// keep the 0 that `reset` gave them.
     #[inline(always)]
     fn look_up(&mut self, law: &mut ResampledLaw) {
         let range = law.range();
@@ -390,6 +391,7 @@ impl<T: Number> Block<T> {
         self.heat.reset();
         self.slips = [0.0; BLOCK];
         (self.slip, self.release) = ([0.0; BLOCK], [0.0; BLOCK]);
+        // Both, since the law is not looked up in all lanes.
         for contacts in [&mut self.begin, &mut self.end] {
             contacts.count = count;
             contacts.place.iter_mut().for_each(|lanes| lanes[count..].fill(0.0));

@@ -65,8 +65,8 @@ impl PatchRun {
     /// Writes into `values` how `variables` change as the pose's coordinates change by `direction` (m and rad per
     /// unit).
     pub fn directional_derivative(&mut self, variables: &[PatchVariable], direction: [f64; 6], values: &mut [f64]) {
-        let has_shares = variables.iter().any(|variable| variable.output.follows_shares());
-        let changes = self.changes(&Displacement { pose: direction, entered: 0.0 }, has_shares);
+        let with_shares = variables.iter().any(|variable| variable.output.follows_shares());
+        let changes = self.changes(&Displacement { pose: direction, entered: 0.0 }, with_shares);
         for (variable, value) in variables.iter().zip(values) {
             *value = changes.rate_of(variable.output).slopes[0];
         }
@@ -84,8 +84,8 @@ impl PatchRun {
         Some(self.changes(&Displacement { pose: self.totals.rates, entered }, false).rate_of(output).slopes[0])
     }
 
-    /// The changes of all outputs, or of those alone that do without the shares of elements.
-    fn changes(&mut self, shift: &Displacement, has_shares: bool) -> Changes {
+    /// The changes; without `with_shares` those of the real area and of hysteresis stay 0.
+    fn changes(&mut self, shift: &Displacement, with_shares: bool) -> Changes {
         let (totals, now) = (self.totals, self.totals.instant());
         let start = totals.pose.coordinates();
         let shifted = PoseMotion { start, change: shift.pose.map(|slope| rate(0.0, slope)), duration: 1.0 }.at(1.0);
@@ -106,7 +106,7 @@ impl PatchRun {
             let force = self.force(i, limit, stiffness, element.displacement);
             changes.add(&element, force, normal);
             let tangential = size(force);
-            if has_shares {
+            if with_shares {
                 let (hysteresis, ratio) = self.shares(&here.place, approach);
                 changes.real_area = changes.real_area + ratio * element.area;
                 changes.hysteresis = changes.hysteresis + tangential * hysteresis;

@@ -87,21 +87,16 @@ pub(crate) fn default_output(scene: &Path, extension: &str) -> PathBuf {
     PathBuf::from(scene.file_stem().unwrap_or(scene.as_os_str())).with_extension(extension)
 }
 
-/// Reads a scene whose excitation is not used: [`load`] without the warning about it.
-pub(crate) fn load_without_excitation(path: &Path, set: &[Setting]) -> Result<Scene, FileError> {
-    load_for_sliding(path, set, |_| false)
-}
-
-/// Reads a scene that slides steadily: [`load`] without the warnings about its excitation and, where it `is_solved` for,
-/// about the layer's links, neither of which is used.
-pub(crate) fn load_for_sliding(
+/// Reads a scene that is not run: [`load`] without the warnings about its excitation and, unless the layer slides all the
+/// same, about the layer's masses and links.
+pub(crate) fn load_without_run(
     path: &Path,
     set: &[Setting],
-    is_solved: impl FnOnce(&Scene) -> bool,
+    layer_slides: impl FnOnce(&Scene) -> bool,
 ) -> Result<Scene, FileError> {
     let scene = read_scene(path, set)?;
     let mut unused = Vec::from_iter(scene.short_profile());
-    if is_solved(&scene) {
+    if !layer_slides(&scene) {
         unused.extend(scene.link_warnings());
     }
     scene.warnings.iter().filter(|warning| !unused.contains(warning)).for_each(|text| warn(text));

@@ -9,7 +9,7 @@ use crate::scene::{Link, LinkKind, MaxwellElement, ParameterError, Scene};
 use super::cli::Material;
 use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
 use super::files::{
-    self, FileError, check_outputs, ends_in, is_standard_output, load_without_excitation, named, print_beside, sources,
+    self, FileError, check_outputs, ends_in, is_standard_output, load_without_run, named, print_beside, sources,
 };
 use super::terminal::{LabelledLine, decimal, lines, rounded};
 
@@ -28,7 +28,7 @@ pub(crate) enum MaterialError {
 
 /// Prints a summary and a table; writes the outputs or, if none is given, a plot.
 pub(crate) fn material(command: &Material) -> Result<(), MaterialError> {
-    let mut scene = load_without_excitation(&command.scene, &command.set)?;
+    let mut scene = load_without_run(&command.scene, &command.set, |_| false)?;
     if let Some(temperature) = command.temperature {
         set_temperature(&mut scene, temperature)?;
     }

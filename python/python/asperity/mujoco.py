@@ -170,13 +170,15 @@ class Pad:
     def _pose_of(self, data: Any) -> Floats:
         origin, axes = self._ground_of(data)
         place = axes.T @ (data.xpos[self._body] - origin)
+        # Rows of the rotation: the ground's axes in the body's.
         x, y, z = (axes.T @ data.xmat[self._body].reshape(3, 3)).tolist()
         roll, yaw = math.atan2(z[1], z[2]), math.atan2(y[0], x[0])
         pitch = math.asin(min(max(-z[0], -1.0), 1.0))
         # Angles go on where a turn is full.
         before = self.pose[3:].tolist()
-        angles = [now + math.tau * round((old - now) / math.tau) for old, now in zip(before, (roll, pitch, yaw))]
-        return np.array([*place, *angles])
+        changes = [old - now for old, now in zip(before, (roll, pitch, yaw))]
+        whole_turns = [change - math.remainder(change, math.tau) for change in changes]
+        return np.array([*place, roll + whole_turns[0], pitch + whole_turns[1], yaw + whole_turns[2]])
 
     def _inputs_of(self, data: Any, pose: Floats) -> Floats:
         if self._joint is None:

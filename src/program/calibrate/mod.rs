@@ -21,7 +21,7 @@ use super::SUCCESS;
 use super::cli::Calibrate;
 use super::figure::{Figure as _, Stroke};
 use super::files::{
-    self, FileError, check_outputs, is_standard_output, load_for_sliding, picture_beside, print_beside, sources,
+    self, FileError, check_outputs, is_standard_output, load_without_run, picture_beside, print_beside, sources,
 };
 use super::interrupt::Farewell;
 use super::measured_friction::{self, CurveGrid, MeasuredFrictionError, ModelCurves};
@@ -260,7 +260,7 @@ const DIGITS: usize = 7;
 
 /// Fits, writes the scene and the picture, and says what the data tell.
 pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, CalibrateError> {
-    let scene = load_for_sliding(&command.scene, &command.set, |scene| command.sliding.options().solves(scene))?;
+    let scene = load_without_run(&command.scene, &command.set, |scene| !command.sliding.options().solves(scene))?;
     let text = read_text(&command.scene).map_err(FileError::io("read", &command.scene))?;
     let options = command.into();
     let free = FreeScene::new(&options, &text, scene)?;

@@ -11,7 +11,7 @@ use crate::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 use zip::result::ZipError;
 
 use super::cli::{Contact, SteadyState};
-use super::files::{self, FileError, check_outputs, ends_in, load_for_sliding, named, print_beside, sources};
+use super::files::{self, FileError, check_outputs, ends_in, load_without_run, named, print_beside, sources};
 use super::sweep::{Method, MethodError, SlidingOptions, SweepMethod, solved_status};
 use super::terminal::{lines, rounded, warn};
 
@@ -87,7 +87,7 @@ pub fn solve_contact(scene: &Scene, options: &ContactOptions) -> Result<SolvedCo
 
 /// Solves for steady sliding, prints what it is, and writes the picture and the data.
 pub(crate) fn contact(command: &Contact) -> Result<(), ContactError> {
-    let scene = load_for_sliding(&command.scene, &command.set, |_| true)?;
+    let scene = load_without_run(&command.scene, &command.set, |_| false)?;
     let outputs: Vec<_> = [&command.output].into_iter().chain(&command.data).cloned().collect();
     check_outputs(&outputs, sources(&command.scene, &scene))?;
     let SteadyState { pressure, speed } = command.at;

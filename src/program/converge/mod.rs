@@ -83,7 +83,7 @@ const RUN_ERROR: f64 = 0.1;
 /// Makes the runs, prints the study and draws it.
 pub(crate) fn converge(command: &Converge) -> Result<u8, ConvergeError> {
     let asked = asked(command);
-    let (template, scene) = Template::read(&command.scene, &command.set, |scene| asked.solves(scene))?;
+    let (template, scene) = Template::read(&command.scene, &command.set, |scene| !asked.solves(scene))?;
     let (method, of_method) = asked.choose(&scene)?;
     let template = match &method {
         Method::Steady(surface) => template.on_grid(surface),

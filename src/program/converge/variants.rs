@@ -138,14 +138,14 @@ pub(super) struct Template {
 }
 
 impl Template {
-    /// The scene at `path`, its parameters overridden by `set`, and what variants of it are made of; without
-    /// warnings about the layer where it `is_solved` for.
+    /// The scene at `path`, its parameters overridden by `set`, and what variants of it are made of; warnings
+    /// about the layer where that slides.
     pub(super) fn read(
         path: &Path,
         set: &[Setting],
-        is_solved: impl FnOnce(&Scene) -> bool,
+        layer_slides: impl FnOnce(&Scene) -> bool,
     ) -> Result<(Self, Scene), ConvergeError> {
-        let scene = files::load_for_sliding(path, set, is_solved)?;
+        let scene = files::load_without_run(path, set, layer_slides)?;
         if scene.material.is_none() {
             return Err(ConvergeError::DirectForm { path: path.to_owned() });
         }

@@ -10,9 +10,7 @@ use serde::Serialize;
 
 use super::cli::{Reading, Surface};
 use super::figure::{Figure as _, ProfileCurves, ProfilePicture};
-use super::files::{
-    self, FileError, check_outputs, ends_in, load_without_excitation, name_of, named, print_beside, sources,
-};
+use super::files::{self, FileError, check_outputs, ends_in, load_without_run, name_of, named, print_beside, sources};
 use super::terminal::{lines, note, real, warn};
 use map::MapAnalysis;
 
@@ -123,7 +121,7 @@ fn read(command: &Surface) -> Result<(scene::Surface, Vec<PathBuf>), SurfaceErro
         if command.reading != Reading::default() {
             return Err(SurfaceError::SceneHasOptions { path: path.clone() });
         }
-        let scene = load_without_excitation(path, &[])?;
+        let scene = load_without_run(path, &[], |_| false)?;
         scene.notes.iter().filter(|read| !read.assumed).for_each(|read| note(&read.text));
         let files = sources(path, &scene);
         return Ok((scene.surface, files));

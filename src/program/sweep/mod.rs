@@ -24,7 +24,7 @@ use crate::scene::{Initial, OutputGroup, ParameterError, Path as Displacement, P
 use super::cli::{Sliding, Sweep};
 use super::draft::TablePlace;
 use super::files::{
-    FileError, check_outputs, default_output, load_for_sliding, named, picture_beside, print_beside, sources,
+    FileError, check_outputs, default_output, load_without_run, named, picture_beside, print_beside, sources,
 };
 use super::interrupt::Farewell;
 use super::terminal::{self, lines, warn};
@@ -129,7 +129,7 @@ fn merge(command: &Sweep, output: &PathBuf) -> Result<(), SweepError> {
 }
 
 fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepError> {
-    let scene = load_for_sliding(path, &command.set, |scene| command.sliding.options().solves(scene))?;
+    let scene = load_without_run(path, &command.set, |scene| !command.sliding.options().solves(scene))?;
     let output = command.output.clone().unwrap_or_else(|| default_output(path, "sweep.csv"));
     let picture = picture(command, &output);
     let study = convergence::file(command.converged.as_ref(), path);

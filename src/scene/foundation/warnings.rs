@@ -26,7 +26,7 @@ impl Scene {
         found
     }
 
-    /// Those of them about the masses and links that stand for the rubber, which steady sliding is solved for without.
+    /// Warnings about the masses and links that stand for the rubber; a solution for steady sliding uses neither.
     pub fn link_warnings(&self) -> Vec<String> {
         let Some(foundation) = &self.foundation else { return Vec::new() };
         let found = [

@@ -373,8 +373,9 @@ fn a_patch_file_names_what_is_wrong() {
 /// As for a layer, 64 KiB; with tangents every number of a block of elements carries six derivatives.
 #[test]
 fn small_stacks_are_enough() {
+    let full = warm_wheel().replace("transport = true", "transport = true\nbacking = { height = 5e-3, modulus = 6e6 }");
     for (outputs, kibibytes) in [("forces", 64), ("tangent", 256)] {
-        let text = WHEEL.replace("\"forces\", ", "").replace("\"tangent\"", &format!("\"{outputs}\""));
+        let text = full.replace("\"forces\", ", "").replace("\"tangent\"", &format!("\"{outputs}\""));
         let run = move || {
             let fmu = rolling_of(&text, 2);
             let state = fmu.state();
