@@ -7,7 +7,7 @@ use asperity::patch::PatchError;
 use asperity::program::{CalibrateError, ContactError, FileError, FitError, OverrideError, PackError, SweepError};
 use asperity::scene::{ParameterError, SceneError};
 use asperity::simulation::SimulationError;
-use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::exceptions::{PyKeyError, PyOSError, PyValueError};
 use pyo3::prelude::*;
 
 /// `asperity.SceneError` with file, line and key where they are known.
@@ -28,6 +28,12 @@ fn simulation_error(message: &dyn Display) -> PyErr {
         let class = py.import("asperity._errors").and_then(|module| module.getattr("SimulationError"));
         class.and_then(|class| class.call1((message.to_string(),))).map_or_else(|error| error, PyErr::from_value)
     })
+}
+
+/// A `KeyError`: the outputs of a scene or a patch are `known`, none has this name.
+pub(crate) fn no_output<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> PyErr {
+    let known = known.collect::<Vec<_>>().join(", ");
+    PyKeyError::new_err(format!("{name}: expected one of {known}; fmu.outputs of the file says which there are"))
 }
 
 /// An error of the library as an exception.

@@ -8,10 +8,10 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use asperity::patch::{PatchMotion, PatchStart, PatchVariable, Pose};
 use asperity::program::fmu;
 use numpy::{IntoPyArray as _, PyArray1};
-use pyo3::exceptions::{PyKeyError, PyOSError, PyValueError};
+use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::errors::Raise as _;
+use crate::errors::{Raise as _, no_output};
 
 /// A contact patch, read from its file.
 #[pyclass(frozen, module = "asperity._native")]
@@ -131,7 +131,7 @@ impl PatchRun {
 
     fn value(&self, name: &str) -> PyResult<f64> {
         let found = self.variables.iter().find(|variable| variable.name == name);
-        let variable = found.ok_or_else(|| PyKeyError::new_err(name.to_owned()))?;
+        let variable = found.ok_or_else(|| no_output(name, self.names().into_iter()))?;
         let mut value = [0.0];
         self.run().evaluate(std::slice::from_ref(variable), &mut value);
         Ok(value[0])

@@ -8,11 +8,11 @@ use asperity::outputs::{Variable, variables};
 use asperity::scene::{Force, Path};
 use asperity::simulation::{Interrupt, Motion, SimulationError, SimulationState, Start};
 use numpy::{IntoPyArray as _, PyArray1};
-use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::errors::Raise as _;
+use crate::errors::{Raise as _, no_output};
 use crate::scene::Scene;
 
 /// All that changes in a simulation.
@@ -61,12 +61,7 @@ impl Simulation {
 
     fn variable(&self, name: &str) -> PyResult<&Variable> {
         let found = self.variables.iter().find(|variable| variable.name == name);
-        found.ok_or_else(|| {
-            let known = self.variables.iter().map(|variable| variable.name.as_str()).collect::<Vec<_>>().join(", ");
-            PyKeyError::new_err(format!(
-                "{name}: expected one of {known}; fmu.outputs of the scene says which there are"
-            ))
-        })
+        found.ok_or_else(|| no_output(name, self.variables.iter().map(|variable| variable.name.as_str())))
     }
 }
 

@@ -16,6 +16,8 @@ def test_a_patch_is_pressed_and_dragged(tmp_path):
     assert patch.pose[0] == pytest.approx(1e-3, rel=1e-12) and patch.time > 1e-3
     # Friction is against the motion.
     assert patch["force.x"] < 0.0 and set(patch.units) == set(patch.names) and len(patch.values) == len(patch.names)
+    with pytest.raises(KeyError, match="force: expected one of force.x"):
+        patch["force"]
     with pytest.raises(ValueError, match="one of them"):
         patch.advance(1e-3, above, rates=above)
     assert patch.pack(tmp_path / "patch.fmu").stat().st_size > 1e5
