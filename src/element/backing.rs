@@ -132,11 +132,8 @@ impl<'a, T: Number, const N: usize> SeriesIntervals<'a, T, N> {
     /// the last step may begin with.
     #[inline(always)]
     fn halley_step(&self, i: usize, x: f64, target: f64) -> (f64, f64) {
-        let [a, b, c] = self.values(i);
-        let growth = self.indentation[i] * Number::exp(x * (a + x * (b + x * c)));
-        let (first, second) = (a + x * (2.0 * b + 3.0 * x * c), 2.0 * b + 6.0 * x * c);
-        let distance = x + (growth - self.indentation[i]) - target;
-        let (slope, bend) = (1.0 + growth * first, growth * (first * first + second));
+        let [d, slope, bend] = expansion(self.values(i), x, self.indentation[i]);
+        let distance = d - target;
         let next = x - distance * slope / (slope * slope - 0.5 * distance * bend);
         let next = next.larger(0.0).smaller((1.0 + BEYOND_END) * self.width[i]);
         (next, distance.larger(-distance) - LAST_STEP * self.width[i] * slope)
@@ -149,7 +146,7 @@ impl<'a, T: Number, const N: usize> SeriesIntervals<'a, T, N> {
         let (mut low, mut high) = (0.0, (1.0 + BEYOND_END) * width);
         let mut x = target * width / (width + self.rise[i]);
         for _ in 0..MAX_SAFE_STEPS {
-            let (distance, slope) = distance_and_slope(self.values(i), x, self.indentation[i]);
+            let [distance, slope, _] = expansion(self.values(i), x, self.indentation[i]);
             if distance < target {
                 low = x;
             } else {
@@ -174,7 +171,7 @@ impl<'a, T: Number, const N: usize> SeriesIntervals<'a, T, N> {
         let (one, slope) = (T::constant(1.0), cubic[0]);
         let from = approach - T::constant(indentation);
         // Within the interval.
-        let (distance, along) = distance_and_slope(cubic, T::constant(x), indentation);
+        let [distance, along, _] = expansion(cubic, T::constant(x), indentation);
         let within = T::constant(x) - (distance - from) / along;
         // A straight p above the largest pressure; also over the little by which rounding may lead below an interval.
         let straight = from / (one + slope.times(indentation));
@@ -194,13 +191,18 @@ impl<'a, T: Number, const N: usize> SeriesIntervals<'a, T, N> {
     }
 }
 
-/// d at x in an interval with this cubic and p_i/k_n (m), and dd/dx.
+/// d (m) at x (m) in an interval with this cubic and p_i/k_n (m), dd/dx and d²d/dx² (1/m).
 #[inline(always)]
-fn distance_and_slope<T: Number>([a, b, c]: [T; 3], x: T, indentation: f64) -> (T, T) {
+fn expansion<T: Number>([a, b, c]: [T; 3], x: T, indentation: f64) -> [T; 3] {
     let growth = (x * (a + x * (b + x * c))).exp();
     let slope = a + x * (b.times(2.0) + (x * c).times(3.0));
+    let bend = slope * slope + b.times(2.0) + (x * c).times(6.0);
     let one = T::constant(1.0);
-    (x + (growth - one).times(indentation), one + (growth * slope).times(indentation))
+    [
+        x + (growth - one).times(indentation),
+        one + (growth * slope).times(indentation),
+        (growth * bend).times(indentation),
+    ]
 }
 
 #[cfg(test)]
@@ -250,14 +252,14 @@ mod tests {
         let cases: [_; 226] = cases().try_into().unwrap();
         for step in 0..=40 {
             let x = 1e-6 * f64::from(step) / 40.0;
-            let solved = cases.map(|(cubic, _, indentation)| distance_and_slope(cubic, x, indentation));
-            let faces: [f64; 226] = std::array::from_fn(|i| solved[i].0 + cases[i].2);
+            let solved = cases.map(|(cubic, _, indentation)| expansion(cubic, x, indentation));
+            let faces: [f64; 226] = std::array::from_fn(|i| solved[i][0] + cases[i].2);
             let found = contacts(&cases, &faces.map(|face| Dual { value: face, slopes: [1.0] }));
             let plain = contacts(&cases, &faces);
             for i in 0..226 {
                 let (cubic, growth, indentation) = cases[i];
                 // What rounding of the approach leaves of it, and Halley's method 1e-11 of the interval.
-                let (rounding, slope) = (1e-15 * faces[i] / solved[i].1, 1.0 / solved[i].1);
+                let (rounding, slope) = (1e-15 * faces[i] / solved[i][1], 1.0 / solved[i][1]);
                 assert!((found[i].value - x).abs() <= 8.0 * rounding + 1e-17, "{:?}: {} {x}", cases[i], found[i].value);
                 // Of first order in what Halley's method leaves: 4e-6 where ln p is nearly level at one end, else 1e-8.
                 let error = (found[i].slopes[0] / slope - 1.0).abs();

@@ -506,9 +506,8 @@ impl ResampledLaw {
     /// The law at a logarithm of a speed, whose [`speed_cell`](Self::speed_cell) is given, and an approach (m).
     #[inline(always)]
     pub fn at<T: Number>(&self, cell: &SpeedCell, log_speed: T, approach: T) -> ElementLaw<T> {
-        let points = self.points(1, &[*cell], &[log_speed], &[approach]);
-        let [[log_pressure], [factor]] = [points.log_pressure, points.factor];
-        let ([friction], [stiffness]) = (points.friction, points.stiffness);
+        let LawPoints { log_pressure: [log_pressure], factor: [factor], friction: [friction], stiffness: [stiffness] } =
+            self.points(1, &[*cell], &[log_speed], &[approach]);
         ElementLaw { pressure: log_pressure.exp() * factor, friction, stiffness }
     }
 
@@ -526,6 +525,19 @@ impl ResampledLaw {
         for i in 0..count {
             intervals[i] = self.pressure_interval(&cells[i], log_speeds[i].value(), approaches[i].value());
         }
+        self.points_in(count, &intervals, cells, log_speeds, approaches)
+    }
+
+    /// As [`points`](Self::points), the intervals of the pressure being known.
+    #[inline(always)]
+    fn points_in<T: Number, const N: usize>(
+        &self,
+        count: usize,
+        intervals: &[usize; N],
+        cells: &[SpeedCell; N],
+        log_speeds: &[T; N],
+        approaches: &[T; N],
+    ) -> LawPoints<T, N> {
         let mut laws = Intervals::new(count);
         for i in 0..count {
             let (cell, interval) = (&cells[i], intervals[i]);
@@ -583,7 +595,7 @@ impl ResampledLaw {
 
     fn shares_in(&self, cell: &SpeedCell, log_speed: f64, approach: f64) -> (f64, f64) {
         let (fraction, i) = (cell.fraction(log_speed), self.pressure_interval(cell, log_speed, approach));
-        let points = self.points(1, &[*cell], &[log_speed], &[approach]);
+        let points = self.points_in(1, &[i], &[*cell], &[log_speed], &[approach]);
         let t = points.log_pressure[0] - self.log_pressures[i];
         let powers = &self.shares[cell.index * self.log_pressures.len() + i];
         let at = |k: usize| (0..SAMPLES).rev().fold(0.0, |sum, power| sum * fraction + powers[power][k]);

@@ -1,4 +1,5 @@
-//! CSV files with a header, also with semicolons or tabs for commas; result files among them: columns `time` and the inputs, then the output variables.
+//! CSV files with a header, also with semicolons or tabs for commas; result files among them: columns `time` and the
+//! inputs, then the output variables.
 
 use std::borrow::Cow;
 use std::fmt::{self, Display, Formatter};
@@ -155,11 +156,7 @@ impl CsvFile {
         let error = |line: usize, message: String| ResultFileError::Line { path: path.to_owned(), line, message };
         let text = text_table::decode(&bytes).map_err(|problem| error(1, problem.to_string()))?;
         let owned = |row: Row<'_>| -> Vec<String> { row.fields.into_iter().map(Cow::into_owned).collect() };
-        // Fields are separated by what makes most of the first line; by commas where several do.
-        let columns =
-            |separator: char| text_table::rows(&text, Some(separator)).next().map_or(0, |row| row.fields.len());
-        let separator = ['\t', ';', ','].into_iter().max_by_key(|&separator| columns(separator));
-        let mut rows = text_table::rows(&text, separator);
+        let mut rows = text_table::rows(&text, None);
         let names = rows.next().map(owned).unwrap_or_default();
         let record = |row: Row<'_>| {
             let (line, fields) = (row.line, owned(row));
@@ -213,7 +210,8 @@ mod tests {
     #[test]
     fn fields_are_separated_as_the_header_is() {
         let path = std::env::temp_dir().join(format!("asperity-separators-{}.csv", std::process::id()));
-        for text in ["time [s],F_x [N]\n0,1\n", "time [s];F_x [N]\n0;1\n", "time [s]\tF_x [N]\n0\t1\n"] {
+        let quoted = "\"time; from the start\",F_x [N]\n0,1\n";
+        for text in ["time [s],F_x [N]\n0,1\n", "time [s];F_x [N]\n0;1\n", "time [s]\tF_x [N]\n0\t1\n", quoted] {
             std::fs::write(&path, text).unwrap();
             let file = CsvFile::read(&path).unwrap();
             assert_eq!((file.column("F_x").unwrap(), &file.records()[0].fields[1][..]), (1, "1"), "{text}");

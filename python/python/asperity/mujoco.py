@@ -174,11 +174,7 @@ class Pad:
         x, y, z = (axes.T @ data.xmat[self._body].reshape(3, 3)).tolist()
         roll, yaw = math.atan2(z[1], z[2]), math.atan2(y[0], x[0])
         pitch = math.asin(min(max(-z[0], -1.0), 1.0))
-        # Angles go on where a turn is full.
-        before = self.pose[3:].tolist()
-        changes = [old - now for old, now in zip(before, (roll, pitch, yaw))]
-        whole_turns = [change - math.remainder(change, math.tau) for change in changes]
-        return np.array([*place, roll + whole_turns[0], pitch + whole_turns[1], yaw + whole_turns[2]])
+        return np.array([*place, *map(_unwound, (roll, pitch, yaw), self.pose[3:].tolist())])
 
     def _inputs_of(self, data: Any, pose: Floats) -> Floats:
         if self._joint is None:
@@ -318,6 +314,12 @@ def _solve(trial: _Trial, pads: Sequence[Pad]) -> tuple[Floats, Floats, int]:
         for pad in pads:
             pad.patch.restore()
     return loads, stiffness, corrections
+
+
+def _unwound(angle: float, before: float) -> float:
+    """An angle, but for whole turns, nearest to the one before, rad: it goes on where a turn is full."""
+    change = before - angle
+    return angle + (change - math.remainder(change, math.tau))
 
 
 def _reach(mobility: Floats, loads: Floats) -> float:

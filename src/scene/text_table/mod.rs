@@ -74,11 +74,11 @@ pub struct Row<'a> {
 }
 
 /// The lines that are neither blank nor comments (`# …`), as rows: their fields are separated by `separator` or, where
-/// none is given, by the first of semicolon, tab and comma that is in the first row.
+/// none is given, by the first of semicolon, tab and comma that is in the first row outside quotation marks.
 pub fn rows(text: &str, separator: Option<char>) -> impl Iterator<Item = Row<'_>> {
     let filled = || numbered_lines(text).filter(|(_, line)| !line.starts_with('#'));
-    let found =
-        || [';', '\t', ','].into_iter().find(|&sign| filled().next().is_some_and(|(_, line)| line.contains(sign)));
+    let parts = |sign: char| filled().next().is_some_and(|(_, line)| fields(line, sign).nth(1).is_some());
+    let found = || [';', '\t', ','].into_iter().find(|&sign| parts(sign));
     let separator = separator.or_else(found).unwrap_or(',');
     filled().map(move |(line, text)| Row { line, fields: fields(text, separator).collect() })
 }
