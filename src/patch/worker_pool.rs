@@ -58,6 +58,8 @@ impl<T: Number + Send + Sync> WorkerPool<T> {
     }
 
     /// One, or `threads` of them.
+    // Not inlined, here and below: a step without derivatives then does without the stack of one with them.
+    #[inline(never)]
     pub(super) fn with_threads(threads: usize, law: &ResampledLaw) -> Self {
         let worker = || Worker { block: Box::new(Block::new()), law: law.clone() };
         Self {
@@ -68,6 +70,7 @@ impl<T: Number + Send + Sync> WorkerPool<T> {
     }
 
     /// Does `work` for every block of a step, from the springs in `springs` to those in `next`; returns the sums.
+    #[inline(never)]
     pub(super) fn work(
         &mut self,
         step: &FaceMotion<'_, T>,
