@@ -99,11 +99,11 @@ impl PointContact {
             }
             (Parameter::TableExtrapolation, Value::Text(word)) => match TableExtrapolation::from_word(word) {
                 Some(extrapolation) => self.table_extrapolation = extrapolation,
-                None => return refuse("one of \"refuse\", \"hold\"".into()),
+                None => return refuse(parameter.allowed()),
             },
             (Parameter::Extrapolation, Value::Text(word)) => match Extrapolation::from_word(word) {
                 Some(extrapolation) => self.extrapolation = extrapolation,
-                None => return refuse("one of \"linear\", \"hold\"".into()),
+                None => return refuse(parameter.allowed()),
             },
             _ => return refuse(format!("a parameter of the element: {}", self.names().join(", "))),
         }

@@ -354,12 +354,12 @@ impl Patch {
     pub fn set_parameter(&mut self, parameter: Parameter, value: Value) -> Result<(), ParameterError> {
         let refused = || {
             let expected = match parameter {
-                Parameter::TableExtrapolation => "one of \"refuse\", \"hold\"",
-                Parameter::Refine => "a whole number from 1 to 1000",
-                _ if REALS.contains(&parameter) => "a number above 0, of a patch with a backing, or with heat",
-                _ => "one of \"linear\", \"hold\"",
+                _ if REALS.contains(&parameter) => {
+                    "a number above 0, of a patch with a backing, or with heat".to_owned()
+                }
+                _ => parameter.allowed(),
             };
-            let problem = Problem::Value { given: value.to_string(), expected: expected.into() };
+            let problem = Problem::Value { given: value.to_string(), expected };
             ParameterError::new(parameter.name(), problem)
         };
         match (parameter, &value) {

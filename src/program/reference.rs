@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs;
 
 use crate::outputs::catalogue;
-use crate::scene::{KeyEntry, Unit, patch_keys, scene_keys};
+use crate::scene::{Absent, KeyEntry, Unit, patch_keys, scene_keys};
 use clap::{Arg, Command, CommandFactory as _};
 
 use super::Arguments;
@@ -38,21 +38,17 @@ All keys of scenes and patches, all outputs, and all commands with their options
 
 Numbers are in SI units. A number that has a unit may also be a text with another one: `\"2 bar\"`, `\"25 µm\"`,
 `\"60 °C\"`, `\"8 MPa\"`, `\"1 kHz\"`, also behind numbers of options (`--pressures 1bar,2bar`). `[]` stands behind
-tables of which there may be several. *M* marks keys of scenes with a `[material]` alone, *D* those of scenes
-without, whose links have constants of their own.
+tables of which there may be several. An absent key has the value under *absent*; one that is required must be there
+wherever its table is. *M* marks keys of scenes with a `[material]` alone, *D* those of scenes without, whose links
+have constants of their own; else *only* names the kinds or shapes of the table that have the key.
 ";
 
 fn page() -> String {
     let mut page = HEAD.to_owned();
     page += &format!("\n## Keys of a scene\n{}", key_tables(&scene_keys()));
     page += &format!("\n## Keys of a patch\n{}", key_tables(&patch_keys()));
-    page += "\n## Outputs\n\nBy groups of `[fmu] outputs`; those of `elements` are of each mass, `element[i].…`.\n";
-    page += "\n| output | unit | meaning |\n|---|---|---|\n";
-    for output in catalogue() {
-        let (unit, description) = (plain_unit(output.unit), cell(output.description));
-        // Writing to a text cannot fail.
-        let _ = writeln!(page, "| `{}` | {unit} | {description} |", output.name);
-    }
+    page += "\n## Outputs of a scene\n\nBy the groups of `[fmu] outputs`; those of `elements` are of each mass, `element[i].…`.\n";
+    page += &output_tables();
     page += "\n## Commands\n\nAll of them take `-q`, `--quiet`: results and warnings alone, neither notes nor progress; and `-v`,\n`--verbose`: every note where only some or their number would be printed.\n";
     let mut command = Arguments::command();
     command.build();
@@ -74,19 +70,47 @@ fn key_tables(keys: &[KeyEntry]) -> String {
     }
     for table in tables {
         let title = if table.is_empty() { "Above all tables".into() } else { format!("`{table}`") };
-        let _ = writeln!(text, "\n### {title}\n\n| key | holds | unit | | meaning |\n|---|---|---|---|---|");
-        for key in keys.iter().filter(|key| table_of(key) == table && !key.meaning.starts_with("Gone")) {
+        let _ = writeln!(
+            text,
+            "\n### {title}\n\n| key | holds | unit | absent | only | meaning |\n|---|---|---|---|---|---|"
+        );
+        for key in keys.iter().filter(|key| table_of(key) == table) {
             let name = key.path.rsplit('.').next().unwrap_or_default();
-            let form = match key.of_material {
-                Some(true) => "M",
-                Some(false) => "D",
-                None => "",
+            let only = match key.of_material {
+                Some(true) => "M".to_owned(),
+                Some(false) => "D".to_owned(),
+                None => key.kinds.join(", "),
             };
             let (allowed, unit, meaning) = (cell(&key.allowed), plain_unit(key.unit), cell(key.meaning));
-            let _ = writeln!(text, "| `{name}` | {allowed} | {unit} | {form} | {meaning} |");
+            let absent = absent(key.absent);
+            let _ = writeln!(text, "| `{name}` | {allowed} | {unit} | {absent} | {only} | {meaning} |");
         }
     }
     text
+}
+
+/// A table for each group of outputs.
+fn output_tables() -> String {
+    let mut text = String::new();
+    let mut group = None;
+    for output in catalogue() {
+        // Writing to a text cannot fail.
+        if group.replace(output.group) != Some(output.group) {
+            let _ = writeln!(text, "\n### `{}`\n\n| output | unit | meaning |\n|---|---|---|", output.group.word());
+        }
+        let (unit, description) = (plain_unit(output.unit), cell(output.description));
+        let _ = writeln!(text, "| `{}` | {unit} | {description} |", output.name);
+    }
+    text
+}
+
+fn absent(absent: Absent) -> String {
+    match absent {
+        Absent::Refused => "required".to_owned(),
+        Absent::Value(value) => format!("`{value}`"),
+        Absent::Follows(what) => what.to_owned(),
+        Absent::None => String::new(),
+    }
 }
 
 fn plain_unit(unit: Unit) -> String {
@@ -113,8 +137,14 @@ fn options(command: &Command) -> String {
         let values = argument.get_value_names().filter(|_| takes_value).unwrap_or_default();
         let values: String = values.iter().map(|value| format!(" {value}")).collect();
         let meaning = argument.get_help().map(ToString::to_string).unwrap_or_default();
+        let defaults: Vec<_> = argument.get_default_values().iter().map(|value| value.to_string_lossy()).collect();
+        let default = if takes_value && !defaults.is_empty() {
+            format!(". Default: {}", defaults.join(" "))
+        } else {
+            String::new()
+        };
         let option = format!("{}{values}", names.join(", "));
-        let _ = writeln!(text, "| `{}` | {} |", option.trim(), cell(&meaning));
+        let _ = writeln!(text, "| `{}` | {} |", option.trim(), cell(&format!("{meaning}{default}")));
     }
     text
 }

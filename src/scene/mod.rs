@@ -54,7 +54,7 @@ pub use fine_roughness::{
 pub use fmu::{DependencyList, FmuOptions, IntegerType};
 pub use foundation::{Body, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};
 pub use height_map::{HeightMap, MOST_HEIGHTS};
-pub use keys::{KeyEntry, patch_keys, scene_keys, similar_keys};
+pub use keys::{Absent, KeyEntry, patch_keys, scene_keys, similar_keys};
 pub use link_kind::{ByLink, LinkKind};
 pub use material::{Heat, Material, PronyTerm, Wlf, complex_stiffness};
 pub use parameters::{Parameter, Value};
@@ -337,6 +337,11 @@ impl Word for OutputGroup {
 }
 
 impl OutputGroup {
+    /// The group's name in a scene file.
+    pub fn word(self) -> &'static str {
+        self.as_word()
+    }
+
     /// All groups, in the order of the variables.
     pub const ALL: [Self; 9] = [
         Self::Forces,

@@ -159,6 +159,10 @@ pub enum Unit {
     NewtonPerRadian,
     /// N m/rad.
     NewtonMeterPerRadian,
+    /// N/s.
+    NewtonPerSecond,
+    /// Pa/s.
+    PascalPerSecond,
 }
 
 impl Unit {
@@ -221,6 +225,8 @@ impl Unit {
             Self::Second => ("s", [0, 0, 1, 0]),
             Self::MeterPerSecond => ("m/s", [0, 1, -1, 0]),
             Self::Kilogram => ("kg", [1, 0, 0, 0]),
+            Self::NewtonPerSecond => ("N/s", [1, 1, -3, 0]),
+            Self::PascalPerSecond => ("Pa/s", [1, -1, -3, 0]),
             Self::Newton => ("N", [1, 1, -2, 0]),
             Self::MeterPerNewton => ("m/N", [-1, 0, 2, 0]),
             Self::PerSecond => ("1/s", [0, 0, -1, 0]),

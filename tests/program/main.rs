@@ -10,6 +10,7 @@
     reason = "tests may fail"
 )]
 
+mod absent_keys;
 mod calibrate;
 #[path = "../common/mod.rs"]
 #[allow(dead_code, unreachable_pub, reason = "shared by several tests")]

@@ -13,7 +13,7 @@ use super::{
 
 pub(super) use patch::{
     AREA, BACKING_NORMAL, BACKING_SHEAR, COORDINATE, HEAT_CAPACITY, HEAT_CONDUCTIVITY, HEAT_DENSITY, HEAT_SHARE,
-    PATCH_ROOT, REFINE, ShapeKind,
+    PATCH_ROOT, REFINE, ShapeKind, TABLE_EXTRAPOLATION,
 };
 
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +26,20 @@ pub(super) struct Key {
     pub(super) meaning: &'static str,
     /// The form of a scene that it belongs to; `None`: both.
     pub(super) form: Option<Form>,
+    pub(super) absent: Absent,
+}
+
+/// What the absence of a key stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Absent {
+    /// An error, wherever its table stands: but heights at the masses, as `layer.roughness` may give them, have no x.
+    Refused,
+    /// A value, as it would be written in the file.
+    Value(&'static str),
+    /// What follows from elsewhere, in a few words.
+    Follows(&'static str),
+    /// There is none, or the other keys of the table say whether there must be.
+    None,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -56,7 +70,7 @@ pub(super) enum Form {
 }
 
 const fn key(name: &'static str, allowed: Allowed, meaning: &'static str) -> Key {
-    Key { name, allowed, unit: Unit::One, meaning, form: None }
+    Key { name, allowed, unit: Unit::One, meaning, form: None, absent: Absent::None }
 }
 
 const fn number(name: &'static str, range: NumberRange, unit: Unit, meaning: &'static str) -> Key {
@@ -88,6 +102,18 @@ impl Key {
         Self { form: Some(Form::Material), ..self }
     }
 
+    const fn required(self) -> Self {
+        Self { absent: Absent::Refused, ..self }
+    }
+
+    const fn default(self, value: &'static str) -> Self {
+        Self { absent: Absent::Value(value), ..self }
+    }
+
+    const fn follows(self, what: &'static str) -> Self {
+        Self { absent: Absent::Follows(what), ..self }
+    }
+
     /// The range of a number; `None` for everything else.
     pub(super) fn range(&self) -> Option<NumberRange> {
         if let Allowed::Number(range) = self.allowed { Some(range) } else { None }
@@ -104,15 +130,15 @@ impl Key {
 }
 
 pub(super) const ROOT: &[Key] = &[
-    key("name", Allowed::Text("a text"), "Name of the scene"),
+    key("name", Allowed::Text("a text"), "Name of the scene").required(),
     key(
         "description",
         Allowed::Text("a text without control characters but line breaks and tabs"),
         "What the scene is",
     ),
-    table("layer", LAYER),
+    table("layer", LAYER).required(),
     table("material", MATERIAL),
-    key("surface", Allowed::Surface, "Rigid surface below the layer"),
+    key("surface", Allowed::Surface, "Rigid surface below the layer").required(),
     table("carrier", CARRIER),
     table("friction", FRICTION),
     table("solver", SOLVER),
@@ -124,43 +150,49 @@ pub(super) const ROOT: &[Key] = &[
 const TABLES: &str = "an array of tables";
 
 const LAYER: &[Key] = &[
-    whole("masses", 1, 10_000_000, "Number of point masses"),
-    number("spacing", POSITIVE, Unit::Meter, "Distance of the masses at rest"),
-    number("origin", ANY, Unit::Meter, "Position of the first mass at rest"),
-    number("clearance", ANY, Unit::Meter, "Rest height of the layer above the profile's datum at w = 0"),
-    word::<Initial>("initial", "How the dashpots start: relaxed or undeformed"),
+    whole("masses", 1, 10_000_000, "Number of point masses").required(),
+    number("spacing", POSITIVE, Unit::Meter, "Distance of the masses at rest").required(),
+    number("origin", ANY, Unit::Meter, "Position of the first mass at rest").default("0"),
+    number("clearance", ANY, Unit::Meter, "Rest height of the layer above the profile's datum at w = 0").default("0"),
+    word::<Initial>("initial", "How the dashpots start: relaxed or undeformed").default("\"relaxed\""),
     key("roughness", Allowed::Surface, "Roughness of the layer"),
-    number("mass", POSITIVE, Unit::Kilogram, "Mass of one point mass").direct(),
+    number("mass", POSITIVE, Unit::Kilogram, "Mass of one point mass").required().direct(),
     table("vertical", LINK).direct(),
     table("horizontal", LINK).direct(),
     table("lateral_x", LINK).direct(),
     table("lateral_z", LINK).direct(),
-    number("thickness", POSITIVE, Unit::Meter, "Thickness of the layer").material(),
-    number("width", POSITIVE, Unit::Meter, "Width of the layer").material(),
-    word::<FoundationKind>("foundation", "What the links stand for: springs, half_space or layer").material(),
+    number("thickness", POSITIVE, Unit::Meter, "Thickness of the layer")
+        .follows("required but of a half-space")
+        .material(),
+    number("width", POSITIVE, Unit::Meter, "Width of the layer").required().material(),
+    word::<FoundationKind>("foundation", "What the links stand for: springs, half_space or layer")
+        .default("\"springs\"")
+        .material(),
 ];
 
 const LINK: &[Key] = &[
-    number("stiffness", NOT_NEGATIVE, Unit::NewtonPerMeter, "Stiffness"),
-    number("damping", NOT_NEGATIVE, Unit::NewtonSecondPerMeter, "Damping"),
+    number("stiffness", NOT_NEGATIVE, Unit::NewtonPerMeter, "Stiffness").default("0"),
+    number("damping", NOT_NEGATIVE, Unit::NewtonSecondPerMeter, "Damping").default("0"),
     key("maxwell", Allowed::Tables(MAXWELL, TABLES), "Maxwell elements"),
 ];
 
 const MAXWELL: &[Key] = &[
-    number("stiffness", NOT_NEGATIVE, Unit::NewtonPerMeter, "Stiffness"),
-    number("relaxation_time", POSITIVE, Unit::Second, "Relaxation time"),
+    number("stiffness", NOT_NEGATIVE, Unit::NewtonPerMeter, "Stiffness").required(),
+    number("relaxation_time", POSITIVE, Unit::Second, "Relaxation time").required(),
 ];
 
 const MATERIAL: &[Key] = &[
-    number("density", POSITIVE, Unit::KilogramPerCubicMeter, "Density of the layer's material"),
-    number("poisson_ratio", NOT_NEGATIVE.up_to(0.5), Unit::One, "Poisson's ratio of the layer's material"),
-    number("equilibrium_modulus", NOT_NEGATIVE, Unit::Pascal, "Modulus of the layer's material after all relaxation"),
+    number("density", POSITIVE, Unit::KilogramPerCubicMeter, "Density of the layer's material").required(),
+    number("poisson_ratio", NOT_NEGATIVE.up_to(0.5), Unit::One, "Poisson's ratio of the layer's material").required(),
+    number("equilibrium_modulus", NOT_NEGATIVE, Unit::Pascal, "Modulus of the layer's material after all relaxation")
+        .required(),
     number(
         "viscosity",
         NOT_NEGATIVE,
         Unit::PascalSecond,
         "Kelvin-Voigt viscosity of the layer's material at the reference temperature",
-    ),
+    )
+    .default("0"),
     key(
         "prony",
         Allowed::Tables(
@@ -168,27 +200,30 @@ const MATERIAL: &[Key] = &[
             "an array of tables, or the path of a CSV file beside the scene with relaxation_time (s) and modulus (Pa)",
         ),
         "Prony series",
-    ),
+    )
+    .required(),
     table("wlf", WLF),
     table("heat", HEAT),
 ];
 
 const PRONY_TERM: &[Key] = &[
-    number("modulus", NOT_NEGATIVE, Unit::Pascal, "Modulus"),
-    number("relaxation_time", POSITIVE, Unit::Second, "Relaxation time"),
+    number("modulus", NOT_NEGATIVE, Unit::Pascal, "Modulus").required(),
+    number("relaxation_time", POSITIVE, Unit::Second, "Relaxation time").required(),
 ];
 
 const HEAT: &[Key] = &[
-    number("conductivity", POSITIVE, Unit::WattPerMeterKelvin, "Heat conductivity of the layer's material"),
-    number("capacity", POSITIVE, Unit::JoulePerKilogramKelvin, "Specific heat capacity of the layer's material"),
-    number("share", POSITIVE.up_to(1.0), Unit::One, "Part of the friction power that the layer takes"),
+    number("conductivity", POSITIVE, Unit::WattPerMeterKelvin, "Heat conductivity of the layer's material").required(),
+    number("capacity", POSITIVE, Unit::JoulePerKilogramKelvin, "Specific heat capacity of the layer's material")
+        .required(),
+    number("share", POSITIVE.up_to(1.0), Unit::One, "Part of the friction power that the layer takes").default("1"),
 ];
 
 const WLF: &[Key] = &[
-    number("c1", NOT_NEGATIVE, Unit::One, "C_1 of Williams, Landel and Ferry"),
-    number("c2", POSITIVE, Unit::Kelvin, "C_2 of Williams, Landel and Ferry"),
-    number("reference_temperature", POSITIVE, Unit::Kelvin, "Temperature at which the material's times are given"),
-    number("temperature", POSITIVE, Unit::Kelvin, "Temperature of the layer"),
+    number("c1", NOT_NEGATIVE, Unit::One, "C_1 of Williams, Landel and Ferry").required(),
+    number("c2", POSITIVE, Unit::Kelvin, "C_2 of Williams, Landel and Ferry").required(),
+    number("reference_temperature", POSITIVE, Unit::Kelvin, "Temperature at which the material's times are given")
+        .required(),
+    number("temperature", POSITIVE, Unit::Kelvin, "Temperature of the layer").required(),
 ];
 
 /// Where the heights of a surface come from.
@@ -224,7 +259,7 @@ impl SurfaceKind {
     }
 }
 
-const KIND: Key = word::<SurfaceKind>("kind", "Where the heights come from");
+const KIND: Key = word::<SurfaceKind>("kind", "Where the heights come from").required();
 
 const FINE: Key = table("fine", FINE_ROUGHNESS).material();
 
@@ -234,7 +269,7 @@ const FINE_ROUGHNESS: &[Key] = &[
     number("longest", POSITIVE, Unit::Meter, "Longest wavelength of the roughness that the profile lacks"),
     number("shortest", POSITIVE, Unit::Meter, "Shortest wavelength of the roughness that the profile lacks"),
     key("spectrum", Allowed::Text(PATH), "File of the spectrum of the roughness that the profile lacks"),
-    word::<Convention>("convention", "How that spectrum is normalised"),
+    word::<Convention>("convention", "How that spectrum is normalised").default("\"persson\""),
     number(
         "split",
         POSITIVE,
@@ -242,9 +277,10 @@ const FINE_ROUGHNESS: &[Key] = &[
         "Wavelength at which the measured line is split into profile and fine roughness",
     ),
     number("modulus", POSITIVE, Unit::Pascal, "Plane modulus at which that roughness is pressed flat, at every speed"),
-    number("creep_speed", POSITIVE, Unit::MeterPerSecond, "Speed below which that roughness rubs as at this one"),
-    key("hysteresis", Allowed::Flag, "Whether that roughness rubs by hysteresis"),
-    number("softening", POSITIVE.up_to(1.0), Unit::One, "Factor on the moduli in that roughness"),
+    number("creep_speed", POSITIVE, Unit::MeterPerSecond, "Speed below which that roughness rubs as at this one")
+        .follows("that of `friction.rate_shear`, else 1e-6"),
+    key("hysteresis", Allowed::Flag, "Whether that roughness rubs by hysteresis").default("true"),
+    number("softening", POSITIVE.up_to(1.0), Unit::One, "Factor on the moduli in that roughness").default("1"),
 ];
 
 const SURFACE: &[Key] = &[KIND, FINE];
@@ -252,48 +288,49 @@ const SURFACE: &[Key] = &[KIND, FINE];
 const SINUSOID: &[Key] = &[
     KIND,
     FINE,
-    number("amplitude", ANY, Unit::Meter, "Amplitude"),
-    number("wavelength", POSITIVE, Unit::Meter, "Wavelength"),
-    whole("points_per_wavelength", 4, 10_000_000, "Data points of one wavelength"),
+    number("amplitude", ANY, Unit::Meter, "Amplitude").required(),
+    number("wavelength", POSITIVE, Unit::Meter, "Wavelength").required(),
+    whole("points_per_wavelength", 4, 10_000_000, "Data points of one wavelength").default("64"),
 ];
 
-const LINE: Key = whole("line", 1, 1_000_000_000, "Line of a map along x that a layer slides over");
+const LINE: Key =
+    whole("line", 1, 1_000_000_000, "Line of a map along x that a layer slides over").follows("the middle one");
 
 const SELF_AFFINE: &[Key] = &[
     KIND,
     FINE,
-    number("length", POSITIVE, Unit::Meter, "Period"),
-    whole("points", 4, 4_000_000, "Data points of one period"),
-    number("hurst", POSITIVE.up_to(1.0), Unit::One, "Hurst exponent"),
-    number("rms", POSITIVE, Unit::Meter, "Root mean square height"),
-    number("roll_off_wavelength", POSITIVE, Unit::Meter, "Wavelength above which the spectrum is constant"),
-    number("cut_off_wavelength", POSITIVE, Unit::Meter, "Shortest wavelength"),
-    whole("seed", 0, i64::MAX, "Seed of the random phases"),
-    key("isotropic", Allowed::Flag, "Whether the surface is a map, the same along all directions"),
-    number("size_y", POSITIVE, Unit::Meter, "Period of the map along y"),
+    number("length", POSITIVE, Unit::Meter, "Period").required(),
+    whole("points", 4, 4_000_000, "Data points of one period").required(),
+    number("hurst", POSITIVE.up_to(1.0), Unit::One, "Hurst exponent").required(),
+    number("rms", POSITIVE, Unit::Meter, "Root mean square height").required(),
+    number("roll_off_wavelength", POSITIVE, Unit::Meter, "Wavelength above which the spectrum is constant").required(),
+    number("cut_off_wavelength", POSITIVE, Unit::Meter, "Shortest wavelength").required(),
+    whole("seed", 0, i64::MAX, "Seed of the random phases").required(),
+    key("isotropic", Allowed::Flag, "Whether the surface is a map, the same along all directions").default("false"),
+    number("size_y", POSITIVE, Unit::Meter, "Period of the map along y").follows("`length`"),
     LINE,
 ];
 
 const POINTS: &[Key] = &[
     KIND,
     FINE,
-    numbers("x", ANY, Unit::Meter, "Positions of the data points"),
-    numbers("z", ANY, Unit::Meter, "Heights of the data points"),
+    numbers("x", ANY, Unit::Meter, "Positions of the data points").required(),
+    numbers("z", ANY, Unit::Meter, "Heights of the data points").required(),
     PERIODIC,
 ];
 
-const PERIODIC: Key = key("periodic", Allowed::Flag, "Whether the profile is repeated without end");
+const PERIODIC: Key = key("periodic", Allowed::Flag, "Whether the profile is repeated without end").default("false");
 
 const FILE: &[Key] = &[
     KIND,
     FINE,
-    key("path", Allowed::Text(PATH), "File of the profile"),
+    key("path", Allowed::Text(PATH), "File of the profile").required(),
     PERIODIC,
-    word::<LengthUnit>("unit", "Unit of both columns"),
-    word::<LengthUnit>("x_unit", "Unit of x"),
-    word::<LengthUnit>("z_unit", "Unit of z"),
-    word::<Missing>("missing", "What becomes of points without a height"),
-    word::<Tilt>("tilt", "What becomes of the profile's tilt"),
+    word::<LengthUnit>("unit", "Unit of both columns").follows("the file's, else m"),
+    word::<LengthUnit>("x_unit", "Unit of x").follows("`unit`"),
+    word::<LengthUnit>("z_unit", "Unit of z").follows("`unit`"),
+    word::<Missing>("missing", "What becomes of points without a height").default("\"refuse\""),
+    word::<Tilt>("tilt", "What becomes of the profile's tilt").default("\"keep\""),
     word::<ThirdColumn>("third_column", "What a third column means"),
     key("columns", Allowed::Text(COLUMNS), "Columns of x and z, by their names or numbers"),
     numbers("spacing", POSITIVE, Unit::Meter, "Distance of points of a file without x"),
@@ -307,28 +344,36 @@ const COLUMNS: &str = "[\"x\", \"z\"], the names or the numbers of the columns a
 pub(super) const PATH: &str = "a relative path of a file beside or below the scene file, without `..` and backslashes";
 
 const FRICTION: &[Key] = &[
-    number("coulomb", NOT_NEGATIVE, Unit::One, "Coulomb's friction coefficient"),
+    number("coulomb", NOT_NEGATIVE, Unit::One, "Coulomb's friction coefficient").default("0"),
     table("rate_shear", RATE_SHEAR),
     table("real_area", REAL_AREA).material(),
-    number("shear_force", NOT_NEGATIVE, Unit::Newton, "Adhesive shear force of one mass in contact").direct(),
-    number("shear_strength", NOT_NEGATIVE, Unit::Pascal, "Adhesive shear strength of the contact").material(),
+    number("shear_force", NOT_NEGATIVE, Unit::Newton, "Adhesive shear force of one mass in contact")
+        .default("0")
+        .direct(),
+    number("shear_strength", NOT_NEGATIVE, Unit::Pascal, "Adhesive shear strength of the contact")
+        .default("0")
+        .material(),
 ];
 
 const CARRIER: &[Key] = &[table("x", CARRIER_X), table("z", CARRIER_Z)];
 
-const CARRIER_MASS: Key = number("mass", POSITIVE, Unit::Kilogram, "Mass of the carrier");
+const CARRIER_MASS: Key = number("mass", POSITIVE, Unit::Kilogram, "Mass of the carrier").required();
 const CARRIER_STIFFNESS: Key =
-    number("stiffness", NOT_NEGATIVE, Unit::NewtonPerMeter, "Stiffness of the spring from the carrier to its drive");
+    number("stiffness", NOT_NEGATIVE, Unit::NewtonPerMeter, "Stiffness of the spring from the carrier to its drive")
+        .default("0");
 const CARRIER_DAMPING: Key =
-    number("damping", NOT_NEGATIVE, Unit::NewtonSecondPerMeter, "Damping of the damper from the carrier to its drive");
-const CARRIER_START: Key = number("start", ANY, Unit::Meter, "Displacement of the carrier at the start");
-const CARRIER_START_RATE: Key = number("start_rate", ANY, Unit::MeterPerSecond, "Speed of the carrier at the start");
+    number("damping", NOT_NEGATIVE, Unit::NewtonSecondPerMeter, "Damping of the damper from the carrier to its drive")
+        .default("0");
+const CARRIER_START: Key =
+    number("start", ANY, Unit::Meter, "Displacement of the carrier at the start").follows("that of its drive");
+const CARRIER_START_RATE: Key =
+    number("start_rate", ANY, Unit::MeterPerSecond, "Speed of the carrier at the start").default("0");
 
 const CARRIER_X: &[Key] = &[
     CARRIER_MASS,
     CARRIER_STIFFNESS,
     CARRIER_DAMPING,
-    number("pull", ANY, Unit::Newton, "Constant part of the tangential force on the carrier"),
+    number("pull", ANY, Unit::Newton, "Constant part of the tangential force on the carrier").default("0"),
     CARRIER_START,
     CARRIER_START_RATE,
 ];
@@ -337,21 +382,24 @@ const CARRIER_Z: &[Key] = &[
     CARRIER_MASS,
     CARRIER_STIFFNESS,
     CARRIER_DAMPING,
-    number("load", ANY, Unit::Newton, "Constant part of the normal load on the carrier"),
+    number("load", ANY, Unit::Newton, "Constant part of the normal load on the carrier").default("0"),
     CARRIER_START,
     CARRIER_START_RATE,
     word::<CarrierInitial>(
         "initial",
         "Where the carrier starts along z: start, or equilibrium, where the springs bear the load",
-    ),
+    )
+    .default("\"start\""),
 ];
 
-/// Of the old key, which the reader refuses with what says the same in `surface.fine`.
+/// An old key, which the reader refuses with what says the same in `surface.fine`.
+const RETIRED: &str = "friction.real_area";
+
 const REAL_AREA: &[Key] = &[
-    number("rms_slope", NOT_NEGATIVE, Unit::One, "Gone: surface.fine"),
-    number("wavelength", POSITIVE, Unit::Meter, "Gone: surface.fine"),
-    number("modulus", POSITIVE, Unit::Pascal, "Gone: surface.fine"),
-    number("cut_off_wavelength", POSITIVE, Unit::Meter, "Gone: surface.fine"),
+    number("rms_slope", NOT_NEGATIVE, Unit::One, "In its place: surface.fine"),
+    number("wavelength", POSITIVE, Unit::Meter, "In its place: surface.fine"),
+    number("modulus", POSITIVE, Unit::Pascal, "In its place: surface.fine"),
+    number("cut_off_wavelength", POSITIVE, Unit::Meter, "In its place: surface.fine"),
 ];
 
 const RATE_SHEAR: &[Key] = &[
@@ -360,21 +408,27 @@ const RATE_SHEAR: &[Key] = &[
         POSITIVE,
         Unit::MeterPerSecond,
         "Speed at which the rate-dependent shear force is largest",
-    ),
+    )
+    .required(),
     number(
         "sharpness",
         NOT_NEGATIVE,
         Unit::One,
         "Coefficient c in exp(-c log10(v/v0)^2), the fall of the rate-dependent shear force about its maximum",
-    ),
+    )
+    .required(),
     number(
         "creep_speed",
         POSITIVE,
         Unit::MeterPerSecond,
         "Speed below which the rate-dependent shear force is constant; follows the reference speed until it is set itself",
-    ),
-    number("force", NOT_NEGATIVE, Unit::Newton, "Largest rate-dependent shear force of one mass in contact").direct(),
-    number("strength", NOT_NEGATIVE, Unit::Pascal, "Largest rate-dependent shear strength of the contact").material(),
+    ).follows("1e-6 of `reference_speed`"),
+    number("force", NOT_NEGATIVE, Unit::Newton, "Largest rate-dependent shear force of one mass in contact")
+        .required()
+        .direct(),
+    number("strength", NOT_NEGATIVE, Unit::Pascal, "Largest rate-dependent shear strength of the contact")
+        .required()
+        .material(),
 ];
 
 const SOLVER: &[Key] = &[
@@ -382,66 +436,83 @@ const SOLVER: &[Key] = &[
         "method",
         "event: locate each mode change; step: correct touches and lifts at the end of each step; auto: switch between \
          the two",
-    ),
-    number("relative_tolerance", POSITIVE.up_to(LOOSEST_TOLERANCE), Unit::One, "Relative tolerance of the local error"),
+    )
+    .default("\"event\""),
+    number("relative_tolerance", POSITIVE.up_to(LOOSEST_TOLERANCE), Unit::One, "Relative tolerance of the local error")
+        .default("1e-6"),
     number(
         "absolute_tolerance",
         POSITIVE,
         Unit::Meter,
         "Absolute tolerance of positions; follows the relative one until it is set itself",
-    ),
+    )
+    .follows("`relative_tolerance` times the scene's height"),
     // An Integer of FMI has 32 bits.
-    whole("max_steps", 1, i32::MAX as i64, "Steps that one communication step or one phase may take"),
-    number("reduce", NOT_NEGATIVE.up_to(0.1), Unit::One, "Error bound for leaving Maxwell elements out"),
+    whole("max_steps", 1, i32::MAX as i64, "Steps that one communication step or one phase may take")
+        .default("10000000"),
+    number("reduce", NOT_NEGATIVE.up_to(0.1), Unit::One, "Error bound for leaving Maxwell elements out").default("0"),
 ];
 
 const INPUT: &[Key] = &[
-    word::<Extrapolation>("extrapolation", "How the carrier moves when no rates are given: linear or hold"),
-    key("temperature", Allowed::Flag, "Whether the layer's temperature is an input").material(),
+    word::<Extrapolation>("extrapolation", "How the carrier moves when no rates are given: linear or hold")
+        .default("\"linear\""),
+    key("temperature", Allowed::Flag, "Whether the layer's temperature is an input").default("false").material(),
 ];
 
-const FMU: &[Key] =
-    &[key("outputs", Allowed::Words(words::<OutputGroup>), "Groups of output variables"), INTEGERS, DEPENDENCIES];
+const FMU: &[Key] = &[
+    key("outputs", Allowed::Words(words::<OutputGroup>), "Groups of output variables")
+        .default("[\"forces\", \"dissipation\"]"),
+    INTEGERS,
+    DEPENDENCIES,
+];
 
-const INTEGERS: Key = word::<IntegerType>("integers", "Type of the outputs that are whole numbers");
-const DEPENDENCIES: Key = word::<DependencyList>("dependencies", "Dependencies of outputs on inputs that are listed");
+const INTEGERS: Key =
+    word::<IntegerType>("integers", "Type of the outputs that are whole numbers").default("\"integer\"");
+const DEPENDENCIES: Key =
+    word::<DependencyList>("dependencies", "Dependencies of outputs on inputs that are listed").default("\"direct\"");
 
 const PHASE: &[Key] = &[
     key("file", Allowed::Text(PATH), "File of the motion, with columns time, u and w, in place of the other keys"),
-    number("duration", POSITIVE, Unit::Second, "Duration"),
-    number("u_rate", ANY, Unit::MeterPerSecond, "Rate of u"),
-    number("w_rate", ANY, Unit::MeterPerSecond, "Rate of w"),
+    number("duration", POSITIVE, Unit::Second, "Duration").follows("required but of a file"),
+    number("u_rate", ANY, Unit::MeterPerSecond, "Rate of u").default("0"),
+    number("w_rate", ANY, Unit::MeterPerSecond, "Rate of w").default("0"),
     table("u_sine", SINE),
     table("w_sine", SINE),
-    number("load", ANY, Unit::Newton, "Load at the start of the phase"),
-    number("load_rate", ANY, Unit::One, "Rate of the load, N/s"),
+    number("load", ANY, Unit::Newton, "Load at the start of the phase").follows("what it has reached, 0 at first"),
+    number("load_rate", ANY, Unit::NewtonPerSecond, "Rate of the load").default("0"),
     table("load_sine", FORCE_SINE),
-    number("pull", ANY, Unit::Newton, "Tangential force at the start of the phase"),
-    number("pull_rate", ANY, Unit::One, "Rate of the tangential force, N/s"),
+    number("pull", ANY, Unit::Newton, "Tangential force at the start of the phase")
+        .follows("what it has reached, 0 at first"),
+    number("pull_rate", ANY, Unit::NewtonPerSecond, "Rate of the tangential force").default("0"),
     table("pull_sine", FORCE_SINE),
-    number("pressure", ANY, Unit::Pascal, "Load over the layer's area at the start of the phase").material(),
-    number("pressure_rate", ANY, Unit::One, "Rate of the load over the layer's area, Pa/s").material(),
+    number("pressure", ANY, Unit::Pascal, "Load over the layer's area at the start of the phase")
+        .follows("what it has reached, 0 at first")
+        .material(),
+    number("pressure_rate", ANY, Unit::PascalPerSecond, "Rate of the load over the layer's area")
+        .default("0")
+        .material(),
     table("pressure_sine", PRESSURE_SINE).material(),
-    number("temperature", POSITIVE, Unit::Kelvin, "Temperature of the layer from the phase's start on").material(),
+    number("temperature", POSITIVE, Unit::Kelvin, "Temperature of the layer from the phase's start on")
+        .follows("as before")
+        .material(),
     number("until_force", ANY, Unit::Newton, "F_z that ends the phase").direct(),
     number("until_pressure", ANY, Unit::Pascal, "Mean pressure that ends the phase").material(),
 ];
 
-const SINE: &[Key] =
-    &[number("amplitude", ANY, Unit::Meter, "Amplitude"), number("frequency", NOT_NEGATIVE, Unit::Hertz, "Frequency")];
+const SINE: &[Key] = &[
+    number("amplitude", ANY, Unit::Meter, "Amplitude").required(),
+    number("frequency", NOT_NEGATIVE, Unit::Hertz, "Frequency").required(),
+];
 
-const FORCE_SINE: &[Key] =
-    &[number("amplitude", ANY, Unit::Newton, "Amplitude"), number("frequency", NOT_NEGATIVE, Unit::Hertz, "Frequency")];
+const FORCE_SINE: &[Key] = &[
+    number("amplitude", ANY, Unit::Newton, "Amplitude").required(),
+    number("frequency", NOT_NEGATIVE, Unit::Hertz, "Frequency").required(),
+];
 
-const PRESSURE_SINE: &[Key] =
-    &[number("amplitude", ANY, Unit::Pascal, "Amplitude"), number("frequency", NOT_NEGATIVE, Unit::Hertz, "Frequency")];
-
-/// The parameter that an element from a table has beside those of a scene.
-pub(super) const TABLE_EXTRAPOLATION: Key = key(
-    "extrapolation",
-    Allowed::Text("one of \"refuse\", \"hold\""),
-    "What happens beyond the table's pressures and speeds: refuse, or hold its ends' friction coefficients and stiffnesses",
-);
+const PRESSURE_SINE: &[Key] = &[
+    number("amplitude", ANY, Unit::Pascal, "Amplitude").required(),
+    number("frequency", NOT_NEGATIVE, Unit::Hertz, "Frequency").required(),
+];
 
 /// What the reader gets for a key that is not in the table; it accepts no value.
 pub(super) const NONE: Key = key("", Allowed::Text("no such key"), "");
@@ -484,23 +555,27 @@ pub struct KeyEntry {
     pub unit: Unit,
     /// What it means; empty of a table.
     pub meaning: &'static str,
+    /// What its absence stands for.
+    pub absent: Absent,
+    /// The kinds of its table that have it; empty where all have.
+    pub kinds: Vec<&'static str>,
     /// Whether it belongs to scenes with a material alone (`Some(true)`), or to those without (`Some(false)`).
     pub of_material: Option<bool>,
 }
 
-/// All keys of a scene; those of its surface are the layer's roughness's too.
+/// All keys of a scene; those of its surface are the layer's roughness's too. [`RETIRED`] is left out.
 pub fn scene_keys() -> Vec<KeyEntry> {
-    entries("", ROOT).into_iter().filter(|key| !key.path.starts_with("layer.roughness.")).collect()
+    let left_out = ["layer.roughness.", RETIRED];
+    entries("", ROOT).into_iter().filter(|key| !left_out.iter().any(|path| key.path.starts_with(path))).collect()
 }
 
 /// All keys of a patch.
 pub fn patch_keys() -> Vec<KeyEntry> {
     let mut keys = entries("", PATCH_ROOT);
-    let faces = ShapeKind::WORDS.iter().flat_map(|(_, kind)| entries("patch.", kind.keys()));
+    let faces = of_kinds("patch.", ShapeKind::WORDS, ShapeKind::keys);
     let at = keys.iter().position(|key| key.path == "patch.shape").map_or(keys.len(), |at| at + 1);
-    let new: Vec<KeyEntry> = faces.filter(|key| key.path != "patch.shape").collect();
-    keys.splice(at..at, new);
-    without_repeats(keys)
+    keys.splice(at..at, faces.into_iter().filter(|key| key.path != "patch.shape"));
+    keys
 }
 
 fn entries(start: &str, keys: &[Key]) -> Vec<KeyEntry> {
@@ -512,25 +587,34 @@ fn entries(start: &str, keys: &[Key]) -> Vec<KeyEntry> {
             allowed: key.allowed.to_string(),
             unit: key.unit,
             meaning: key.meaning,
+            absent: key.absent,
+            kinds: Vec::new(),
             of_material,
         };
         let below = match key.allowed {
             Allowed::Table(keys) => entries(&format!("{path}."), keys),
             Allowed::Tables(keys, _) => entries(&format!("{path}[]."), keys),
-            Allowed::Surface => {
-                SurfaceKind::WORDS.iter().flat_map(|(_, kind)| entries(&format!("{path}."), kind.keys())).collect()
-            }
+            Allowed::Surface => of_kinds(&format!("{path}."), SurfaceKind::WORDS, SurfaceKind::keys),
             _ => Vec::new(),
         };
         std::iter::once(own).chain(below)
     };
-    without_repeats(keys.iter().flat_map(with_those_below).collect())
+    keys.iter().flat_map(with_those_below).collect()
 }
 
-/// The keys, each once though several kinds of a table have it.
-fn without_repeats(keys: Vec<KeyEntry>) -> Vec<KeyEntry> {
-    let mut seen = std::collections::HashSet::new();
-    keys.into_iter().filter(|key| seen.insert(key.path.clone())).collect()
+/// The keys of a table of several kinds, each once.
+fn of_kinds<K: Copy>(start: &str, kinds: &[(&'static str, K)], keys_of: impl Fn(K) -> &'static [Key]) -> Vec<KeyEntry> {
+    let mut all: Vec<KeyEntry> = Vec::new();
+    for &(name, kind) in kinds {
+        for key in entries(start, keys_of(kind)) {
+            match all.iter_mut().find(|known| known.path == key.path) {
+                Some(known) => known.kinds.push(name),
+                None => all.push(KeyEntry { kinds: vec![name], ..key }),
+            }
+        }
+    }
+    all.iter_mut().filter(|key| key.kinds.len() == kinds.len()).for_each(|key| key.kinds.clear());
+    all
 }
 
 /// The range of the number at a path; positive numbers where there is none.

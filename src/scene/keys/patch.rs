@@ -1,28 +1,35 @@
 //! The keys of a patch file.
 
 use super::{Allowed, NumberRange, POSITIVE, Word, words};
-use super::{DEPENDENCIES, INPUT, INTEGERS, Key, PATH, key, number, numbers, table, whole, word};
+use super::{DEPENDENCIES, INTEGERS, Key, PATH, key, number, numbers, table, whole, word};
 use crate::scene::patch_file::{MAX_ELEMENTS, PatchGroup, TableExtrapolation};
-use crate::scene::{Unit, values::ANY};
+use crate::scene::{Extrapolation, Unit, values::ANY};
 
 pub(in crate::scene) const PATCH_ROOT: &[Key] = &[
-    key("name", Allowed::Text("a text"), "Name of the patch"),
-    table("table", TABLE),
-    table("patch", &[SHAPE]),
-    table("input", INPUT),
+    key("name", Allowed::Text("a text"), "Name of the patch").required(),
+    table("table", TABLE).required(),
+    table("patch", &[SHAPE]).required(),
+    table("input", &[EXTRAPOLATION]),
     table("solver", SOLVER),
     table("fmu", FMU),
 ];
 
 const TABLE: &[Key] = &[
-    key("path", Allowed::Text(PATH), "Table of a sweep"),
-    number("temperature", POSITIVE, Unit::Kelvin, "Temperature"),
-    word::<TableExtrapolation>(
-        "extrapolation",
-        "What happens beyond the table's pressures and speeds: refuse, or hold its ends' coefficients and stiffnesses",
-    ),
+    key("path", Allowed::Text(PATH), "Table of a sweep").required(),
+    number("temperature", POSITIVE, Unit::Kelvin, "Temperature").follows("the middle one of the table's"),
+    TABLE_EXTRAPOLATION.default("\"hold\""),
     number("nominal_area", POSITIVE, Unit::SquareMeter, "Area that one layer stands for"),
 ];
+
+/// A parameter of an element, too.
+pub(in crate::scene) const TABLE_EXTRAPOLATION: Key = word::<TableExtrapolation>(
+    "extrapolation",
+    "What happens beyond the table's pressures and speeds: refuse, or hold its ends' friction coefficients and stiffnesses",
+);
+
+const EXTRAPOLATION: Key =
+    word::<Extrapolation>("extrapolation", "How the pose goes on when no rates are given: linear or hold")
+        .default("\"linear\"");
 
 /// What a face is like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,13 +55,13 @@ impl ShapeKind {
     }
 }
 
-const SHAPE: Key = word::<ShapeKind>("shape", "Shape of the face");
-const LENGTH: Key = number("length", POSITIVE, Unit::Meter, "Length along x");
-const WIDTH: Key = number("width", POSITIVE, Unit::Meter, "Width along y");
-const NX: Key = whole("nx", 1, MAX_ELEMENTS, "Elements along x");
-const NY: Key = whole("ny", 1, MAX_ELEMENTS, "Elements along y");
-const TRANSPORT: Key = key("transport", Allowed::Flag, "Whether a tread runs through");
-const OFFSET: Key = numbers("offset", ANY, Unit::Meter, "The face's origin in the body's axes");
+const SHAPE: Key = word::<ShapeKind>("shape", "Shape of the face").required();
+const LENGTH: Key = number("length", POSITIVE, Unit::Meter, "Length along x").required();
+const WIDTH: Key = number("width", POSITIVE, Unit::Meter, "Width along y").required();
+const NX: Key = whole("nx", 1, MAX_ELEMENTS, "Elements along x").required();
+const NY: Key = whole("ny", 1, MAX_ELEMENTS, "Elements along y").required();
+const TRANSPORT: Key = key("transport", Allowed::Flag, "Whether a tread runs through").default("false");
+const OFFSET: Key = numbers("offset", ANY, Unit::Meter, "The face's origin in the body's axes").default("[0, 0, 0]");
 
 const BACKING: Key = table(
     "backing",
@@ -74,20 +81,21 @@ pub(in crate::scene) const BACKING_SHEAR: Key =
 
 const HEAT: Key = table("heat", &[HEAT_CONDUCTIVITY, HEAT_CAPACITY, HEAT_DENSITY, HEAT_SHARE]);
 pub(in crate::scene) const HEAT_CONDUCTIVITY: Key =
-    number("conductivity", CONDUCTION, Unit::WattPerMeterKelvin, "Heat conductivity behind the surface");
+    number("conductivity", CONDUCTION, Unit::WattPerMeterKelvin, "Heat conductivity behind the surface").required();
 pub(in crate::scene) const HEAT_CAPACITY: Key =
-    number("capacity", CONDUCTION, Unit::JoulePerKilogramKelvin, "Specific heat capacity behind the surface");
+    number("capacity", CONDUCTION, Unit::JoulePerKilogramKelvin, "Specific heat capacity behind the surface")
+        .required();
 pub(in crate::scene) const HEAT_DENSITY: Key =
-    number("density", CONDUCTION, Unit::KilogramPerCubicMeter, "Density behind the surface");
+    number("density", CONDUCTION, Unit::KilogramPerCubicMeter, "Density behind the surface").required();
 pub(in crate::scene) const HEAT_SHARE: Key =
-    number("share", POSITIVE.up_to(1.0), Unit::One, "Part of what slip loses that heats the elements");
+    number("share", POSITIVE.up_to(1.0), Unit::One, "Part of what slip loses that heats the elements").required();
 /// So that their products and quotients are positive numbers too.
 const CONDUCTION: NumberRange = POSITIVE.down_to(1e-9).up_to(1e20);
 
 const FLAT: &[Key] = &[SHAPE, LENGTH, WIDTH, NX, NY, TRANSPORT, OFFSET, BACKING, HEAT];
 const CYLINDER: &[Key] = &[
     SHAPE,
-    number("radius", POSITIVE, Unit::Meter, "Radius"),
+    number("radius", POSITIVE, Unit::Meter, "Radius").required(),
     LENGTH,
     WIDTH,
     NX,
@@ -97,15 +105,20 @@ const CYLINDER: &[Key] = &[
     BACKING,
     HEAT,
 ];
-const POINTS: &[Key] = &[SHAPE, key("path", Allowed::Text(PATH), "File of the points"), OFFSET, BACKING, HEAT];
+const POINTS: &[Key] =
+    &[SHAPE, key("path", Allowed::Text(PATH), "File of the points").required(), OFFSET, BACKING, HEAT];
 
 pub(in crate::scene) const REFINE: Key =
-    whole("refine", 1, 1000, "How many times finer a step is cut than it needs to be");
+    whole("refine", 1, 1000, "How many times finer a step is cut than it needs to be").default("1");
 
 const SOLVER: &[Key] = &[REFINE];
 
-const FMU: &[Key] =
-    &[key("outputs", Allowed::Words(words::<PatchGroup>), "Groups of output variables"), INTEGERS, DEPENDENCIES];
+const FMU: &[Key] = &[
+    key("outputs", Allowed::Words(words::<PatchGroup>), "Groups of output variables")
+        .default("[\"forces\", \"dissipation\"]"),
+    INTEGERS,
+    DEPENDENCIES,
+];
 
 /// The range of a coordinate of a point and of its area.
 pub(in crate::scene) const COORDINATE: Key = number("", ANY, Unit::Meter, "");

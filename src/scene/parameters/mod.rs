@@ -235,6 +235,11 @@ impl Parameter {
         }
     }
 
+    /// What it may hold, in words.
+    pub fn allowed(self) -> String {
+        self.key().allowed.to_string()
+    }
+
     /// The unit of a Real parameter; 1 for the others.
     pub fn unit(self) -> Unit {
         self.key().unit
