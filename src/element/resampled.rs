@@ -79,7 +79,7 @@ pub struct LawPlace<T> {
 }
 
 impl LawPlace<f64> {
-    /// The place of numbers with derivatives, which are 0.
+    /// The same place for numbers with derivatives, all of them 0.
     pub fn constant<T: Number>(&self) -> LawPlace<T> {
         let next = self.next.map(|(cell, fraction)| (cell, T::constant(fraction)));
         LawPlace { log_speed: T::constant(self.log_speed), cell: self.cell, next }

@@ -54,8 +54,8 @@ pub(crate) struct Advanced<T> {
     pub(crate) release: f64,
 }
 
-/// Whether a stiffness stays, but for rounding. Where it grows and where it falls springs differ, with one value and
-/// two slopes between: there the mean of both is taken, as a difference quotient to both sides finds it.
+/// Whether a stiffness is unchanged up to rounding. There the laws of a growing and of a falling stiffness agree in
+/// value but not in slope; the mean of the slopes is taken, as a central difference finds it.
 #[inline(always)]
 fn is_level<T: Number>(before: T, after: T) -> bool {
     let (before, after) = (before.value(), after.value());

@@ -179,7 +179,7 @@ impl Patch {
         self.heat
     }
 
-    /// The same contacts on what does not give way, as warm as the ground.
+    /// The same contacts on a rigid backing, without heating.
     pub fn contacts_alone(&self) -> Self {
         Self { backing: None, heat: None, ..self.clone() }
     }

@@ -78,7 +78,7 @@ pub(super) struct TreadColumn {
 }
 
 impl Tread {
-    /// TreadColumn `i` (from the front, as counted at the start of the step) when `entered` cells have entered since.
+    /// Column `i`, counted from the front at the start of the step, once `entered` cells have entered since.
     #[inline(always)]
     pub(super) fn column(&self, i: f64, entered: f64) -> TreadColumn {
         let half = 0.5 * self.length;

@@ -63,7 +63,7 @@ type FrequencyBand = (f64, f64);
 
 /// Decades by which a band exceeds the rates 1/τ of its responses.
 const MARGIN: f64 = 1.0;
-/// FrequencyBand of responses without any rate.
+/// The band of responses without any rate.
 const DEFAULT_BAND: FrequencyBand = (1.0, 1e4);
 /// Points per decade in files and plots.
 const POINTS: f64 = 20.0;

@@ -10,7 +10,7 @@ use crate::scene::Material;
 pub(super) struct Compliance {
     /// 1/(M(q_x v) K(q)), m/Pa; 0 of the mean.
     pub(super) compliance: Vec<Complex<f64>>,
-    /// M K, Pa/m; 0 of the mean. Its real part, which stands for its inverse's, of two points a wave.
+    /// M K, Pa/m; 0 for the mean. For waves of two points per period, which have no phase, 1/Re(1/M) stands for M.
     pub(super) stiffness: Vec<Complex<f64>>,
 }
 

@@ -4,8 +4,9 @@
 //!
 //!   C p + d = r on the set,   mean p = P.
 //!
-//! Without the mean over the set, d is gone; p without its part that is even over the set is looked for in the space of
-//! sum 0. There [GMRES](super::krylov), preconditioned by M K on the set, needs some ten iterations whatever the grid. (With its phase M K takes an eighth less than |M K|.)
+//! Subtracting the mean over the set eliminates d. The part of p with zero sum is found by [GMRES](super::krylov),
+//! preconditioned by M K restricted to the set, in about ten iterations on any grid. Keeping the phase of M K saves an
+//! eighth of them over |M K|.
 
 use rustfft::num_complex::Complex;
 

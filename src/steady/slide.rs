@@ -230,9 +230,9 @@ impl SteadySolver {
     /// The flash temperatures of the points in contact, K, and whether they are at their fixed point; `None` where friction
     /// heats nothing.
     ///
-    /// Of ϑ = κ * χ T(ϑ) v/A by Newton's method with a time step δ that grows, as dϑ/dt = κ * χ T(ϑ) v/A - ϑ from ϑ = 0
-    /// comes to rest: where a contact is so cold that friction rises with its temperature, heat feeds itself, there are
-    /// several solutions, and neither the map nor Newton's method alone ends.
+    /// Solves ϑ = κ * χ T(ϑ) v/A by pseudo-transient continuation: implicit steps of dϑ/dt = κ * χ T(ϑ) v/A - ϑ from
+    /// ϑ = 0, each by Newton's method, with a time step δ that grows. Where a contact is so cold that friction rises with
+    /// its temperature there are several solutions, and neither fixed-point iteration nor Newton's method alone converges.
     fn flash(&mut self, rubber: &SlidingRubber, speed: f64, contact: &Contact) -> (Option<Vec<f64>>, bool) {
         let Some(heat) = &rubber.heat else { return (None, true) };
         let kernel = heat.kernel(self.solver.surface(), speed);

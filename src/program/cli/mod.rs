@@ -184,7 +184,7 @@ pub(crate) struct Plot {
     /// Logarithmic axes: x, y or both.
     #[arg(long, value_name = "x,y", value_delimiter = ',')]
     pub(crate) log: Vec<PlotAxis>,
-    /// Marks the rows, which curves of a few rows are anyway.
+    /// Marks every row; curves of few rows are marked in any case.
     #[arg(long)]
     pub(crate) markers: bool,
     /// The plot to write, as SVG or PNG according to the file name.
