@@ -78,15 +78,160 @@ pub struct PatchVariable {
 pub const COORDINATES: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
 const AXES: [&str; 3] = ["x", "y", "z"];
 
+/// The patches that have an output.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PatchKind {
+    /// All.
+    All,
+    /// Those with a tread that runs through.
+    Tread,
+    /// Those whose slip warms the elements.
+    Warm,
+}
+
+/// An output of a patch.
+struct OutputRow {
+    group: PatchGroup,
+    output: PatchOutput,
+    name: &'static str,
+    unit: Unit,
+    kind: OutputType,
+    description: &'static str,
+    of: PatchKind,
+}
+
+/// A field of the elements of a patch.
+struct ElementField {
+    /// The output of an element.
+    output: fn(usize) -> PatchOutput,
+    /// Its name behind that of the element.
+    name: &'static str,
+    unit: Unit,
+    kind: OutputType,
+    /// What it is, the element's name put behind.
+    description: &'static str,
+    of: PatchKind,
+}
+
+#[rustfmt::skip]
+const TABLE: &[OutputRow] = {
+    use OutputType::{Integer, Real};
+    use PatchGroup::{Contact, Dissipation, Energy, Forces, Friction};
+    use PatchKind::{All, Tread, Warm};
+    use Unit::{Joule, Kelvin, Newton, NewtonMeter, One, Pascal, SquareMeter, Watt};
+    &[
+        row(Forces, PatchOutput::Force(0), "force.x", Newton, Real, "Force on the body along x", All),
+        row(Forces, PatchOutput::Force(1), "force.y", Newton, Real, "Force on the body along y", All),
+        row(Forces, PatchOutput::Force(2), "force.z", Newton, Real, "Force on the body along z", All),
+        row(Forces, PatchOutput::Moment(0), "moment.x", NewtonMeter, Real, "Moment on the body about the pose's point along x", All),
+        row(Forces, PatchOutput::Moment(1), "moment.y", NewtonMeter, Real, "Moment on the body about the pose's point along y", All),
+        row(Forces, PatchOutput::Moment(2), "moment.z", NewtonMeter, Real, "Moment on the body about the pose's point along z", All),
+        row(Forces, PatchOutput::TransportForce, "transport.force", Newton, Real, "Force on the tread, positive where the ground drives it to the rear", Tread),
+        row(Dissipation, PatchOutput::Power, "P_diss", Watt, Real, "Dissipated power, mean over the last step", All),
+        row(Dissipation, PatchOutput::Energy, "E_diss", Joule, Real, "Energy dissipated since the start", All),
+        row(Dissipation, PatchOutput::SlipEnergy, "dissipation.E_slip", Joule, Real, "Energy dissipated by slip", All),
+        row(Dissipation, PatchOutput::ReleaseEnergy, "dissipation.E_release", Joule, Real, "Energy lost with contacts that were released", All),
+        row(Contact, PatchOutput::Count, "contact.count", One, Integer, "Elements that bear", All),
+        row(Contact, PatchOutput::Sticking, "contact.sticking", One, Integer, "Elements that stick", All),
+        row(Contact, PatchOutput::NominalArea, "contact.nominal_area", SquareMeter, Real, "Area of the elements that bear", All),
+        row(Contact, PatchOutput::RealArea, "contact.area", SquareMeter, Real, "Real area of contact by the table's contact ratio", All),
+        row(Contact, PatchOutput::Pressure, "contact.pressure", Pascal, Real, "Largest pressure on an element", All),
+        row(Contact, PatchOutput::Beyond, "contact.beyond", One, Real, "Share of force.z that is borne beyond the table", All),
+        row(Contact, PatchOutput::LargestTemperature, "contact.temperature_largest", Kelvin, Real, "Temperature of the warmest element that bears", Warm),
+        row(Contact, PatchOutput::MeanTemperature, "contact.temperature_mean", Kelvin, Real, "Mean temperature of the elements that bear", Warm),
+        row(Friction, PatchOutput::Friction, "friction.coefficient", One, Real, "Tangential force over force.z", All),
+        row(Friction, PatchOutput::Hysteresis, "friction.hysteresis", One, Real, "Share of hysteresis in friction.coefficient", All),
+        row(Energy, PatchOutput::ElasticEnergy, "energy.elastic", Joule, Real, "Energy stored in the springs of the elements", All),
+    ]
+};
+
+#[rustfmt::skip]
+const ELEMENT_FIELDS: &[ElementField] = &[
+    field(PatchOutput::ElementPressure, "pressure", Unit::Pascal, OutputType::Real, "Pressure on", PatchKind::All),
+    field(|i| PatchOutput::ElementTraction(i, 0), "traction.x", Unit::Pascal, OutputType::Real, "Traction along x on", PatchKind::All),
+    field(|i| PatchOutput::ElementTraction(i, 1), "traction.y", Unit::Pascal, OutputType::Real, "Traction along y on", PatchKind::All),
+    field(PatchOutput::ElementMode, "mode", Unit::One, OutputType::Integer, "Mode (0 free, 1 slipping, 2 sticking) of", PatchKind::All),
+    field(PatchOutput::ElementTemperature, "temperature", Unit::Kelvin, OutputType::Real, "Temperature of", PatchKind::Warm),
+];
+
+const fn row(
+    group: PatchGroup,
+    output: PatchOutput,
+    name: &'static str,
+    unit: Unit,
+    kind: OutputType,
+    description: &'static str,
+    of: PatchKind,
+) -> OutputRow {
+    OutputRow { group, output, name, unit, kind, description, of }
+}
+
+const fn field(
+    output: fn(usize) -> PatchOutput,
+    name: &'static str,
+    unit: Unit,
+    kind: OutputType,
+    description: &'static str,
+    of: PatchKind,
+) -> ElementField {
+    ElementField { output, name, unit, kind, description, of }
+}
+
+impl OutputRow {
+    fn variable(&self) -> PatchVariable {
+        PatchVariable {
+            output: self.output,
+            group: self.group,
+            name: self.name.into(),
+            unit: self.unit,
+            kind: self.kind,
+            description: self.description.into(),
+        }
+    }
+}
+
+/// An output that a patch may have, for a list of all.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PatchOutputEntry {
+    /// The output group that it belongs to.
+    pub group: PatchGroup,
+    /// Its name; of a field of the elements the part behind `element[i].`, of the tangents one name for all.
+    pub name: String,
+    /// The units of its values.
+    pub units: Vec<Unit>,
+    /// What it is, in a few words.
+    pub description: String,
+    /// The patches that have it.
+    pub of: PatchKind,
+}
+
+/// All outputs of patches, in the order of the variables.
+pub fn catalogue() -> Vec<PatchOutputEntry> {
+    let of_row = |row: &OutputRow| PatchOutputEntry {
+        group: row.group,
+        name: row.name.into(),
+        units: vec![row.unit],
+        description: row.description.into(),
+        of: row.of,
+    };
+    let of_field = |field: &ElementField| PatchOutputEntry {
+        group: PatchGroup::Elements,
+        name: field.name.into(),
+        units: vec![field.unit],
+        description: format!("{} the element", field.description),
+        of: field.of,
+    };
+    let tangents = PatchOutputEntry {
+        group: PatchGroup::Tangent,
+        name: "tangent.LOAD.COORDINATE".into(),
+        units: vec![Unit::NewtonPerMeter, Unit::NewtonPerRadian, Unit::Newton, Unit::NewtonMeterPerRadian],
+        description: "Change of force.x to moment.z at the end of a step with the targets of x to yaw in it".into(),
+        of: PatchKind::All,
+    };
+    TABLE.iter().map(of_row).chain([tangents]).chain(ELEMENT_FIELDS.iter().map(of_field)).collect()
+}
+
 impl PatchVariable {
-    fn real(group: PatchGroup, output: PatchOutput, name: &str, unit: Unit, description: &str) -> Self {
-        Self { output, group, name: name.into(), unit, kind: OutputType::Real, description: description.into() }
-    }
-
-    fn count(group: PatchGroup, output: PatchOutput, name: &str, description: &str) -> Self {
-        Self { kind: OutputType::Integer, ..Self::real(group, output, name, Unit::One, description) }
-    }
-
     /// Whether it is an output of the FMU; the fields of the elements are local variables.
     pub fn is_output(&self) -> bool {
         self.group != PatchGroup::Elements
@@ -109,87 +254,19 @@ impl Patch {
     }
 
     fn variables_of(&self, group: PatchGroup) -> Vec<PatchVariable> {
-        use Unit::{Joule, Kelvin, One, Pascal, SquareMeter, Watt};
-        let real = |output, name, unit, description| PatchVariable::real(group, output, name, unit, description);
-        let count = |output, name, description| PatchVariable::count(group, output, name, description);
         match group {
-            PatchGroup::Forces => self.loads(),
-            PatchGroup::Dissipation => vec![
-                real(PatchOutput::Power, "P_diss", Watt, "Dissipated power, mean over the last step"),
-                real(PatchOutput::Energy, "E_diss", Joule, "Energy dissipated since the start"),
-                real(PatchOutput::SlipEnergy, "dissipation.E_slip", Joule, "Energy dissipated by slip"),
-                real(
-                    PatchOutput::ReleaseEnergy,
-                    "dissipation.E_release",
-                    Joule,
-                    "Energy lost with contacts that were released",
-                ),
-            ],
-            PatchGroup::Contact => [
-                count(PatchOutput::Count, "contact.count", "Elements that bear"),
-                count(PatchOutput::Sticking, "contact.sticking", "Elements that stick"),
-                real(PatchOutput::NominalArea, "contact.nominal_area", SquareMeter, "Area of the elements that bear"),
-                real(
-                    PatchOutput::RealArea,
-                    "contact.area",
-                    SquareMeter,
-                    "Real area of contact by the table's contact ratio",
-                ),
-                real(PatchOutput::Pressure, "contact.pressure", Pascal, "Largest pressure on an element"),
-                real(PatchOutput::Beyond, "contact.beyond", One, "Share of force.z that is borne beyond the table"),
-            ]
-            .into_iter()
-            .chain(self.heat().iter().flat_map(|_| {
-                let (largest, mean) = (PatchOutput::LargestTemperature, PatchOutput::MeanTemperature);
-                let (largest_is, mean_is) =
-                    ("Temperature of the warmest element that bears", "Mean temperature of the elements that bear");
-                [
-                    real(largest, "contact.temperature_largest", Kelvin, largest_is),
-                    real(mean, "contact.temperature_mean", Kelvin, mean_is),
-                ]
-            }))
-            .collect(),
-            PatchGroup::Friction => vec![
-                real(PatchOutput::Friction, "friction.coefficient", One, "Tangential force over force.z"),
-                real(
-                    PatchOutput::Hysteresis,
-                    "friction.hysteresis",
-                    One,
-                    "Share of hysteresis in friction.coefficient",
-                ),
-            ],
-            PatchGroup::Energy => {
-                vec![real(
-                    PatchOutput::ElasticEnergy,
-                    "energy.elastic",
-                    Joule,
-                    "Energy stored in the springs of the elements",
-                )]
-            }
             PatchGroup::Tangent => tangents(),
             PatchGroup::Elements => (0..self.count()).flat_map(|i| self.fields(i)).collect(),
+            _ => TABLE.iter().filter(|row| row.group == group && self.has(row.of)).map(OutputRow::variable).collect(),
         }
     }
 
-    fn loads(&self) -> Vec<PatchVariable> {
-        let load = |output, kind: &str, axis: usize, unit, of: &str| {
-            let (name, description) = (format!("{kind}.{}", AXES[axis]), format!("{of} {}", AXES[axis]));
-            PatchVariable::real(PatchGroup::Forces, output, &name, unit, &description)
-        };
-        let force = |axis| load(PatchOutput::Force(axis), "force", axis, Unit::Newton, "Force on the body along");
-        let about = "Moment on the body about the pose's point along";
-        let moment = |axis| load(PatchOutput::Moment(axis), "moment", axis, Unit::NewtonMeter, about);
-        let description = "Force on the tread, positive where the ground drives it to the rear";
-        let transport = || {
-            PatchVariable::real(
-                PatchGroup::Forces,
-                PatchOutput::TransportForce,
-                "transport.force",
-                Unit::Newton,
-                description,
-            )
-        };
-        (0..3).map(force).chain((0..3).map(moment)).chain(self.has_tread().then(transport)).collect()
+    fn has(&self, of: PatchKind) -> bool {
+        match of {
+            PatchKind::All => true,
+            PatchKind::Tread => self.has_tread(),
+            PatchKind::Warm => self.heat().is_some(),
+        }
     }
 
     /// The name of an element, before its variables' own.
@@ -200,28 +277,17 @@ impl Patch {
         }
     }
 
-    fn fields(&self, i: usize) -> impl Iterator<Item = PatchVariable> + use<> {
+    fn fields(&self, i: usize) -> impl Iterator<Item = PatchVariable> + use<'_> {
         let element = self.element_name(i);
-        let name = |field: &str| format!("{element}.{field}");
-        let real = |output, field: &str, unit, what: &str| {
-            PatchVariable::real(PatchGroup::Elements, output, &name(field), unit, &format!("{what} {element}"))
+        let variable = move |field: &ElementField| PatchVariable {
+            output: (field.output)(i),
+            group: PatchGroup::Elements,
+            name: format!("{element}.{}", field.name),
+            unit: field.unit,
+            kind: field.kind,
+            description: format!("{} {element}", field.description),
         };
-        let traction = |axis: usize| {
-            let (field, what) = (format!("traction.{}", AXES[axis]), format!("Traction along {} on", AXES[axis]));
-            real(PatchOutput::ElementTraction(i, axis), &field, Unit::Pascal, &what)
-        };
-        let temperature = self
-            .heat()
-            .map(|_| real(PatchOutput::ElementTemperature(i), "temperature", Unit::Kelvin, "Temperature of"));
-        let modes = format!("Mode (0 free, 1 slipping, 2 sticking) of {element}");
-        [
-            real(PatchOutput::ElementPressure(i), "pressure", Unit::Pascal, "Pressure on"),
-            traction(0),
-            traction(1),
-            PatchVariable::count(PatchGroup::Elements, PatchOutput::ElementMode(i), &name("mode"), &modes),
-        ]
-        .into_iter()
-        .chain(temperature)
+        ELEMENT_FIELDS.iter().filter(|field| self.has(field.of)).map(variable)
     }
 }
 
@@ -238,7 +304,8 @@ fn tangents() -> Vec<PatchVariable> {
         };
         let description = format!("Change of {load} at the end of a step with the target of {coordinate} in it");
         let name = format!("tangent.{load}.{coordinate}");
-        PatchVariable::real(PatchGroup::Tangent, PatchOutput::Tangent(row, column), &name, unit, &description)
+        let (group, output) = (PatchGroup::Tangent, PatchOutput::Tangent(row, column));
+        PatchVariable { output, group, name, unit, kind: OutputType::Real, description }
     };
     (0..36).map(variable).collect()
 }

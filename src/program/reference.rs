@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 use std::fs;
 
-use crate::outputs::catalogue;
+use crate::outputs::{OutputEntry, catalogue};
+use crate::patch::{self, PatchKind, PatchOutputEntry};
 use crate::scene::{Absent, KeyEntry, Unit, patch_keys, scene_keys};
 use clap::{Arg, Command, CommandFactory as _};
 
@@ -48,7 +49,9 @@ fn page() -> String {
     page += &format!("\n## Keys of a scene\n{}", key_tables(&scene_keys()));
     page += &format!("\n## Keys of a patch\n{}", key_tables(&patch_keys()));
     page += "\n## Outputs of a scene\n\nBy the groups of `[fmu] outputs`; those of `elements` are of each mass, `element[i].…`.\n";
-    page += &output_tables();
+    page += &output_tables(&outputs_of_scenes());
+    page += "\n## Outputs of a patch\n\nBy the groups of `[fmu] outputs`; those of `elements` are of each element, `element[i,j].…`. *only* names the key\nof `[patch]` without which there is no such output.\n";
+    page += &output_tables(&outputs_of_patches());
     page += "\n## Commands\n\nAll of them take `-q`, `--quiet`: results and warnings alone, neither notes nor progress; and `-v`,\n`--verbose`: every note where only some or their number would be printed.\n";
     let mut command = Arguments::command();
     command.build();
@@ -89,17 +92,54 @@ fn key_tables(keys: &[KeyEntry]) -> String {
     text
 }
 
+/// An output in a table.
+struct OutputLine {
+    group: &'static str,
+    name: String,
+    unit: String,
+    only: &'static str,
+    description: String,
+}
+
+fn outputs_of_scenes() -> Vec<OutputLine> {
+    let line = |entry: OutputEntry| OutputLine {
+        group: entry.group.word(),
+        name: entry.name.to_owned(),
+        unit: plain_unit(entry.unit),
+        only: "",
+        description: entry.description.to_owned(),
+    };
+    catalogue().map(line).collect()
+}
+
+fn outputs_of_patches() -> Vec<OutputLine> {
+    let only = |of: PatchKind| match of {
+        PatchKind::All => "",
+        PatchKind::Tread => "transport",
+        PatchKind::Warm => "heat",
+    };
+    let line = |entry: PatchOutputEntry| OutputLine {
+        group: entry.group.word(),
+        name: entry.name,
+        unit: entry.units.into_iter().map(plain_unit).collect::<Vec<_>>().join(", "),
+        only: only(entry.of),
+        description: entry.description,
+    };
+    patch::catalogue().into_iter().map(line).collect()
+}
+
 /// A table for each group of outputs.
-fn output_tables() -> String {
+fn output_tables(outputs: &[OutputLine]) -> String {
     let mut text = String::new();
-    let mut group = None;
-    for output in catalogue() {
+    let mut group = "";
+    for line in outputs {
         // Writing to a text cannot fail.
-        if group.replace(output.group) != Some(output.group) {
-            let _ = writeln!(text, "\n### `{}`\n\n| output | unit | meaning |\n|---|---|---|", output.group.word());
+        if line.group != group {
+            group = line.group;
+            let _ = writeln!(text, "\n### `{group}`\n\n| output | unit | only | meaning |\n|---|---|---|---|");
         }
-        let (unit, description) = (plain_unit(output.unit), cell(output.description));
-        let _ = writeln!(text, "| `{}` | {unit} | {description} |", output.name);
+        let OutputLine { name, unit, only, description, .. } = line;
+        let _ = writeln!(text, "| `{name}` | {unit} | {only} | {} |", cell(description));
     }
     text
 }
