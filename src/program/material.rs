@@ -30,7 +30,9 @@ pub(crate) enum MaterialError {
 pub(crate) fn material(command: &Material) -> Result<(), MaterialError> {
     let mut scene = load_without_run(&command.scene, &command.set, |_| false)?;
     if let Some(temperature) = command.temperature {
-        set_temperature(&mut scene, temperature)?;
+        let wlf = scene.material.as_ref().and_then(|material| material.wlf);
+        wlf.ok_or(MaterialError::NoTemperature)?;
+        scene = scene.at_temperature(temperature).map_err(MaterialError::Temperature)?;
     }
     let outputs = if command.output.is_empty() { vec![default_output(&command.scene)] } else { command.output.clone() };
     check_outputs(&outputs, sources(&command.scene, &scene))?;
@@ -50,12 +52,6 @@ pub(crate) fn material(command: &Material) -> Result<(), MaterialError> {
 fn default_output(scene: &Path) -> PathBuf {
     let stem = scene.file_stem().unwrap_or(scene.as_os_str()).to_string_lossy();
     PathBuf::from(format!("{stem}-material.svg"))
-}
-
-fn set_temperature(scene: &mut Scene, temperature: f64) -> Result<(), MaterialError> {
-    let wlf = scene.material.as_mut().and_then(|material| material.wlf.as_mut());
-    wlf.ok_or(MaterialError::NoTemperature)?.temperature = temperature;
-    scene.check().map_err(MaterialError::Temperature)
 }
 
 /// A range of angular frequencies, rad/s.

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::error::{ParameterError, Problem};
 use super::keys;
-use super::{ByLink, Layer, Link, LinkKind, MaxwellElement, RateShear, Scene};
+use super::{ByLink, Layer, Link, LinkKind, MaxwellElement, RateShear, Scene, is_possible};
 
 /// A linear viscoelastic solid: a spring, a dashpot and Maxwell elements in parallel, as moduli.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -290,6 +290,33 @@ impl Scene {
             }
         }
         scene
+    }
+
+    /// The scene with its layer at a temperature, K, not checked; as it is without one, or where it has no
+    /// `material.wlf`.
+    pub fn with_temperature(&self, kelvin: impl Into<Option<f64>>) -> Self {
+        let mut scene = self.clone();
+        let wlf = scene.material.as_mut().and_then(|material| material.wlf.as_mut());
+        if let (Some(wlf), Some(kelvin)) = (wlf, kelvin.into()) {
+            wlf.temperature = kelvin;
+        }
+        scene
+    }
+
+    /// The scene with its layer at a temperature, K, checked.
+    ///
+    /// # Errors
+    /// [`ParameterError`] where the scene has no `material.wlf`, or the temperature is none, or the shift has its pole
+    /// above it, or a number of the material becomes impossible.
+    pub fn at_temperature(&self, kelvin: f64) -> Result<Self, ParameterError> {
+        let has_wlf = self.material.as_ref().is_some_and(|material| material.wlf.is_some());
+        if !(has_wlf && kelvin > 0.0 && is_possible(kelvin)) {
+            let range = keys::range_of("material.wlf.temperature");
+            return Err(ParameterError::new("temperature", Problem::value(format_args!("{kelvin:?}"), range)));
+        }
+        let scene = self.with_temperature(kelvin);
+        scene.check()?;
+        Ok(scene)
     }
 
     /// Checks what follows from several parameters at once, and so cannot be refused when one of them is set: the

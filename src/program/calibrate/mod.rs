@@ -26,7 +26,7 @@ use super::files::{
 use super::interrupt::Farewell;
 use super::measured_friction::{self, CurveGrid, MeasuredFrictionError, ModelCurves};
 use super::overrides::{self, OverrideError, Setting};
-use super::sweep::{Method, MethodError, NeverSteady, SlidingOptions, relevant, table_fingerprint, with_temperature};
+use super::sweep::{Method, MethodError, NeverSteady, SlidingOptions, relevant, table_fingerprint};
 use super::terminal::{self, note, real, rounded, warn};
 use kept::KeptPoints;
 use layer_model::LayerModel;
@@ -209,7 +209,7 @@ impl<'a> FreeScene<'a> {
         };
         for row in &mut measurements.rows {
             let temperature = *row.point.temperature.get_or_insert(own);
-            with_temperature(&self.scene, temperature).check().map_err(|error| CalibrateError::Temperature {
+            self.scene.with_temperature(temperature).check().map_err(|error| CalibrateError::Temperature {
                 path: path.clone(),
                 line: row.line,
                 problem: error.to_string(),
@@ -565,7 +565,7 @@ impl Work<'_> {
         let pressures = pressures.unwrap_or_else(|| in_logarithm(3, range(&|point| Some(point.load)), 2.0));
         let own = range(&|point| point.temperature).map(|(low, high)| even(5, (low - 20.0, high + 20.0)));
         let kelvin = command.temperatures.clone().map(|values| values.0).or(own);
-        let is_possible = |kelvin: &f64| with_temperature(&self.free.scene, *kelvin).check().is_ok();
+        let is_possible = |kelvin: &f64| self.free.scene.with_temperature(*kelvin).check().is_ok();
         let temperatures: Vec<Option<f64>> = match kelvin {
             Some(kelvin) if measured.iter().any(|point| point.temperature.is_some()) => {
                 kelvin.into_iter().filter(is_possible).map(|kelvin| Some(rounded(kelvin, 5))).collect()

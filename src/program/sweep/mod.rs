@@ -236,14 +236,6 @@ fn wlf(scene: &Scene) -> Option<Wlf> {
     scene.material.as_ref().and_then(|material| material.wlf)
 }
 
-pub(crate) fn with_temperature(scene: &Scene, temperature: f64) -> Scene {
-    let mut scene = scene.clone();
-    if let Some(wlf) = scene.material.as_mut().and_then(|material| material.wlf.as_mut()) {
-        wlf.temperature = temperature;
-    }
-    scene
-}
-
 /// Separation of the carrier's rest line and the profile's mean line at w = 0, m.
 pub(crate) fn separation_at_rest(scene: &Scene) -> f64 {
     let model = Model::new(scene);
@@ -262,10 +254,7 @@ pub(crate) fn relevant(scene: Scene) -> Scene {
 /// The scene of one point. `solver.reduce` depends on the speed and on the duration of its excitation: as steady motion
 /// has no end, no Maxwell element becomes a spring.
 fn scene_at(scene: &Scene, point: &OperatingPoint) -> Scene {
-    let mut scene = match point.temperature {
-        Some(temperature) => with_temperature(scene, temperature),
-        None => scene.clone(),
-    };
+    let mut scene = scene.with_temperature(point.temperature);
     let u = Displacement { rate: point.speed, ..Displacement::default() };
     scene.excitation = vec![Phase {
         duration: crate::scene::LARGEST,

@@ -6,7 +6,7 @@ use crate::element::{Load, OperatingPoint, Quantity, STEADY, TableHeader, TableR
 use crate::scene::Scene;
 use crate::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 
-use super::{SweepError, with_temperature};
+use super::SweepError;
 
 /// The solver of the points of a sweep, on all threads.
 #[derive(Debug)]
@@ -27,10 +27,8 @@ impl SolvedPoints {
     pub(super) fn new(scene: &Scene, temperatures: &[f64], surface: SurfaceGrid) -> Result<Self, SweepError> {
         let temperatures: Vec<Option<f64>> =
             if temperatures.is_empty() { vec![None] } else { temperatures.iter().copied().map(Some).collect() };
-        let rubber = |temperature: Option<f64>| {
-            let scene = temperature.map_or_else(|| scene.clone(), |temperature| with_temperature(scene, temperature));
-            Some((temperature, SlidingRubber::new(&scene)?))
-        };
+        let rubber =
+            |temperature: Option<f64>| Some((temperature, SlidingRubber::new(&scene.with_temperature(temperature))?));
         let rubbers = temperatures.into_iter().map(rubber).collect::<Option<Vec<_>>>().ok_or(SweepError::NoArea)?;
         let area = scene.layer.area().ok_or(SweepError::NoArea)?;
         Ok(Self { surface, rubbers, area, idle: Mutex::new(Vec::new()) })
