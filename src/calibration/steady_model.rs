@@ -66,14 +66,13 @@ impl FrictionModel for SteadyModel<'_> {
 
 /// Full contact has friction; only elements have no use for it.
 fn outcome(slide: &SteadySlide) -> Outcome {
-    match slide.contact.left_over {
-        0 if !slide.heat_converged => Err("the flash temperature does not come to rest".to_owned()),
-        0 => Ok(FrictionParts {
+    match slide.problem() {
+        Some(problem) if !problem.leaves_friction() => Err(problem.to_string()),
+        _ => Ok(FrictionParts {
             profile: slide.profile_hysteresis,
             fine: slide.fine_hysteresis.unwrap_or(0.0),
             shear: slide.adhesion,
         }),
-        left_over => Err(format!("{left_over} points of the surface are pulled or lie below it")),
     }
 }
 

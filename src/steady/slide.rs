@@ -72,6 +72,44 @@ impl SteadySlide {
     pub fn friction(&self) -> f64 {
         self.profile_hysteresis + self.fine_hysteresis.unwrap_or(0.0) + self.adhesion
     }
+
+    /// Why not all of its values can be relied on; `None` where they can.
+    pub fn problem(&self) -> Option<SlideProblem> {
+        match self.contact.left_over {
+            0 if !self.heat_converged => Some(SlideProblem::HeatNotConverged),
+            0 if self.contact.is_full => Some(SlideProblem::FullContact),
+            0 if self.tangential_stiffness.is_none() => Some(SlideProblem::SinglePoint),
+            0 => None,
+            left_over => Some(SlideProblem::ContactNotFound { left_over }),
+        }
+    }
+}
+
+/// Why not all values of a slide can be relied on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SlideProblem {
+    /// No set of points in contact was found: `left_over` are on the wrong side.
+    #[error("{left_over} points of the surface are pulled or lie below it")]
+    ContactNotFound {
+        /// [`Contact::left_over`].
+        left_over: usize,
+    },
+    /// The flash temperature did not come to its fixed point.
+    #[error("the flash temperature does not come to rest")]
+    HeatNotConverged,
+    /// All points touch, so the contact has no stiffness.
+    #[error("full contact")]
+    FullContact,
+    /// One point touches, so the contact has no stiffness.
+    #[error("no stiffness: a single point is in contact")]
+    SinglePoint,
+}
+
+impl SlideProblem {
+    /// Whether friction and area can be relied on all the same.
+    pub fn leaves_friction(self) -> bool {
+        matches!(self, Self::FullContact | Self::SinglePoint)
+    }
 }
 
 /// Accuracy of ϑ over its largest.

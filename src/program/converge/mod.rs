@@ -24,7 +24,7 @@ use super::figure::Figure as _;
 use super::files::{FileError, check_outputs, default_output, picture_beside, print_beside, sources};
 use super::interrupt::Farewell;
 use super::sweep::{
-    Method, MethodError, NeverSteady, SlidingOptions, StopBounds, SweepMethod, relevant, solved_status, steady_sliding,
+    Method, MethodError, NeverSteady, SlidingOptions, StopBounds, SweepMethod, relevant, steady_sliding,
     table_fingerprint,
 };
 use super::terminal::{self, warn};
@@ -236,8 +236,8 @@ impl Work<'_> {
             return Err("not to be solved for".into());
         };
         let slide = SteadySolver::new(surface).slide(&rubber, self.command.at.speed, self.command.at.pressure);
-        if slide.contact.left_over > 0 || !slide.heat_converged {
-            return Err(solved_status(&slide));
+        if let Some(problem) = slide.problem().filter(|problem| !problem.leaves_friction()) {
+            return Err(problem.to_string());
         }
         Ok(Measured {
             mean: Pair { friction: slide.friction(), area: slide.area },

@@ -116,11 +116,5 @@ impl SolvedPoints {
 
 /// [`STEADY`], or why the values cannot be relied on.
 pub(crate) fn status(slide: &SteadySlide) -> String {
-    match slide.contact.left_over {
-        0 if !slide.heat_converged => "the flash temperature does not come to rest".to_owned(),
-        0 if slide.contact.is_full => "full contact".to_owned(),
-        0 if slide.tangential_stiffness.is_none() => "no stiffness: a single point is in contact".to_owned(),
-        0 => STEADY.to_owned(),
-        left_over => format!("{left_over} points of the surface are pulled or lie below it"),
-    }
+    slide.problem().map_or_else(|| STEADY.to_owned(), |problem| problem.to_string())
 }
