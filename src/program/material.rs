@@ -9,7 +9,7 @@ use crate::scene::{Link, LinkKind, MaxwellElement, ParameterError, Scene};
 use super::cli::Material;
 use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
 use super::files::{
-    self, FileError, check_outputs, ends_in, is_standard_output, load_without_run, named, print_beside, sources,
+    self, FileError, check_outputs, ends_in, is_standard_output, load_without_run, named, print_beside,
 };
 use super::terminal::{LabelledLine, decimal, lines, rounded};
 
@@ -35,7 +35,7 @@ pub(crate) fn material(command: &Material) -> Result<(), MaterialError> {
         scene = scene.at_temperature(temperature).map_err(MaterialError::Temperature)?;
     }
     let outputs = if command.output.is_empty() { vec![default_output(&command.scene)] } else { command.output.clone() };
-    check_outputs(&outputs, sources(&command.scene, &scene))?;
+    check_outputs(&outputs, scene.sources(&command.scene))?;
     let responses = Responses::new(&scene, command.frequencies.map(|range| range.0))?;
     for output in &outputs {
         if ends_in(output, "csv") || is_standard_output(output) {

@@ -367,6 +367,13 @@ impl Scene {
         self.excitation.iter().map(|phase| phase.duration).sum()
     }
 
+    /// Paths of the files that the scene was read from; `path` is that of its own.
+    pub fn sources(&self, path: &FilePath) -> Vec<PathBuf> {
+        let folder = path.parent().unwrap_or(FilePath::new(""));
+        let files = self.files.iter().chain(self.extracts.iter().map(|extract| &extract.source));
+        std::iter::once(path.to_owned()).chain(files.map(|file| folder.join(file))).collect()
+    }
+
     /// The bytes of one of the scene's [`files`](Self::files) as an FMU carries them; `folder` is the scene's.
     ///
     /// # Errors

@@ -21,7 +21,7 @@ use super::SUCCESS;
 use super::cli::Calibrate;
 use super::figure::{Figure as _, Stroke};
 use super::files::{
-    self, FileError, check_outputs, is_standard_output, load_without_run, picture_beside, print_beside, sources,
+    self, FileError, check_outputs, is_standard_output, load_without_run, picture_beside, print_beside,
 };
 use super::interrupt::Farewell;
 use super::measured_friction::{self, CurveGrid, MeasuredFrictionError, ModelCurves};
@@ -269,7 +269,7 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, CalibrateError> {
     let output = command.output.clone().unwrap_or_else(|| command.scene.with_extension("calibrated.toml"));
     let picture = picture_beside(&output, command.plot.as_ref());
     let table = (!is_standard_output(&output)).then(|| output.with_extension("points.csv"));
-    let taken = sources(&command.scene, &free.scene).into_iter().chain([command.data.clone()]).collect();
+    let taken = free.scene.sources(&command.scene).into_iter().chain([command.data.clone()]).collect();
     check_outputs([&output].into_iter().chain(&picture).chain(&table), taken)?;
     written::check_folder(&output, command, &free.scene)?;
     let (kept, known) = match &table {

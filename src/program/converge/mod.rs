@@ -21,7 +21,7 @@ use super::SUCCESS;
 use super::cli::{Converge, SteadyState};
 use super::draft::TablePlace;
 use super::figure::Figure as _;
-use super::files::{FileError, check_outputs, default_output, picture_beside, print_beside, sources};
+use super::files::{FileError, check_outputs, default_output, picture_beside, print_beside};
 use super::interrupt::Farewell;
 use super::sweep::{
     Method, MethodError, NeverSteady, SlidingOptions, StopBounds, SweepMethod, relevant, steady_sliding,
@@ -94,7 +94,7 @@ pub(crate) fn converge(command: &Converge) -> Result<u8, ConvergeError> {
     warning.iter().for_each(|warning| warn(warning));
     let output = command.output.clone().unwrap_or_else(|| default_output(&command.scene, "converge.csv"));
     let picture = picture_beside(&output, command.plot.as_ref());
-    check_outputs([&output].into_iter().chain(&picture), sources(&command.scene, &scene))?;
+    check_outputs([&output].into_iter().chain(&picture), scene.sources(&command.scene))?;
     method.check(&scene)?;
     let place = TablePlace::new(&output)?;
     let (table, runs) =

@@ -23,9 +23,7 @@ use crate::scene::{Initial, OutputGroup, ParameterError, Path as Displacement, P
 
 use super::cli::{Sliding, Sweep};
 use super::draft::TablePlace;
-use super::files::{
-    FileError, check_outputs, default_output, load_without_run, named, picture_beside, print_beside, sources,
-};
+use super::files::{FileError, check_outputs, default_output, load_without_run, named, picture_beside, print_beside};
 use super::interrupt::Farewell;
 use super::terminal::{self, lines, warn};
 use load_search::{heights, rest_separation};
@@ -133,7 +131,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
     let output = command.output.clone().unwrap_or_else(|| default_output(path, "sweep.csv"));
     let picture = picture(command, &output);
     let study = convergence::file(command.converged.as_ref(), path);
-    let taken = sources(path, &scene).into_iter().chain(study.clone()).collect();
+    let taken = scene.sources(path).into_iter().chain(study.clone()).collect();
     check_outputs([&output].into_iter().chain(&picture).chain(&command.master), taken)?;
     let master = match &command.master {
         Some(path) => Some((path.as_path(), wlf(&scene).ok_or(SweepError::NoMaster)?)),
