@@ -357,11 +357,6 @@ impl OutputGroup {
 }
 
 impl Scene {
-    /// The scene's name as a C identifier: letters, digits and underscores, no digit first.
-    pub fn model_identifier(&self) -> String {
-        identifier(&self.name)
-    }
-
     /// The duration of the excitation if no force ends a phase, s.
     pub fn duration(&self) -> f64 {
         self.excitation.iter().map(|phase| phase.duration).sum()

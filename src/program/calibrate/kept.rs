@@ -4,7 +4,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use crate::calibration::{FreeParameter, FrictionParts, Outcome, Task};
-use crate::element::OperatingPoint;
+use crate::element::{OperatingPoint, STEADY};
 use crate::scene::{read_file, text_table};
 
 use super::CalibrateError;
@@ -15,7 +15,6 @@ use crate::program::terminal::{real, warn};
 
 /// The first line of a table; its number grows when readers have to know of a change.
 const FORMAT: &str = "# asperity calibrate = 1";
-const STEADY: &str = "steady";
 
 /// A table to which points are added.
 #[derive(Debug)]

@@ -17,7 +17,6 @@ use crate::element::OperatingPoint;
 use crate::scene::{Scene, read_text, similar_keys};
 use indicatif::ProgressBar;
 
-use super::SUCCESS;
 use super::cli::Calibrate;
 use super::figure::{Figure as _, Stroke};
 use super::files::{
@@ -28,6 +27,7 @@ use super::measured_friction::{self, CurveGrid, MeasuredFrictionError, ModelCurv
 use super::overrides::{self, OverrideError, Setting};
 use super::sweep::{Method, MethodError, NeverSteady, SlidingOptions, relevant, table_fingerprint};
 use super::terminal::{self, note, real, rounded, warn};
+use super::{NOT_REACHED, SUCCESS};
 use kept::KeptPoints;
 use layer_model::LayerModel;
 
@@ -86,8 +86,6 @@ fn similar_in_words(key: &str) -> String {
     if similar.is_empty() { String::new() } else { format!("; did you mean {}?", similar.join(", ")) }
 }
 
-/// Exit status where the fit has not converged or not all is identifiable: it is to be looked at.
-const OPEN: u8 = 3;
 /// Most free parameters.
 const MOST_FREE: usize = 12;
 /// Points of a curve.
@@ -300,7 +298,7 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, CalibrateError> {
             [Some(&output), picture.as_ref(), table.as_ref()].into_iter().flatten().map(PathBuf::as_path).collect();
         print_beside([&output], &summary::text(&free, &calibrated, &measurements, planned.as_ref(), &files))?;
         summary::warnings(&calibrated, &measurements).iter().for_each(|warning| warn(warning));
-        Ok(if calibrated.is_whole() { SUCCESS } else { OPEN })
+        Ok(if calibrated.is_whole() { SUCCESS } else { NOT_REACHED })
     })
 }
 

@@ -17,7 +17,6 @@ use cpu_time::ThreadTime;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 
-use super::SUCCESS;
 use super::cli::{Converge, SteadyState};
 use super::draft::TablePlace;
 use super::figure::Figure as _;
@@ -28,6 +27,7 @@ use super::sweep::{
     table_fingerprint,
 };
 use super::terminal::{self, warn};
+use super::{NOT_REACHED, SUCCESS};
 use crate::steady::persson::{Dimension, Theory};
 use plan::{Next, Plan};
 use table::{Measured, RunRow, StudyHeader, Table};
@@ -75,8 +75,6 @@ pub(crate) enum ConvergeError {
     OtherStudy { path: PathBuf },
 }
 
-/// Exit status where not all is within the error.
-const OPEN: u8 = 3;
 /// Standard error of a run over the error that its changes may have.
 const RUN_ERROR: f64 = 0.1;
 
@@ -112,7 +110,7 @@ pub(crate) fn converge(command: &Converge) -> Result<u8, ConvergeError> {
     if let Some(picture) = &picture {
         plot::picture(&scene.name, &runs).write(picture)?;
     }
-    Ok(if verdict.is_converged() { SUCCESS } else { OPEN })
+    Ok(if verdict.is_converged() { SUCCESS } else { NOT_REACHED })
 }
 
 /// Seeds where none are asked for.

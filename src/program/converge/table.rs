@@ -3,6 +3,7 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use crate::element::STEADY;
 use crate::scene::{read_file, text_table};
 
 use super::ConvergeError;
@@ -45,8 +46,6 @@ const COLUMNS: [&str; 25] = [
     "persson_friction_2d_reduced [1]",
     "run_time [s]",
 ];
-/// The status of a run whose values can be relied on.
-const STEADY: &str = "steady";
 
 /// What a run measured, with the standard errors of it.
 #[derive(Clone, Copy, Debug, PartialEq)]

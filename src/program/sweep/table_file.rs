@@ -3,7 +3,7 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use crate::element::{FORMAT, OperatingPoint, Table, TableError, TableHeader, TableRow, TableText};
+use crate::element::{FORMAT, OperatingPoint, Table, TableError, TableHeader, TableRow, TableText, some_of};
 use crate::scene::{Scene, read_file, read_text};
 
 use super::low_end::low_end;
@@ -43,16 +43,6 @@ pub enum TableFileError {
         .missing.len(), some_of(.missing), .path.display()
     )]
     Missing { missing: Vec<String>, total: usize, path: PathBuf },
-}
-
-/// The first of `points`, and how many more there are.
-fn some_of(points: &[String]) -> String {
-    const SHOWN: usize = 10;
-    let shown = points.iter().take(SHOWN).cloned().collect::<Vec<_>>().join("; ");
-    match points.len().saturating_sub(SHOWN) {
-        0 => shown,
-        more => format!("{shown}; and {more} more"),
-    }
 }
 
 /// A row as it stands in a file: a table that is continued or merged keeps it to the letter.
