@@ -29,6 +29,7 @@ mod patch;
 mod reference;
 mod report;
 mod result_file;
+mod resumable_table;
 mod run_summary;
 mod runner;
 mod simulate;
