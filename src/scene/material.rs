@@ -121,13 +121,26 @@ impl Material {
     /// E'(ω) and E''(ω) at the layer's temperature, Pa, for ω ≥ 0 in rad/s (2), as the links have them:
     /// E*(ω) = E_∞ + iω a_T η + Σ_j E_j iω a_T τ_j/(1 + iω a_T τ_j).
     pub fn complex_modulus(&self, omega: f64) -> (f64, f64) {
+        self.complex_modulus_at_reference(omega * self.shift_factor())
+    }
+
+    fn complex_modulus_at_reference(&self, omega: f64) -> (f64, f64) {
         let elements = self.prony.iter().map(PronyTerm::element);
-        complex_stiffness(
-            self.equilibrium_modulus,
-            self.viscosity.unwrap_or(0.0),
-            elements,
-            omega * self.shift_factor(),
-        )
+        complex_stiffness(self.equilibrium_modulus, self.viscosity.unwrap_or(0.0), elements, omega)
+    }
+
+    /// M'(ω) and M''(ω), Pa: the plane modulus of [`complex_modulus`](Self::complex_modulus).
+    pub fn complex_plane_modulus(&self, omega: f64) -> (f64, f64) {
+        self.plane_moduli(self.complex_modulus(omega))
+    }
+
+    /// [`complex_plane_modulus`](Self::complex_plane_modulus) at the reference temperature.
+    pub(super) fn complex_plane_modulus_at_reference(&self, omega: f64) -> (f64, f64) {
+        self.plane_moduli(self.complex_modulus_at_reference(omega))
+    }
+
+    fn plane_moduli(&self, (storage, loss): (f64, f64)) -> (f64, f64) {
+        (self.plane_modulus(storage), self.plane_modulus(loss))
     }
 
     /// M = E/(1 - ν²), Pa: the plane modulus of the modulus E, Pa.

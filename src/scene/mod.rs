@@ -48,8 +48,8 @@ pub use carrier::{CarrierBodies, CarrierBody, CarrierInitial, Input};
 pub use error::{ParameterError, Problem, SceneError};
 pub use excitation::{Force, Motion, Path, Phase};
 pub use fine_roughness::{
-    BandModuli, FineBand, FineRoughness, FineWaves, ModulusFactors, RoughnessSpectrum, Softening, SofteningRow,
-    SplitSurface,
+    FineBand, FineRoughness, FineWaves, ModulusFactors, RoughnessSpectrum, Softening, SofteningRow, SplitSurface,
+    WaveModuli,
 };
 pub use fmu::{DependencyList, FmuOptions, IntegerType};
 pub use foundation::{Body, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};

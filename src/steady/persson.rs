@@ -6,9 +6,9 @@
 //! contacts that deform less than the whole surface would. The waves that the profile lacks follow in bands; the area is
 //! that of the profile's waves, as the contact ratio of a run is.
 
-use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
+use std::f64::consts::{PI, SQRT_2};
 
-use crate::scene::{Body, FineBand, FineRoughness, Material, Scene, Spectrum, Surface};
+use crate::scene::{Body, FineBand, FineRoughness, Material, Scene, Spectrum, Surface, WaveModuli};
 
 /// Area and friction by the theory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,9 +29,6 @@ pub enum Dimension {
     /// An isotropic surface, of which the profile is a line.
     Two,
 }
-
-/// Angles between 0 and π/2 at whose middles the waves of an isotropic surface are taken.
-const ANGLES: u32 = 32;
 
 impl Theory {
     /// Area and friction of the waves that the layer of `scene` resolves and of those that the profile lacks, sliding at
@@ -147,11 +144,11 @@ impl Part {
         dimension: Dimension,
     ) -> Self {
         let (stiffness, square) = (body.normal(wave_number), dimension.factor() * mean_square);
-        let (modulus_square, loss) = dimension.means(material, wave_number * speed);
+        let moduli = dimension.moduli(material, wave_number * speed);
         Self {
             wave_number,
-            stress_square: square * stiffness * stiffness * modulus_square,
-            loss: wave_number * square * stiffness * loss,
+            stress_square: square * stiffness * stiffness * moduli.square,
+            loss: wave_number * square * stiffness * moduli.loss,
             is_fine: false,
         }
     }
@@ -191,20 +188,11 @@ impl Dimension {
         }
     }
 
-    /// <|M(ω cos φ)|²> (Pa²) and <cos φ Im M(ω cos φ)> (Pa).
-    fn means(self, material: &Material, omega: f64) -> (f64, f64) {
-        let at = |cosine: f64| {
-            let (storage, loss) = material.complex_modulus(omega * cosine);
-            let (storage, loss) = (material.plane_modulus(storage), material.plane_modulus(loss));
-            (storage * storage + loss * loss, cosine * loss)
-        };
+    /// What a material answers waves whose crests are met with ω cos φ, rad/s.
+    fn moduli(self, material: &Material, omega: f64) -> WaveModuli {
         match self {
-            Self::One => at(1.0),
-            Self::Two => {
-                let middles = (0..ANGLES).map(|i| at((FRAC_PI_2 * (f64::from(i) + 0.5) / f64::from(ANGLES)).cos()));
-                let (square, loss) = middles.fold((0.0, 0.0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
-                (square / f64::from(ANGLES), loss / f64::from(ANGLES))
-            }
+            Self::One => WaveModuli::across(material.complex_plane_modulus(omega)),
+            Self::Two => WaveModuli::of_all_directions(|cosine| material.complex_plane_modulus(omega * cosine)),
         }
     }
 }
@@ -313,10 +301,10 @@ mod tests {
     #[test]
     fn an_isotropic_surface_is_the_mean_over_all_directions() {
         let material = Material { equilibrium_modulus: 1e-30, viscosity: Some(1e3), ..rubber(Vec::new()) };
-        let (one, two) = (Dimension::One.means(&material, 50.0), Dimension::Two.means(&material, 50.0));
+        let (one, two) = (Dimension::One.moduli(&material, 50.0), Dimension::Two.moduli(&material, 50.0));
         // The rule of middles is exact for cos² φ.
-        near(two.0, 0.5 * one.0, 1e-14);
-        near(two.1, 0.5 * one.1, 1e-14);
+        near(two.square, 0.5 * one.square, 1e-14);
+        near(two.loss, 0.5 * one.loss, 1e-14);
         // In full contact twice the heights make up for it: a surface loses what its lines do.
         let waves = rough();
         let loss = |dimension| on_half_plane(&waves, &material, 1e9, dimension).friction;
