@@ -28,7 +28,7 @@ use super::sweep::{
 };
 use super::terminal::{self, warn};
 use super::{NOT_REACHED, SUCCESS};
-use crate::steady::persson::{Dimension, Theory};
+use crate::steady::persson::{Roughness, Theory};
 use plan::{Next, Plan};
 use table::{Measured, RunRow, StudyHeader, Table};
 use variants::{Parts, Template, Variant};
@@ -216,8 +216,8 @@ impl Work<'_> {
         let outcome = if is_of_layer { self.measure(&scene) } else { self.solve(&scene, dimensions.count) };
         let run_time = clock.elapsed().as_secs_f64();
         let Converge { at: SteadyState { pressure, speed }, .. } = *self.command;
-        let theories = [Dimension::One, Dimension::Two]
-            .map(|dimension| Theory::new(&scene, pressure, speed, dimension).unwrap_or_default());
+        let theories = [Roughness::Ridges, Roughness::Isotropic]
+            .map(|roughness| Theory::new(&scene, pressure, speed, roughness).unwrap_or_default());
         let fit_rms = is_of_layer.then(|| scene.quality(LinkKind::Vertical).map_or(0.0, |quality| quality.rms));
         let run = RunRow { variant, dimensions, fit_rms, outcome, theories, run_time };
         self.table.add(&run)?;

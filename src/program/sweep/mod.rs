@@ -10,10 +10,10 @@ mod point;
 mod printed;
 mod slide;
 mod solved;
-mod steady;
 mod swept;
 mod table_file;
 pub(super) mod values;
+mod window;
 
 use std::path::{Path, PathBuf};
 
