@@ -6,24 +6,25 @@
 //!
 //! # Modules
 //!
-//! Each module uses only those before it in this table. `docs/theory.md` has the derivations, with the files that hold
-//! them; `CONTRIBUTING.md` says which files a change takes.
+//! Each module uses only those named beside it, which stand before it. `docs/theory.md` has the derivations, with the
+//! files that hold them; `CONTRIBUTING.md` says which files a change takes.
 //!
-//! | module | contents |
-//! |---|---|
-//! | [`math`] | splines, tridiagonal systems, roots, Fourier sums and other numerical methods |
-//! | [`scene`] | a scene as data: reading TOML, profiles and materials; parameters; checks and warnings |
-//! | [`model`] | the mechanical model: links and their forces, contact laws, state, energies, stiffness scales, reduction |
-//! | [`integrator`] | implicit Runge-Kutta steps, with modes held or set-valued friction: stages, dense output, error, sensitivities |
-//! | [`contact`] | the rules of mode changes and the impact, event location, the end-of-step correction |
-//! | [`outputs`] | the table of the outputs: names, units, values, derivatives, dependencies |
-//! | [`simulation`] | a run: its state, the steps of both methods and their lengths, local regions, the reference run |
-//! | [`element`] | a point-contact element: the forces of a layer, looked up in a table of a sweep |
-//! | `calibration` | a scene's free numbers from measured friction: models, least squares, errors, plans |
-//! | [`patch`] | a contact patch: many point-contact elements on a rigid face, in three dimensions |
-//! | [`fmi`] | the FMI 2.0 co-simulation interface |
-//! | `robustness` | catalogue of perturbations of a scene and the judge of their runs, for reports and tests |
-//! | `program` | the commands simulate, sweep, calibrate, converge, fit, pack, report, plot, and what they compute |
+//! | module | uses | contents |
+//! |---|---|---|
+//! | [`math`] | | splines, tridiagonal systems, roots, Fourier sums and other numerical methods |
+//! | [`scene`] | math | a scene as data: reading TOML, profiles and materials; parameters; checks and warnings |
+//! | [`model`] | math, scene | the mechanical model: links and their forces, contact laws, state, energies, stiffness scales, reduction |
+//! | `steady` | math, scene, model | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
+//! | [`integrator`] | math, model | implicit Runge-Kutta steps, with modes held or set-valued friction: stages, dense output, error, sensitivities |
+//! | [`contact`] | math, scene, model, integrator | the rules of mode changes and the impact, event location, the end-of-step correction |
+//! | [`outputs`] | math, scene, model, integrator | the table of the outputs: names, units, values, derivatives, dependencies |
+//! | [`simulation`] | math, scene, model, integrator, contact, outputs | a run: its state, the steps of both methods and their lengths, local regions, the reference run |
+//! | `robustness` | scene, simulation | catalogue of perturbations of a scene and the judge of their runs, for reports and tests |
+//! | [`element`] | math, scene, model, outputs, simulation | a point-contact element: the forces of a layer, looked up in a table of a sweep |
+//! | `calibration` | math, scene, model, steady, element | a scene's free numbers from measured friction: models, least squares, errors, plans |
+//! | [`patch`] | math, scene, model, outputs, element | a contact patch: many point-contact elements on a rigid face, in three dimensions |
+//! | [`fmi`] | math, scene, model, integrator, contact, outputs, simulation, element, patch | the FMI 2.0 co-simulation interface |
+//! | `program` | math, scene, model, steady, outputs, simulation, robustness, element, calibration, patch, fmi | the commands simulate, sweep, calibrate, converge, fit, pack, report, plot, and what they compute |
 //!
 //! ```
 //! use asperity::outputs::variables;
@@ -75,14 +76,14 @@
 //! | E_∞, E_j, η | `Material::equilibrium_modulus`, `prony`, `viscosity` | Pa, Pa, Pa s | material form |
 //! | ν, ρ | `Material::poisson_ratio`, `density` | 1, kg/m³ | material form |
 //! | H, B, A = B Δx | `Layer::thickness`, `width`, `element_area()` | m, m² | material form |
-//! | K(q), M = E/(1 - ν²) | `Body::normal()`, `tangential()`, `Material::plane_modulus()` | 1/m, Pa | stiffness of a surface against a wave over the plane modulus |
+//! | K(q), M = E/(1 - ν²) | `scene::Body::normal()`, `tangential()`, `Material::plane_modulus()` | 1/m, Pa | stiffness of a surface against a wave over the plane modulus |
 //! | α, β, ℓ | `Foundation::normal`, `tangential`, `depth` | 1/m, m, m | links and mass fitted to a body |
 //! | A_r, μ_h, h'_b | `FineFriction`, `FineBand::gradient_square` | m², 1, 1 | area that touches below the profile's resolution, friction by hysteresis there, and the gradient of a band of waves |
 //! | ϑ, κ | `State::flash()`, `FlashKernel` | K, K m²/J | flash temperature of a contact, and its response to heat |
 //! | a_T | `Material::shift_factor()` | 1 | shift of all times with temperature (Williams, Landel and Ferry) |
 //! | E', E'' | `Material::complex_modulus()` | Pa | storage and loss modulus (2) |
 //! | f_x,i, f_z,i | `Forces::on_mass_x`, `on_mass_z` | N | forces of the links on mass i (3), (4) |
-//! | M, K, D | `Body::mass`, `stiffness`, `damping` | kg, N/m, N s/m | carrier that is a body, spring and damper to its drive |
+//! | M, K, D | `model::Body::mass`, `stiffness`, `damping` | kg, N/m, N s/m | carrier that is a body, spring and damper to its drive |
 //! | N, P | `Input::Load`, `Input::Pull` | N | normal load (N > 0 presses) and tangential force on a body |
 //! | u_d, w_d, R | `Outside::drive`, `drive_force()` | m, N | displacement of the drive, its force on the body |
 //! | F_x, F_z | `Forces::on_carrier()` | N | forces of the layer on the carrier |
@@ -98,7 +99,7 @@
 //! | σ | `Mode::direction()` | 1 | direction of slip along t |
 //! | h, γ, β | `h`, `Tableau::gamma()`, `beta` | s, 1, s | step, coefficient of a stage, γh |
 //! | G, K | `Jenkins::force`, `stiffness` | N, N/m | spring of a point-contact element, G = -F_x |
-//! | a, y | `Contact` over the approach | m, 1 | point-contact element: approach, minus the separation; ln of the pressure |
+//! | a, y | `element`'s `Contact` over the approach | m, 1 | point-contact element: approach, minus the separation; ln of the pressure |
 //! | P_damper, P_maxwell, P_friction, P_in | `Powers::damper`, … | W | powers of the channels and of the carrier |
 //! | E_damper, E_maxwell, E_friction, E_in | `ChannelEnergies::damper`, … | J | their integrals over time |
 //! | E_impact | `Energies::impact` | J | energy lost in impacts |

@@ -53,15 +53,6 @@ pub trait FrictionModel: Sync {
 /// The scene at values of the free parameters, or why there is none.
 pub type SceneAt<'a> = dyn Fn(&[f64]) -> Result<Scene, CalibrationError> + Sync + 'a;
 
-/// The scene at a temperature, K.
-pub(super) fn at_temperature(mut scene: Scene, temperature: Option<f64>) -> Scene {
-    let wlf = scene.material.as_mut().and_then(|material| material.wlf.as_mut());
-    if let (Some(wlf), Some(temperature)) = (wlf, temperature) {
-        wlf.temperature = temperature;
-    }
-    scene
-}
-
 /// The tasks by their parameters and temperatures: the indices of those that have both alike.
 pub(super) fn groups(tasks: &[Task]) -> Vec<(Vec<f64>, Option<f64>, Vec<usize>)> {
     let mut groups: Vec<(Vec<f64>, Option<f64>, Vec<usize>)> = Vec::new();

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::error::CalibrationError;
 use super::known_laws::KnownLaws;
-use super::model::{Done, FrictionModel, FrictionParts, Outcome, SceneAt, Task, at_temperature, groups};
+use super::model::{Done, FrictionModel, FrictionParts, Outcome, SceneAt, Task, groups};
 use crate::scene::Scene;
 use crate::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 
@@ -34,7 +34,7 @@ impl FrictionModel for SteadyModel<'_> {
     fn evaluate(&self, tasks: &[Task], done: &Done<'_>) -> Result<(), CalibrationError> {
         let groups = groups(tasks);
         let prepared = groups.into_par_iter().map(|(parameters, temperature, indices)| {
-            let scene = at_temperature((self.scene_at)(&parameters)?, temperature);
+            let scene = (self.scene_at)(&parameters)?.with_temperature(temperature);
             let grid = (self.grid_of)(&scene)?;
             let rubber = SlidingRubber::with_friction(&scene, self.laws.law(&scene)).ok_or_else(|| {
                 CalibrationError::Model("steady sliding takes a scene in the material form, with layer.width".into())
@@ -66,14 +66,13 @@ impl FrictionModel for SteadyModel<'_> {
 
 /// Full contact has friction; only elements have no use for it.
 fn outcome(slide: &SteadySlide) -> Outcome {
-    match slide.contact.left_over {
-        0 if !slide.heat_converged => Err("the flash temperature does not come to rest".to_owned()),
-        0 => Ok(FrictionParts {
+    match slide.problem() {
+        Some(problem) if !problem.leaves_friction() => Err(problem.to_string()),
+        _ => Ok(FrictionParts {
             profile: slide.profile_hysteresis,
             fine: slide.fine_hysteresis.unwrap_or(0.0),
             shear: slide.adhesion,
         }),
-        left_over => Err(format!("{left_over} points of the surface are pulled or lie below it")),
     }
 }
 

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::error::CalibrationError;
 use super::known_laws::KnownLaws;
-use super::model::{Done, FrictionModel, FrictionParts, SceneAt, Task, at_temperature, groups};
+use super::model::{Done, FrictionModel, FrictionParts, SceneAt, Task, groups};
 use crate::element::OperatingPoint;
 use crate::model::Flash;
 use crate::scene::{Body, Material, Scene, Surface};
@@ -107,7 +107,7 @@ impl KnownProfile {
 impl FrictionModel for TheoryModel<'_> {
     fn evaluate(&self, tasks: &[Task], done: &Done<'_>) -> Result<(), CalibrationError> {
         groups(tasks).into_par_iter().try_for_each(|(parameters, temperature, indices)| {
-            let scene = at_temperature((self.scene_at)(&parameters)?, temperature);
+            let scene = (self.scene_at)(&parameters)?.with_temperature(temperature);
             let points: Vec<OperatingPoint> = indices.iter().map(|&index| tasks[index].point).collect();
             let found = self.friction(&scene, &points)?;
             indices.iter().zip(found).try_for_each(|(&index, parts)| done(index, Ok(parts)))

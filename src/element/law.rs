@@ -67,11 +67,11 @@ pub(super) struct Law {
     /// By quantity, where the table has it, pressure and speed.
     over_temperature: [Option<Vec<Series>>; Quantity::ALL.len()],
     /// Logarithms of the speeds.
-    speeds: Vec<f64>,
+    log_speeds: Vec<f64>,
     /// The least and the largest speed, m/s.
     pub(super) speed_range: (f64, f64),
     /// Logarithms of the pressures.
-    pressures: Vec<f64>,
+    log_pressures: Vec<f64>,
     pub(super) load: Load,
     /// The largest pressure, Pa, or force, N.
     pub(super) largest_pressure: f64,
@@ -98,8 +98,8 @@ impl Law {
             over_speed: Quantity::ALL.map(|quantity| table.has(quantity).then(|| vec![row.clone(); loads])),
             over_temperature: cells,
             speed_range: (grid.speeds[0], grid.speeds[speeds - 1]),
-            speeds: grid.speeds.iter().map(|speed| speed.ln()).collect(),
-            pressures: grid.loads.iter().map(|pressure| pressure.ln()).collect(),
+            log_speeds: grid.speeds.iter().map(|speed| speed.ln()).collect(),
+            log_pressures: grid.loads.iter().map(|pressure| pressure.ln()).collect(),
             load: table.load,
             largest_pressure: grid.loads[loads - 1],
         };
@@ -109,16 +109,16 @@ impl Law {
 
     /// Changes the temperature, K; allocates nothing.
     pub(super) fn set_temperature(&mut self, kelvin: f64) {
-        let (speeds, temperatures) = (&self.speeds, &self.temperatures);
+        let (log_speeds, temperatures) = (&self.log_speeds, &self.temperatures);
         let at = |cell: &Series| match temperatures.len() {
             0 | 1 => cell.values[0],
             _ => cell.at(temperatures, interval_of(temperatures, kelvin), kelvin).value,
         };
         for (rows, cells) in self.over_speed.iter_mut().zip(&self.over_temperature) {
             let (Some(rows), Some(cells)) = (rows, cells) else { continue };
-            for (row, cells) in rows.iter_mut().zip(cells.chunks(speeds.len())) {
+            for (row, cells) in rows.iter_mut().zip(cells.chunks(log_speeds.len())) {
                 row.values.iter_mut().zip(cells).for_each(|(value, cell)| *value = at(cell));
-                monotone_slopes(speeds, &row.values, &mut row.slopes);
+                monotone_slopes(log_speeds, &row.values, &mut row.slopes);
             }
         }
     }
@@ -126,7 +126,7 @@ impl Law {
     /// The largest second derivative with the temperature of ln p at a separation, or of ln μ, at the table's points,
     /// 1/K²; 0 where it has one temperature.
     pub(super) fn bend_over_temperature(&self) -> f64 {
-        let (temperatures, speeds) = (&self.temperatures, self.speeds.len());
+        let (temperatures, speeds) = (&self.temperatures, self.log_speeds.len());
         let cells = |quantity: Quantity| self.over_temperature[quantity as usize].as_deref().unwrap_or_default();
         let (friction, differences) = (cells(Quantity::Friction), cells(Quantity::Separation));
         let mut largest = 0.0_f64;
@@ -136,11 +136,11 @@ impl Law {
             for speed in 0..speeds {
                 // From the largest pressure, where the separation is a value, down its differences add up.
                 let mut bend_of_separation = 0.0;
-                for load in (0..self.pressures.len()).rev() {
+                for load in (0..self.log_pressures.len()).rev() {
                     bend_of_separation += differences[load * speeds + speed].bend(temperatures, i);
-                    let from = load.min(self.pressures.len() - 2);
-                    let slope =
-                        (self.pressures[from + 1] - self.pressures[from]) / differences[from * speeds + speed].least(i);
+                    let from = load.min(self.log_pressures.len() - 2);
+                    let slope = (self.log_pressures[from + 1] - self.log_pressures[from])
+                        / differences[from * speeds + speed].least(i);
                     largest = largest.max(slope * bend_of_separation);
                 }
             }
@@ -151,29 +151,29 @@ impl Law {
     /// Approaches (m) at which there is no contact at any speed reach up to here.
     pub(super) fn earliest_touch(&self) -> f64 {
         let Some(rows) = &self.over_speed[Quantity::Separation as usize] else { return f64::NEG_INFINITY };
-        let step = self.pressures[1] - self.pressures[0];
+        let step = self.log_pressures[1] - self.log_pressures[0];
         // Between two speeds a difference of separations is no larger than at one of them.
         let touch = |j: usize| {
-            let larger = |row: &Series| row.values[j].max(row.values[(j + 1).min(self.speeds.len() - 1)]);
+            let larger = |row: &Series| row.values[j].max(row.values[(j + 1).min(self.log_speeds.len() - 1)]);
             let widest = 2.0 * larger(&rows[0]) / (MIN_END_SLOPE * step);
             -rows.iter().map(larger).sum::<f64>() - widest
         };
-        (0..self.speeds.len()).map(touch).fold(f64::INFINITY, f64::min)
+        (0..self.log_speeds.len()).map(touch).fold(f64::INFINITY, f64::min)
     }
 
     /// The logarithms of the speeds.
-    pub(super) fn speeds(&self) -> &[f64] {
-        &self.speeds
+    pub(super) fn log_speeds(&self) -> &[f64] {
+        &self.log_speeds
     }
 
     /// Writes the values of a quantity at all pressures, at a speed between those of the table.
     fn at_speed(&self, rows: &[Series], speed: f64, values: &mut [f64]) {
-        if self.speeds.len() == 1 {
+        if self.log_speeds.len() == 1 {
             return values.iter_mut().zip(rows).for_each(|(value, row)| *value = row.values[0]);
         }
         let x = speed.ln();
-        let j = interval_of(&self.speeds, x);
-        values.iter_mut().zip(rows).for_each(|(value, row)| *value = row.at(&self.speeds, j, x).value);
+        let j = interval_of(&self.log_speeds, x);
+        values.iter_mut().zip(rows).for_each(|(value, row)| *value = row.at(&self.log_speeds, j, x).value);
     }
 }
 
@@ -200,7 +200,7 @@ pub(super) struct LawAtSpeed {
     /// The speed, between the least and the largest of the table, m/s.
     speed: f64,
     /// y = ln p at the pressures.
-    pressures: Vec<f64>,
+    log_pressures: Vec<f64>,
     /// The approaches at the pressures, m, rising.
     approaches: Vec<f64>,
     /// dy/da there, 1/m.
@@ -217,18 +217,18 @@ pub(super) struct LawAtSpeed {
 impl LawAtSpeed {
     /// The law at `speed` (m/s).
     pub(super) fn new(law: &Law, speed: f64) -> Self {
-        let n = law.pressures.len();
+        let n = law.log_pressures.len();
         let column =
             |rows: &Option<Vec<Series>>| rows.as_ref().map(|_| Series { values: vec![0.0; n], slopes: vec![0.0; n] });
         let mut curve = Self {
             speed: f64::NAN,
-            pressures: law.pressures.clone(),
+            log_pressures: law.log_pressures.clone(),
             approaches: vec![0.0; n],
             slopes: vec![0.0; n],
             touch: 0.0,
             over_pressure: std::array::from_fn(|quantity| column(&law.over_speed[quantity])),
             ends: Vec::with_capacity(
-                1 + law.pressures.windows(2).map(|y| 1 + segment_count(y[0], y[1])).sum::<usize>(),
+                1 + law.log_pressures.windows(2).map(|y| 1 + segment_count(y[0], y[1])).sum::<usize>(),
             ),
             nominal_area: law.nominal_area,
         };
@@ -246,7 +246,7 @@ impl LawAtSpeed {
         for (column, rows) in self.over_pressure.iter_mut().zip(&law.over_speed) {
             let (Some(column), Some(rows)) = (column, rows) else { continue };
             law.at_speed(rows, speed, &mut column.values);
-            monotone_slopes(&self.pressures, &column.values, &mut column.slopes);
+            monotone_slopes(&self.log_pressures, &column.values, &mut column.slopes);
         }
         self.find_approaches();
         self.divide();
@@ -264,11 +264,12 @@ impl LawAtSpeed {
             separation += difference;
             *approach = -separation;
         }
-        monotone_slopes(&self.approaches, &self.pressures, &mut self.slopes);
+        monotone_slopes(&self.approaches, &self.log_pressures, &mut self.slopes);
         // The force is extrapolated with the slopes at the ends, so they may not vanish.
         let last = self.slopes.len() - 1;
-        let secant =
-            |i: usize| (self.pressures[i + 1] - self.pressures[i]) / (self.approaches[i + 1] - self.approaches[i]);
+        let secant = |i: usize| {
+            (self.log_pressures[i + 1] - self.log_pressures[i]) / (self.approaches[i + 1] - self.approaches[i])
+        };
         self.slopes[0] = self.slopes[0].max(MIN_END_SLOPE * secant(0));
         self.slopes[last] = self.slopes[last].max(MIN_END_SLOPE * secant(last - 1));
         self.touch = self.approaches[0] - 2.0 / self.slopes[0];
@@ -278,7 +279,7 @@ impl LawAtSpeed {
     fn divide(&mut self) {
         self.ends.clear();
         self.ends.push(self.touch);
-        for (y, a) in self.pressures.windows(2).zip(self.approaches.windows(2)) {
+        for (y, a) in self.log_pressures.windows(2).zip(self.approaches.windows(2)) {
             let count = segment_count(y[0], y[1]);
             self.ends.extend((0..count).map(|i| a[0] + (a[1] - a[0]) * i as f64 / count as f64));
         }
@@ -305,7 +306,7 @@ impl LawAtSpeed {
 
     /// y = ln p at the pressures, the approaches (m) there and dy/da (1/m).
     pub(super) fn points(&self) -> [&[f64]; 3] {
-        [&self.pressures, &self.approaches, &self.slopes]
+        [&self.log_pressures, &self.approaches, &self.slopes]
     }
 
     /// The values of a quantity at the pressures and its slopes over y, where the table has it.
@@ -327,7 +328,7 @@ impl LawAtSpeed {
     pub(super) fn at(&self, approach: f64) -> Contact {
         let last = self.approaches.len() - 1;
         if approach <= self.touch {
-            return Contact { y: Expansion::constant(self.pressures[0]), ..Contact::default() };
+            return Contact { y: Expansion::constant(self.log_pressures[0]), ..Contact::default() };
         }
         if approach < self.approaches[0] {
             self.below(approach)
@@ -340,7 +341,7 @@ impl LawAtSpeed {
 
     fn inside(&self, approach: f64) -> Contact {
         let i = interval_of(&self.approaches, approach);
-        let y = cubic(&self.approaches, &self.pressures, &self.slopes, i, approach);
+        let y = cubic(&self.approaches, &self.log_pressures, &self.slopes, i, approach);
         let friction = self.along_pressure(Quantity::Friction, i, y.value).compose(y);
         let normal = y.exp().times(Expansion::constant(self.nominal_area));
         Contact {
@@ -356,9 +357,9 @@ impl LawAtSpeed {
         let share = (approach - self.touch) / width;
         let parabola = Expansion { value: share * share, slope: 2.0 * share / width, curvature: 2.0 / (width * width) };
         let of = |value| parabola.times(Expansion::constant(value));
-        let force = self.nominal_area * self.pressures[0].exp();
+        let force = self.nominal_area * self.log_pressures[0].exp();
         Contact {
-            y: Expansion::constant(self.pressures[0]),
+            y: Expansion::constant(self.log_pressures[0]),
             normal: of(force),
             limit: of(self.end(Quantity::Friction, 0) * force),
             stiffness: of(self.end(Quantity::Stiffness, 0)),
@@ -367,12 +368,12 @@ impl LawAtSpeed {
 
     fn above(&self, approach: f64) -> Contact {
         let last = self.approaches.len() - 1;
-        let force = self.nominal_area * self.pressures[last].exp();
+        let force = self.nominal_area * self.log_pressures[last].exp();
         let slope = self.slopes[last] * force;
         let value = force + slope * (approach - self.approaches[last]);
         let normal = Expansion { value, slope, curvature: 0.0 };
         Contact {
-            y: Expansion::constant(self.pressures[last]),
+            y: Expansion::constant(self.log_pressures[last]),
             normal,
             limit: normal.times(Expansion::constant(self.end(Quantity::Friction, last))),
             stiffness: Expansion::constant(self.end(Quantity::Stiffness, last)),
@@ -383,7 +384,7 @@ impl LawAtSpeed {
     fn along_pressure(&self, quantity: Quantity, i: usize, y: f64) -> Expansion {
         self.over_pressure[quantity as usize]
             .as_ref()
-            .map_or_else(Expansion::default, |column| column.at(&self.pressures, i, y))
+            .map_or_else(Expansion::default, |column| column.at(&self.log_pressures, i, y))
     }
 
     /// A quantity at the pressure `i`.
@@ -393,14 +394,14 @@ impl LawAtSpeed {
 
     /// A quantity at a pressure (Pa), limited to those of the table.
     fn at_pressure(&self, quantity: Quantity, pressure: f64) -> f64 {
-        let last = self.pressures.len() - 1;
-        let y = pressure.ln().clamp(self.pressures[0], self.pressures[last]);
-        self.along_pressure(quantity, interval_of(&self.pressures, y), y).value
+        let last = self.log_pressures.len() - 1;
+        let y = pressure.ln().clamp(self.log_pressures[0], self.log_pressures[last]);
+        self.along_pressure(quantity, interval_of(&self.log_pressures, y), y).value
     }
 
     /// The pressure over the least of the table, at most 1.
     pub(super) fn share_of_least(&self, contact: &Contact) -> Expansion {
-        let force = self.nominal_area * self.pressures[0].exp();
+        let force = self.nominal_area * self.log_pressures[0].exp();
         if contact.normal.value >= force {
             return Expansion::constant(1.0);
         }
@@ -409,7 +410,7 @@ impl LawAtSpeed {
 
     /// A quantity at `contact`, along the approach; 0 where the table does not have it.
     pub(super) fn other(&self, quantity: Quantity, contact: &Contact) -> Expansion {
-        let i = interval_of(&self.pressures, contact.y.value);
+        let i = interval_of(&self.log_pressures, contact.y.value);
         self.along_pressure(quantity, i, contact.y.value).compose(contact.y)
     }
 }

@@ -256,7 +256,7 @@ impl ResampledLaw {
         let mut law = Law::new(table, temperature);
         let curve = LawAtSpeed::new(&law, 0.0);
         let shift = (table.load.area() / area).ln();
-        let speeds = law.speeds().to_vec();
+        let speeds = law.log_speeds().to_vec();
         let (bins, bin_density) = bins(&speeds);
         let width = if has_planes { MAX_WIDTH_OF_PLANES } else { MAX_WIDTH };
         let (spans, pressures) = (SpeedSpan::new(&speeds, width), table.grid.loads.len());

@@ -206,11 +206,11 @@ fn check_steady(text: &TableText, load: Load, rows: &[TableRow], order: &[usize]
 }
 
 /// The first of `texts`, and how many more there are.
-fn some_of(texts: &[String]) -> String {
-    const SHOWN: usize = 6;
+pub(crate) fn some_of(texts: &[String]) -> String {
+    const SHOWN: usize = 10;
     let shown = texts.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join("; ");
     match texts.len().saturating_sub(SHOWN) {
         0 => shown,
-        more => format!("{shown}; {more} more"),
+        more => format!("{shown}; and {more} more"),
     }
 }

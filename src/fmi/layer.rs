@@ -41,10 +41,7 @@ impl FmuModel for Arc<Scene> {
     }
 
     fn sources(&self, path: &FilePath) -> Vec<PathBuf> {
-        let folder = path.parent().unwrap_or(FilePath::new(""));
-        let extracts = self.extracts.iter().map(|extract| &extract.source);
-        let files = self.files().iter().chain(extracts).map(|file| folder.join(file));
-        std::iter::once(path.to_owned()).chain(files).collect()
+        Scene::sources(self, path)
     }
 
     fn warnings(&self) -> &[String] {

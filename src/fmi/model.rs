@@ -47,8 +47,7 @@ pub trait FmuModel: Debug {
 
     /// Paths of all files that it was read from; `path` is that of its own.
     fn sources(&self, path: &Path) -> Vec<PathBuf> {
-        let folder = path.parent().unwrap_or(Path::new(""));
-        std::iter::once(path.to_owned()).chain(self.files().iter().map(|file| folder.join(file))).collect()
+        vec![path.to_owned()]
     }
 
     /// Warnings about the definition.

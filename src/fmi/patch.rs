@@ -1,7 +1,7 @@
 //! A contact patch as an FMU's model. Between communication points the pose is continuous and runs straight to its
 //! targets; a temperature is held.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::error::{Error, InputOutOfRange, RestoreError};
 use super::inputs::{CommunicationStep, Inputs, MAX_INPUTS};
@@ -42,6 +42,10 @@ impl FmuModel for Patch {
 
     fn files(&self) -> &[PathBuf] {
         self.files()
+    }
+
+    fn sources(&self, path: &Path) -> Vec<PathBuf> {
+        self.sources(path)
     }
 
     fn inputs(&self) -> Vec<VariableRef> {

@@ -13,7 +13,7 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-use crate::scene::{BandModuli, FineBand, FineWaves, Material, Scene};
+use crate::scene::{FineBand, FineWaves, Material, Scene, WaveModuli};
 
 /// Friction and area of one mass in contact.
 #[derive(Clone, Debug)]
@@ -291,7 +291,7 @@ impl BandSums {
     fn new(bands: &[FineBand], material: &Material, speed: f64) -> Self {
         let mut whole = 0.0;
         let band = |band: &FineBand| {
-            let BandModuli { square, loss } = band.moduli(material, speed);
+            let WaveModuli { square, loss } = band.moduli(material, speed);
             let own = band.gradient_square * square;
             let middle = whole + 0.5 * own;
             whole += own;

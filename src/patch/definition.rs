@@ -256,6 +256,12 @@ impl Patch {
         &self.files
     }
 
+    /// Paths of the files that it was read from; `path` is that of its own.
+    pub fn sources(&self, path: &Path) -> Vec<PathBuf> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        std::iter::once(path.to_owned()).chain(self.files.iter().map(|file| folder.join(file))).collect()
+    }
+
     /// A height (m) at which nothing touches when the body is level.
     pub fn clear_height(&self) -> f64 {
         let touch = ResampledLaw::earliest_touch_of(&self.table, self.temperature);

@@ -313,8 +313,10 @@ pub(super) struct Totals {
     pub(super) wrench: [f64; 6],
     /// The force on the tread.
     pub(super) transport_force: f64,
-    /// Energies lost since the start, by slip and by release.
-    pub(super) lost: [f64; 2],
+    /// Energy lost by slip since the start, J.
+    pub(super) slip_energy: f64,
+    /// Energy lost with contacts that were released since the start, J.
+    pub(super) release_energy: f64,
     /// The dissipated power, mean over the last step.
     pub(super) power: f64,
 }
@@ -358,8 +360,8 @@ impl Totals {
     pub(super) fn add<T: Number>(&mut self, sums: &Sums<T>, duration: f64) {
         self.wrench = sums.wrench.map(T::value);
         self.transport_force = sums.transport.value();
-        self.lost[0] += sums.slip;
-        self.lost[1] += sums.release;
+        self.slip_energy += sums.slip;
+        self.release_energy += sums.release;
         self.power = if duration > 0.0 { (sums.slip + sums.release) / duration } else { 0.0 };
     }
 
@@ -376,7 +378,8 @@ impl Totals {
     fn numbers(&self) -> impl Iterator<Item = (&'static str, f64)> {
         let poses = self.pose.coordinates().into_iter().chain([self.time]).map(|value| ("a coordinate", value));
         let rates = self.rates.into_iter().chain([self.transport_speed, self.tread_speed, self.temperature]);
-        let loads = self.wrench.into_iter().chain([self.transport_force, self.power]).chain(self.lost);
+        let losses = [self.power, self.slip_energy, self.release_energy];
+        let loads = self.wrench.into_iter().chain([self.transport_force]).chain(losses);
         poses.chain(rates.map(|value| ("a rate", value))).chain(loads.map(|value| ("a load or a loss", value)))
     }
 }

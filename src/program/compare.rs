@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::calibration::{Measured, chi_square_per_degree};
 use crate::element::{Load, OperatingPoint, Quantity};
+use crate::steady::SlideProblem;
 
 use super::cli::Compare;
 use super::figure::{Figure as _, Stroke};
@@ -147,7 +148,8 @@ impl<'a> SweptFriction<'a> {
 
     fn on_grid(&self, point: &OperatingPoint) -> Option<f64> {
         let found = self.table.rows.iter().find(|stored| stored.row.point == *point)?;
-        found.row.value(Quantity::Friction).filter(|_| found.row.is_steady() || found.row.status == "full contact")
+        let has_friction = found.row.is_steady() || found.row.status == SlideProblem::FullContact.to_string();
+        found.row.value(Quantity::Friction).filter(|_| has_friction)
     }
 }
 

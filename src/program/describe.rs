@@ -15,7 +15,7 @@ use serde::Serialize;
 
 use super::cli::Describe;
 use super::figure::{Below, Figure as _};
-use super::files::{FileError, check_outputs, load, print, sources, table_lines};
+use super::files::{FileError, check_outputs, load, print, table_lines};
 use super::runner::start;
 use super::terminal::{LabelledLine, decimal, labelled, lines, rounded};
 use super::{fine, foundation};
@@ -40,7 +40,7 @@ pub(crate) fn describe(command: &Describe, path: &std::path::Path) -> Result<(),
     let scene = load(path, &command.set)?;
     if let Some(output) = &command.plot {
         let picture = foundation::picture(&scene).ok_or(DescribeError::NothingToPlot)?;
-        check_outputs([output], sources(path, &scene))?;
+        check_outputs([output], scene.sources(path))?;
         match fine::picture(&scene) {
             Some(fine) => Below(picture, fine).write(output)?,
             None => picture.write(output)?,

@@ -3,11 +3,10 @@
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Stdout, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
 
 use tempfile::{Builder, NamedTempFile, TempDir};
 
-use super::files::{FileError, is_standard_output, print, read, write};
+use super::files::{FileError, is_standard_output, print, read};
 use super::interrupt::Leftover;
 
 /// An output as it is being written. It takes its place when it is [finished](Self::finish); where the run ends before,
@@ -150,29 +149,5 @@ impl TablePlace {
     /// Prints the whole table where it is for standard output.
     pub(crate) fn finish(self) -> Result<(), FileError> {
         if self.folder.is_some() { print(&String::from_utf8_lossy(&read(&self.path)?)) } else { Ok(()) }
-    }
-}
-
-/// A file to which lines are added, from any thread.
-#[derive(Debug)]
-pub(crate) struct LineFile {
-    path: PathBuf,
-    /// A line is written at once, so that one that is cut off has no end.
-    file: Mutex<File>,
-}
-
-impl LineFile {
-    /// A file that begins with `text`, in the place of what was at `path`.
-    pub(crate) fn create(path: &Path, text: &str) -> Result<Self, FileError> {
-        write(path, text)?;
-        let file = OpenOptions::new().append(true).open(path).map_err(FileError::io("write", path))?;
-        Ok(Self { path: path.to_owned(), file: Mutex::new(file) })
-    }
-
-    /// Adds a line, its end included; it is in the file when this returns.
-    pub(crate) fn add(&self, line: &str) -> Result<(), FileError> {
-        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
-        let written = file.write_all(line.as_bytes()).and_then(|()| file.sync_data());
-        written.map_err(FileError::io("write", &self.path))
     }
 }

@@ -132,13 +132,6 @@ pub(crate) fn load_patch(path: &Path, set: &[Setting]) -> Result<Patch, FileErro
     Ok(overrides::patch(&text, path, set)?)
 }
 
-/// The files that a scene is read from.
-pub(crate) fn sources(path: &Path, scene: &Scene) -> Vec<PathBuf> {
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let files = scene.files.iter().chain(scene.extracts.iter().map(|extract| &extract.source));
-    std::iter::once(path.to_owned()).chain(files.map(|file| folder.join(file))).collect()
-}
-
 /// Refuses an output that would overwrite one of `others`, by whatever name.
 pub(crate) fn check_output(output: &Path, others: &[PathBuf]) -> Result<(), FileError> {
     let same = |other: &PathBuf| {

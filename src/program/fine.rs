@@ -221,10 +221,7 @@ pub(super) fn picture(scene: &Scene) -> Option<SideBySide> {
     let own = temperature(scene);
     let temperatures = own.map_or(vec![None], |own| [own - AROUND, own, own + AROUND].map(Some).to_vec());
     let curve = |(look, temperature): (usize, Option<f64>)| {
-        let mut scene = scene.clone();
-        if let (Some(wlf), Some(temperature)) = (scene.material.as_mut()?.wlf.as_mut(), temperature) {
-            wlf.temperature = temperature;
-        }
+        let scene = scene.with_temperature(temperature);
         // A temperature that WLF does not reach is left out.
         scene.check().ok()?;
         let law = FineFriction::new(&scene)?;

@@ -9,7 +9,7 @@ use crate::scene::{Link, LinkKind, MaxwellElement, ParameterError, Scene};
 use super::cli::Material;
 use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
 use super::files::{
-    self, FileError, check_outputs, ends_in, is_standard_output, load_without_run, named, print_beside, sources,
+    self, FileError, check_outputs, ends_in, is_standard_output, load_without_run, named, print_beside,
 };
 use super::terminal::{LabelledLine, decimal, lines, rounded};
 
@@ -30,10 +30,12 @@ pub(crate) enum MaterialError {
 pub(crate) fn material(command: &Material) -> Result<(), MaterialError> {
     let mut scene = load_without_run(&command.scene, &command.set, |_| false)?;
     if let Some(temperature) = command.temperature {
-        set_temperature(&mut scene, temperature)?;
+        let wlf = scene.material.as_ref().and_then(|material| material.wlf);
+        wlf.ok_or(MaterialError::NoTemperature)?;
+        scene = scene.at_temperature(temperature).map_err(MaterialError::Temperature)?;
     }
     let outputs = if command.output.is_empty() { vec![default_output(&command.scene)] } else { command.output.clone() };
-    check_outputs(&outputs, sources(&command.scene, &scene))?;
+    check_outputs(&outputs, scene.sources(&command.scene))?;
     let responses = Responses::new(&scene, command.frequencies.map(|range| range.0))?;
     for output in &outputs {
         if ends_in(output, "csv") || is_standard_output(output) {
@@ -50,12 +52,6 @@ pub(crate) fn material(command: &Material) -> Result<(), MaterialError> {
 fn default_output(scene: &Path) -> PathBuf {
     let stem = scene.file_stem().unwrap_or(scene.as_os_str()).to_string_lossy();
     PathBuf::from(format!("{stem}-material.svg"))
-}
-
-fn set_temperature(scene: &mut Scene, temperature: f64) -> Result<(), MaterialError> {
-    let wlf = scene.material.as_mut().and_then(|material| material.wlf.as_mut());
-    wlf.ok_or(MaterialError::NoTemperature)?.temperature = temperature;
-    scene.check().map_err(MaterialError::Temperature)
 }
 
 /// A range of angular frequencies, rad/s.

@@ -29,6 +29,7 @@ mod patch;
 mod reference;
 mod report;
 mod result_file;
+mod resumable_table;
 mod run_summary;
 mod runner;
 mod simulate;
@@ -59,6 +60,9 @@ pub use sweep::{
 const SUCCESS: u8 = 0;
 /// Exit status of one that did not.
 const FAILURE: u8 = 1;
+/// Exit status of one whose result is written and is to be looked at: it did not converge, or an error is larger than
+/// asked for.
+const NOT_REACHED: u8 = 3;
 
 /// Executes a command line, the program's name first; prints its results, and the error that ended it. Returns the exit
 /// status. Does not return from `--help` and from a command line that cannot be understood. `library` is the shared

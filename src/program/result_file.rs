@@ -17,7 +17,7 @@ use super::terminal::file_decimal;
 
 /// A result file cannot be read.
 #[derive(Debug, thiserror::Error)]
-pub enum ResultFileError {
+pub(crate) enum ResultFileError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error("{}: line {line}: {message}", .path.display())]

@@ -10,7 +10,7 @@ use indicatif::ProgressBar;
 use super::cli::Simulate;
 use super::elements::{ArraysError, ElementHistory, Span};
 use super::figure::{Figure as _, LayerPicture, TimeHistory, write_film};
-use super::files::{FileError, check_outputs, ends_in, load, named, print_beside, sources};
+use super::files::{FileError, check_outputs, ends_in, load, named, print_beside};
 use super::interrupt::fail;
 use super::result_file::{Head, ResultWriter};
 use super::run_summary::RunSummary;
@@ -38,7 +38,7 @@ pub(crate) fn simulate(command: &Simulate, path: &Path) -> Result<(), SimulateEr
     let output = command.output(path);
     let pictures = command.plot.iter().chain(&command.animate).chain(&command.elements);
     let outputs = [&output].into_iter().chain(pictures).chain(command.contact.iter().map(|(_, picture)| picture));
-    check_outputs(outputs, sources(path, &scene))?;
+    check_outputs(outputs, scene.sources(path))?;
     check_end(command, scene.duration())?;
     if scene.excitation.is_empty() {
         warn("the scene has no [[excitation]]: the carrier rests, and the result file has the initial row only");

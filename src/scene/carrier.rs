@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::{ParameterError, Problem};
 use super::values::Word;
-use super::{Axis, ByAxis, LinkKind, Phase, Scene, Unit, is_possible};
+use super::{Axis, ByAxis, LinkKind, Phase, Scene, Unit};
 
 /// `[carrier]`: the axes along which the carrier is a body; `None` where its displacement is prescribed.
 pub type CarrierBodies = ByAxis<Option<CarrierBody>>;
@@ -138,23 +138,6 @@ impl Scene {
     pub fn input_start(&self, input: Input) -> f64 {
         let wlf = self.material.as_ref().and_then(|material| material.wlf.as_ref());
         if input == Input::Temperature { wlf.map_or(0.0, |wlf| wlf.temperature) } else { 0.0 }
-    }
-
-    /// The scene at another temperature, K.
-    ///
-    /// # Errors
-    /// [`ParameterError`] where the temperature is none, or the shift has its pole above it, or a number of the
-    /// material becomes impossible.
-    pub fn at_temperature(&self, temperature: f64) -> Result<Self, ParameterError> {
-        let mut scene = self.clone();
-        let given =
-            || Problem::value(format_args!("{temperature:?}"), super::keys::range_of("material.wlf.temperature"));
-        match scene.material.as_mut().and_then(|material| material.wlf.as_mut()) {
-            Some(wlf) if temperature > 0.0 && is_possible(temperature) => wlf.temperature = temperature,
-            _ => return Err(ParameterError::new("temperature", given())),
-        }
-        scene.check()?;
-        Ok(scene)
     }
 
     /// The changing part of the tangential force at the start of a run along the excitation, N.

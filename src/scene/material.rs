@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::error::{ParameterError, Problem};
 use super::keys;
-use super::{ByLink, Layer, Link, LinkKind, MaxwellElement, RateShear, Scene};
+use super::{ByLink, Layer, Link, LinkKind, MaxwellElement, RateShear, Scene, is_possible};
 
 /// A linear viscoelastic solid: a spring, a dashpot and Maxwell elements in parallel, as moduli.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -121,13 +121,26 @@ impl Material {
     /// E'(ω) and E''(ω) at the layer's temperature, Pa, for ω ≥ 0 in rad/s (2), as the links have them:
     /// E*(ω) = E_∞ + iω a_T η + Σ_j E_j iω a_T τ_j/(1 + iω a_T τ_j).
     pub fn complex_modulus(&self, omega: f64) -> (f64, f64) {
+        self.complex_modulus_at_reference(omega * self.shift_factor())
+    }
+
+    fn complex_modulus_at_reference(&self, omega: f64) -> (f64, f64) {
         let elements = self.prony.iter().map(PronyTerm::element);
-        complex_stiffness(
-            self.equilibrium_modulus,
-            self.viscosity.unwrap_or(0.0),
-            elements,
-            omega * self.shift_factor(),
-        )
+        complex_stiffness(self.equilibrium_modulus, self.viscosity.unwrap_or(0.0), elements, omega)
+    }
+
+    /// M'(ω) and M''(ω), Pa: the plane modulus of [`complex_modulus`](Self::complex_modulus).
+    pub fn complex_plane_modulus(&self, omega: f64) -> (f64, f64) {
+        self.plane_moduli(self.complex_modulus(omega))
+    }
+
+    /// [`complex_plane_modulus`](Self::complex_plane_modulus) at the reference temperature.
+    pub(super) fn complex_plane_modulus_at_reference(&self, omega: f64) -> (f64, f64) {
+        self.plane_moduli(self.complex_modulus_at_reference(omega))
+    }
+
+    fn plane_moduli(&self, (storage, loss): (f64, f64)) -> (f64, f64) {
+        (self.plane_modulus(storage), self.plane_modulus(loss))
     }
 
     /// M = E/(1 - ν²), Pa: the plane modulus of the modulus E, Pa.
@@ -290,6 +303,33 @@ impl Scene {
             }
         }
         scene
+    }
+
+    /// The scene with its layer at a temperature, K, not checked; as it is without one, or where it has no
+    /// `material.wlf`.
+    pub fn with_temperature(&self, kelvin: impl Into<Option<f64>>) -> Self {
+        let mut scene = self.clone();
+        let wlf = scene.material.as_mut().and_then(|material| material.wlf.as_mut());
+        if let (Some(wlf), Some(kelvin)) = (wlf, kelvin.into()) {
+            wlf.temperature = kelvin;
+        }
+        scene
+    }
+
+    /// The scene with its layer at a temperature, K, checked.
+    ///
+    /// # Errors
+    /// [`ParameterError`] where the scene has no `material.wlf`, or the temperature is none, or the shift has its pole
+    /// above it, or a number of the material becomes impossible.
+    pub fn at_temperature(&self, kelvin: f64) -> Result<Self, ParameterError> {
+        let has_wlf = self.material.as_ref().is_some_and(|material| material.wlf.is_some());
+        if !(has_wlf && kelvin > 0.0 && is_possible(kelvin)) {
+            let range = keys::range_of("material.wlf.temperature");
+            return Err(ParameterError::new("temperature", Problem::value(format_args!("{kelvin:?}"), range)));
+        }
+        let scene = self.with_temperature(kelvin);
+        scene.check()?;
+        Ok(scene)
     }
 
     /// Checks what follows from several parameters at once, and so cannot be refused when one of them is set: the

@@ -48,8 +48,8 @@ pub use carrier::{CarrierBodies, CarrierBody, CarrierInitial, Input};
 pub use error::{ParameterError, Problem, SceneError};
 pub use excitation::{Force, Motion, Path, Phase};
 pub use fine_roughness::{
-    BandModuli, FineBand, FineRoughness, FineWaves, ModulusFactors, RoughnessSpectrum, Softening, SofteningRow,
-    SplitSurface,
+    FineBand, FineRoughness, FineWaves, ModulusFactors, RoughnessSpectrum, Softening, SofteningRow, SplitSurface,
+    WaveModuli,
 };
 pub use fmu::{DependencyList, FmuOptions, IntegerType};
 pub use foundation::{Body, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};
@@ -362,14 +362,16 @@ impl OutputGroup {
 }
 
 impl Scene {
-    /// The scene's name as a C identifier: letters, digits and underscores, no digit first.
-    pub fn model_identifier(&self) -> String {
-        identifier(&self.name)
-    }
-
     /// The duration of the excitation if no force ends a phase, s.
     pub fn duration(&self) -> f64 {
         self.excitation.iter().map(|phase| phase.duration).sum()
+    }
+
+    /// Paths of the files that the scene was read from; `path` is that of its own.
+    pub fn sources(&self, path: &FilePath) -> Vec<PathBuf> {
+        let folder = path.parent().unwrap_or(FilePath::new(""));
+        let files = self.files.iter().chain(self.extracts.iter().map(|extract| &extract.source));
+        std::iter::once(path.to_owned()).chain(files.map(|file| folder.join(file))).collect()
     }
 
     /// The bytes of one of the scene's [`files`](Self::files) as an FMU carries them; `folder` is the scene's.

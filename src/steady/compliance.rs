@@ -28,7 +28,8 @@ impl Compliance {
         let count = size.columns() * size.ny;
         let mut found = Self { compliance: vec![zero; count], stiffness: vec![zero; count] };
         for column in 0..size.columns() {
-            let modulus = plane_modulus(material, surface.wave_number(column) * speed);
+            let (storage, loss) = material.complex_plane_modulus(surface.wave_number(column) * speed);
+            let modulus = Complex::new(storage, loss);
             let flexibility = 1.0 / modulus;
             let flexibility = if size.is_shortest(column) { Complex::from(flexibility.re) } else { flexibility };
             let modulus = 1.0 / flexibility;
@@ -71,10 +72,4 @@ pub(super) fn viscous_losses(
         });
         kernel.collect()
     })
-}
-
-/// M = E*/(1 - ν²) at the angular frequency ω, Pa.
-fn plane_modulus(material: &Material, omega: f64) -> Complex<f64> {
-    let (storage, loss) = material.complex_modulus(omega);
-    Complex::new(material.plane_modulus(storage), material.plane_modulus(loss))
 }

@@ -22,6 +22,6 @@ mod transform;
 
 pub use contact::Contact;
 pub use heat::HeatResponse;
-pub use slide::{SlidingRubber, SteadySlide, SteadySolver};
+pub use slide::{SlideProblem, SlidingRubber, SteadySlide, SteadySolver};
 pub use surface::SurfaceGrid;
 pub use transform::{Convolution, GridSize};

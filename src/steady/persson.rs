@@ -6,9 +6,9 @@
 //! contacts that deform less than the whole surface would. The waves that the profile lacks follow in bands; the area is
 //! that of the profile's waves, as the contact ratio of a run is.
 
-use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
+use std::f64::consts::{PI, SQRT_2};
 
-use crate::scene::{Body, FineBand, FineRoughness, Material, Scene, Spectrum, Surface};
+use crate::scene::{Body, FineBand, FineRoughness, Material, Scene, Spectrum, Surface, WaveModuli};
 
 /// Area and friction by the theory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,21 +23,18 @@ pub struct Theory {
 
 /// Whether the waves of the profile are those of ridges across the motion, or those of a line on an isotropic surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dimension {
+pub enum Roughness {
     /// Ridges across the motion.
-    One,
+    Ridges,
     /// An isotropic surface, of which the profile is a line.
-    Two,
+    Isotropic,
 }
-
-/// Angles between 0 and π/2 at whose middles the waves of an isotropic surface are taken.
-const ANGLES: u32 = 32;
 
 impl Theory {
     /// Area and friction of the waves that the layer of `scene` resolves and of those that the profile lacks, sliding at
     /// `speed` (m/s) under `pressure` (Pa); `None` in the direct form.
-    pub fn new(scene: &Scene, pressure: f64, speed: f64, dimension: Dimension) -> Option<Self> {
-        let parts = Part::all(scene, speed, dimension)?;
+    pub fn new(scene: &Scene, pressure: f64, speed: f64, roughness: Roughness) -> Option<Self> {
+        let parts = Part::all(scene, speed, roughness)?;
         Some(Self::of(&parts, pressure))
     }
 
@@ -84,7 +81,7 @@ pub struct WholeFriction {
 impl WholeFriction {
     /// That of `scene` at `speed` (m/s) under `pressure` (Pa); without waves in the direct form.
     pub fn new(scene: &Scene, pressure: f64, speed: f64) -> Self {
-        let parts = Part::all(scene, speed, Dimension::Two).unwrap_or_default();
+        let parts = Part::all(scene, speed, Roughness::Isotropic).unwrap_or_default();
         let of = |(part, in_contact): (&Part, f64)| {
             let Part { wave_number, is_fine, loss, .. } = *part;
             let reduced = in_contact * (0.75 + 0.25 * in_contact * in_contact);
@@ -126,10 +123,10 @@ struct Part {
 
 impl Part {
     /// Those that the layer of `scene` resolves and the bands below, at `speed` (m/s); `None` in the direct form.
-    fn all(scene: &Scene, speed: f64, dimension: Dimension) -> Option<Vec<Self>> {
+    fn all(scene: &Scene, speed: f64, roughness: Roughness) -> Option<Vec<Self>> {
         let material = scene.material.as_ref()?;
         let body = scene.layer.body(material)?;
-        let profile = resolved(scene).into_iter().map(|wave| Self::of_profile(wave, material, body, speed, dimension));
+        let profile = resolved(scene).into_iter().map(|wave| Self::of_profile(wave, material, body, speed, roughness));
         let at_reference = speed * material.shift_factor();
         let bands = scene.fine.iter().flat_map(|fine| {
             let bands = scene.fine_bands().into_iter();
@@ -144,14 +141,14 @@ impl Part {
         material: &Material,
         body: Body,
         speed: f64,
-        dimension: Dimension,
+        roughness: Roughness,
     ) -> Self {
-        let (stiffness, square) = (body.normal(wave_number), dimension.factor() * mean_square);
-        let (modulus_square, loss) = dimension.means(material, wave_number * speed);
+        let (stiffness, square) = (body.normal(wave_number), roughness.factor() * mean_square);
+        let moduli = roughness.moduli(material, wave_number * speed);
         Self {
             wave_number,
-            stress_square: square * stiffness * stiffness * modulus_square,
-            loss: wave_number * square * stiffness * loss,
+            stress_square: square * stiffness * stiffness * moduli.square,
+            loss: wave_number * square * stiffness * moduli.loss,
             is_fine: false,
         }
     }
@@ -182,29 +179,20 @@ fn in_contact(parts: &[Part], pressure: f64) -> impl Iterator<Item = (&Part, f64
     })
 }
 
-impl Dimension {
+impl Roughness {
     /// An isotropic surface has twice the mean square height that is in a wave of its lines, by the angles.
     fn factor(self) -> f64 {
         match self {
-            Self::One => 1.0,
-            Self::Two => 2.0,
+            Self::Ridges => 1.0,
+            Self::Isotropic => 2.0,
         }
     }
 
-    /// <|M(ω cos φ)|²> (Pa²) and <cos φ Im M(ω cos φ)> (Pa).
-    fn means(self, material: &Material, omega: f64) -> (f64, f64) {
-        let at = |cosine: f64| {
-            let (storage, loss) = material.complex_modulus(omega * cosine);
-            let (storage, loss) = (material.plane_modulus(storage), material.plane_modulus(loss));
-            (storage * storage + loss * loss, cosine * loss)
-        };
+    /// What a material answers its waves, which are met with ω cos φ (rad/s) by their directions φ.
+    fn moduli(self, material: &Material, omega: f64) -> WaveModuli {
         match self {
-            Self::One => at(1.0),
-            Self::Two => {
-                let middles = (0..ANGLES).map(|i| at((FRAC_PI_2 * (f64::from(i) + 0.5) / f64::from(ANGLES)).cos()));
-                let (square, loss) = middles.fold((0.0, 0.0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
-                (square / f64::from(ANGLES), loss / f64::from(ANGLES))
-            }
+            Self::Ridges => WaveModuli::across(material.complex_plane_modulus(omega)),
+            Self::Isotropic => WaveModuli::of_all_directions(|cosine| material.complex_plane_modulus(omega * cosine)),
         }
     }
 }
@@ -214,19 +202,19 @@ impl Dimension {
 pub struct ProfileWaves {
     /// q (rad/m) and mean square height, m².
     waves: Vec<(f64, f64)>,
-    dimension: Dimension,
+    roughness: Roughness,
 }
 
 impl ProfileWaves {
     /// Those of a surface: of a map as of an isotropic one, else of ridges.
     pub fn new(surface: &Surface) -> Self {
-        let dimension = if surface.map().is_some() { Dimension::Two } else { Dimension::One };
-        Self { waves: Spectrum::new(surface).modes().collect(), dimension }
+        let roughness = if surface.map().is_some() { Roughness::Isotropic } else { Roughness::Ridges };
+        Self { waves: Spectrum::new(surface).modes().collect(), roughness }
     }
 
     /// Area and friction of the waves in rubber of a `material` as part of a `body`, at `speed` (m/s) under `pressure`, Pa.
     pub fn sliding(&self, material: &Material, body: Body, speed: f64, pressure: f64) -> Theory {
-        let part = |&wave: &(f64, f64)| Part::of_profile(wave, material, body, speed, self.dimension);
+        let part = |&wave: &(f64, f64)| Part::of_profile(wave, material, body, speed, self.roughness);
         Theory::of(&self.waves.iter().map(part).collect::<Vec<_>>(), pressure)
     }
 }
@@ -264,8 +252,8 @@ mod tests {
     }
 
     /// Area and friction of waves (q in rad/m, mean square height in m²) in the order of q, at 0.3 m/s.
-    fn on_half_plane(waves: &[(f64, f64)], material: &Material, pressure: f64, dimension: Dimension) -> Theory {
-        let part = |&wave: &(f64, f64)| Part::of_profile(wave, material, Body::HalfPlane, 0.3, dimension);
+    fn on_half_plane(waves: &[(f64, f64)], material: &Material, pressure: f64, roughness: Roughness) -> Theory {
+        let part = |&wave: &(f64, f64)| Part::of_profile(wave, material, Body::HalfPlane, 0.3, roughness);
         Theory::of(&waves.iter().map(part).collect::<Vec<_>>(), pressure)
     }
 
@@ -278,7 +266,7 @@ mod tests {
         let x = q * 0.3 * 1e-4;
         let loss = 2e7 / 0.75 * x / (1.0 + x * x);
         let pressure = 1e8;
-        let theory = on_half_plane(&wave, &material, pressure, Dimension::One);
+        let theory = on_half_plane(&wave, &material, pressure, Roughness::Ridges);
         let exact = (q * a).powi(2) * loss / (4.0 * pressure);
         // σ is some 5e5 Pa: erf is 1 to the last digit.
         near(theory.area, 1.0, 1e-15);
@@ -295,15 +283,15 @@ mod tests {
         let (pressure, modulus) = (10.0, 3e6 / 0.75);
         let line = 2.0 * FRAC_2_PI.sqrt() * pressure / (modulus * slope);
         // erf x = 2x/√π (1 - x²/3), x some 1e-4.
-        near(on_half_plane(&waves, &material, pressure, Dimension::One).area, line, 1e-6);
-        near(on_half_plane(&waves, &material, pressure, Dimension::Two).area, line / SQRT_2, 1e-6);
+        near(on_half_plane(&waves, &material, pressure, Roughness::Ridges).area, line, 1e-6);
+        near(on_half_plane(&waves, &material, pressure, Roughness::Isotropic).area, line / SQRT_2, 1e-6);
     }
 
     /// At low pressure friction does not depend on it, and contacts that are small have S = ½.
     #[test]
     fn friction_at_low_pressure_does_not_depend_on_it() {
         let (waves, material) = (rough(), viscoelastic());
-        let at = |pressure: f64| on_half_plane(&waves, &material, pressure, Dimension::Two);
+        let at = |pressure: f64| on_half_plane(&waves, &material, pressure, Roughness::Isotropic);
         let (low, lower) = (at(10.0), at(1.0));
         near(low.friction, lower.friction, 1e-4);
         near(low.friction, 2.0 * low.friction_reduced, 1e-4);
@@ -313,14 +301,14 @@ mod tests {
     #[test]
     fn an_isotropic_surface_is_the_mean_over_all_directions() {
         let material = Material { equilibrium_modulus: 1e-30, viscosity: Some(1e3), ..rubber(Vec::new()) };
-        let (one, two) = (Dimension::One.means(&material, 50.0), Dimension::Two.means(&material, 50.0));
+        let (one, two) = (Roughness::Ridges.moduli(&material, 50.0), Roughness::Isotropic.moduli(&material, 50.0));
         // The rule of middles is exact for cos² φ.
-        near(two.0, 0.5 * one.0, 1e-14);
-        near(two.1, 0.5 * one.1, 1e-14);
+        near(two.square, 0.5 * one.square, 1e-14);
+        near(two.loss, 0.5 * one.loss, 1e-14);
         // In full contact twice the heights make up for it: a surface loses what its lines do.
         let waves = rough();
-        let loss = |dimension| on_half_plane(&waves, &material, 1e9, dimension).friction;
-        near(loss(Dimension::Two), loss(Dimension::One), 1e-12);
+        let loss = |roughness| on_half_plane(&waves, &material, 1e9, roughness).friction;
+        near(loss(Roughness::Isotropic), loss(Roughness::Ridges), 1e-12);
     }
 
     #[test]

@@ -21,8 +21,9 @@ pub struct SlidingRubber {
     heat: Option<HeatResponse>,
     /// Whether contacts have friction of their own.
     has_friction: bool,
-    /// Whether waves that the profile lacks rub, and whether there are any.
-    has_fine: (bool, bool),
+    /// Whether there are waves that the profile lacks, and whether they rub.
+    has_fine: bool,
+    fine_rubs: bool,
 }
 
 /// A contact of a point, per area of the surface.
@@ -72,6 +73,44 @@ impl SteadySlide {
     pub fn friction(&self) -> f64 {
         self.profile_hysteresis + self.fine_hysteresis.unwrap_or(0.0) + self.adhesion
     }
+
+    /// Why not all of its values can be relied on; `None` where they can.
+    pub fn problem(&self) -> Option<SlideProblem> {
+        match self.contact.left_over {
+            0 if !self.heat_converged => Some(SlideProblem::HeatNotConverged),
+            0 if self.contact.is_full => Some(SlideProblem::FullContact),
+            0 if self.tangential_stiffness.is_none() => Some(SlideProblem::SinglePoint),
+            0 => None,
+            left_over => Some(SlideProblem::ContactNotFound { left_over }),
+        }
+    }
+}
+
+/// Why not all values of a slide can be relied on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SlideProblem {
+    /// No set of points in contact was found: `left_over` are on the wrong side.
+    #[error("{left_over} points of the surface are pulled or lie below it")]
+    ContactNotFound {
+        /// [`Contact::left_over`].
+        left_over: usize,
+    },
+    /// The flash temperature did not come to its fixed point.
+    #[error("the flash temperature does not come to rest")]
+    HeatNotConverged,
+    /// All points touch, so the contact has no stiffness.
+    #[error("full contact")]
+    FullContact,
+    /// One point touches, so the contact has no stiffness.
+    #[error("no stiffness: a single point is in contact")]
+    SinglePoint,
+}
+
+impl SlideProblem {
+    /// Whether friction and area can be relied on all the same.
+    pub fn leaves_friction(self) -> bool {
+        matches!(self, Self::FullContact | Self::SinglePoint)
+    }
 }
 
 /// Accuracy of ϑ over its largest.
@@ -107,7 +146,8 @@ impl SlidingRubber {
             element_area: scene.layer.element_area()?,
             heat: HeatResponse::new(scene),
             has_friction: scene.has_friction(),
-            has_fine: (scene.has_fine_hysteresis(), scene.fine.is_some()),
+            has_fine: scene.fine.is_some(),
+            fine_rubs: scene.has_fine_hysteresis(),
             material,
         })
     }
@@ -164,7 +204,7 @@ impl SteadySolver {
         let points = || contact.points.iter().zip(&contact.pressures);
         let drag: f64 = points().map(|(&point, p)| p * self.slopes[point as usize]).sum();
         let mut sums = SlidingContact::default();
-        if rubber.has_friction || rubber.has_fine.1 {
+        if rubber.has_friction || rubber.has_fine {
             for (i, &p) in contact.pressures.iter().enumerate() {
                 let at = rubber.sliding(p, speed, flash.as_ref().map_or(0.0, |flash| flash[i]));
                 sums.friction += at.friction;
@@ -176,9 +216,9 @@ impl SteadySolver {
         SteadySlide {
             area: contact.area(surface),
             profile_hysteresis: coefficient(drag),
-            fine_hysteresis: rubber.has_fine.0.then_some(coefficient(sums.hysteresis)),
+            fine_hysteresis: rubber.fine_rubs.then_some(coefficient(sums.hysteresis)),
             adhesion: coefficient(sums.friction - sums.hysteresis),
-            real_area: rubber.has_fine.1.then_some(share * sums.share),
+            real_area: rubber.has_fine.then_some(share * sums.share),
             flash_mean: flash.map(|flash| sum(&flash) / flash.len() as f64),
             viscous_share,
             normal_stiffness,

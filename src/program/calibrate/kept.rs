@@ -1,28 +1,22 @@
 //! The table beside a calibration's output: the points that were found, so that nothing is found twice.
 
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use crate::calibration::{FreeParameter, FrictionParts, Outcome, Task};
-use crate::element::OperatingPoint;
-use crate::scene::{read_file, text_table};
+use crate::element::{OperatingPoint, STEADY};
+use crate::scene::text_table;
 
 use super::CalibrateError;
-use crate::program::draft::LineFile;
 use crate::program::files::FileError;
-use crate::program::lock::TableLock;
+use crate::program::resumable_table::ResumableTable;
 use crate::program::terminal::{real, warn};
 
 /// The first line of a table; its number grows when readers have to know of a change.
 const FORMAT: &str = "# asperity calibrate = 1";
-const STEADY: &str = "steady";
 
 /// A table to which points are added.
 #[derive(Debug)]
-pub(super) struct KeptPoints {
-    file: LineFile,
-    _lock: TableLock,
-}
+pub(super) struct KeptPoints(ResumableTable);
 
 impl KeptPoints {
     /// Begins a table or, unless it is to be replaced, continues the one that is there; and the points that it has.
@@ -32,16 +26,15 @@ impl KeptPoints {
         parameters: &[FreeParameter],
         replace: bool,
     ) -> Result<(Self, Vec<(Task, Outcome)>), CalibrateError> {
-        let lock = TableLock::take(path)?;
         let head = head(fingerprint, parameters);
-        let known = if replace { Vec::new() } else { read(path, &head, parameters.len())? };
-        let rows: String = known.iter().map(|(task, outcome)| line(task, outcome)).collect();
-        Ok((Self { file: LineFile::create(path, &(head + &rows))?, _lock: lock }, known))
+        let read = |text: &str| read(text, path, &head, parameters.len());
+        let (table, known) = ResumableTable::open(path, &head, replace, read, |(task, outcome)| line(task, outcome))?;
+        Ok((Self(table), known))
     }
 
     /// Adds a point; it is in the file when this returns.
     pub(super) fn add(&self, task: &Task, outcome: &Outcome) -> Result<(), FileError> {
-        self.file.add(&line(task, outcome))
+        self.0.add(&line(task, outcome))
     }
 }
 
@@ -63,22 +56,13 @@ fn line(task: &Task, outcome: &Outcome) -> String {
     fields.chain(parts).collect::<Vec<_>>().join(",") + "\n"
 }
 
-/// The points of the table at `path`, without those that are damaged; none where there is no file.
-fn read(path: &Path, head: &str, parameters: usize) -> Result<Vec<(Task, Outcome)>, CalibrateError> {
-    let text = match read_file(path) {
-        Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
-        Err(error) => return Err(FileError::io("read", path)(error).into()),
-    };
-    // A header that was cut off as its writer was stopped.
-    if head.starts_with(&text) {
-        return Ok(Vec::new());
-    }
+/// The points of the table at `path`, which is the `text`, without those that are damaged.
+fn read(text: &str, path: &Path, head: &str, parameters: usize) -> Result<Vec<(Task, Outcome)>, CalibrateError> {
     let Some(rows) = text.strip_prefix(head) else {
         return Err(CalibrateError::OtherCalibration { path: PathBuf::from(path) });
     };
     let mut known = Vec::new();
-    for (number, line) in (1 + head.lines().count()..).zip(rows.split_inclusive('\n')) {
+    for (number, line) in (1 + head.lines().count()..).zip(rows.lines()) {
         match point(line, parameters) {
             Some(found) => known.push(found),
             None => warn(&format!("{}:{number}: the row is damaged; its point is found again", path.display())),
@@ -87,9 +71,8 @@ fn read(path: &Path, head: &str, parameters: usize) -> Result<Vec<(Task, Outcome
     Ok(known)
 }
 
-/// The point of a row; `None` where it is damaged. A last line without an end was cut off.
+/// The point of a row, without its end; `None` where it is damaged.
 fn point(line: &str, parameters: usize) -> Option<(Task, Outcome)> {
-    let line = line.strip_suffix('\n')?;
     let fields: Vec<String> = text_table::fields(line, ',').map(std::borrow::Cow::into_owned).collect();
     if fields.len() != parameters + 7 {
         return None;
@@ -122,9 +105,8 @@ mod tests {
         let parts = FrictionParts { profile: 0.1 + 0.2, fine: 1e-9, shear: -0.5 };
         for (task, outcome) in [(task(Some(293.15)), Ok(parts)), (task(None), Err("no, \"never\" steady".to_owned()))] {
             let line = line(&task, &outcome);
-            assert_eq!(point(&line, 2), Some((task, outcome)));
-            // Whatever is cut off.
-            assert!((0..line.len()).all(|end| point(&line[..end], 2).is_none()), "{line}");
+            assert_eq!(point(line.trim_end(), 2), Some((task, outcome)));
+            assert_eq!(point(&line[1 + line.find(',').unwrap_or_default()..], 2), None);
         }
     }
 }

@@ -17,17 +17,17 @@ use crate::element::OperatingPoint;
 use crate::scene::{Scene, read_text, similar_keys};
 use indicatif::ProgressBar;
 
-use super::SUCCESS;
 use super::cli::Calibrate;
 use super::figure::{Figure as _, Stroke};
 use super::files::{
-    self, FileError, check_outputs, is_standard_output, load_without_run, picture_beside, print_beside, sources,
+    self, FileError, check_outputs, is_standard_output, load_without_run, picture_beside, print_beside,
 };
 use super::interrupt::Farewell;
 use super::measured_friction::{self, CurveGrid, MeasuredFrictionError, ModelCurves};
 use super::overrides::{self, OverrideError, Setting};
-use super::sweep::{Method, MethodError, NeverSteady, SlidingOptions, relevant, table_fingerprint, with_temperature};
+use super::sweep::{Method, MethodError, NeverSteady, SlidingOptions, relevant, table_fingerprint};
 use super::terminal::{self, note, real, rounded, warn};
+use super::{NOT_REACHED, SUCCESS};
 use kept::KeptPoints;
 use layer_model::LayerModel;
 
@@ -86,8 +86,6 @@ fn similar_in_words(key: &str) -> String {
     if similar.is_empty() { String::new() } else { format!("; did you mean {}?", similar.join(", ")) }
 }
 
-/// Exit status where the fit has not converged or not all is identifiable: it is to be looked at.
-const OPEN: u8 = 3;
 /// Most free parameters.
 const MOST_FREE: usize = 12;
 /// Points of a curve.
@@ -209,7 +207,7 @@ impl<'a> FreeScene<'a> {
         };
         for row in &mut measurements.rows {
             let temperature = *row.point.temperature.get_or_insert(own);
-            with_temperature(&self.scene, temperature).check().map_err(|error| CalibrateError::Temperature {
+            self.scene.with_temperature(temperature).check().map_err(|error| CalibrateError::Temperature {
                 path: path.clone(),
                 line: row.line,
                 problem: error.to_string(),
@@ -269,7 +267,7 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, CalibrateError> {
     let output = command.output.clone().unwrap_or_else(|| command.scene.with_extension("calibrated.toml"));
     let picture = picture_beside(&output, command.plot.as_ref());
     let table = (!is_standard_output(&output)).then(|| output.with_extension("points.csv"));
-    let taken = sources(&command.scene, &free.scene).into_iter().chain([command.data.clone()]).collect();
+    let taken = free.scene.sources(&command.scene).into_iter().chain([command.data.clone()]).collect();
     check_outputs([&output].into_iter().chain(&picture).chain(&table), taken)?;
     written::check_folder(&output, command, &free.scene)?;
     let (kept, known) = match &table {
@@ -300,7 +298,7 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, CalibrateError> {
             [Some(&output), picture.as_ref(), table.as_ref()].into_iter().flatten().map(PathBuf::as_path).collect();
         print_beside([&output], &summary::text(&free, &calibrated, &measurements, planned.as_ref(), &files))?;
         summary::warnings(&calibrated, &measurements).iter().for_each(|warning| warn(warning));
-        Ok(if calibrated.is_whole() { SUCCESS } else { OPEN })
+        Ok(if calibrated.is_whole() { SUCCESS } else { NOT_REACHED })
     })
 }
 
@@ -565,7 +563,7 @@ impl Work<'_> {
         let pressures = pressures.unwrap_or_else(|| in_logarithm(3, range(&|point| Some(point.load)), 2.0));
         let own = range(&|point| point.temperature).map(|(low, high)| even(5, (low - 20.0, high + 20.0)));
         let kelvin = command.temperatures.clone().map(|values| values.0).or(own);
-        let is_possible = |kelvin: &f64| with_temperature(&self.free.scene, *kelvin).check().is_ok();
+        let is_possible = |kelvin: &f64| self.free.scene.with_temperature(*kelvin).check().is_ok();
         let temperatures: Vec<Option<f64>> = match kelvin {
             Some(kelvin) if measured.iter().any(|point| point.temperature.is_some()) => {
                 kelvin.into_iter().filter(is_possible).map(|kelvin| Some(rounded(kelvin, 5))).collect()

@@ -11,7 +11,7 @@ use crate::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 use zip::result::ZipError;
 
 use super::cli::{Contact, SteadyState};
-use super::files::{self, FileError, check_outputs, ends_in, load_without_run, named, print_beside, sources};
+use super::files::{self, FileError, check_outputs, ends_in, load_without_run, named, print_beside};
 use super::sweep::{Method, MethodError, SlidingOptions, SweepMethod, solved_status};
 use super::terminal::{lines, rounded, warn};
 
@@ -89,7 +89,7 @@ pub fn solve_contact(scene: &Scene, options: &ContactOptions) -> Result<SolvedCo
 pub(crate) fn contact(command: &Contact) -> Result<(), ContactError> {
     let scene = load_without_run(&command.scene, &command.set, |_| false)?;
     let outputs: Vec<_> = [&command.output].into_iter().chain(&command.data).cloned().collect();
-    check_outputs(&outputs, sources(&command.scene, &scene))?;
+    check_outputs(&outputs, scene.sources(&command.scene))?;
     let SteadyState { pressure, speed } = command.at;
     let solved = solve_contact(&scene, &ContactOptions { pressure, speed, points: command.points })?;
     let SolvedContact { surface, slide, fields, status } = &solved;

@@ -17,18 +17,18 @@ use cpu_time::ThreadTime;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 
-use super::SUCCESS;
 use super::cli::{Converge, SteadyState};
 use super::draft::TablePlace;
 use super::figure::Figure as _;
-use super::files::{FileError, check_outputs, default_output, picture_beside, print_beside, sources};
+use super::files::{FileError, check_outputs, default_output, picture_beside, print_beside};
 use super::interrupt::Farewell;
 use super::sweep::{
-    Method, MethodError, NeverSteady, SlidingOptions, StopBounds, SweepMethod, relevant, solved_status, steady_sliding,
+    Method, MethodError, NeverSteady, SlidingOptions, StopBounds, SweepMethod, relevant, steady_sliding,
     table_fingerprint,
 };
 use super::terminal::{self, warn};
-use crate::steady::persson::{Dimension, Theory};
+use super::{NOT_REACHED, SUCCESS};
+use crate::steady::persson::{Roughness, Theory};
 use plan::{Next, Plan};
 use table::{Measured, RunRow, StudyHeader, Table};
 use variants::{Parts, Template, Variant};
@@ -75,8 +75,6 @@ pub(crate) enum ConvergeError {
     OtherStudy { path: PathBuf },
 }
 
-/// Exit status where not all is within the error.
-const OPEN: u8 = 3;
 /// Standard error of a run over the error that its changes may have.
 const RUN_ERROR: f64 = 0.1;
 
@@ -94,7 +92,7 @@ pub(crate) fn converge(command: &Converge) -> Result<u8, ConvergeError> {
     warning.iter().for_each(|warning| warn(warning));
     let output = command.output.clone().unwrap_or_else(|| default_output(&command.scene, "converge.csv"));
     let picture = picture_beside(&output, command.plot.as_ref());
-    check_outputs([&output].into_iter().chain(&picture), sources(&command.scene, &scene))?;
+    check_outputs([&output].into_iter().chain(&picture), scene.sources(&command.scene))?;
     method.check(&scene)?;
     let place = TablePlace::new(&output)?;
     let (table, runs) =
@@ -112,7 +110,7 @@ pub(crate) fn converge(command: &Converge) -> Result<u8, ConvergeError> {
     if let Some(picture) = &picture {
         plot::picture(&scene.name, &runs).write(picture)?;
     }
-    Ok(if verdict.is_converged() { SUCCESS } else { OPEN })
+    Ok(if verdict.is_converged() { SUCCESS } else { NOT_REACHED })
 }
 
 /// Seeds where none are asked for.
@@ -218,8 +216,8 @@ impl Work<'_> {
         let outcome = if is_of_layer { self.measure(&scene) } else { self.solve(&scene, dimensions.count) };
         let run_time = clock.elapsed().as_secs_f64();
         let Converge { at: SteadyState { pressure, speed }, .. } = *self.command;
-        let theories = [Dimension::One, Dimension::Two]
-            .map(|dimension| Theory::new(&scene, pressure, speed, dimension).unwrap_or_default());
+        let theories = [Roughness::Ridges, Roughness::Isotropic]
+            .map(|roughness| Theory::new(&scene, pressure, speed, roughness).unwrap_or_default());
         let fit_rms = is_of_layer.then(|| scene.quality(LinkKind::Vertical).map_or(0.0, |quality| quality.rms));
         let run = RunRow { variant, dimensions, fit_rms, outcome, theories, run_time };
         self.table.add(&run)?;
@@ -236,8 +234,8 @@ impl Work<'_> {
             return Err("not to be solved for".into());
         };
         let slide = SteadySolver::new(surface).slide(&rubber, self.command.at.speed, self.command.at.pressure);
-        if slide.contact.left_over > 0 || !slide.heat_converged {
-            return Err(solved_status(&slide));
+        if let Some(problem) = slide.problem().filter(|problem| !problem.leaves_friction()) {
+            return Err(problem.to_string());
         }
         Ok(Measured {
             mean: Pair { friction: slide.friction(), area: slide.area },

@@ -1,16 +1,15 @@
 //! The table of a study: rows are added as their runs are done and not computed again.
 
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use crate::scene::{read_file, text_table};
+use crate::element::STEADY;
+use crate::scene::text_table;
 
 use super::ConvergeError;
 use super::variants::{Dimensions, Parts, Variant};
 use super::verdict::Pair;
-use crate::program::draft::LineFile;
 use crate::program::files::{FileError, write};
-use crate::program::lock::TableLock;
+use crate::program::resumable_table::ResumableTable;
 use crate::program::terminal::{real, warn};
 use crate::steady::persson::Theory;
 
@@ -45,8 +44,6 @@ const COLUMNS: [&str; 25] = [
     "persson_friction_2d_reduced [1]",
     "run_time [s]",
 ];
-/// The status of a run whose values can be relied on.
-const STEADY: &str = "steady";
 
 /// What a run measured, with the standard errors of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -190,23 +187,20 @@ impl StudyHeader {
 pub(super) struct Table {
     path: PathBuf,
     header: StudyHeader,
-    file: LineFile,
-    _lock: TableLock,
+    rows: ResumableTable,
 }
 
 impl Table {
     /// Begins a table or, unless it is to be replaced, continues the one that is there. Returns the runs that it has.
     pub(super) fn open(path: &Path, header: StudyHeader, force: bool) -> Result<(Self, Vec<RunRow>), ConvergeError> {
-        let lock = TableLock::take(path)?;
-        let runs = if force { Vec::new() } else { runs_done(path, &header)? };
-        let rows = runs.iter().map(|run| run.line(None));
-        let file = LineFile::create(path, &(header.text(None) + &rows.collect::<String>()))?;
-        Ok((Self { path: path.to_owned(), header, file, _lock: lock }, runs))
+        let read = |text: &str| runs_done(text, path, &header);
+        let (rows, runs) = ResumableTable::open(path, &header.text(None), force, read, |run| run.line(None))?;
+        Ok((Self { path: path.to_owned(), header, rows }, runs))
     }
 
     /// Adds a row; it is in the file when this returns.
     pub(super) fn add(&self, run: &RunRow) -> Result<(), FileError> {
-        self.file.add(&run.line(None))
+        self.rows.add(&run.line(None))
     }
 
     /// Writes the whole table with the changes of the values, which rows that were added do not have.
@@ -216,26 +210,15 @@ impl Table {
     }
 }
 
-/// The runs of the table at `path`, without the corrupt rows, which are named; none where there is no file, or only the
-/// beginning of a header.
-fn runs_done(path: &Path, header: &StudyHeader) -> Result<Vec<RunRow>, ConvergeError> {
-    let text = match read_file(path) {
-        Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
-        Err(error) => return Err(FileError::io("read", path)(error).into()),
-    };
-    if header.text(None).starts_with(&text) {
-        return Ok(Vec::new());
-    }
-    // A last line without an end was cut off as its writer was stopped.
-    let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
+/// The runs of the table at `path`, which is the `text`, without the corrupt rows, which are named.
+fn runs_done(text: &str, path: &Path, header: &StudyHeader) -> Result<Vec<RunRow>, ConvergeError> {
     let not_a_table = |problem: String| ConvergeError::NotATable { path: path.to_owned(), problem };
-    let mut rows = text_table::rows(whole, Some(','));
-    if !whole.starts_with(FORMAT) || rows.next().is_none_or(|names| names.fields.len() != COLUMNS.len()) {
+    let mut rows = text_table::rows(text, Some(','));
+    if !text.starts_with(FORMAT) || rows.next().is_none_or(|names| names.fields.len() != COLUMNS.len()) {
         return Err(not_a_table(format!("expected the line `{FORMAT}` and the columns {}", header.columns())));
     }
     let key = format!("# fingerprint = {}", header.fingerprint);
-    if !whole.lines().any(|line| line == key) {
+    if !text.lines().any(|line| line == key) {
         return Err(ConvergeError::OtherStudy { path: path.to_owned() });
     }
     let mut runs: Vec<RunRow> = Vec::new();

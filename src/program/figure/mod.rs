@@ -34,7 +34,7 @@ pub(crate) use panels::{
     Below, LinearPanel, LinearStack, Panel, PanelRow, ProfileCurves, ProfilePicture, SideBySide, Stacked, TimeHistory,
 };
 pub(crate) use patch::PatchHistory;
-pub(crate) use plot::{PlotError, plot_files};
+pub(crate) use plot::plot_files;
 use raster::Raster;
 pub(crate) use surface_maps::{Colours, FieldMap, Marks, SurfaceMaps};
 

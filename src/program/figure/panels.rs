@@ -178,7 +178,7 @@ pub(crate) struct LinearPanel {
 
 impl Figure for LinearStack {
     fn size(&self) -> (u32, u32) {
-        (1000, 260 * self.panels.len() as u32)
+        (1000, if let [_] = self.panels[..] { 620 } else { 260 * self.panels.len() as u32 })
     }
 
     fn draw<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {

@@ -15,7 +15,7 @@ use crate::program::terminal::{lines, warn};
 
 /// `asperity plot` failed.
 #[derive(Debug, thiserror::Error)]
-pub enum PlotError {
+pub(crate) enum PlotError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]

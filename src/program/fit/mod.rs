@@ -17,11 +17,11 @@ use std::path::{Path, PathBuf};
 use crate::scene::PronyTerm;
 use crate::scene::text_table::Unit;
 
-use super::SUCCESS;
 use super::cli::{Fit, WlfConstants};
 use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
 use super::files::{self, FileError, check_outputs, name_of, named, picture_beside, print_beside};
 use super::terminal::{decimal, lines, note, rounded, warn};
+use super::{NOT_REACHED, SUCCESS};
 use measured::{MeasuredModuli, Reading};
 use moduli_error::ModuliError;
 use search::{Compound, FitErrors, RelativeError, Sample, Target, Test, search};
@@ -49,9 +49,6 @@ fn sheets(found: &[String], expected: &str) -> String {
 
 /// Points per decade of a plotted curve.
 const POINTS_PER_DECADE: f64 = 20.0;
-
-/// The exit status of a fit that is written but worse than asked for: it is to be looked at.
-const WORSE: u8 = 3;
 
 /// How moduli are read and fitted.
 #[derive(Clone, Debug)]
@@ -151,7 +148,7 @@ pub(crate) fn fit(command: &Fit) -> Result<u8, FitError> {
         return Ok(SUCCESS);
     }
     warn(&result.not_reached(&command.output));
-    Ok(WORSE)
+    Ok(NOT_REACHED)
 }
 
 fn in_data(options: &FitOptions, error: ModuliError) -> FitError {

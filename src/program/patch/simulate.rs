@@ -6,7 +6,6 @@ use crate::outputs::OutputType;
 use crate::patch::{MotionError, Patch, PatchRun, PatchVariable};
 
 use super::motion::MotionFile;
-use super::sources;
 use crate::program::cli::Simulate;
 use crate::program::figure::{Figure as _, PatchHistory, with_prefix};
 use crate::program::files::{FileError, check_outputs, load_patch, named, print_beside};
@@ -29,7 +28,7 @@ pub(crate) enum PatchSimulateError {
 /// Moves the patch, writes the rows and draws the plot.
 pub(crate) fn simulate(command: &Simulate, patch_file: &Path, motion_file: &Path) -> Result<(), PatchSimulateError> {
     let patch = load_patch(patch_file, &command.set)?;
-    let mut taken = sources(patch_file, &patch);
+    let mut taken = patch.sources(patch_file);
     taken.push(motion_file.to_owned());
     let output = command.output(patch_file);
     check_outputs([&output].into_iter().chain(&command.plot), taken)?;

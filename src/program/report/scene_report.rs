@@ -13,7 +13,7 @@ use super::run::{self, Progress};
 use super::tables::{self, Peers};
 use super::{ReportError, page, stem, write_judgements};
 use crate::program::cli::Report;
-use crate::program::files::{FileError, load, sources};
+use crate::program::files::{FileError, load};
 use crate::program::terminal::warn;
 
 /// A scene that can be run, its folder and its peers.
@@ -34,7 +34,7 @@ impl<'a> SceneReport<'a> {
             let why = "has no [[excitation]]: the carrier rests, and there is no run to report on";
             return Err(ReportError::NoRun { scene: path.to_owned(), why });
         }
-        let taken: Vec<PathBuf> = sources(path, &scene).into_iter().chain(command.peers.clone()).collect();
+        let taken: Vec<PathBuf> = scene.sources(path).into_iter().chain(command.peers.clone()).collect();
         let folder = ReportFolder::new(folder, &[ERRORS, JUDGEMENTS, COMMUNICATION], &taken)?;
         let peers = read_peers(command, path, &scene)?;
         Ok(Self { command, path, scene, folder, peers })
@@ -42,7 +42,7 @@ impl<'a> SceneReport<'a> {
 
     /// The files that are read.
     pub(super) fn sources(&self) -> impl Iterator<Item = PathBuf> + use<> {
-        sources(self.path, &self.scene).into_iter().chain(self.command.peers.clone())
+        self.scene.sources(self.path).into_iter().chain(self.command.peers.clone())
     }
 
     /// Runs the scene and writes its report. Returns how its runs keep what they promise.

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::cli::{Reading, Surface};
 use super::figure::{Figure as _, ProfileCurves, ProfilePicture};
-use super::files::{self, FileError, check_outputs, ends_in, load_without_run, name_of, named, print_beside, sources};
+use super::files::{self, FileError, check_outputs, ends_in, load_without_run, name_of, named, print_beside};
 use super::terminal::{lines, note, real, warn};
 use map::MapAnalysis;
 
@@ -123,7 +123,7 @@ fn read(command: &Surface) -> Result<(scene::Surface, Vec<PathBuf>), SurfaceErro
         }
         let scene = load_without_run(path, &[], |_| false)?;
         scene.notes.iter().filter(|read| !read.assumed).for_each(|read| note(&read.text));
-        let files = sources(path, &scene);
+        let files = scene.sources(path);
         return Ok((scene.surface, files));
     }
     let loaded = scene::Surface::load(path, &command.reading.options()).map_err(FileError::from)?;

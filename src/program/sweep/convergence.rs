@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use crate::scene::text_table;
 
 use super::SweepError;
-use crate::program::files::read;
+use crate::program::files::{default_output, read};
 
 /// The table of the study named, or of the one that `asperity converge` has written for the scene; `None` without one.
 pub(super) fn file(named: Option<&PathBuf>, scene_file: &Path) -> Option<PathBuf> {
-    let usual = PathBuf::from(scene_file.file_stem().unwrap_or(scene_file.as_os_str())).with_extension("converge.csv");
+    let usual = default_output(scene_file, "converge.csv");
     named.cloned().or(Some(usual).filter(|usual| usual.exists()))
 }
 

@@ -10,10 +10,10 @@ mod point;
 mod printed;
 mod slide;
 mod solved;
-mod steady;
 mod swept;
 mod table_file;
 pub(super) mod values;
+mod window;
 
 use std::path::{Path, PathBuf};
 
@@ -23,9 +23,7 @@ use crate::scene::{Initial, OutputGroup, ParameterError, Path as Displacement, P
 
 use super::cli::{Sliding, Sweep};
 use super::draft::TablePlace;
-use super::files::{
-    FileError, check_outputs, default_output, load_without_run, named, picture_beside, print_beside, sources,
-};
+use super::files::{FileError, check_outputs, default_output, load_without_run, named, picture_beside, print_beside};
 use super::interrupt::Farewell;
 use super::terminal::{self, lines, warn};
 use load_search::{heights, rest_separation};
@@ -133,7 +131,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
     let output = command.output.clone().unwrap_or_else(|| default_output(path, "sweep.csv"));
     let picture = picture(command, &output);
     let study = convergence::file(command.converged.as_ref(), path);
-    let taken = sources(path, &scene).into_iter().chain(study.clone()).collect();
+    let taken = scene.sources(path).into_iter().chain(study.clone()).collect();
     check_outputs([&output].into_iter().chain(&picture).chain(&command.master), taken)?;
     let master = match &command.master {
         Some(path) => Some((path.as_path(), wlf(&scene).ok_or(SweepError::NoMaster)?)),
@@ -236,14 +234,6 @@ fn wlf(scene: &Scene) -> Option<Wlf> {
     scene.material.as_ref().and_then(|material| material.wlf)
 }
 
-pub(crate) fn with_temperature(scene: &Scene, temperature: f64) -> Scene {
-    let mut scene = scene.clone();
-    if let Some(wlf) = scene.material.as_mut().and_then(|material| material.wlf.as_mut()) {
-        wlf.temperature = temperature;
-    }
-    scene
-}
-
 /// Separation of the carrier's rest line and the profile's mean line at w = 0, m.
 pub(crate) fn separation_at_rest(scene: &Scene) -> f64 {
     let model = Model::new(scene);
@@ -262,10 +252,7 @@ pub(crate) fn relevant(scene: Scene) -> Scene {
 /// The scene of one point. `solver.reduce` depends on the speed and on the duration of its excitation: as steady motion
 /// has no end, no Maxwell element becomes a spring.
 fn scene_at(scene: &Scene, point: &OperatingPoint) -> Scene {
-    let mut scene = match point.temperature {
-        Some(temperature) => with_temperature(scene, temperature),
-        None => scene.clone(),
-    };
+    let mut scene = scene.with_temperature(point.temperature);
     let u = Displacement { rate: point.speed, ..Displacement::default() };
     scene.excitation = vec![Phase {
         duration: crate::scene::LARGEST,

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::method::{Method, SlidingOptions};
 use super::point::{self, StopBounds};
 use super::solved::SolvedPoints;
-use super::{SweepError, relevant, scene_at, separation_at_rest, table_file, with_temperature};
+use super::{SweepError, relevant, scene_at, separation_at_rest, table_file};
 
 /// Mean loads to sweep over, rising.
 #[derive(Clone, Debug, PartialEq)]
@@ -152,14 +152,14 @@ fn temperatures(asked: Option<&[f64]>, scene: &Scene) -> Result<Vec<f64>, SweepE
     };
     let values = asked.map_or_else(|| vec![own], <[f64]>::to_vec);
     for &temperature in &values {
-        with_temperature(scene, temperature).check().map_err(SweepError::Temperature)?;
+        scene.with_temperature(temperature).check().map_err(SweepError::Temperature)?;
     }
     Ok(values)
 }
 
 fn fingerprint(scene: &Scene, bounds: StopBounds, load: Load, method: &Method) -> Result<String, serde_json::Error> {
     // The same for all temperatures: each point has its own.
-    let scene = with_temperature(scene, 0.0);
+    let scene = scene.with_temperature(0.0);
     let StopBounds { error, distance } = bounds;
     let settings = method.settings(|| format!("{error:?} {distance:?}"));
     table_file::fingerprint(&scene, &format!("{} {settings}", load.name()))

@@ -23,7 +23,7 @@ use crate::simulation::{Interrupt, SimulationError};
 
 use super::load_search::LoadSearch;
 use super::slide::{BlockMeans, Blocks, Slide, tangential_stiffness};
-use super::steady::{MIN_WINDOW, Window, window};
+use super::window::{MIN_WINDOW, Window, window};
 
 /// The mean of F_z over the window is the load within this share of it.
 const LOAD: f64 = 1e-3;

@@ -6,7 +6,7 @@ use crate::element::{Load, OperatingPoint, Quantity, STEADY, TableHeader, TableR
 use crate::scene::Scene;
 use crate::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 
-use super::{SweepError, with_temperature};
+use super::SweepError;
 
 /// The solver of the points of a sweep, on all threads.
 #[derive(Debug)]
@@ -27,10 +27,8 @@ impl SolvedPoints {
     pub(super) fn new(scene: &Scene, temperatures: &[f64], surface: SurfaceGrid) -> Result<Self, SweepError> {
         let temperatures: Vec<Option<f64>> =
             if temperatures.is_empty() { vec![None] } else { temperatures.iter().copied().map(Some).collect() };
-        let rubber = |temperature: Option<f64>| {
-            let scene = temperature.map_or_else(|| scene.clone(), |temperature| with_temperature(scene, temperature));
-            Some((temperature, SlidingRubber::new(&scene)?))
-        };
+        let rubber =
+            |temperature: Option<f64>| Some((temperature, SlidingRubber::new(&scene.with_temperature(temperature))?));
         let rubbers = temperatures.into_iter().map(rubber).collect::<Option<Vec<_>>>().ok_or(SweepError::NoArea)?;
         let area = scene.layer.area().ok_or(SweepError::NoArea)?;
         Ok(Self { surface, rubbers, area, idle: Mutex::new(Vec::new()) })
@@ -118,11 +116,5 @@ impl SolvedPoints {
 
 /// [`STEADY`], or why the values cannot be relied on.
 pub(crate) fn status(slide: &SteadySlide) -> String {
-    match slide.contact.left_over {
-        0 if !slide.heat_converged => "the flash temperature does not come to rest".to_owned(),
-        0 if slide.contact.is_full => "full contact".to_owned(),
-        0 if slide.tangential_stiffness.is_none() => "no stiffness: a single point is in contact".to_owned(),
-        0 => STEADY.to_owned(),
-        left_over => format!("{left_over} points of the surface are pulled or lie below it"),
-    }
+    slide.problem().map_or_else(|| STEADY.to_owned(), |problem| problem.to_string())
 }

@@ -1,11 +1,11 @@
 //! New points of a sweep that is there as a table, by the method that it was swept with.
 
-use crate::element::{Load, OperatingPoint, STEADY, Table};
+use crate::element::{Load, OperatingPoint, Table};
 use crate::scene::Scene;
 use crate::steady::SteadySlide;
 
 use super::point::{SteadySliding, StopBounds};
-use super::solved::{self, SolvedPoints};
+use super::solved::SolvedPoints;
 use super::{Method, SlidingOptions, SweepError, relevant, steady_sliding, steady_sliding_at};
 
 /// What a table was swept with.
@@ -100,8 +100,7 @@ impl Swept {
 /// The solution under a pressure (Pa) that can be relied on, or its status.
 fn steady(points: &SolvedPoints, point: &OperatingPoint, pressure: f64) -> Result<SteadySlide, String> {
     let slide = points.slide(point, pressure).ok_or("no such temperature")?;
-    let status = solved::status(&slide);
-    if status == STEADY { Ok(slide) } else { Err(status) }
+    slide.problem().map_or(Ok(slide), |problem| Err(problem.to_string()))
 }
 
 impl SweptPoint {

@@ -1,15 +1,14 @@
 //! The file of a sweep: points are added as they are done and not computed again; shards are merged into one.
 
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use crate::element::{FORMAT, OperatingPoint, Table, TableError, TableHeader, TableRow, TableText};
-use crate::scene::{Scene, read_file, read_text};
+use crate::element::{FORMAT, OperatingPoint, Table, TableError, TableHeader, TableRow, TableText, some_of};
+use crate::scene::{Scene, read_text};
 
 use super::low_end::low_end;
-use crate::program::draft::LineFile;
 use crate::program::files::{FileError, write};
 use crate::program::lock::TableLock;
+use crate::program::resumable_table::{ResumableTable, rows_of};
 use crate::program::terminal::warn;
 
 /// A table cannot be read, continued or merged.
@@ -43,16 +42,6 @@ pub enum TableFileError {
         .missing.len(), some_of(.missing), .path.display()
     )]
     Missing { missing: Vec<String>, total: usize, path: PathBuf },
-}
-
-/// The first of `points`, and how many more there are.
-fn some_of(points: &[String]) -> String {
-    const SHOWN: usize = 10;
-    let shown = points.iter().take(SHOWN).cloned().collect::<Vec<_>>().join("; ");
-    match points.len().saturating_sub(SHOWN) {
-        0 => shown,
-        more => format!("{shown}; and {more} more"),
-    }
 }
 
 /// A row as it stands in a file: a table that is continued or merged keeps it to the letter.
@@ -144,7 +133,10 @@ impl SweepTable {
         }
         let mut paths = paths.to_vec();
         if !replace {
-            tables.push(Self { header: header.clone(), rows: rows_done(output, &header)? });
+            tables.push(Self {
+                header: header.clone(),
+                rows: rows_of(output, &header.text(), |text| rows_in(text, output, &header))?,
+            });
             paths.push(output.to_owned());
         }
         let (mut rows, mut missing) = (Vec::new(), Vec::new());
@@ -193,8 +185,7 @@ fn difference(first: &TableHeader, other: &TableHeader) -> Option<String> {
 /// A table to which rows are added.
 #[derive(Debug)]
 pub(super) struct TableFile {
-    file: LineFile,
-    _lock: TableLock,
+    rows: ResumableTable,
     /// The rows that were there.
     pub(super) done: Vec<StoredRow>,
 }
@@ -202,30 +193,24 @@ pub(super) struct TableFile {
 impl TableFile {
     /// Begins a table or, unless it is to be replaced, continues the one that is there.
     pub(super) fn open(path: &Path, header: &TableHeader, replace: bool) -> Result<Self, TableFileError> {
-        let lock = TableLock::take(path)?;
-        let done = if replace { Vec::new() } else { rows_done(path, header)? };
-        let table = SweepTable { header: header.clone(), rows: done };
-        Ok(Self { file: LineFile::create(path, &table.text())?, _lock: lock, done: table.rows })
+        let read = |text: &str| rows_in(text, path, header);
+        let (rows, done) =
+            ResumableTable::open(path, &header.text(), replace, read, |stored: &StoredRow| stored.text.clone())?;
+        Ok(Self { rows, done })
     }
 
     /// Adds a row; it is in the file when this returns.
     pub(super) fn add(&self, row: &TableRow) -> Result<(), FileError> {
-        self.file.add(&row.line())
+        self.rows.add(&row.line())
     }
 }
 
-/// The rows of the table at `path`, without the corrupt ones, which are named; none where there is no file, or only the
-/// beginning of a header.
-fn rows_done(path: &Path, header: &TableHeader) -> Result<Vec<StoredRow>, TableFileError> {
-    let text = match read_file(path) {
-        Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
-        Err(error) => return Err(FileError::io("read", path)(error).into()),
-    };
-    if is_begun(&text, &header.text()) {
+/// The rows of the table at `path`, which is the `text`, without the corrupt ones, which are named.
+fn rows_in(text: &str, path: &Path, header: &TableHeader) -> Result<Vec<StoredRow>, TableFileError> {
+    if is_begun(text, &header.text()) {
         return Ok(Vec::new());
     }
-    let (table, corrupt) = SweepTable::parse(&text, path).map_err(TableFileError::NotATable)?;
+    let (table, corrupt) = SweepTable::parse(text, path).map_err(TableFileError::NotATable)?;
     if table.header.fingerprint != header.fingerprint {
         let (found, expected) = (table.header.fingerprint, header.fingerprint.clone());
         return Err(TableFileError::OtherSweep { path: path.to_owned(), found, expected });
@@ -240,12 +225,10 @@ fn rows_done(path: &Path, header: &TableHeader) -> Result<Vec<StoredRow>, TableF
     }
 }
 
-/// Whether a text is the beginning of a header, cut off before the rows; a line on the low end may stand in it before
-/// the names of the columns.
+/// Whether a text is a header without the names of the columns, before which a line on the low end may stand.
 fn is_begun(text: &str, header: &str) -> bool {
     let names = header.trim_end().rfind('\n').map_or(0, |end| end + 1);
-    let after = text.strip_prefix(&header[..names]);
-    header.starts_with(text) || after.is_some_and(|rest| rest.starts_with('#') && rest.matches('\n').count() < 2)
+    text.strip_prefix(&header[..names]).is_some_and(|rest| rest.lines().all(|line| line.starts_with('#')))
 }
 
 /// Tells one sweep from another: depends on everything in the scene that its points depend on, and on the settings.

@@ -10,7 +10,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use serde::Serialize;
 
-use super::{Friction, LARGEST, Material, Scene, SelfAffine, Surface, complex_stiffness};
+use super::{Friction, LARGEST, Material, Scene, SelfAffine, Surface};
 use spectrum::isotropic;
 
 pub(super) use files::{Convention, read_softening, read_spectrum};
@@ -98,12 +98,12 @@ pub(super) struct Clash {
     pub(super) expected: String,
 }
 
-/// What the rubber answers a wave that it slides over, as means over the directions of waves.
+/// What the rubber answers a wave that it slides over, as means over the directions φ of waves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct BandModuli {
-    /// M_b² = ⟨|M(q v cos φ)|²⟩, Pa².
+pub struct WaveModuli {
+    /// ⟨|M(q v cos φ)|²⟩, Pa²: M_b² of a band.
     pub square: f64,
-    /// L_b = ⟨cos φ Im M(q v cos φ)⟩, Pa.
+    /// ⟨cos φ Im M(q v cos φ)⟩, Pa: L_b of a band.
     pub loss: f64,
 }
 
@@ -275,27 +275,31 @@ impl FineBand {
     }
 
     /// What `material`, softened, answers at its reference temperature as it slides at `speed` (m/s).
-    pub fn moduli(&self, material: &Material, speed: f64) -> BandModuli {
-        let mut sum = BandModuli::default();
-        for i in 0..DIRECTIONS {
-            let cosine = (FRAC_PI_2 * (f64::from(i) + 0.5) / f64::from(DIRECTIONS)).cos();
-            let (storage, loss) = material.plane_moduli_at_reference(self.wave_number * speed * cosine);
-            let (storage, loss) = (self.factors.storage * storage, self.factors.loss * loss);
-            sum.square += storage * storage + loss * loss;
-            sum.loss += cosine * loss;
-        }
-        let mean = 1.0 / f64::from(DIRECTIONS);
-        BandModuli { square: mean * sum.square, loss: mean * sum.loss }
+    pub fn moduli(&self, material: &Material, speed: f64) -> WaveModuli {
+        WaveModuli::of_all_directions(|cosine| {
+            let (storage, loss) = material.complex_plane_modulus_at_reference(self.wave_number * speed * cosine);
+            (self.factors.storage * storage, self.factors.loss * loss)
+        })
     }
 }
 
-impl Material {
-    /// The real and the imaginary part of M(ω) = E*(ω)/(1 - ν²), Pa, at the reference temperature, ω in rad/s.
-    fn plane_moduli_at_reference(&self, omega: f64) -> (f64, f64) {
-        let elements = self.prony.iter().map(|term| term.element());
-        let viscosity = self.viscosity.unwrap_or(0.0);
-        let (storage, loss) = complex_stiffness(self.equilibrium_modulus, viscosity, elements, omega);
-        (self.plane_modulus(storage), self.plane_modulus(loss))
+impl WaveModuli {
+    /// Those of waves across the motion, to which the rubber answers with these M' and M'', Pa.
+    pub fn across((storage, loss): (f64, f64)) -> Self {
+        Self { square: storage * storage + loss * loss, loss }
+    }
+
+    /// Those of waves of all directions: `at` gives M' and M'' (Pa) for cos φ.
+    pub fn of_all_directions(at: impl Fn(f64) -> (f64, f64)) -> Self {
+        let mut sum = Self::default();
+        for i in 0..DIRECTIONS {
+            let cosine = (FRAC_PI_2 * (f64::from(i) + 0.5) / f64::from(DIRECTIONS)).cos();
+            let one = Self::across(at(cosine));
+            sum.square += one.square;
+            sum.loss += cosine * one.loss;
+        }
+        let mean = 1.0 / f64::from(DIRECTIONS);
+        Self { square: mean * sum.square, loss: mean * sum.loss }
     }
 }
 

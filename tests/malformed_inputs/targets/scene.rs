@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use asperity::outputs::{Snapshot, Variable, variables};
-use asperity::scene::{OutputGroup, Phase, Scene};
+use asperity::scene::{OutputGroup, Phase, Scene, identifier};
 use asperity::simulation::{Motion, Simulation, Start};
 
 /// Maximum size of a scene here: a fuzzer finds the large numbers that are allowed, but use of memory and time is not an
@@ -52,7 +52,7 @@ fn longest_integer(bytes: &[u8]) -> usize {
 
 /// Checks that a motion that succeeds has finite outputs and that one that fails changes nothing.
 pub fn run_scene(mut scene: Scene) {
-    assert!(!scene.model_identifier().is_empty());
+    assert!(!identifier(&scene.name).is_empty());
     if scene.layer.masses > MAX_MASSES {
         return;
     }

@@ -12,8 +12,10 @@ use rayon::prelude::*;
 
 use super::drag::ToAndFro;
 use super::{CheckError, ERROR, SLIDING_DISTANCE, deviation, folder_beside, scene_of, selected};
-use crate::program::cli::{Pack, Plot};
-use crate::program::figure::{Figure as _, Ladder, LadderPanel, Ladders, Rung, Stroke, plot_files};
+use crate::program::cli::Pack;
+use crate::program::figure::{
+    Curve, Figure as _, Ladder, LadderPanel, Ladders, LinearPanel, LinearStack, Rung, Stroke,
+};
 use crate::program::files::FileError;
 use crate::program::result_file::{CsvWriter, Head, ResultWriter};
 use crate::program::runner::CarrierSample;
@@ -216,20 +218,7 @@ fn to_and_fro(
     };
     rows.write(&files[0], &variables, &rows.layer)?;
     rows.write(&files[1], &variables, &rows.element)?;
-    plot_files(&Plot {
-        compare: false,
-        conditions: Vec::new(),
-        log: Vec::new(),
-        markers: false,
-        files: files.to_vec(),
-        x: "u".into(),
-        y: vec!["F_x".into()],
-        output: folder.join("loop.svg"),
-        labels: vec!["layer".into(), "element".into()],
-        title: None,
-        negate: true,
-        from_motion: false,
-    })?;
+    rows.plot().write(&folder.join("loop.svg"))?;
     Ok(match swept {
         Swept::Layer => rows.summary("over the layer's largest value", &variables),
         Swept::Solved { .. } => {
@@ -289,6 +278,18 @@ impl Loop {
         let mut writer = ResultWriter::create(path, &[Input::U, Input::W], variables, Head::Name)?;
         self.carriers.iter().zip(rows).try_for_each(|(carrier, row)| writer.write(*carrier, row))?;
         writer.finish()
+    }
+
+    /// -F_x, the first of the [`LOOP_OUTPUTS`], over u.
+    fn plot(&self) -> LinearStack {
+        let of = |(look, (name, rows)): (usize, (&str, &Vec<[f64; LOOP_OUTPUTS.len()]>))| Curve {
+            name: name.to_owned(),
+            look,
+            stroke: Stroke::Line,
+            points: self.carriers.iter().zip(rows).map(|(carrier, row)| (carrier.u, -row[0])).collect(),
+        };
+        let curves = [("layer", &self.layer), ("element", &self.element)].into_iter().enumerate().map(of).collect();
+        LinearStack { x: ("u", "m"), panels: vec![LinearPanel { quantity: "-F_x", unit: "N", curves }] }
     }
 
     /// The largest and the root mean square differences of the `variables`, the first of the rows', over the largest value

@@ -12,7 +12,6 @@ use crate::element::{Load, Node, Quantity, Table};
 use crate::patch::MotionError;
 use crate::scene::{CarrierBodies, ParameterError, Scene};
 
-use crate::program::figure::PlotError;
 use crate::program::files::{self, FileError};
 use crate::program::sweep::{SweepError, separation_at_rest};
 
@@ -31,8 +30,6 @@ const ROUNDING: f64 = 1e-6;
 pub enum CheckError {
     #[error(transparent)]
     File(#[from] FileError),
-    #[error(transparent)]
-    Plot(#[from] PlotError),
     #[error("--check: {0}")]
     Swept(#[from] SweepError),
     #[error("--check: the table was swept of {table:?}, the scene is {scene:?}: expected the scene that was swept")]

@@ -1,59 +1,9 @@
-//! The order of the modules, held against the sources: which room uses which, and where unsafe code may be.
+//! The architecture, held against the sources: which module uses which, and where unsafe code may be.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests may fail")]
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
-
-/// The rooms of the library in their order, and which others each may use: only those to its left.
-const ROOMS: [(&str, &[&str]); 14] = [
-    ("math", &[]),
-    ("scene", &["math"]),
-    ("model", &["math", "scene"]),
-    ("steady", &["math", "scene", "model"]),
-    ("integrator", &["math", "model"]),
-    ("contact", &["math", "scene", "model", "integrator"]),
-    ("outputs", &["math", "scene", "model", "integrator"]),
-    ("simulation", &["math", "scene", "model", "integrator", "contact", "outputs"]),
-    ("robustness", &["scene", "simulation"]),
-    ("element", &["math", "scene", "model", "outputs", "simulation"]),
-    ("calibration", &["math", "scene", "model", "steady", "element"]),
-    ("patch", &["math", "scene", "model", "outputs", "element"]),
-    ("fmi", &["math", "scene", "model", "integrator", "contact", "outputs", "simulation", "element", "patch"]),
-    // Used by none.
-    (
-        "program",
-        &[
-            "math",
-            "scene",
-            "model",
-            "steady",
-            "outputs",
-            "simulation",
-            "robustness",
-            "element",
-            "calibration",
-            "patch",
-            "fmi",
-        ],
-    ),
-];
-
-/// Folders whose files use each other in no circle.
-const WITHOUT_CIRCLES: [&str; 12] = [
-    "math",
-    "scene",
-    "model",
-    "steady",
-    "integrator",
-    "contact",
-    "outputs",
-    "simulation",
-    "element",
-    "calibration",
-    "patch",
-    "fmi",
-];
 
 /// The two files of the C interface; and the C types, which name unsafe functions but call none.
 const UNSAFE: [&str; 3] = ["fmi/exports.rs", "fmi/callbacks.rs", "fmi/bindings.rs"];
@@ -76,23 +26,55 @@ fn sources(folder: &str) -> Vec<(String, String)> {
     files
 }
 
+/// The rows of the table of modules in `src/lib.rs`: each module, and those that it may use.
+fn modules() -> Vec<(String, Vec<String>)> {
+    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("src/lib.rs")).unwrap();
+    let table = text.split_once("//! | module | uses | contents |\n//! |---|---|---|\n").unwrap().1;
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        let uses = cells[2].split(", ").filter(|name| !name.is_empty()).map(str::to_owned).collect();
+        (cells[1].trim_matches(['[', ']', '`']).to_owned(), uses)
+    };
+    table.lines().take_while(|line| line.starts_with("//! |")).map(row).collect()
+}
+
+/// The module that a source belongs to.
+fn module_of(path: &str) -> &str {
+    path.split_once('/').map_or_else(|| path.trim_end_matches(".rs"), |(folder, _)| folder)
+}
+
 #[test]
-fn each_room_uses_only_rooms_to_its_left() {
-    let sources = sources(".");
-    for (room, allowed) in ROOMS {
-        let (folder, file) = (format!("{room}/"), format!("{room}.rs"));
-        for (path, code) in sources.iter().filter(|(path, _)| path.starts_with(&folder) || *path == file) {
-            assert!(!code.contains("crate::{"), "{path}: one `use crate::room` a line");
-            for (other, _) in ROOMS.iter().filter(|(other, _)| *other != room && !allowed.contains(other)) {
-                assert!(!code.contains(&format!("crate::{other}::")), "{path} uses {other}, which {room} may not");
+fn the_table_has_every_module_after_those_that_it_uses() {
+    let modules = modules();
+    for (i, (module, uses)) in modules.iter().enumerate() {
+        let is_before = |used: &String| modules[..i].iter().any(|(before, _)| before == used);
+        assert!(uses.iter().all(is_before), "{module} uses {uses:?}, of which some do not stand before it");
+    }
+    let of_sources: BTreeSet<String> = sources(".").iter().map(|(path, _)| module_of(path).to_owned()).collect();
+    let of_table = modules.into_iter().map(|(module, _)| module).chain(["lib".to_owned(), "main".to_owned()]).collect();
+    assert_eq!(of_sources, of_table);
+}
+
+#[test]
+fn each_module_uses_only_those_named_beside_it() {
+    let (sources, modules) = (sources("."), modules());
+    for (module, uses) in &modules {
+        for (path, code) in sources.iter().filter(|(path, _)| module_of(path) == module) {
+            assert!(!code.contains("crate::{"), "{path}: one `use crate::module` a line");
+            for (other, _) in modules.iter().filter(|(other, _)| other != module && !uses.contains(other)) {
+                assert!(!code.contains(&format!("crate::{other}::")), "{path} uses {other}, which {module} may not");
             }
         }
     }
 }
 
+/// But for those of the program, whose commands share what the program's own file has.
 #[test]
-fn the_files_of_a_folder_use_each_other_in_no_circle() {
-    for folder in WITHOUT_CIRCLES {
+fn the_files_of_a_module_use_each_other_in_no_cycle() {
+    for (folder, _) in modules().iter().filter(|(module, _)| module != "program") {
+        if !Path::new(env!("CARGO_MANIFEST_DIR")).join("src").join(folder).is_dir() {
+            continue;
+        }
         let mut uses: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
         for (path, code) in sources(folder).iter().filter(|(path, _)| !path.ends_with("tests.rs")) {
             let inner = &path[folder.len() + 1..];
@@ -116,7 +98,7 @@ fn the_files_of_a_folder_use_each_other_in_no_circle() {
         while let Some(module) = uses.keys().find(|module| is_free(&uses, module)).cloned() {
             uses.remove(&module);
         }
-        assert!(uses.is_empty(), "{folder}: a circle of {:?}", uses.keys());
+        assert!(uses.is_empty(), "{folder}: a cycle of {:?}", uses.keys());
     }
 }
 
