@@ -84,7 +84,10 @@ pub(crate) fn load(path: &Path, set: &[Setting]) -> Result<Scene, FileError> {
 
 /// Where a table of a `scene` goes that is given no place: beside where the program runs, with this extension.
 pub(crate) fn default_output(scene: &Path, extension: &str) -> PathBuf {
-    PathBuf::from(scene.file_stem().unwrap_or(scene.as_os_str())).with_extension(extension)
+    // Not by `with_extension`, which would cut "run-0.5" at its dot.
+    let mut name = scene.file_stem().unwrap_or(scene.as_os_str()).to_owned();
+    name.push(format!(".{extension}"));
+    name.into()
 }
 
 /// Reads a scene that is not run: [`load`] without the warnings about its excitation and, unless the layer slides all the
@@ -192,4 +195,14 @@ pub(crate) fn ends_in(path: &Path, ending: &str) -> bool {
 /// The file's name without its folder.
 pub(crate) fn name_of(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_usual_table_of_a_scene_keeps_the_dots_of_its_name() {
+        assert_eq!(default_output(Path::new("scenes/run-0.5.toml"), "csv"), Path::new("run-0.5.csv"));
+    }
 }
