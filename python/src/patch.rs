@@ -109,6 +109,11 @@ impl PatchRun {
         moved.map_err(|error| PyValueError::new_err(error.to_string()))
     }
 
+    /// The warnings since the last call.
+    fn take_warnings(&self) -> Vec<String> {
+        self.run().take_warnings()
+    }
+
     #[getter]
     fn time(&self) -> f64 {
         self.run().time()

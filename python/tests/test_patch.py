@@ -1,5 +1,7 @@
 """Contact patches, and FMUs of tables."""
 
+import warnings
+
 import asperity
 import pytest
 from conftest import SCENES
@@ -21,6 +23,43 @@ def test_a_patch_is_pressed_and_dragged(tmp_path):
     with pytest.raises(ValueError, match="one of them"):
         patch.advance(1e-3, above, rates=above)
     assert patch.pack(tmp_path / "patch.fmu").stat().st_size > 1e5
+
+
+# A bed of springs of 1e9 Pa/m.
+BED = """# asperity sweep = 1
+# nominal_area = 1 m2
+# rest_separation = 0 m
+speed [m/s],pressure [Pa],temperature [K],status,friction [1],separation [m],tangential_stiffness [N/m]
+1e-4,1e4,,steady,0.5,-1e-5,1e12
+1,1e4,,steady,0.5,-1e-5,1e12
+1e-4,1e5,,steady,0.5,-1e-4,1e12
+1,1e5,,steady,0.5,-1e-4,1e12
+"""
+PAD = """name = "pad"
+table = { path = "bed.csv" }
+patch = { shape = "flat", length = 0.02, width = 0.01, nx = 2, ny = 1 }
+"""
+
+
+@pytest.fixture
+def pad(tmp_path):
+    """The file of a small pad on a bed of springs, up to 1e5 Pa."""
+    (tmp_path / "bed.csv").write_text(BED)
+    file = tmp_path / "pad.toml"
+    file.write_text(PAD)
+    return file
+
+
+def test_a_patch_beyond_its_table_warns_once(pad):
+    patch = asperity.Patch(pad)
+    with pytest.warns(UserWarning, match=r"element\[1,1\] is beyond the table at t = ") as said:
+        patch.advance(1e-3, (0.0, 0.0, -2e-4, 0.0, 0.0, 0.0))
+    assert len(said) == 1 and said[0].filename == __file__
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        patch.advance(1e-3, (0.0, 0.0, -3e-4, 0.0, 0.0, 0.0))
+    with pytest.warns(UserWarning, match="is beyond the table at t = 0 s"):
+        asperity.Patch(pad, pose=(0.0, 0.0, -2e-4, 0.0, 0.0, 0.0))
 
 
 def test_a_patch_that_is_refused_says_where(tmp_path):

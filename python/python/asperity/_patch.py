@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
@@ -44,6 +45,8 @@ class Patch:
         self._patch = _native.Patch(Path(path))
         self._temperature = self._patch.temperature if temperature is None else temperature
         self._run = _native.PatchRun(self._patch, pose, rates, transport_speed, temperature)
+        for text in self._run.take_warnings():
+            warnings.warn(text, stacklevel=2)
 
     def advance(
         self,
@@ -55,6 +58,8 @@ class Patch:
         temperature: float | None = None,
     ) -> None:
         """Moves the body, straight, for a time.
+
+        Warns of the first temperature and of the first element beyond the table, each once a run.
 
         Args:
             dt: How long, s.
@@ -76,6 +81,8 @@ class Patch:
         kelvin = self._temperature if temperature is None else temperature
         self._run.advance(dt, rates or _AT_REST, transport_speed, kelvin)
         self._temperature = kelvin
+        for text in self._run.take_warnings():
+            warnings.warn(text, stacklevel=2)
 
     def __getitem__(self, name: str) -> float:
         """The present value of an output of the patch's groups."""

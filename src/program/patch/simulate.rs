@@ -79,7 +79,7 @@ impl PatchRecorder {
 
     /// Writes the row of the present instant, and says what the run has to say.
     fn row(&mut self, run: &mut PatchRun, motion: Vec<f64>) -> Result<(), FileError> {
-        run.take_warning().iter().for_each(|warning| warn(warning));
+        run.take_warnings().iter().for_each(|warning| warn(warning));
         run.evaluate(&self.variables, &mut self.values);
         let variables = self.variables.iter().zip(&self.values);
         let variables = variables.map(|(variable, &value)| Field { kind: variable.kind, value });
