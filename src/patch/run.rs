@@ -159,6 +159,11 @@ impl PatchRun {
         self.totals.transport_speed
     }
 
+    /// The temperature, K; 0 where the table has no temperatures.
+    pub fn temperature(&self) -> f64 {
+        self.totals.temperature
+    }
+
     /// The warnings since the last call: of the first temperature and of the first element beyond the table.
     pub fn take_warnings(&mut self) -> Vec<String> {
         std::mem::take(&mut self.warnings)
