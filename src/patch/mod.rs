@@ -40,4 +40,4 @@ pub use definition::{Patch, PatchElement, PatchError};
 pub use face_layout::{FaceElement, FaceLayout};
 pub use run::PatchRun;
 pub use state::{MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError};
-pub use variables::{COORDINATES, PatchOutput, PatchVariable};
+pub use variables::{COORDINATES, PatchOutput, PatchVariable, unit_of};

@@ -109,87 +109,11 @@ impl Patch {
     }
 
     fn variables_of(&self, group: PatchGroup) -> Vec<PatchVariable> {
-        use Unit::{Joule, Kelvin, One, Pascal, SquareMeter, Watt};
-        let real = |output, name, unit, description| PatchVariable::real(group, output, name, unit, description);
-        let count = |output, name, description| PatchVariable::count(group, output, name, description);
+        let is_warm = self.heat().is_some();
         match group {
-            PatchGroup::Forces => self.loads(),
-            PatchGroup::Dissipation => vec![
-                real(PatchOutput::Power, "P_diss", Watt, "Dissipated power, mean over the last step"),
-                real(PatchOutput::Energy, "E_diss", Joule, "Energy dissipated since the start"),
-                real(PatchOutput::SlipEnergy, "dissipation.E_slip", Joule, "Energy dissipated by slip"),
-                real(
-                    PatchOutput::ReleaseEnergy,
-                    "dissipation.E_release",
-                    Joule,
-                    "Energy lost with contacts that were released",
-                ),
-            ],
-            PatchGroup::Contact => [
-                count(PatchOutput::Count, "contact.count", "Elements that bear"),
-                count(PatchOutput::Sticking, "contact.sticking", "Elements that stick"),
-                real(PatchOutput::NominalArea, "contact.nominal_area", SquareMeter, "Area of the elements that bear"),
-                real(
-                    PatchOutput::RealArea,
-                    "contact.area",
-                    SquareMeter,
-                    "Real area of contact by the table's contact ratio",
-                ),
-                real(PatchOutput::Pressure, "contact.pressure", Pascal, "Largest pressure on an element"),
-                real(PatchOutput::Beyond, "contact.beyond", One, "Share of force.z that is borne beyond the table"),
-            ]
-            .into_iter()
-            .chain(self.heat().iter().flat_map(|_| {
-                let (largest, mean) = (PatchOutput::LargestTemperature, PatchOutput::MeanTemperature);
-                let (largest_is, mean_is) =
-                    ("Temperature of the warmest element that bears", "Mean temperature of the elements that bear");
-                [
-                    real(largest, "contact.temperature_largest", Kelvin, largest_is),
-                    real(mean, "contact.temperature_mean", Kelvin, mean_is),
-                ]
-            }))
-            .collect(),
-            PatchGroup::Friction => vec![
-                real(PatchOutput::Friction, "friction.coefficient", One, "Tangential force over force.z"),
-                real(
-                    PatchOutput::Hysteresis,
-                    "friction.hysteresis",
-                    One,
-                    "Share of hysteresis in friction.coefficient",
-                ),
-            ],
-            PatchGroup::Energy => {
-                vec![real(
-                    PatchOutput::ElasticEnergy,
-                    "energy.elastic",
-                    Joule,
-                    "Energy stored in the springs of the elements",
-                )]
-            }
-            PatchGroup::Tangent => tangents(),
-            PatchGroup::Elements => (0..self.count()).flat_map(|i| self.fields(i)).collect(),
+            PatchGroup::Elements => (0..self.count()).flat_map(|i| fields(i, &self.element_name(i), is_warm)).collect(),
+            _ => variables_of(group, self.has_tread(), is_warm),
         }
-    }
-
-    fn loads(&self) -> Vec<PatchVariable> {
-        let load = |output, kind: &str, axis: usize, unit, of: &str| {
-            let (name, description) = (format!("{kind}.{}", AXES[axis]), format!("{of} {}", AXES[axis]));
-            PatchVariable::real(PatchGroup::Forces, output, &name, unit, &description)
-        };
-        let force = |axis| load(PatchOutput::Force(axis), "force", axis, Unit::Newton, "Force on the body along");
-        let about = "Moment on the body about the pose's point along";
-        let moment = |axis| load(PatchOutput::Moment(axis), "moment", axis, Unit::NewtonMeter, about);
-        let description = "Force on the tread, positive where the ground drives it to the rear";
-        let transport = || {
-            PatchVariable::real(
-                PatchGroup::Forces,
-                PatchOutput::TransportForce,
-                "transport.force",
-                Unit::Newton,
-                description,
-            )
-        };
-        (0..3).map(force).chain((0..3).map(moment)).chain(self.has_tread().then(transport)).collect()
     }
 
     /// The name of an element, before its variables' own.
@@ -199,30 +123,122 @@ impl Patch {
             None => format!("element[{}]", i + 1),
         }
     }
+}
 
-    fn fields(&self, i: usize) -> impl Iterator<Item = PatchVariable> + use<> {
-        let element = self.element_name(i);
-        let name = |field: &str| format!("{element}.{field}");
-        let real = |output, field: &str, unit, what: &str| {
-            PatchVariable::real(PatchGroup::Elements, output, &name(field), unit, &format!("{what} {element}"))
-        };
-        let traction = |axis: usize| {
-            let (field, what) = (format!("traction.{}", AXES[axis]), format!("Traction along {} on", AXES[axis]));
-            real(PatchOutput::ElementTraction(i, axis), &field, Unit::Pascal, &what)
-        };
-        let temperature = self
-            .heat()
-            .map(|_| real(PatchOutput::ElementTemperature(i), "temperature", Unit::Kelvin, "Temperature of"));
-        let modes = format!("Mode (0 free, 1 slipping, 2 sticking) of {element}");
-        [
-            real(PatchOutput::ElementPressure(i), "pressure", Unit::Pascal, "Pressure on"),
-            traction(0),
-            traction(1),
-            PatchVariable::count(PatchGroup::Elements, PatchOutput::ElementMode(i), &name("mode"), &modes),
-        ]
-        .into_iter()
-        .chain(temperature)
+/// The unit of the output variable called `name`, whatever the patch; `None` for a name that no patch can have.
+pub fn unit_of(name: &str) -> Option<Unit> {
+    use PatchGroup::{Contact, Dissipation, Energy, Forces, Friction, Tangent};
+    let groups = [Forces, Dissipation, Contact, Friction, Energy, Tangent];
+    let of_element = name.split_once("].").map(|(_, field)| format!(".{field}"));
+    let variables: Vec<_> = match of_element {
+        Some(_) => fields(0, "", true),
+        None => groups.into_iter().flat_map(|group| variables_of(group, true, true)).collect(),
+    };
+    let name = of_element.as_deref().unwrap_or(name);
+    variables.into_iter().find(|variable| variable.name == name).map(|variable| variable.unit)
+}
+
+/// The variables of a group but that of the elements, with a tread and of elements that slip warms or not.
+fn variables_of(group: PatchGroup, has_tread: bool, is_warm: bool) -> Vec<PatchVariable> {
+    use Unit::{Joule, One, Watt};
+    let real = |output, name, unit, description| PatchVariable::real(group, output, name, unit, description);
+    match group {
+        PatchGroup::Forces => loads(has_tread),
+        PatchGroup::Dissipation => vec![
+            real(PatchOutput::Power, "P_diss", Watt, "Dissipated power, mean over the last step"),
+            real(PatchOutput::Energy, "E_diss", Joule, "Energy dissipated since the start"),
+            real(PatchOutput::SlipEnergy, "dissipation.E_slip", Joule, "Energy dissipated by slip"),
+            real(
+                PatchOutput::ReleaseEnergy,
+                "dissipation.E_release",
+                Joule,
+                "Energy lost with contacts that were released",
+            ),
+        ],
+        PatchGroup::Contact => contact(is_warm),
+        PatchGroup::Friction => vec![
+            real(PatchOutput::Friction, "friction.coefficient", One, "Tangential force over force.z"),
+            real(PatchOutput::Hysteresis, "friction.hysteresis", One, "Share of hysteresis in friction.coefficient"),
+        ],
+        PatchGroup::Energy => {
+            vec![real(
+                PatchOutput::ElasticEnergy,
+                "energy.elastic",
+                Joule,
+                "Energy stored in the springs of the elements",
+            )]
+        }
+        PatchGroup::Tangent => tangents(),
+        PatchGroup::Elements => Vec::new(),
     }
+}
+
+/// Counts, areas and pressure; of elements that slip warms temperatures, too.
+fn contact(is_warm: bool) -> Vec<PatchVariable> {
+    use Unit::{Kelvin, One, Pascal, SquareMeter};
+    let group = PatchGroup::Contact;
+    let real = |output, name, unit, description| PatchVariable::real(group, output, name, unit, description);
+    let count = |output, name, description| PatchVariable::count(group, output, name, description);
+    let mut variables = vec![
+        count(PatchOutput::Count, "contact.count", "Elements that bear"),
+        count(PatchOutput::Sticking, "contact.sticking", "Elements that stick"),
+        real(PatchOutput::NominalArea, "contact.nominal_area", SquareMeter, "Area of the elements that bear"),
+        real(PatchOutput::RealArea, "contact.area", SquareMeter, "Real area of contact by the table's contact ratio"),
+        real(PatchOutput::Pressure, "contact.pressure", Pascal, "Largest pressure on an element"),
+        real(PatchOutput::Beyond, "contact.beyond", One, "Share of force.z that is borne beyond the table"),
+    ];
+    if is_warm {
+        let (largest, mean) = (PatchOutput::LargestTemperature, PatchOutput::MeanTemperature);
+        let (largest_is, mean_is) =
+            ("Temperature of the warmest element that bears", "Mean temperature of the elements that bear");
+        variables.push(real(largest, "contact.temperature_largest", Kelvin, largest_is));
+        variables.push(real(mean, "contact.temperature_mean", Kelvin, mean_is));
+    }
+    variables
+}
+
+fn loads(has_tread: bool) -> Vec<PatchVariable> {
+    let load = |output, kind: &str, axis: usize, unit, of: &str| {
+        let (name, description) = (format!("{kind}.{}", AXES[axis]), format!("{of} {}", AXES[axis]));
+        PatchVariable::real(PatchGroup::Forces, output, &name, unit, &description)
+    };
+    let force = |axis| load(PatchOutput::Force(axis), "force", axis, Unit::Newton, "Force on the body along");
+    let about = "Moment on the body about the pose's point along";
+    let moment = |axis| load(PatchOutput::Moment(axis), "moment", axis, Unit::NewtonMeter, about);
+    let description = "Force on the tread, positive where the ground drives it to the rear";
+    let transport = || {
+        PatchVariable::real(
+            PatchGroup::Forces,
+            PatchOutput::TransportForce,
+            "transport.force",
+            Unit::Newton,
+            description,
+        )
+    };
+    (0..3).map(force).chain((0..3).map(moment)).chain(has_tread.then(transport)).collect()
+}
+
+/// The variables of an element, by its index and the name before theirs, which slip warms or not.
+fn fields(i: usize, element: &str, is_warm: bool) -> Vec<PatchVariable> {
+    let real = |output, field: &str, unit, what: &str| {
+        let name = format!("{element}.{field}");
+        PatchVariable::real(PatchGroup::Elements, output, &name, unit, &format!("{what} {element}"))
+    };
+    let traction = |axis: usize| {
+        let (field, what) = (format!("traction.{}", AXES[axis]), format!("Traction along {} on", AXES[axis]));
+        real(PatchOutput::ElementTraction(i, axis), &field, Unit::Pascal, &what)
+    };
+    let mode = real(PatchOutput::ElementMode(i), "mode", Unit::One, "Mode (0 free, 1 slipping, 2 sticking) of");
+    let mut fields = vec![
+        real(PatchOutput::ElementPressure(i), "pressure", Unit::Pascal, "Pressure on"),
+        traction(0),
+        traction(1),
+        PatchVariable { kind: OutputType::Integer, ..mode },
+    ];
+    if is_warm {
+        fields.push(real(PatchOutput::ElementTemperature(i), "temperature", Unit::Kelvin, "Temperature of"));
+    }
+    fields
 }
 
 fn tangents() -> Vec<PatchVariable> {
