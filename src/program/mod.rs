@@ -45,6 +45,7 @@ use clap::Parser as _;
 pub use cli::WlfConstants;
 use cli::{Arguments, Command};
 pub use contact::{ContactError, ContactFields, ContactOptions, SolvedContact, solve_contact};
+pub use elements::{ElementField, ElementFields};
 pub use files::{FileError, parse_scene};
 pub use fit::{FitError, FitOptions, FittedModuli, fit_moduli};
 pub use overrides::{OverrideError, Setting, with_settings};
