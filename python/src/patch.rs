@@ -1,14 +1,13 @@
 //! Contact patches: many point-contact elements on a rigid face.
 
 use std::ffi::OsString;
-use std::fs;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use asperity::patch::{PatchMotion, PatchStart, PatchVariable, Pose};
-use asperity::program::fmu;
+use asperity::program::write_fmu;
 use numpy::{IntoPyArray as _, PyArray1};
-use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::errors::{Raise as _, check_dt, no_output};
@@ -56,8 +55,7 @@ impl Patch {
 
     /// Writes an FMU.
     fn pack(&self, output: PathBuf, libraries: Vec<OsString>) -> PyResult<()> {
-        let bytes = fmu(&self.patch.clone().into(), &self.file, &libraries).map_err(|error| error.raise())?;
-        fs::write(&output, bytes).map_err(|error| PyOSError::new_err(format!("{}: {error}", output.display())))
+        write_fmu(&self.patch.clone().into(), &self.file, &libraries, &output).map_err(|error| error.raise())
     }
 }
 

@@ -26,6 +26,8 @@ def test_a_patch_is_pressed_and_dragged(tmp_path):
     with pytest.raises(ValueError, match="one of them"):
         patch.advance(1e-3, above, rates=above)
     assert patch.pack(tmp_path / "patch.fmu").stat().st_size > 1e5
+    with pytest.raises(OSError, match="there is no folder"):
+        patch.pack(tmp_path / "none" / "patch.fmu")
 
 
 # A bed of springs of 1e9 Pa/m.
@@ -89,6 +91,9 @@ def test_a_copy_of_a_patch_goes_on_bit_for_bit(pad, copied, tmp_path):
         patch.advance(1e-3, rates=AHEAD)
     assert np.array_equal(first.values, second.values) and first.state == second.state
     assert second.pack(tmp_path / "copy.fmu").stat().st_size > 1e5
+    with pytest.raises(ValueError, match="will not write"):
+        first.pack(pad)
+    assert pad.read_text() == PAD
 
 
 def test_a_state_of_a_patch_is_put_back(pad):

@@ -2,7 +2,7 @@
 //!
 //! [`execute`] is the program. What its commands compute is there without command line, files and messages too: runs
 //! along an excitation ([`Runner`]), sweeps ([`SweepPlan`]), contacts ([`solve_contact`]), Prony series ([`fit_moduli`]),
-//! calibrations ([`calibrate_scene`]) and FMUs ([`fmu`]).
+//! calibrations ([`calibrate_scene`]) and FMUs ([`write_fmu`]).
 
 mod calibrate;
 mod cli;
@@ -48,8 +48,8 @@ pub use contact::{ContactError, ContactFields, ContactOptions, SolvedContact, so
 pub use elements::{ElementField, ElementFields};
 pub use files::{FileError, parse_scene};
 pub use fit::{FitError, FitOptions, FittedModuli, fit_moduli};
-pub use overrides::{OverrideError, Setting, with_settings};
-pub use pack::{PackError, fmu};
+pub use overrides::{OverrideError, Setting, item_at, with_settings};
+pub use pack::{PackError, write_fmu};
 pub use runner::{CarrierSample, Rows, Runner};
 pub use sweep::{
     Loads, MethodError, NeverSteady, SlidingOptions, StoredRow, SweepError, SweepMethod, SweepOptions, SweepPlan,
