@@ -221,14 +221,14 @@ impl Budget {
     /// The scene with the budget as its limit, unless its own is lower.
     pub fn limit(self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
-        scene.solver.max_steps = scene.solver.max_steps.min(self.0);
+        scene.solver.max_steps = Some(scene.solver.max_steps().min(self.0));
         scene
     }
 
     /// What an error of a run of [`limit`](Self::limit) means for the scene.
     pub fn failure(self, scene: &Scene, error: &SimulationError) -> RunFailure {
         match error {
-            SimulationError::TooManySteps { time, .. } if self.0 <= scene.solver.max_steps => {
+            SimulationError::TooManySteps { time, .. } if self.0 <= scene.solver.max_steps() => {
                 RunFailure::OverBudget { time: *time }
             }
             error => RunFailure::Stopped(error.to_string()),

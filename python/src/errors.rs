@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::path::Path;
 
-use asperity::patch::PatchError;
+use asperity::patch::{MotionError, PatchError, RestoreError};
 use asperity::program::{CalibrateError, ContactError, FileError, FitError, OverrideError, PackError, SweepError};
 use asperity::scene::{ParameterError, SceneError};
 use asperity::simulation::SimulationError;
@@ -34,6 +34,11 @@ fn simulation_error(message: &dyn Display) -> PyErr {
 pub(crate) fn no_output<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> PyErr {
     let known = known.collect::<Vec<_>>().join(", ");
     PyKeyError::new_err(format!("{name}: expected one of {known}; fmu.outputs of the file says which there are"))
+}
+
+/// Refuses a duration of a motion (s) that is not above 0.
+pub(crate) fn check_dt(dt: f64) -> PyResult<()> {
+    if dt > 0.0 { Ok(()) } else { Err(PyValueError::new_err(format!("dt = {dt}: expected a number above 0, in s"))) }
 }
 
 /// An error of the library as an exception.
@@ -88,6 +93,21 @@ impl Raise for SimulationError {
             Self::OutOfRange(error) => PyValueError::new_err(error.to_string()),
             error => simulation_error(&error),
         }
+    }
+}
+
+impl Raise for MotionError {
+    fn raise(self) -> PyErr {
+        match self {
+            Self::OutOfRange { .. } => PyValueError::new_err(self.to_string()),
+            error => simulation_error(&error),
+        }
+    }
+}
+
+impl Raise for RestoreError {
+    fn raise(self) -> PyErr {
+        PyValueError::new_err(self.to_string())
     }
 }
 

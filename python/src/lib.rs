@@ -11,6 +11,7 @@ mod program;
 mod run;
 mod scene;
 mod simulation;
+mod state;
 mod sweep;
 
 use pyo3::prelude::*;
@@ -25,7 +26,7 @@ mod _native {
     #[pymodule_export]
     use super::fit::{Fit, fit};
     #[pymodule_export]
-    use super::patch::{Patch, PatchRun};
+    use super::patch::{Patch, PatchRun, PatchState};
     #[pymodule_export]
     use super::program::main;
     #[pymodule_export]

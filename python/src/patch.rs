@@ -1,17 +1,17 @@
 //! Contact patches: many point-contact elements on a rigid face.
 
 use std::ffi::OsString;
-use std::fs;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use asperity::patch::{PatchMotion, PatchStart, PatchVariable, Pose};
-use asperity::program::fmu;
+use asperity::program::write_fmu;
 use numpy::{IntoPyArray as _, PyArray1};
-use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::errors::{Raise as _, no_output};
+use crate::errors::{Raise as _, check_dt, no_output};
+use crate::state::{Reduced, read, reduced};
 
 /// A contact patch, read from its file.
 #[pyclass(frozen, module = "asperity._native")]
@@ -44,10 +44,9 @@ impl Patch {
         self.patch.description()
     }
 
-    /// The temperature where none is given, K; 0 where the table has none.
-    #[getter]
-    fn temperature(&self) -> f64 {
-        self.patch.temperature()
+    /// The files that it reads, as it names them.
+    fn files(&self) -> Vec<PathBuf> {
+        self.patch.files().to_vec()
     }
 
     fn __len__(&self) -> usize {
@@ -56,8 +55,29 @@ impl Patch {
 
     /// Writes an FMU.
     fn pack(&self, output: PathBuf, libraries: Vec<OsString>) -> PyResult<()> {
-        let bytes = fmu(&self.patch.clone().into(), &self.file, &libraries).map_err(|error| error.raise())?;
-        fs::write(&output, bytes).map_err(|error| PyOSError::new_err(format!("{}: {error}", output.display())))
+        write_fmu(&self.patch.clone().into(), &self.file, &libraries, &output).map_err(|error| error.raise())
+    }
+}
+
+/// All that changes in a run.
+#[pyclass(frozen, module = "asperity._native")]
+#[derive(Debug)]
+pub(crate) struct PatchState(asperity::patch::PatchState);
+
+#[pymethods]
+impl PatchState {
+    #[new]
+    fn new(bytes: &[u8]) -> PyResult<Self> {
+        Ok(Self(read(bytes, "a patch")?))
+    }
+
+    /// For pickle and copy.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduced(slf, &slf.get().0)
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self.0 == other.0
     }
 }
 
@@ -87,26 +107,63 @@ impl PatchRun {
     ) -> PyResult<Self> {
         let temperature = temperature.unwrap_or(patch.patch.temperature());
         let start = PatchStart { time: 0.0, pose: Pose::from_coordinates(pose), rates, transport_speed, temperature };
-        let run = asperity::patch::PatchRun::new(&patch.patch, &start);
-        let run = run.map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let run = asperity::patch::PatchRun::new(&patch.patch, &start).map_err(|error| error.raise())?;
         Ok(Self { run: Mutex::new(run), variables: patch.patch.variables() })
     }
 
-    /// Moves the body for `dt` at these rates of its coordinates.
+    /// A run that goes on from a state.
+    #[staticmethod]
+    fn restore(patch: &Patch, state: &PatchState) -> PyResult<Self> {
+        let run = asperity::patch::PatchRun::restore(&patch.patch, &state.0).map_err(|error| error.raise())?;
+        Ok(Self { run: Mutex::new(run), variables: patch.patch.variables() })
+    }
+
+    /// Moves the body for `dt` to a pose or at rates of its coordinates; else it rests. What is not given stays.
+    #[pyo3(signature = (dt, pose=None, *, rates=None, transport_speed=None, temperature=None))]
     fn advance(
         &self,
         py: Python<'_>,
         dt: f64,
-        rates: [f64; 6],
+        pose: Option<[f64; 6]>,
+        rates: Option<[f64; 6]>,
         transport_speed: Option<f64>,
-        temperature: f64,
+        temperature: Option<f64>,
     ) -> PyResult<()> {
+        check_dt(dt)?;
+        if pose.is_some() && rates.is_some() {
+            return Err(PyValueError::new_err("pose and rates: expected one of them"));
+        }
         let moved = py.detach(|| {
             let mut run = self.run();
-            let transport_speed = transport_speed.unwrap_or(run.transport_speed());
-            run.advance(&PatchMotion { duration: dt, rates, transport_speed, temperature })
+            let here = run.pose().coordinates();
+            let there = pose.map(|there| std::array::from_fn(|i| (there[i] - here[i]) / dt));
+            let motion = PatchMotion {
+                duration: dt,
+                rates: there.or(rates).unwrap_or_default(),
+                transport_speed: transport_speed.unwrap_or(run.transport_speed()),
+                temperature: temperature.unwrap_or(run.temperature()),
+            };
+            run.advance(&motion)
         });
-        moved.map_err(|error| PyValueError::new_err(error.to_string()))
+        moved.map_err(|error| error.raise())
+    }
+
+    fn state(&self) -> PatchState {
+        PatchState(self.run().save())
+    }
+
+    fn set_state(&self, state: &PatchState) -> PyResult<()> {
+        self.run().set_state(&state.0).map_err(|error| error.raise())
+    }
+
+    /// A run that goes on as this one.
+    fn copy(&self) -> Self {
+        Self { run: Mutex::new(self.run().clone()), variables: self.variables.clone() }
+    }
+
+    /// The warnings since the last call.
+    fn take_warnings(&self) -> Vec<String> {
+        self.run().take_warnings()
     }
 
     #[getter]

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use asperity::outputs::{OutputType, Variable, variables};
-use asperity::program::{CarrierSample, Rows, Runner};
-use asperity::scene::{OutputGroup, Scene as SceneData, Unit};
+use asperity::program::{CarrierSample, ElementField, ElementFields, Rows, Runner};
+use asperity::scene::{Scene as SceneData, Unit};
 use asperity::simulation::SimulationError;
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::prelude::*;
@@ -25,6 +25,11 @@ pub(crate) struct Column {
 impl Column {
     pub(crate) fn of(variable: &Variable) -> Self {
         Self::new(&variable.name, variable.unit, variable.kind)
+    }
+
+    /// Of all masses, row by row.
+    fn of_masses(field: ElementField) -> Self {
+        Self { values: field.values, ..Self::new(&field.name, field.unit, field.kind) }
     }
 
     fn new(name: &str, unit: Unit, kind: OutputType) -> Self {
@@ -75,7 +80,7 @@ fn run(scene: &SceneData, asked: Asked, task: &Task) -> Result<Recorded, Simulat
     let of_input = inputs.iter().map(|input| Column::new(input.name(), input.unit(), OutputType::Real));
     let mut columns: Vec<Column> =
         std::iter::once(time).chain(of_input).chain(variables.iter().map(Column::of)).collect();
-    let mut elements = Elements::new(scene, asked.elements);
+    let mut elements = asked.elements.then(|| ElementFields::new(scene));
     let mut values = vec![0.0; variables.len()];
     let duration = scene.duration();
 
@@ -85,42 +90,13 @@ fn run(scene: &SceneData, asked: Asked, task: &Task) -> Result<Recorded, Simulat
         snapshot.evaluate(&variables, &mut values);
         let row = std::iter::once(carrier.time).chain(inputs.iter().map(|&input| carrier.input(input)));
         columns.iter_mut().zip(row.chain(values.iter().copied())).for_each(|(column, value)| column.values.push(value));
-        elements.add(snapshot);
+        elements.iter_mut().for_each(|elements| elements.add(snapshot));
         task.report(if duration > 0.0 { carrier.time / duration } else { 1.0 });
     })?;
     let mut warnings = runner.take_warnings();
     warnings.extend(runner.simulation().inaccuracy().map(|inaccuracy| inaccuracy.to_string()));
-    Ok(Recorded { columns, elements: elements.columns, warnings })
-}
-
-/// The masses over the rows.
-struct Elements {
-    variables: Vec<Variable>,
-    values: Vec<f64>,
-    columns: Vec<Column>,
-}
-
-impl Elements {
-    fn new(scene: &SceneData, are_asked_for: bool) -> Self {
-        if !are_asked_for {
-            return Self { variables: Vec::new(), values: Vec::new(), columns: Vec::new() };
-        }
-        let variables = variables(&SceneData { outputs: vec![OutputGroup::Elements], ..scene.clone() });
-        let of_mass = &variables[..variables.len() / scene.layer.masses];
-        let column = |variable: &Variable| Column {
-            name: variable.name.rsplit('.').next().unwrap_or_default().to_owned(),
-            ..Column::of(variable)
-        };
-        Self { columns: of_mass.iter().map(column).collect(), values: vec![0.0; variables.len()], variables }
-    }
-
-    fn add(&mut self, snapshot: &asperity::outputs::Snapshot<'_>) {
-        snapshot.evaluate(&self.variables, &mut self.values);
-        let count = self.columns.len();
-        for (i, column) in self.columns.iter_mut().enumerate() {
-            column.values.extend(self.values.iter().skip(i).step_by(count));
-        }
-    }
+    let fields = elements.map(ElementFields::into_fields).unwrap_or_default();
+    Ok(Recorded { columns, elements: fields.into_iter().map(Column::of_masses).collect(), warnings })
 }
 
 /// Arrays and units of the rows, those of the masses, and the warnings.

@@ -1,17 +1,16 @@
 //! A scene: the text of a file, keys set in it, and what it says.
 
 use std::ffi::OsString;
-use std::fs;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use asperity::program::{Setting, fmu, parse_scene, with_settings};
+use asperity::program::{Setting, item_at, parse_scene, with_settings, write_fmu};
 use numpy::{PyArray1, PyArrayMethods as _, ToPyArray as _};
 use pyo3::IntoPyObjectExt as _;
-use pyo3::exceptions::{PyKeyError, PyOSError};
+use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use toml_edit::{DocumentMut, Item, Value};
+use toml_edit::{Item, Value};
 
 use crate::errors::Raise as _;
 
@@ -89,9 +88,8 @@ impl Scene {
     /// What stands at a key of the text, tables as dictionaries.
     fn get<'py>(&self, py: Python<'py>, key: &str) -> PyResult<Bound<'py, PyAny>> {
         let text = self.text()?;
-        let document: DocumentMut = text.parse().map_err(|_| PyKeyError::new_err(key.to_owned()))?;
-        let found = find(document.as_item(), key).ok_or_else(|| PyKeyError::new_err(key.to_owned()))?;
-        to_python(py, found)
+        let found = item_at(&text, key).ok_or_else(|| PyKeyError::new_err(key.to_owned()))?;
+        to_python(py, &found)
     }
 
     /// x and z of the data points of the profile.
@@ -120,8 +118,7 @@ impl Scene {
     /// Writes an FMU. The file of the scene has to hold what the scene is.
     fn pack(&self, output: PathBuf, libraries: Vec<OsString>) -> PyResult<()> {
         let definition = (*self.scene).clone().into();
-        let bytes = fmu(&definition, &self.file, &libraries).map_err(|error| error.raise())?;
-        fs::write(&output, bytes).map_err(|error| PyOSError::new_err(format!("{}: {error}", output.display())))
+        write_fmu(&definition, &self.file, &libraries, &output).map_err(|error| error.raise())
     }
 
     /// Whether the scene is the same as another, whatever text and files it is read from.
@@ -135,22 +132,6 @@ impl Scene {
         };
         content(&self.scene) == content(&other.scene)
     }
-}
-
-/// The item at a path, elements of lists counted from 1.
-fn find<'a>(mut item: &'a Item, key: &str) -> Option<&'a Item> {
-    for part in key.split('.') {
-        let (name, element) = match part.split_once('[') {
-            Some((name, rest)) => (name, Some(rest.strip_suffix(']')?.parse::<usize>().ok()?.checked_sub(1)?)),
-            None => (part, None),
-        };
-        item = item.get(name)?;
-        if let Some(element) = element {
-            // Elements of a list of values are no items: they are found below their list.
-            item = item.get(element)?;
-        }
-    }
-    Some(item)
 }
 
 fn to_python<'py>(py: Python<'py>, item: &Item) -> PyResult<Bound<'py, PyAny>> {

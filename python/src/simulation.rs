@@ -10,10 +10,10 @@ use asperity::simulation::{Interrupt, Motion, SimulationError, SimulationState, 
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
 
-use crate::errors::{Raise as _, no_output};
+use crate::errors::{Raise as _, check_dt, no_output};
 use crate::scene::Scene;
+use crate::state::{Reduced, read, reduced};
 
 /// All that changes in a simulation.
 #[pyclass(frozen, module = "asperity._native")]
@@ -24,14 +24,12 @@ pub(crate) struct State(SimulationState);
 impl State {
     #[new]
     fn new(bytes: &[u8]) -> PyResult<Self> {
-        let state = postcard::from_bytes(bytes);
-        state.map(Self).map_err(|error| PyValueError::new_err(format!("not a state of a simulation: {error}")))
+        Ok(Self(read(bytes, "a simulation")?))
     }
 
     /// For pickle and copy.
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
-        let bytes = postcard::to_stdvec(&slf.get().0).map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
-        Ok((slf.get_type().into_any(), (PyBytes::new(slf.py(), &bytes),)))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        reduced(slf, &slf.get().0)
     }
 
     fn __eq__(&self, other: &Self) -> bool {
@@ -146,9 +144,7 @@ impl Simulation {
         pull_rate: Option<f64>,
         temperature: Option<f64>,
     ) -> PyResult<()> {
-        if dt <= 0.0 {
-            return Err(PyValueError::new_err(format!("dt = {dt}: expected a number above 0, in s")));
-        }
+        check_dt(dt)?;
         let (now_u, now_w) = self.run()?.driven();
         let motion = Motion {
             duration: dt,

@@ -1,14 +1,13 @@
 //! Friction over speed, load and temperature.
 
 use std::ffi::OsString;
-use std::fs;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use asperity::element::{OperatingPoint, PointContact, Table};
-use asperity::program::{Loads, SlidingOptions, SweepMethod, SweepOptions, SweepPlan, SweepTable, fmu};
-use pyo3::exceptions::{PyOSError, PyValueError};
+use asperity::program::{Loads, SlidingOptions, SweepMethod, SweepOptions, SweepPlan, SweepTable, write_fmu};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::background::{Task, in_background};
@@ -92,6 +91,5 @@ pub(crate) fn sweep(
 #[pyfunction]
 pub(crate) fn pack_table(table: PathBuf, output: PathBuf, libraries: Vec<OsString>) -> PyResult<()> {
     let read = Table::load(&table).map_err(|error| PyValueError::new_err(error.to_string()))?;
-    let bytes = fmu(&PointContact::new(read).into(), &table, &libraries).map_err(|error| error.raise())?;
-    fs::write(&output, bytes).map_err(|error| PyOSError::new_err(format!("{}: {error}", output.display())))
+    write_fmu(&PointContact::new(read).into(), &table, &libraries, &output).map_err(|error| error.raise())
 }

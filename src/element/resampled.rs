@@ -11,6 +11,7 @@
 use super::backing::{SeriesBacking, SeriesIntervals};
 use super::law::{Law, LawAtSpeed};
 use super::law_points::{Intervals, LawPoints};
+use super::limits::TableLimits;
 use super::table::Table;
 use super::table_format::Quantity;
 use crate::math::Number;
@@ -338,9 +339,9 @@ impl ResampledLaw {
         self.earliest_touch
     }
 
-    /// The largest speed of the table, m/s.
-    pub fn largest_speed(&self) -> f64 {
-        self.law.speed_range.1
+    /// Up to where elements are within the table.
+    pub fn limits(&self) -> TableLimits {
+        TableLimits::new(self.largest_pressure(), self.law.speed_range.1)
     }
 
     /// The least pressure of the table, Pa.
@@ -349,7 +350,7 @@ impl ResampledLaw {
     }
 
     /// The largest pressure of the table, Pa.
-    pub fn largest_pressure(&self) -> f64 {
+    fn largest_pressure(&self) -> f64 {
         self.log_pressures.last().map_or(0.0, |y| y.exp())
     }
 

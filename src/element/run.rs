@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::grid::Load;
 use super::jenkins::{Jenkins, MotionRates, Recorder};
 use super::law::{Contact, Law, LawAtSpeed};
+use super::limits::ROUNDING;
 use super::point_contact::{OutputTerms, PointContact, element_output};
 use super::table_format::Quantity;
 use crate::math::{Expansion, not_finite};
@@ -14,10 +15,6 @@ use crate::model::Mode;
 use crate::outputs::Variable;
 use crate::scene::{TableExtrapolation, is_possible};
 use crate::simulation::{ModeChange, OutOfRange, Start};
-
-/// Share of the speeds and separations of the table by which the carrier may exceed them: rounding of a master that
-/// goes to the very end.
-const ROUNDING: f64 = 1e-9;
 
 /// Why a motion of an element is refused; the element is then as it was.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -14,8 +14,7 @@ use super::variables::VariableRef;
 use crate::model::{FlashKernel, Reduction, Replacement};
 use crate::outputs::{self, Output, Variable};
 use crate::scene::{
-    Extrapolation, FmuOptions, Force, Input, LinkKind, OutputGroup, Parameter, ParameterError, Path, Scene, Solver,
-    Value,
+    Extrapolation, FmuOptions, Force, Input, LinkKind, OutputGroup, Parameter, ParameterError, Path, Scene, Value,
 };
 use crate::simulation::{Motion, Simulation, Start};
 
@@ -301,7 +300,7 @@ impl FmuRun for LayerRun {
 
 impl LayerRun {
     fn new(scene: &Arc<Scene>, mut simulation: Simulation, start: Option<f64>) -> Self {
-        if scene.solver.max_steps == Solver::default().max_steps {
+        if scene.solver.max_steps.is_none() {
             simulation.limit_work(MAX_MASS_STEPS);
         }
         Self {
@@ -367,6 +366,7 @@ mod tests {
     use super::super::instance::Instance;
     use super::super::instance::tests::instance_of;
     use super::*;
+    use crate::simulation::SimulationError;
 
     /// One mass, moved at 1 m/s in steps of 0.25 s: the warnings.
     fn warnings(surface: &str, rest: &str) -> Vec<String> {
@@ -411,6 +411,26 @@ mod tests {
         assert!(warned(0.0, 1.0).is_empty());
         // Nothing is replaced: the bound is too tight.
         assert!(warned(1e-9, 1.0).is_empty());
+    }
+
+    /// A step of 500 masses that takes some 1400 steps of the solver: more than 500 000 steps times masses.
+    #[test]
+    fn the_work_of_a_step_is_limited_unless_the_scene_names_its_steps() {
+        let result = |solver: &str| {
+            let mut instance = instance_of(&format!(
+                "name = 'a'\nlayer = {{ masses = 500, spacing = 1.0, mass = 1.0, clearance = 9.0, vertical = {{ stiffness = \
+                 1.0 }} }}\nsurface = {{ kind = 'flat' }}\nsolver = {{ relative_tolerance = 1e-9{solver} }}"
+            ));
+            instance.enter_initialization_mode().unwrap();
+            instance.exit_initialization_mode().unwrap();
+            instance.do_step(0.0, 1.0).unwrap();
+            instance.state.inputs.set_rate(Input::W as usize, 1.0);
+            instance.do_step(1.0, 100.0)
+        };
+        let refused = result("");
+        assert!(matches!(refused, Err(Error::Simulation(SimulationError::TooMuchWork { .. }))), "{refused:?}");
+        // The default, named.
+        assert!(result(", max_steps = 10000000").is_ok());
     }
 
     #[test]

@@ -189,6 +189,6 @@ impl FmuRun for FmuPatchRun {
 
     /// An element beyond the table is told of once a run.
     fn take_warnings(&mut self, _time: f64) -> Vec<String> {
-        self.run.take_warning().into_iter().collect()
+        self.run.take_warnings()
     }
 }

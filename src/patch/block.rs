@@ -6,7 +6,7 @@ use super::face::{Face, TreadColumn};
 use super::heat::{self, BlockHeat, StepHeat};
 use super::lanes::{BLOCK, Lanes, lanes_of};
 use super::motion::{BodyKinematics, PoseMotion, Substep, Substeps, TreadMotion};
-use crate::element::{LawPoints, ResampledLaw, Segment, SpeedCell, SpringLaw, advance, apply_jump};
+use crate::element::{LawPoints, ROUNDING, ResampledLaw, Segment, SpeedCell, SpringLaw, advance, apply_jump};
 use crate::math::Number;
 
 /// What an element does; in states, as a number.
@@ -615,7 +615,7 @@ impl<T: Number> Block<T> {
         if self.end.is_free {
             return;
         }
-        let (pressure, speed) = (law.largest_pressure() * (1.0 + ROUNDING), law.largest_speed() * (1.0 + ROUNDING));
+        let limits = law.limits();
         let speed_of = |i: usize| {
             let [x, y] = [0, 1].map(|axis| self.end.velocity[axis][i].value());
             x * x + y * y
@@ -623,7 +623,7 @@ impl<T: Number> Block<T> {
         let mut found = false;
         for i in 0..BLOCK {
             let p = self.end.pressure[i].value();
-            found |= (p > pressure) | ((p > 0.0) & (speed_of(i) > speed * speed));
+            found |= (p > limits.pressure) | ((p > 0.0) & (speed_of(i) > limits.speed * limits.speed));
         }
         if !found || sums.beyond.is_some_and(|beyond| beyond.fraction <= fraction) {
             return;
@@ -632,7 +632,7 @@ impl<T: Number> Block<T> {
             let (p, v) = (self.end.pressure[i].value(), speed_of(i).sqrt());
             let bears = p > 0.0 && self.end.area[i] > 0.0;
             let element = step.index_at(self.start + i, fraction);
-            (bears && (p > pressure || v > speed)).then_some(BeyondTable { element, fraction, pressure: p, speed: v })
+            (bears && limits.is_beyond(p, v)).then_some(BeyondTable { element, fraction, pressure: p, speed: v })
         };
         sums.beyond = (0..self.count).find_map(beyond).or(sums.beyond);
     }
@@ -733,9 +733,6 @@ fn advance_all<T: Number>(
 
 /// Share of a substep below which it is not cut further for heat.
 const SHORTEST_PART: f64 = 1e-9;
-
-/// Share of the table's speeds, pressures and temperatures by which an element may exceed them: rounding.
-const ROUNDING: f64 = 1e-9;
 
 /// Whether an element is advanced in segments of its own in a substep with these pressures at its beginning and end.
 #[inline(always)]

@@ -89,7 +89,7 @@ impl PatchRun {
         let (totals, now) = (self.totals, self.totals.instant());
         let start = totals.pose.coordinates();
         let shifted = PoseMotion { start, change: shift.pose.map(|slope| rate(0.0, slope)), duration: 1.0 }.at(1.0);
-        let (pressure, speed) = (self.law.largest_pressure(), self.law.largest_speed());
+        let limits = self.law.limits();
         let mut changes = Changes::zero();
         for i in 0..self.patch.count() {
             // The element's law at the approach as it changes.
@@ -114,7 +114,7 @@ impl PatchRun {
             changes.pressure = changes.pressure.larger(law.pressure);
             changes.tangential = changes.tangential + tangential;
             changes.elastic = changes.elastic + (tangential * tangential / stiffness).times(0.5);
-            if here.pressure > pressure || size(here.velocity) > speed {
+            if limits.is_beyond(here.pressure, size(here.velocity)) {
                 changes.beyond = changes.beyond + normal;
             }
         }

@@ -6,11 +6,8 @@ use super::face::Face;
 use super::motion::{BodyKinematics, PoseMotion};
 use super::run::PatchRun;
 use super::state::{PatchState, RestoreError, Totals};
-use crate::element::{ElementLaw, LawPlace};
+use crate::element::{ElementLaw, LawPlace, ROUNDING};
 use crate::math::Number;
-
-/// Share of a limit by which a restored force may exceed it: rounding.
-const ROUNDING: f64 = 1e-9;
 
 /// An element at an instant, and its law there.
 #[derive(Clone, Copy, Debug)]
@@ -91,7 +88,7 @@ impl PatchRun {
 
     /// Whether the pressure on an element is above the largest of the table.
     pub fn pressure_is_beyond(&mut self) -> bool {
-        self.element_sums().pressure > self.law.largest_pressure()
+        self.element_sums().pressure > self.law.limits().pressure
     }
 
     /// The share of the normal force that is borne below the least pressure of the table; 0 without contact.
@@ -103,8 +100,7 @@ impl PatchRun {
     /// Sums over all elements now.
     pub(super) fn element_sums(&mut self) -> ElementSums {
         let (totals, now) = (self.totals, self.totals.instant());
-        let (pressure, speed) = (self.law.largest_pressure(), self.law.largest_speed());
-        let least = self.law.least_pressure();
+        let (limits, least) = (self.law.limits(), self.law.least_pressure());
         let mut sums = ElementSums::default();
         for i in 0..self.patch.count() {
             let here = self.element_contact(i, &totals, &now, self.springs.rise_of_law(i));
@@ -114,7 +110,7 @@ impl PatchRun {
             }
             let (hysteresis, ratio) = self.law.shares(&here.place, here.approach);
             let tangential = self.springs.x[i].hypot(self.springs.y[i]);
-            let is_beyond = here.pressure > pressure || here.velocity[0].hypot(here.velocity[1]) > speed;
+            let is_beyond = limits.is_beyond(here.pressure, here.velocity[0].hypot(here.velocity[1]));
             sums.count += 1;
             sums.sticking += usize::from(self.springs.sticks(i));
             sums.nominal_area += here.area;
@@ -159,5 +155,41 @@ impl PatchRun {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use std::path::Path;
+
+    use super::super::definition::Patch;
+    use super::super::state::{PatchStart, Pose};
+    use super::*;
+
+    /// The share beyond the table and the warning follow one criterion: what exceeds the table by rounding is within.
+    #[test]
+    fn elements_count_as_beyond_the_table_where_it_is_said() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch");
+        let text = "name = \"one\"\ntable = { path = \"winkler.table.csv\" }\n\
+                    patch = { shape = \"flat\", length = 0.01, width = 0.01, nx = 1, ny = 1 }";
+        let patch = Patch::parse(text, &folder.join("patch.toml")).unwrap();
+        let at = |z: f64| {
+            let pose = Pose { place: [0.0, 0.0, z], angles: [0.0; 3] };
+            PatchRun::new(&patch, &PatchStart { pose, ..PatchStart::default() }).unwrap()
+        };
+        let largest = at(0.0).law.limits().pressure / (1.0 + ROUNDING);
+        for (excess, is_beyond) in [(0.5, false), (2.0, true)] {
+            let (mut low, mut high) = (-1e-2, 1e-2);
+            for _ in 0..100 {
+                let middle = 0.5 * (low + high);
+                let is_above = at(middle).element_sums().pressure > largest * (1.0 + excess * ROUNDING);
+                if is_above { low = middle } else { high = middle }
+            }
+            let mut run = at(low);
+            let sums = run.element_sums();
+            assert!(sums.pressure > largest && sums.normal > 0.0);
+            assert_eq!((sums.beyond > 0.0, !run.take_warnings().is_empty()), (is_beyond, is_beyond), "{excess}");
+        }
     }
 }

@@ -40,4 +40,4 @@ pub use definition::{Patch, PatchElement, PatchError};
 pub use face_layout::{FaceElement, FaceLayout};
 pub use run::PatchRun;
 pub use state::{MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError};
-pub use variables::{COORDINATES, PatchKind, PatchOutput, PatchOutputEntry, PatchVariable, catalogue};
+pub use variables::{COORDINATES, PatchKind, PatchOutput, PatchOutputEntry, PatchVariable, catalogue, unit_of};

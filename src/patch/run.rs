@@ -159,9 +159,14 @@ impl PatchRun {
         self.totals.transport_speed
     }
 
-    /// The next warning: of the first temperature and of the first element beyond the table.
-    pub fn take_warning(&mut self) -> Option<String> {
-        (!self.warnings.is_empty()).then(|| self.warnings.remove(0))
+    /// The temperature, K; 0 where the table has no temperatures.
+    pub fn temperature(&self) -> f64 {
+        self.totals.temperature
+    }
+
+    /// The warnings since the last call: of the first temperature and of the first element beyond the table.
+    pub fn take_warnings(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.warnings)
     }
 
     /// Follows a motion; over no time it stays as it is.

@@ -231,6 +231,15 @@ pub fn catalogue() -> Vec<PatchOutputEntry> {
     TABLE.iter().map(of_row).chain([tangents]).chain(ELEMENT_FIELDS.iter().map(of_field)).collect()
 }
 
+/// The unit of the output variable called `name`, whatever the patch; `None` for a name that no patch can have.
+pub fn unit_of(name: &str) -> Option<Unit> {
+    if let Some((_, field)) = name.split_once("].") {
+        return ELEMENT_FIELDS.iter().find(|known| known.name == field).map(|known| known.unit);
+    }
+    let row = TABLE.iter().find(|row| row.name == name).map(|row| row.unit);
+    row.or_else(|| tangents().into_iter().find(|tangent| tangent.name == name).map(|tangent| tangent.unit))
+}
+
 impl PatchVariable {
     /// Whether it is an output of the FMU; the fields of the elements are local variables.
     pub fn is_output(&self) -> bool {

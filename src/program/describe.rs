@@ -307,7 +307,7 @@ fn solver(scene: &Scene) -> String {
         word(scene, Parameter::Method),
         number(scene.solver.relative_tolerance),
         number(scene.absolute_tolerance()),
-        scene.solver.max_steps
+        scene.solver.max_steps()
     )
 }
 

@@ -2,7 +2,7 @@
 //!
 //! [`execute`] is the program. What its commands compute is there without command line, files and messages too: runs
 //! along an excitation ([`Runner`]), sweeps ([`SweepPlan`]), contacts ([`solve_contact`]), Prony series ([`fit_moduli`]),
-//! calibrations ([`calibrate_scene`]) and FMUs ([`fmu`]).
+//! calibrations ([`calibrate_scene`]) and FMUs ([`write_fmu`]).
 
 mod calibrate;
 mod cli;
@@ -46,10 +46,11 @@ use clap::Parser as _;
 pub use cli::WlfConstants;
 use cli::{Arguments, Command};
 pub use contact::{ContactError, ContactFields, ContactOptions, SolvedContact, solve_contact};
+pub use elements::{ElementField, ElementFields};
 pub use files::{FileError, parse_scene};
 pub use fit::{FitError, FitOptions, FittedModuli, fit_moduli};
-pub use overrides::{OverrideError, Setting, with_settings};
-pub use pack::{PackError, fmu};
+pub use overrides::{OverrideError, Setting, item_at, with_settings};
+pub use pack::{PackError, write_fmu};
 pub use runner::{CarrierSample, Rows, Runner};
 pub use sweep::{
     Loads, MethodError, NeverSteady, SlidingOptions, StoredRow, SweepError, SweepMethod, SweepOptions, SweepPlan,

@@ -138,29 +138,27 @@ pub(crate) fn overridden(text: &str, set: &[Setting]) -> Result<Overridden, Over
     Ok(Overridden { text: document.to_string(), in_named_files })
 }
 
+/// What stands at a key of a TOML text; `None` where nothing does.
+pub fn item_at(text: &str, key: &str) -> Option<Item> {
+    let document: DocumentMut = text.strip_prefix('\u{feff}').unwrap_or(text).parse().ok()?;
+    item_below(document.as_item(), &segments(key)?)
+}
+
+fn item_below(item: &Item, path: &[PathSegment<'_>]) -> Option<Item> {
+    let [segment, rest @ ..] = path else { return Some(item.clone()) };
+    let named = item.as_table_like()?.get(segment.name)?;
+    match (segment.element, named) {
+        (None, _) => item_below(named, rest),
+        (Some(element), Item::ArrayOfTables(tables)) => item_below(&tables.get(element)?.clone().into(), rest),
+        (Some(element), _) => item_below(&named.as_array()?.get(element)?.clone().into(), rest),
+    }
+}
+
 /// The number at a key of the text, in SI units where it is a text with a unit; `None` where there is none.
 pub(crate) fn number(text: &str, key: &str) -> Option<f64> {
-    let document: DocumentMut = text.strip_prefix('\u{feff}').unwrap_or(text).parse().ok()?;
-    let path = segments(key)?;
-    let (last, path) = path.split_last()?;
-    let mut table: &dyn TableLike = document.as_table();
-    for segment in path {
-        let item = table.get(segment.name)?;
-        table = match segment.element {
-            None => item.as_table_like()?,
-            Some(element) => match item {
-                Item::ArrayOfTables(tables) => tables.get(element)?,
-                _ => item.as_array()?.get(element)?.as_inline_table()?,
-            },
-        };
-    }
-    let item = table.get(last.name)?;
-    let value = match last.element {
-        None => item.as_value()?,
-        Some(element) => item.as_array()?.get(element)?,
-    };
-    let plain = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
-    plain.or_else(|| value.as_str().and_then(quantity_with_unit))
+    let item = item_at(text, key)?;
+    let plain = item.as_float().or_else(|| item.as_integer().map(|whole| whole as f64));
+    plain.or_else(|| item.as_str().and_then(quantity_with_unit))
 }
 
 /// A value of TOML; what is none is a text, so that words need no quotation marks, or a number such as `.5`.

@@ -109,7 +109,7 @@ pub(crate) enum Head {
 }
 
 impl Head {
-    fn of(self, name: &str, unit: Unit) -> String {
+    pub(crate) fn of(self, name: &str, unit: Unit) -> String {
         match self {
             Self::NameAndUnit if unit != Unit::One => format!("{name} [{}]", unit.name()),
             _ => name.to_owned(),

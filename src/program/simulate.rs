@@ -12,7 +12,7 @@ use super::elements::{ArraysError, ElementHistory, Span};
 use super::figure::{Figure as _, LayerPicture, TimeHistory, write_film};
 use super::files::{FileError, check_outputs, ends_in, load, named, print_beside};
 use super::interrupt::fail;
-use super::result_file::{Head, ResultWriter};
+use super::result_file::ResultWriter;
 use super::run_summary::RunSummary;
 use super::runner::{CarrierSample, Rows, Runner};
 use super::terminal::{LabelledLine, bar, is_quiet, is_verbose, lines, note, warn};
@@ -165,12 +165,11 @@ const PROGRESS_LENGTH: f64 = 1000.0;
 impl Recorder {
     fn new(scene: &Scene, command: &Simulate, output: &Path) -> Result<Self, FileError> {
         let variables = variables(scene);
-        let head = if command.units { Head::NameAndUnit } else { Head::Name };
         let shows_elements = command.animate.is_some() || command.elements.is_some() || !command.contact.is_empty();
         Ok(Self {
             values: vec![0.0; variables.len()],
             output: output.to_owned(),
-            writer: ResultWriter::create(output, &scene.inputs(), &variables, head)?,
+            writer: ResultWriter::create(output, &scene.inputs(), &variables, command.head())?,
             variables,
             history: command.plot.is_some().then(|| TimeHistory::new(scene)),
             elements: shows_elements.then(|| ElementHistory::new(scene)),

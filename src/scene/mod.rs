@@ -235,10 +235,26 @@ pub struct Solver {
     pub relative_tolerance: f64,
     /// Absolute tolerance, m; `None` follows the relative tolerance and the scene's height.
     pub absolute_tolerance: Option<f64>,
-    /// The most steps of one communication step or one phase.
-    pub max_steps: u64,
+    /// The most steps of one communication step or one phase; `None`: [`DEFAULT_MAX_STEPS`](Self::DEFAULT_MAX_STEPS).
+    #[serde(serialize_with = "most_steps")]
+    pub max_steps: Option<u64>,
     /// Bound on the error of a link's force for leaving Maxwell elements out, as a share of it; 0 leaves none out.
     pub reduce: f64,
+}
+
+impl Solver {
+    /// The most steps where a scene names no other number.
+    pub const DEFAULT_MAX_STEPS: u64 = 10_000_000;
+
+    /// The most steps of one communication step or one phase: as it was set, or the default.
+    pub fn max_steps(&self) -> u64 {
+        self.max_steps.unwrap_or(Self::DEFAULT_MAX_STEPS)
+    }
+}
+
+/// Written is the number that counts: fingerprints of sweeps do not depend on whether it is the default.
+fn most_steps<S: serde::Serializer>(named: &Option<u64>, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_u64(named.unwrap_or(Solver::DEFAULT_MAX_STEPS))
 }
 
 impl Default for Solver {
@@ -248,7 +264,7 @@ impl Default for Solver {
             method: Method::Event,
             relative_tolerance: 1.0e-6,
             absolute_tolerance: None,
-            max_steps: 10_000_000,
+            max_steps: None,
             reduce: 0.0,
         }
     }

@@ -32,7 +32,7 @@ fn what_is_left_out_is_absent() {
         method: Method::Event,
         relative_tolerance: 1e-6,
         absolute_tolerance: None,
-        max_steps: 10_000_000,
+        max_steps: None,
         reduce: 0.0,
     };
     assert_eq!(scene.solver, defaults);
@@ -59,7 +59,7 @@ fn reads_settings() {
     let scene = scene("initial = 'undeformed'", &format!("{FLAT}\n{rest}"));
     let friction = scene.friction.clone().unwrap();
     assert_eq!((friction.coulomb, friction.shear_force), (Some(1.0), None));
-    assert_eq!((scene.solver.relative_tolerance, scene.solver.max_steps), (1e-3, 1000));
+    assert_eq!((scene.solver.relative_tolerance, scene.solver.max_steps), (1e-3, Some(1000)));
     assert_eq!((scene.solver.absolute_tolerance, scene.absolute_tolerance()), (Some(1e-9), 1e-9));
     assert_eq!((scene.layer.initial, scene.extrapolation), (Initial::Undeformed, Extrapolation::Hold));
     assert_eq!(scene.outputs, [OutputGroup::Forces, OutputGroup::Solver, OutputGroup::Elements]);
@@ -151,4 +151,13 @@ fn reads_files_once_each_from_beside_the_scene() {
     assert_eq!(scene.files, [PathBuf::from("profiles/a.csv")]);
     assert_eq!((scene.surface.z(), scene.layer.roughness.as_slice()), ([0.5, 0.5].as_slice(), [0.5].as_slice()));
     std::fs::remove_dir_all(folder).unwrap();
+}
+
+/// Sweeps of a scene that names the default go on with tables of one that names none.
+#[test]
+fn the_most_steps_are_written_as_they_count() {
+    let written =
+        |solver: &str| postcard::to_stdvec(&scene("", &format!("{FLAT}\n[solver]\n{solver}")).solver).unwrap();
+    assert_eq!(written("max_steps = 10_000_000"), written(""));
+    assert_ne!(written("max_steps = 1_000"), written(""));
 }

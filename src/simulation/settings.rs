@@ -24,7 +24,7 @@ impl Settings {
         Self {
             events: EventTolerance::new(model, &tolerance),
             tolerance,
-            max_steps: scene.solver.max_steps,
+            max_steps: scene.solver.max_steps(),
             accounts: Accounts::new(scene),
             method: scene.solver.method,
             is_local: false,

@@ -39,3 +39,25 @@ fn a_run_ends_with_its_forces() {
     let expected = table.column("force.z")[1];
     assert!((value.parse::<f64>().unwrap() * scale / expected - 1.0).abs() < 5e-3, "{told}, {expected}");
 }
+
+/// `--units` names the units of the motion's columns and of the variables; those of plain numbers have none.
+#[test]
+fn units_stand_behind_the_names_of_the_columns() {
+    let folder = scratch("patch-simulate-units");
+    fs::write(folder.join("motion.csv"), "time,x,y,z,roll,pitch,yaw\n0,0,0,0.001,0,0,0\n1,0,0,0,0,0,0\n").unwrap();
+    let header_with = |options: &[&str]| {
+        let patch = root().join("tests/reference/patch/block.toml");
+        let mut simulate = asperity();
+        simulate
+            .current_dir(&folder)
+            .args(["simulate", "--motion", "motion.csv", "-o", "out.csv", "--patch"])
+            .arg(patch);
+        run(simulate.args(options));
+        fs::read_to_string(folder.join("out.csv")).unwrap().lines().next().unwrap().to_owned()
+    };
+    let header = header_with(&["--units"]);
+    let start = "time [s],x [m],y [m],z [m],roll [rad],pitch [rad],yaw [rad],force.x [N],";
+    assert!(header.starts_with(start) && header.contains(",contact.count,"), "{header}");
+    let names: Vec<&str> = header.split(',').map(|name| name.split(" [").next().unwrap()).collect();
+    assert_eq!(names.join(","), header_with(&[]));
+}

@@ -14,7 +14,7 @@ from ._contact import Contact
 from ._errors import SceneError, SimulationError
 from ._fit import Fit, fit
 from ._native import __version__
-from ._patch import Patch
+from ._patch import Patch, PatchState
 from ._result import Result
 from ._scene import Scene
 from ._simulation import Simulation, State
@@ -26,6 +26,7 @@ __all__ = [
     "Fit",
     "Parameter",
     "Patch",
+    "PatchState",
     "Result",
     "Scene",
     "SceneError",

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
 
 from . import _native
 from ._arguments import Floats
 from ._library import options as library_options
+from ._scene import folder_of
 
+PatchState = _native.PatchState
 Six = tuple[float, float, float, float, float, float]
 _AT_REST: Six = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
@@ -17,15 +22,16 @@ _AT_REST: Six = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 class Patch:
     """A contact patch, and its motion.
 
-    ``patch["force.z"]`` is the present value of an output. The pose is x, y, z (m), roll, pitch, yaw (rad).
+    ``patch["force.z"]`` is the present value of an output; ``patch.state`` is all that changes, to be kept, pickled and
+    put back. A copy goes on exactly as the original, bit for bit. The pose is x, y, z (m), roll, pitch, yaw (rad).
     """
 
     def __init__(
         self,
         path: str | PathLike[str],
         *,
-        pose: Six = _AT_REST,
-        rates: Six = _AT_REST,
+        pose: Sequence[float] | Floats = _AT_REST,
+        rates: Sequence[float] | Floats = _AT_REST,
         transport_speed: float = 0.0,
         temperature: float | None = None,
     ) -> None:
@@ -40,21 +46,26 @@ class Patch:
 
         Raises:
             SceneError: Where the patch is refused.
+            SimulationError: Where it is beyond its table at the start, and that is refused.
         """
+        self._folder: TemporaryDirectory[str] | None = None
         self._patch = _native.Patch(Path(path))
-        self._temperature = self._patch.temperature if temperature is None else temperature
         self._run = _native.PatchRun(self._patch, pose, rates, transport_speed, temperature)
+        for text in self._run.take_warnings():
+            warnings.warn(text, stacklevel=2)
 
     def advance(
         self,
         dt: float,
-        pose: Six | None = None,
+        pose: Sequence[float] | Floats | None = None,
         *,
-        rates: Six | None = None,
+        rates: Sequence[float] | Floats | None = None,
         transport_speed: float | None = None,
         temperature: float | None = None,
     ) -> None:
         """Moves the body, straight, for a time.
+
+        Warns of the first temperature and of the first element beyond the table, each once a run.
 
         Args:
             dt: How long, s.
@@ -64,18 +75,11 @@ class Patch:
             temperature: Temperature from now on, K; None: as it is.
 
         Raises:
-            ValueError: Where the motion is refused; the patch is then as it was.
+            SimulationError: Where the run cannot go on; the patch is then as it was.
         """
-        if dt <= 0.0:
-            raise ValueError(f"dt = {dt}: expected a number above 0, in s")
-        if pose is not None and rates is not None:
-            raise ValueError("pose and rates: expected one of them")
-        if pose is not None:
-            x, y, z, roll, pitch, yaw = ((there - here) / dt for here, there in zip(self.pose, pose, strict=True))
-            rates = (x, y, z, roll, pitch, yaw)
-        kelvin = self._temperature if temperature is None else temperature
-        self._run.advance(dt, rates or _AT_REST, transport_speed, kelvin)
-        self._temperature = kelvin
+        self._run.advance(dt, pose, rates=rates, transport_speed=transport_speed, temperature=temperature)
+        for text in self._run.take_warnings():
+            warnings.warn(text, stacklevel=2)
 
     def __getitem__(self, name: str) -> float:
         """The present value of an output of the patch's groups."""
@@ -116,6 +120,30 @@ class Patch:
         x, y, z, roll, pitch, yaw = self._run.pose
         return x, y, z, roll, pitch, yaw
 
+    @property
+    def state(self) -> PatchState:
+        """All that changes in the run; can be set, compared, copied and pickled."""
+        return self._run.state()
+
+    @state.setter
+    def state(self, state: PatchState) -> None:
+        self._run.set_state(state)
+
+    def copy(self) -> Patch:
+        """A patch that goes on as this one."""
+        return _patch(self._patch, self._run.copy(), self._folder)
+
+    def __copy__(self) -> Patch:
+        return self.copy()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Patch:
+        return self.copy()
+
+    def __reduce__(self) -> tuple[Any, tuple[str, dict[str, bytes], PatchState]]:
+        file = self._patch.file
+        files = {str(name): (file.parent / name).read_bytes() for name in (Path(file.name), *self._patch.files())}
+        return _unpickled, (file.name, files, self.state)
+
     def pack(self, path: str | PathLike[str], libraries: Sequence[str | PathLike[str]] | None = None) -> Path:
         """Packs the patch, where it starts left out, as an FMU, and returns its path.
 
@@ -129,3 +157,15 @@ class Patch:
 
     def __repr__(self) -> str:
         return f"<asperity.Patch {self.name!r}: {len(self)} elements, t = {self.time:g} s>"
+
+
+def _patch(native: _native.Patch, run: _native.PatchRun, folder: TemporaryDirectory[str] | None) -> Patch:
+    patch = Patch.__new__(Patch)
+    patch._patch, patch._run, patch._folder = native, run, folder
+    return patch
+
+
+def _unpickled(name: str, files: dict[str, bytes], state: PatchState) -> Patch:
+    folder = folder_of(files)
+    native = _native.Patch(Path(folder.name) / name)
+    return _patch(native, _native.PatchRun.restore(native, state), folder)

@@ -485,13 +485,19 @@ class table_file:
             shutil.rmtree(self._folder, ignore_errors=True)
 
 
-def _in_own_folder(text: str, settings: Sequence[tuple[str, str]], files: Mapping[str, bytes]) -> Scene:
-    """A scene with its files in a folder that is removed with it."""
+def folder_of(files: Mapping[str, bytes]) -> tempfile.TemporaryDirectory[str]:
+    """A folder with these files, by their names in it; it is removed with the object."""
     folder = tempfile.TemporaryDirectory(prefix="asperity-")
     for name, content in files.items():
         place = Path(folder.name) / name
         place.parent.mkdir(parents=True, exist_ok=True)
         place.write_bytes(content)
+    return folder
+
+
+def _in_own_folder(text: str, settings: Sequence[tuple[str, str]], files: Mapping[str, bytes]) -> Scene:
+    """A scene with its files in a folder that is removed with it."""
+    folder = folder_of(files)
     path = Path(folder.name) / _SCENE
     path.write_text(text, encoding="utf-8")
     scene = Scene(text, path, settings)

@@ -12,6 +12,7 @@ use clap::{ArgGroup, Args, Parser, Subcommand};
 
 use super::files::default_output;
 use super::overrides::Setting;
+use super::result_file::Head;
 use super::sweep::SweepMethod;
 use super::sweep::values::{Shard, Values};
 pub use values::WlfConstants;
@@ -129,8 +130,8 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "OUT.npz", value_parser = arrays(), conflicts_with = "patch")]
     pub(crate) elements: Option<PathBuf>,
     /// Writes units behind the names of the result file's columns: F_x [N].
-    #[arg(long, conflicts_with = "patch")]
-    pub(crate) units: bool,
+    #[arg(long)]
+    units: bool,
     /// Also prints what the run cost, and what would make it cheaper.
     #[arg(long, conflicts_with = "patch")]
     pub(crate) stats: bool,
@@ -140,6 +141,11 @@ impl Simulate {
     /// The result file of a run of what is in the file `simulated`.
     pub(crate) fn output(&self, simulated: &Path) -> PathBuf {
         self.output.clone().unwrap_or_else(|| default_output(simulated, "csv"))
+    }
+
+    /// What is above the columns of the result file.
+    pub(crate) fn head(&self) -> Head {
+        if self.units { Head::NameAndUnit } else { Head::Name }
     }
 }
 

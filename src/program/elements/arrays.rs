@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::outputs::OutputType;
 
-use super::{ElementHistory, Field, Instant};
+use super::{ElementField, ElementHistory, Instant};
 use crate::program::files::{self, FileError};
 use crate::program::npz::{Array, Values, npz};
 
@@ -34,14 +34,14 @@ impl ElementHistory {
             Array::line("profile_z", self.surface.z()),
         ];
         let area = self.area.map(|area| Array::single("area", area));
-        let fields = self.fields.iter().map(|field| field.array(self.rest.len()));
+        let fields = self.fields.fields().iter().map(|field| field.array(self.rest.len()));
         let archive = npz(lines.into_iter().chain(area).chain(fields));
         let archive = archive.map_err(|source| ArraysError::Archive { path: path.to_owned(), source })?;
         Ok(files::write(path, archive)?)
     }
 }
 
-impl Field {
+impl ElementField {
     fn array(&self, masses: usize) -> Array<'_> {
         let values = match self.kind {
             OutputType::Real => Values::Reals(Cow::Borrowed(&self.values)),

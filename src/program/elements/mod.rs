@@ -1,12 +1,14 @@
 //! The masses of a layer over the rows of a run: collected for arrays, for pictures of an instant and for animations.
 
 mod arrays;
+mod fields;
 mod page;
 
-use crate::outputs::{Output, OutputType, Snapshot, Variable, variables};
-use crate::scene::{OutputGroup, Scene, Surface};
+use crate::outputs::{Output, Snapshot};
+use crate::scene::{Scene, Surface};
 
 pub(crate) use arrays::ArraysError;
+pub use fields::{ElementField, ElementFields};
 
 /// What the masses did, row by row.
 #[derive(Debug)]
@@ -19,21 +21,10 @@ pub(crate) struct ElementHistory {
     spacing: f64,
     /// Area that a mass stands for, m²; in the material form alone.
     area: Option<f64>,
-    variables: Vec<Variable>,
-    fields: Vec<Field>,
+    fields: ElementFields,
     rows: Vec<Instant>,
     /// The least and the largest x - u of all masses in all rows, m.
     reach: (f64, f64),
-}
-
-/// An output of every mass, for all rows: the masses of the first row first.
-#[derive(Debug)]
-struct Field {
-    /// The output of the first mass.
-    output: Output,
-    name: String,
-    kind: OutputType,
-    values: Vec<f64>,
 }
 
 /// What a row says of the layer as a whole.
@@ -72,34 +63,20 @@ pub(crate) struct Element {
 
 impl ElementHistory {
     pub(crate) fn new(scene: &Scene) -> Self {
-        let variables = variables(&Scene { outputs: vec![OutputGroup::Elements], ..scene.clone() });
-        let of_mass = &variables[..variables.len() / scene.layer.masses];
-        let field = |variable: &Variable| Field {
-            output: variable.output,
-            name: variable.name.rsplit('.').next().unwrap_or_default().to_owned(),
-            kind: variable.kind,
-            values: Vec::new(),
-        };
         Self {
             name: scene.name.clone(),
             surface: scene.surface.clone(),
             rest: (0..scene.layer.masses).map(|i| scene.layer.rest_position(i)).collect(),
             spacing: scene.layer.spacing,
             area: scene.layer.element_area(),
-            fields: of_mass.iter().map(field).collect(),
-            variables,
+            fields: ElementFields::new(scene),
             rows: Vec::new(),
             reach: (f64::INFINITY, f64::NEG_INFINITY),
         }
     }
 
     pub(crate) fn add(&mut self, time: f64, snapshot: &Snapshot<'_>) {
-        let mut values = vec![0.0; self.variables.len()];
-        snapshot.evaluate(&self.variables, &mut values);
-        let count = self.fields.len();
-        for (i, field) in self.fields.iter_mut().enumerate() {
-            field.values.extend(values.iter().skip(i).step_by(count));
-        }
+        self.fields.add(snapshot);
         let (displacement, force) = (&snapshot.displacement, &snapshot.on_carrier);
         self.rows.push(Instant { time, u: displacement.x, w: displacement.z, force_x: force.x, force_z: force.z });
         let places = self.elements(self.rows.len() - 1).map(|element| element.x - displacement.x);
@@ -161,12 +138,13 @@ impl ElementHistory {
 
     /// Whether the scene has flash temperatures.
     pub(crate) fn has_flash(&self) -> bool {
-        self.values(Output::ElementFlash(0)).is_some()
+        self.fields.values(Output::ElementFlash(0)).is_some()
     }
 
     pub(crate) fn elements(&self, row: usize) -> impl Iterator<Item = Element> {
         let masses = self.rest.len();
-        let of = |output: Output| self.values(output).map_or(&[][..], |all| &all[row * masses..(row + 1) * masses]);
+        let of =
+            |output: Output| self.fields.values(output).map_or(&[][..], |all| &all[row * masses..(row + 1) * masses]);
         let [x, z] = [Output::ElementX(0), Output::ElementZ(0)].map(of);
         let [force, mode] = [Output::ElementNormalForce(0), Output::ElementMode(0)].map(of);
         let flash = of(Output::ElementFlash(0));
@@ -177,10 +155,6 @@ impl ElementHistory {
             touch: Touch::new(mode[i]),
             flash: flash.get(i).copied().unwrap_or_default(),
         })
-    }
-
-    fn values(&self, output: Output) -> Option<&[f64]> {
-        self.fields.iter().find(|field| field.output == output).map(|field| field.values.as_slice())
     }
 }
 
@@ -272,7 +246,7 @@ mod tests {
 
     #[test]
     fn fields_are_those_of_a_mass() {
-        let names: Vec<String> = history().fields.into_iter().map(|field| field.name).collect();
+        let names: Vec<String> = history().fields.into_fields().into_iter().map(|field| field.name).collect();
         assert_eq!(names, ["x", "z", "F_N", "F_T", "mode"]);
     }
 }

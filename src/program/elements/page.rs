@@ -204,7 +204,7 @@ mod tests {
                 |i: usize| Instant { time: i as f64 / 3e5, u: i as f64 / 7e4, w: 0.0, force_x: 1.0, force_z: 2.0 };
             history.rows = (0..rows).map(row).collect();
             history.reach = (0.0, 1e-6 * masses as f64);
-            history.fields.iter_mut().for_each(|field| field.values = vec![0.0; masses * rows]);
+            history.fields.fill(rows);
             let length = serde_json::to_string(&history.page()).unwrap().len() + TEMPLATE.len();
             assert!((2_000_000..5_000_000).contains(&length), "{masses} masses, {rows} rows: {length}");
         }

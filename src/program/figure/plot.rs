@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::outputs::unit_of;
+use crate::{outputs, patch};
 
 use super::axis::{Axis, Fit};
 use super::chart::{Chart, Curve, Stroke};
@@ -257,18 +257,16 @@ fn axis(command: &Plot, which: PlotAxis, quantity: &str, unit: &str, values: imp
 
 /// The unit of a column of a result file by its name; empty for a plain number or an unknown column.
 fn unit_of_name(column: &str) -> &'static str {
-    match column.rsplit('.').next().unwrap_or_default() {
+    match column {
         "time" => "s",
+        "u" | "w" | "x" | "y" | "z" => "m",
         "roll" | "pitch" | "yaw" => "rad",
+        "load" | "pull" => "N",
         "temperature" => "K",
         "pressure" => "Pa",
-        "speed" => "m/s",
-        "area" | "nominal_area" => "m²",
-        _ if column.starts_with("moment.") => "N m",
-        _ if column.starts_with("force.") || matches!(column, "load" | "pull" | "transport.force") => "N",
-        _ if column.contains("].traction.") => "Pa",
-        _ if matches!(column, "u" | "w" | "x" | "y" | "z") => "m",
-        _ => unit_of(column).map(|unit| unit.name()).unwrap_or_default(),
+        "speed" | "transport.speed" => "m/s",
+        "area" => "m²",
+        _ => outputs::unit_of(column).or_else(|| patch::unit_of(column)).map(|unit| unit.name()).unwrap_or_default(),
     }
 }
 
@@ -285,8 +283,23 @@ mod tests {
 
     #[test]
     fn columns_have_the_units_of_their_variables() {
-        let names =
-            ["u", "F_x", "element[12].z", "contact.count", "?", "moment.z", "element[3].traction.x", "transport.speed"];
-        assert_eq!(names.map(unit_of_name), ["m", "N", "m", "1", "", "N m", "Pa", "m/s"]);
+        let names = [
+            ("u", "m"),
+            ("F_x", "N"),
+            ("element[12].z", "m"),
+            ("contact.count", "1"),
+            ("?", ""),
+            ("moment.z", "N m"),
+            ("element[3].traction.x", "Pa"),
+            ("element[3,2].temperature", "K"),
+            ("contact.temperature_largest", "K"),
+            ("dissipation.E_slip", "J"),
+            ("tangent.force.x.yaw", "N/rad"),
+            ("transport.force", "N"),
+            ("transport.speed", "m/s"),
+        ];
+        for (name, unit) in names {
+            assert_eq!(unit_of_name(name), unit, "{name}");
+        }
     }
 }

@@ -42,9 +42,9 @@ pub enum PackError {
 /// Writes the FMU; prints what its libraries need and, of an element or a patch, its table and errors.
 pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
     let (definition, path) = load(command)?;
-    let taken =
-        [definition.sources(&path), archive::libraries(&command.library), command.check.iter().cloned().collect()];
-    check_outputs([&command.output], taken.concat())?;
+    let mut taken = files_read(&definition, &path, &command.library);
+    taken.extend(command.check.clone());
+    check_outputs([&command.output], taken)?;
     let binaries = archive::binaries(&definition.identifier(), &command.library)?;
     let needs = labelled("Needs", binaries.iter().filter_map(archive::needs));
     let summary = summary(command, &definition)?;
@@ -53,14 +53,26 @@ pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
     Ok(print(&lines(&shown))?)
 }
 
-/// The FMU of a `definition`, which was read from the file at `path`, with these shared libraries, each as
-/// `asperity pack --library` takes it.
+/// Writes the FMU of a `definition`, which was read from the file at `path`, with these shared libraries, each as
+/// `asperity pack --library` takes it, at once: what is at `output` is what was there before, or the whole FMU.
 ///
 /// # Errors
-/// Where a library or a file cannot be read, or does not lie where an FMU can carry it.
-pub fn fmu(definition: &Definition, path: &Path, libraries: &[OsString]) -> Result<Vec<u8>, PackError> {
+/// Where a library or a file cannot be read, or does not lie where an FMU can carry it; where `output` cannot be written,
+/// or is one of the files read.
+pub fn write_fmu(
+    definition: &Definition,
+    path: &Path,
+    libraries: &[OsString],
+    output: &PathBuf,
+) -> Result<(), PackError> {
+    check_outputs([output], files_read(definition, path, libraries))?;
     let binaries = archive::binaries(&definition.identifier(), libraries)?;
-    archive(definition, path, binaries, &what_is_there(definition))
+    Ok(write(output, archive(definition, path, binaries, &what_is_there(definition))?)?)
+}
+
+/// The files that go into the FMU.
+fn files_read(definition: &Definition, path: &Path, libraries: &[OsString]) -> Vec<PathBuf> {
+    [definition.sources(path), archive::libraries(libraries)].concat()
 }
 
 fn archive(

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::patch::{COORDINATES, Patch, PatchMotion, PatchStart, Pose};
+use crate::scene;
 use crate::scene::text_table::{Dimension, Heading, Unit, Words};
 
 use crate::program::result_file::{CsvFile, Record, ResultFileError};
@@ -85,13 +86,14 @@ impl MotionFile {
         self.rows.iter().map(|row| row.time).collect()
     }
 
-    /// The names of its columns.
-    pub(crate) fn names(&self) -> Vec<&'static str> {
-        let mut names = vec![TIME];
-        names.extend(COORDINATES);
-        names.extend(self.has_transport.then_some(TRANSPORT));
-        names.extend(self.has_temperature.then_some(TEMPERATURE));
-        names
+    /// The names of its columns, and their units.
+    pub(crate) fn columns(&self) -> Vec<(&'static str, scene::Unit)> {
+        use scene::Unit::{Kelvin, Meter, MeterPerSecond, Radian, Second};
+        let mut columns = vec![(TIME, Second)];
+        columns.extend(COORDINATES.into_iter().zip([Meter, Meter, Meter, Radian, Radian, Radian]));
+        columns.extend(self.has_transport.then_some((TRANSPORT, MeterPerSecond)));
+        columns.extend(self.has_temperature.then_some((TEMPERATURE, Kelvin)));
+        columns
     }
 
     /// The values of its columns.

@@ -33,7 +33,7 @@ pub(crate) fn simulate(command: &Simulate, patch_file: &Path, motion_file: &Path
     let output = command.output(patch_file);
     check_outputs([&output].into_iter().chain(&command.plot), taken)?;
     let motion = MotionFile::read(motion_file, &patch)?;
-    let mut recorder = PatchRecorder::new(&patch, &motion, &output, command.plot.is_some())?;
+    let mut recorder = PatchRecorder::new(&patch, &motion, &output, command)?;
     let mut run = PatchRun::new(&patch, &motion.start()).map_err(PatchSimulateError::Start)?;
     recorder.row(&mut run, motion.values(&motion.rows()[0]))?;
     let mut result = Ok(());
@@ -65,20 +65,22 @@ struct PatchRecorder {
 }
 
 impl PatchRecorder {
-    fn new(patch: &Patch, motion: &MotionFile, output: &Path, is_drawn: bool) -> Result<Self, FileError> {
+    fn new(patch: &Patch, motion: &MotionFile, output: &Path, command: &Simulate) -> Result<Self, FileError> {
         let variables = patch.variables();
-        let names = motion.names().into_iter().chain(variables.iter().map(|variable| variable.name.as_str()));
+        let of_variables = variables.iter().map(|variable| (variable.name.as_str(), variable.unit));
+        let columns = motion.columns().into_iter().chain(of_variables);
+        let names: Vec<String> = columns.map(|(name, unit)| command.head().of(name, unit)).collect();
         Ok(Self {
             values: vec![0.0; variables.len()],
-            writer: CsvWriter::create(output, names)?,
-            history: is_drawn.then(|| PatchHistory::new(patch, &motion.times())),
+            writer: CsvWriter::create(output, names.iter().map(String::as_str))?,
+            history: command.plot.is_some().then(|| PatchHistory::new(patch, &motion.times())),
             variables,
         })
     }
 
     /// Writes the row of the present instant, and says what the run has to say.
     fn row(&mut self, run: &mut PatchRun, motion: Vec<f64>) -> Result<(), FileError> {
-        run.take_warning().iter().for_each(|warning| warn(warning));
+        run.take_warnings().iter().for_each(|warning| warn(warning));
         run.evaluate(&self.variables, &mut self.values);
         let variables = self.variables.iter().zip(&self.values);
         let variables = variables.map(|(variable, &value)| Field { kind: variable.kind, value });

@@ -99,7 +99,7 @@ impl Robustness {
     /// Runs the scene of `reference` scaled by so many powers of ten each way; the pairs may take about `seconds`.
     pub(super) fn run(reference: &Reference, powers: u32, points: u32, seconds: f64) -> Self {
         let scene = &reference.scene;
-        let unlimited = PerturbedRunner { scene, points, budget: scene.solver.max_steps, patience: PATIENCE };
+        let unlimited = PerturbedRunner { scene, points, budget: scene.solver.max_steps(), patience: PATIENCE };
         let unperturbed = unlimited.run(Perturbation::default());
         let work = unperturbed.counts().unwrap_or(&reference.measured.counts).work();
         let budget = BUDGET * work.max(CHEAP / BUDGET);

@@ -429,7 +429,7 @@ u_rate = 0.01
             let failure = run(&scene, measured.counts.work() - 1).unwrap_err();
             assert!(matches!(failure, RunFailure::OverBudget { time } if time > 1e-3), "{failure:?}");
         }
-        scene.solver.max_steps = 2;
+        scene.solver.max_steps = Some(2);
         let failure = along(&scene, 10_000).unwrap_err();
         assert!(matches!(&failure, RunFailure::Stopped(reason) if reason.contains("solver.max_steps")), "{failure:?}");
     }

@@ -420,7 +420,7 @@ impl Scene {
             Parameter::CarrierInitial => Value::Text(self.carrier.z.map_or("", |body| body.initial.as_word()).into()),
             Parameter::Method => Value::Text(self.solver.method.as_word().into()),
             Parameter::Extrapolation => Value::Text(self.extrapolation.as_word().into()),
-            Parameter::MaxSteps => Value::Integer(i32::try_from(self.solver.max_steps).unwrap_or(i32::MAX)),
+            Parameter::MaxSteps => Value::Integer(i32::try_from(self.solver.max_steps()).unwrap_or(i32::MAX)),
             _ => Value::Real(self.real(parameter).unwrap_or(0.0)),
         }
     }
@@ -497,7 +497,7 @@ impl Scene {
         if !range.holds(number.into()) {
             return Err(Parameter::MaxSteps.refuse(number));
         }
-        self.solver.max_steps = number.unsigned_abs().into();
+        self.solver.max_steps = Some(number.unsigned_abs().into());
         Ok(())
     }
 

@@ -277,7 +277,7 @@ fn read_solver(table: &mut TableReader<'_>) -> Result<Solver> {
         method: table.optional_choice("method")?.unwrap_or(defaults.method),
         relative_tolerance: table.optional_number("relative_tolerance")?.unwrap_or(defaults.relative_tolerance),
         absolute_tolerance: table.optional_number("absolute_tolerance")?,
-        max_steps: table.optional_whole("max_steps")?.map_or(defaults.max_steps, i64::unsigned_abs),
+        max_steps: table.optional_whole("max_steps")?.map(i64::unsigned_abs),
         reduce: table.optional_number("reduce")?.unwrap_or(defaults.reduce),
     })
 }

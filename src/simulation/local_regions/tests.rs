@@ -128,7 +128,7 @@ fn a_restored_run_with_regions_goes_on_bit_for_bit() {
 #[test]
 fn a_motion_rolled_back_leaves_no_regions() {
     let mut scene = scene("'forces', 'solver'");
-    scene.solver.max_steps = 60;
+    scene.solver.max_steps = Some(60);
     let mut simulation = Simulation::new(&scene, &Start::default()).unwrap();
     simulation.record_mode_changes(true);
     let before = variables_of(&scene, &mut simulation);

@@ -56,7 +56,7 @@ pub fn run_scene(mut scene: Scene) {
     if scene.layer.masses > MAX_MASSES {
         return;
     }
-    scene.solver.max_steps = scene.solver.max_steps.min(MAX_STEPS);
+    scene.solver.max_steps = Some(scene.solver.max_steps().min(MAX_STEPS));
     scene.outputs = OutputGroup::ALL.to_vec();
     let variables = variables(&scene);
     let start = Start { load: scene.first_load(), pull: scene.first_pull(), ..Start::default() };

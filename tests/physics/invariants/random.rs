@@ -258,7 +258,7 @@ fn solver(scales: Scales, method: Method) -> impl Strategy<Value = Solver> {
         method,
         relative_tolerance,
         absolute_tolerance: Some(relative_tolerance * part * scales.height),
-        max_steps: MAX_STEPS,
+        max_steps: Some(MAX_STEPS),
         reduce: 0.0,
     })
 }

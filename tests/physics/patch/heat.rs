@@ -95,7 +95,7 @@ fn one_cell_under_a_constant_loss_warms_as_the_root_of_time() {
         let mut at_once = start();
         go(&mut at_once, &patch, time, rates, 0.0);
         assert!((largest_rise(&mut at_once, &patch) / expected - 1.0).abs() < 1e-2, "{time}");
-        assert_eq!(run.take_warning(), None);
+        assert!(run.take_warnings().is_empty());
     }
 }
 
@@ -289,9 +289,18 @@ fn beyond_the_table_s_temperatures_the_law_is_held() {
     assert!(largest_rise(&mut run, &patch) > 15.0);
     let [x, _, z, ..] = wrench(&mut run, &patch);
     assert!((-x / z / falling(303.15) - 1.0).abs() < 1e-9, "{x} {z}");
-    let warning = run.take_warning().unwrap();
+    let warnings = run.take_warnings();
+    let [warning] = warnings.as_slice() else { panic!("{warnings:?}") };
     assert!(warning.starts_with("element[1,1] is warmer than the table at t = 0.0"), "{warning}");
-    assert_eq!(run.take_warning(), None);
+    assert!(run.take_warnings().is_empty());
+    // One step beyond two ends of the table says both.
+    let mut run = run_at(&patch, [0.0, 0.0, -1e-5, 0.0, 0.0, 0.0], rates, 0.0);
+    let deep = [1.0, 0.0, -1.0, 0.0, 0.0, 0.0];
+    run.advance(&PatchMotion { duration: 1e-2, rates: deep, transport_speed: 0.0, temperature: 313.15 }).unwrap();
+    let warnings = run.take_warnings();
+    let [temperature, element] = warnings.as_slice() else { panic!("{warnings:?}") };
+    assert!(temperature.starts_with("the temperature 313.15 K is beyond the table"), "{temperature}");
+    assert!(element.starts_with("element[1,1] is beyond the table"), "{element}");
     // Refused.
     let folder = folder("heat-beyond-refused");
     fs::write(folder.join("own.csv"), content).unwrap();
