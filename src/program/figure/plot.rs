@@ -155,7 +155,7 @@ impl<'a> Selection<'a> {
             Some((name, unit)) if name.ends_with(' ') => unit,
             _ => unit_of_name(header),
         };
-        Ok(if unit == "1" { String::new() } else { unit.to_owned() })
+        Ok(if unit == "1" { String::new() } else { symbol(unit) })
     }
 
     /// The names of all columns, without their units.
@@ -255,6 +255,11 @@ fn axis(command: &Plot, which: PlotAxis, quantity: &str, unit: &str, values: imp
     Axis::linear(quantity, unit, values, if which == PlotAxis::X { Fit::Tight } else { Fit::Round })
 }
 
+/// A unit as it is printed: `N m` for `N.m`, `m²` for `m2`, which takes no prefixes.
+fn symbol(unit: &str) -> String {
+    unit.replace('.', " ").replace("m2", "m²").replace("m3", "m³")
+}
+
 /// The unit of a column of a result file by its name; empty for a plain number or an unknown column.
 fn unit_of_name(column: &str) -> &'static str {
     match column {
@@ -265,7 +270,7 @@ fn unit_of_name(column: &str) -> &'static str {
         "temperature" => "K",
         "pressure" => "Pa",
         "speed" | "transport.speed" => "m/s",
-        "area" => "m²",
+        "area" => "m2",
         _ => outputs::unit_of(column).or_else(|| patch::unit_of(column)).map(|unit| unit.name()).unwrap_or_default(),
     }
 }
@@ -289,7 +294,8 @@ mod tests {
             ("element[12].z", "m"),
             ("contact.count", "1"),
             ("?", ""),
-            ("moment.z", "N m"),
+            ("moment.z", "N.m"),
+            ("contact.area", "m2"),
             ("element[3].traction.x", "Pa"),
             ("element[3,2].temperature", "K"),
             ("contact.temperature_largest", "K"),
@@ -301,5 +307,6 @@ mod tests {
         for (name, unit) in names {
             assert_eq!(unit_of_name(name), unit, "{name}");
         }
+        assert_eq!(["N.m/rad", "m2", "kg/m3", "Pa"].map(symbol), ["N m/rad", "m²", "kg/m³", "Pa"]);
     }
 }
