@@ -1,7 +1,7 @@
 //! Calibration: the few numbers of a scene that nobody measures by themselves, from measured friction.
 //!
 //! [`Measurements`] are friction coefficients at speeds, pressures and temperatures. A [`FrictionModel`] gives friction
-//! at values of the free [`parameters`](FreeParameter): that of [steady sliding](SteadyModel), which is dear, or that of
+//! at values of the free [`parameters`](FreeParameter): that of [steady sliding](SteadyModel), which is expensive, or that of
 //! [Persson's theory](TheoryModel), which is cheap. [`Problem`] is their weighted difference, [`minimise`] its least
 //! square within the bounds, [`Statistics`] what the data say of the parameters there, and [`plan`] which measurements
 //! would say more. docs/calibrate.md has the formulas.

@@ -1,4 +1,4 @@
-//! Space mapping: a dear model fitted by a cheap one, which is corrected by their ratio at every point.
+//! Space mapping: an expensive model fitted by a cheap one, which is corrected by their ratio at every point.
 //!
 //! J. W. Bandler et al., IEEE Trans. Microw. Theory Tech. 52, 2004, 337. At the parameters found so far both models are
 //! evaluated, the cheap one times their ratio is fitted, and so on until the parameters stay within a tenth of their
@@ -15,7 +15,7 @@ use crate::element::OperatingPoint;
 const ROUNDS: usize = 8;
 /// The change of a parameter over its standard error at which the rounds end.
 const SMALL_CHANGE: f64 = 0.1;
-/// A change of a coordinate that a dear model of some digits does not tell from none.
+/// A change of a coordinate that an expensive model of some digits does not tell from none.
 const UNRESOLVED: f64 = 2e-3;
 /// A parameter that changes the cheap model by less than this part of what the others do is none of its own.
 const UNSEEN: f64 = 1e-9;
@@ -23,7 +23,7 @@ const UNSEEN: f64 = 1e-9;
 /// What the rounds came to.
 #[derive(Clone, Debug)]
 pub struct SpaceMapping {
-    /// Where they ended: the best parameters so far, with the dear model's χ².
+    /// Where they ended: the best parameters so far, with the expensive model's χ².
     pub fitted: Fitted,
     /// The corrected model there.
     pub linearised: Linearised,
@@ -62,15 +62,15 @@ impl FrictionModel for Corrected<'_> {
     }
 }
 
-/// Fits the `dear` model by the `cheap` one from a start; `progress` is told each χ² of the dear one. `None` where the
-/// cheap model does not depend on one of the parameters, and so cannot find it.
+/// Fits the `expensive` model by the `cheap` one from a start; `progress` is told each χ² of the expensive one. `None`
+/// where the cheap model does not depend on one of the parameters, and so cannot find it.
 ///
 /// # Errors
 /// Those of the models.
 pub fn map_space(
     problem: &Problem,
     cheap: &dyn FrictionModel,
-    dear: &dyn FrictionModel,
+    expensive: &dyn FrictionModel,
     start: &[f64],
     progress: &dyn Fn(f64),
 ) -> Result<Option<SpaceMapping>, CalibrationError> {
@@ -84,11 +84,12 @@ pub fn map_space(
     let mut best: Option<SpaceMapping> = None;
     for round in 1..=ROUNDS {
         let at = vec![places.clone()];
-        let (dears, cheaps) = (problem.frictions(dear, &at)?.remove(0), problem.frictions(cheap, &at)?.remove(0));
-        let chi_square = sum_of_squares(&problem.residuals_of(&dears));
+        let (by_expensive, by_cheap) =
+            (problem.frictions(expensive, &at)?.remove(0), problem.frictions(cheap, &at)?.remove(0));
+        let chi_square = sum_of_squares(&problem.residuals_of(&by_expensive));
         progress(chi_square);
-        let ratio = |(dear, cheap): (&FrictionParts, &FrictionParts)| dear.friction() / cheap.friction();
-        let ratios = problem.points.iter().copied().zip(dears.iter().zip(&cheaps).map(ratio)).collect();
+        let ratio = |(expensive, cheap): (&FrictionParts, &FrictionParts)| expensive.friction() / cheap.friction();
+        let ratios = problem.points.iter().copied().zip(by_expensive.iter().zip(&by_cheap).map(ratio)).collect();
         let corrected = Corrected { model: cheap, ratios };
         let next = minimise(problem, &corrected, &places, Tolerance::USUAL, &|_| ())?;
         let linearised = problem.linearised(&corrected, &places)?;

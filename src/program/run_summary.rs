@@ -1,5 +1,5 @@
 //! What a run of a scene comes to, in a few lines: forces, friction, contact, energy and what it took; what made it
-//! dear, where that is asked for.
+//! expensive, where that is asked for.
 
 use std::time::Instant;
 

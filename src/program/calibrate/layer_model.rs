@@ -1,4 +1,4 @@
-//! Friction of the layer that slides until it is steady: the dear model of scenes that cannot be solved for.
+//! Friction of the layer that slides until it is steady: the expensive model of scenes that cannot be solved for.
 
 use crate::calibration::{CalibrationError, Done, FrictionModel, FrictionParts, SceneAt, Task};
 use crate::element::Load;

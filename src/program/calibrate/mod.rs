@@ -383,7 +383,7 @@ pub fn calibrate_scene(
     })
 }
 
-/// Does `work` with the models of a scene, of which the dear one has `known` points and hands new ones to `add`.
+/// Does `work` with the models of a scene, of which the expensive one has `known` points and hands new ones to `add`.
 fn with_models<T>(
     free: &FreeScene<'_>,
     known: Vec<(Task, Outcome)>,
@@ -484,8 +484,8 @@ impl Work<'_> {
         Ok((fitted, linearised, "differences of the layer itself: its friction and the theory's part".to_owned()))
     }
 
-    /// The best start of the dear model among the fits by the theory and the scene's own values; of the layer, which is
-    /// too dear to be tried at several, the best fit by the theory.
+    /// The best start of the expensive model among the fits by the theory and the scene's own values; of the layer, which is
+    /// too expensive to be tried at several, the best fit by the theory.
     fn start(&self, problem: &Problem) -> Result<Vec<f64>, CalibrationError> {
         let own = problem.places(&self.free.own);
         let fits = starts_by_theory(problem, self.theory, &own, Tolerance::ROUGH)?;
@@ -534,7 +534,7 @@ impl Work<'_> {
         (self.progress)("what to measure next".to_owned());
         let Calibrated { problem, fitted, linearised, statistics, .. } = calibrated;
         let candidates = self.candidates(&problem.points, command);
-        // The layer is too dear for a grid.
+        // The layer is too expensive for a grid.
         let is_solved = matches!(self.free.method, Method::Steady(_));
         let model: &dyn FrictionModel = if is_solved { self.model } else { self.theory };
         Ok(plan(problem, model, (&fitted.places, linearised, statistics), &candidates, PLANNED)?)

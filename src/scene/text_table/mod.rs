@@ -1,8 +1,8 @@
 //! Tables of text as people, instruments and spreadsheets write them: from bytes to text, from text to rows of fields.
 //!
-//! The one reader of text tables: profiles, Prony series, measured moduli, sweep tables and result files go through it.
-//! Files of this program are read by [`rows`]. In the output of instruments and people, which may begin with anything,
-//! [`Block`] finds the tables; [`Heading`] reads what a column holds, and [`Unit`] in which unit.
+//! All text tables go through it: sweep tables, results, motions and points of a patch, which begin with their header, by
+//! [`rows`]. In the output of instruments and people, which may begin with anything, [`Block`] finds the tables.
+//! [`Heading`] reads what a column holds, and [`Unit`] in which unit.
 
 mod blocks;
 mod headings;
