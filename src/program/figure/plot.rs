@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use crate::{outputs, patch};
+use crate::outputs;
+use crate::patch;
 
 use super::axis::{Axis, Fit};
 use super::chart::{Chart, Curve, Stroke};
