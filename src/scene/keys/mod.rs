@@ -449,7 +449,7 @@ const SOLVER: &[Key] = &[
     .follows("`relative_tolerance` times the scene's height"),
     // An Integer of FMI has 32 bits.
     whole("max_steps", 1, i32::MAX as i64, "Steps that one communication step or one phase may take")
-        .default("10000000"),
+        .follows("10000000; a step of a master is bounded by its work"),
     number("reduce", NOT_NEGATIVE.up_to(0.1), Unit::One, "Error bound for leaving Maxwell elements out").default("0"),
 ];
 
