@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use asperity::outputs::{OutputType, Variable, variables};
-use asperity::program::{CarrierSample, ElementField, ElementFields, Rows, Runner};
+use asperity::program::{ElementField, ElementFields, InputSample, Rows, Runner};
 use asperity::scene::{Scene as SceneData, Unit};
 use asperity::simulation::SimulationError;
 use numpy::{IntoPyArray as _, PyArray1};
@@ -86,7 +86,7 @@ fn run(scene: &SceneData, asked: Asked, task: &Task) -> Result<Recorded, Simulat
 
     let mut runner = Runner::new(scene, Rows::PerPhase(asked.points), 0.0)?.with_rows_at(asked.times);
     runner.simulation().set_interrupt(Some(task.interrupt()));
-    runner.run(&scene.excitation, |carrier: CarrierSample, snapshot| {
+    runner.run(&scene.excitation, |carrier: InputSample, snapshot| {
         snapshot.evaluate(&variables, &mut values);
         let row = std::iter::once(carrier.time).chain(inputs.iter().map(|&input| carrier.input(input)));
         columns.iter_mut().zip(row.chain(values.iter().copied())).for_each(|(column, value)| column.values.push(value));

@@ -1,13 +1,13 @@
 //! A block of elements that a step is done for together: in structure of arrays and, where possible, loops without
 //! branches.
 
-use super::contact_times::{Endpoint, advance_in_segments, half_turn, size};
 use super::face::{Face, TreadColumn};
 use super::heat::{self, BlockHeat, StepHeat};
 use super::lanes::{BLOCK, Lanes, lanes_of};
 use super::motion::{BodyKinematics, PoseMotion, Substep, Substeps, TreadMotion};
+use super::segments::{Endpoint, advance_in_segments, half_turn, size};
 use crate::element::{LawPoints, ROUNDING, ResampledLaw, Segment, SpeedCell, SpringLaw, advance, apply_jump};
-use crate::math::Number;
+use crate::math::{Dual, Number};
 
 /// What an element does; in states, as a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,6 +84,16 @@ pub(super) struct BeyondTable {
     pub(super) pressure: f64,
     /// Its speed along the plane, m/s.
     pub(super) speed: f64,
+}
+
+impl<'a> FaceMotion<'a, f64> {
+    /// The same motion with derivatives by the changes of the body's coordinates.
+    pub(super) fn with_tangents(&self) -> FaceMotion<'a, Dual<6>> {
+        let Self { face, body, tread, substeps, tread_speed, heat } = *self;
+        let PoseMotion { start, change, duration } = body;
+        let change = std::array::from_fn(|i| Dual::variable(change[i], i));
+        FaceMotion { face, body: PoseMotion { start, change, duration }, tread, substeps, tread_speed, heat }
+    }
 }
 
 impl<T> FaceMotion<'_, T> {

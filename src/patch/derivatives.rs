@@ -4,11 +4,11 @@
 //! slips stays at its limit. The pressure follows the approach, arms turn with the body; temperatures stay.
 
 use super::block::ElementMode;
-use super::contact_times::size;
 use super::definition::ElementSite;
 use super::face::Face;
 use super::motion::{BodyKinematics, PoseMotion};
 use super::run::PatchRun;
+use super::segments::size;
 use super::variables::{PatchOutput, PatchVariable};
 use crate::element::LawPlace;
 use crate::math::{Dual, Number};

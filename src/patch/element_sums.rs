@@ -1,10 +1,10 @@
 //! The elements of a run at its present instant: the contact of each, and sums over all.
 
-use super::contact_times::size;
 use super::definition::ElementSite;
 use super::face::Face;
 use super::motion::{BodyKinematics, PoseMotion};
 use super::run::PatchRun;
+use super::segments::size;
 use super::state::{PatchState, RestoreError, Totals};
 use crate::element::{ElementLaw, LawPlace, ROUNDING};
 use crate::math::Number;

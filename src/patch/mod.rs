@@ -4,11 +4,15 @@
 //! point-contact element at its own separation and speed, and a spring in two dimensions. A tread may run through the
 //! face, as that of a wheel does.
 //!
+//! A *step* is the caller's. It is cut into *stretches* where cells of the tread begin to enter, these into *substeps*
+//! in which the body turns by little, and with heat these into *parts* in which temperatures change by little. An
+//! element whose pressure changes much goes through a part in *segments*; where it touches and lifts, one ends.
+//!
 //! | file | what it holds |
 //! |------|---------------|
 //! | `motion` | motion of the body and of the tread over a step, its substeps |
 //! | `face` | where elements sit |
-//! | `contact_times` | an element that touches or lifts |
+//! | `segments` | an element whose pressure changes much in a substep |
 //! | `lanes` | elements of a block, side by side |
 //! | `heat` | elements that slip warms |
 //! | `block` | a step of a block of elements |
@@ -22,7 +26,6 @@
 //! | `variables` | output variables |
 
 mod block;
-mod contact_times;
 mod definition;
 mod derivatives;
 mod element_sums;
@@ -32,6 +35,7 @@ mod heat;
 mod lanes;
 mod motion;
 mod run;
+mod segments;
 mod state;
 mod variables;
 mod worker_pool;

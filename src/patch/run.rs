@@ -1,5 +1,7 @@
 //! A run of a patch: steps over all its elements.
 
+use std::sync::Arc;
+
 use super::block::{BeyondTable, Block, FaceMotion, Sums, TooWarm};
 use super::definition::Patch;
 use super::face::Face;
@@ -175,66 +177,38 @@ impl PatchRun {
     /// [`MotionError`]; the patch is then as it was.
     pub fn advance(&mut self, motion: &PatchMotion) -> Result<(), MotionError> {
         let PatchMotion { duration, rates, transport_speed, temperature } = *motion;
-        let Totals { time, pose, temperature: temperature_before, .. } = self.totals;
-
-        // Check where the motion leads.
-        let start = pose.coordinates();
+        let start = self.totals.pose.coordinates();
         let change = rates.map(|rate| rate * duration);
-        let end = Pose::from_coordinates(std::array::from_fn(|i| start[i] + change[i]));
-        PatchStart { time: time + duration, pose: end, rates, transport_speed, temperature }.check()?;
+        let end = self.checked_end(motion, change)?;
         if duration == 0.0 {
             return Ok(());
         }
-        check_duration(duration, time)?;
-
-        // Divide the step.
+        check_duration(duration, self.totals.time)?;
         let tread_speed = 0.5 * (self.totals.transport_speed + transport_speed);
         let tread = self.tread_motion(tread_speed * duration);
         let body = PoseMotion { start, change, duration };
-        let substeps = Substeps::new(tread, body.turn(), self.patch.refine);
-        let most = max_substeps(self.patch.count());
-        let count = substeps.count(most);
-        if count > most || count.is_nan() {
-            return Err(MotionError::TooManySubsteps { time, substeps: count, most });
-        }
+        let substeps = self.substeps(tread, body.turn())?;
 
-        // Advance the springs of all elements, block by block.
+        let before = self.totals;
         self.set_temperature(temperature);
         let heat = self.step_heat(temperature);
-        let Self { patch, law, springs, next, workers, .. } = self;
-        let face = &*patch.face;
-        let (sums, tangents) = match workers {
-            Workers::Plain(pool) => {
-                let step = FaceMotion { face, body, tread, substeps, tread_speed, heat };
-                let widest = pulp::Arch::new();
-                let sums = pool.work(&step, law, (springs, next), |block, law, sums| {
-                    widest.dispatch(Advance { block, step: &step, law, sums });
-                });
-                (sums, None)
-            }
-            Workers::Tangent(pool) => {
-                let body =
-                    PoseMotion { start, change: std::array::from_fn(|i| Dual::variable(change[i], i)), duration };
-                let step = FaceMotion { face, body, tread, substeps, tread_speed, heat };
-                let advance = |block: &mut Block<_>, law: &mut _, sums: &mut _| block.advance(&step, law, sums);
-                let sums = pool.work(&step, law, (springs, next), advance);
-                (sums.values(), Some(sums.wrench.map(|load| load.slopes)))
-            }
-        };
+        let face = Arc::clone(&self.patch.face);
+        let step = FaceMotion { face: &face, body, tread, substeps, tread_speed, heat };
+        let (sums, tangents) = self.advance_springs(&step);
 
         // Refuse the step or take it over.
-        let mut reached = self.totals;
+        let mut reached = before;
         reached.add(&sums, duration);
-        (reached.time, reached.pose, reached.rates) = (time + duration, end, rates);
+        (reached.time, reached.pose, reached.rates) = (before.time + duration, end, rates);
         (reached.transport_speed, reached.tread_speed, reached.temperature) =
             (transport_speed, tread_speed, temperature);
         // Just below a whole number, rounding may give 1.
         reached.place = (tread.entered_at(1.0) - tread.whole_cells()).min(1.0_f64.next_down());
         let checked = reached.check(tangents.as_ref());
         if let Err(error) =
-            checked.and_then(|()| self.check_table(temperature, &sums, |fraction| time + fraction * duration))
+            checked.and_then(|()| self.check_table(temperature, &sums, |fraction| before.time + fraction * duration))
         {
-            self.set_temperature(temperature_before);
+            self.set_temperature(before.temperature);
             return Err(error);
         }
         std::mem::swap(&mut self.springs, &mut self.next);
@@ -243,6 +217,47 @@ impl PatchRun {
         }
         self.totals = reached;
         Ok(())
+    }
+
+    /// The pose that a motion leads to, by so much of its coordinates.
+    fn checked_end(&self, motion: &PatchMotion, change: [f64; 6]) -> Result<Pose, MotionError> {
+        let PatchMotion { duration, rates, transport_speed, temperature } = *motion;
+        let start = self.totals.pose.coordinates();
+        let pose = Pose::from_coordinates(std::array::from_fn(|i| start[i] + change[i]));
+        PatchStart { time: self.totals.time + duration, pose, rates, transport_speed, temperature }.check()?;
+        Ok(pose)
+    }
+
+    /// The substeps of a step in which the tread goes on and the body turns by an angle (rad).
+    fn substeps(&self, tread: TreadMotion, turn: f64) -> Result<Substeps, MotionError> {
+        let substeps = Substeps::new(tread, turn, self.patch.refine);
+        let most = max_substeps(self.patch.count());
+        let count = substeps.count(most);
+        if count > most || count.is_nan() {
+            return Err(MotionError::TooManySubsteps { time: self.totals.time, substeps: count, most });
+        }
+        Ok(substeps)
+    }
+
+    /// Takes the springs of all elements through a step, block by block, to those in `next`; returns the sums and, where
+    /// they are asked for, the tangents.
+    fn advance_springs(&mut self, step: &FaceMotion<'_, f64>) -> (Sums<f64>, Option<[[f64; 6]; 6]>) {
+        let Self { law, springs, next, workers, .. } = self;
+        match workers {
+            Workers::Plain(pool) => {
+                let widest = pulp::Arch::new();
+                let sums = pool.work(step, law, (springs, next), |block, law, sums| {
+                    widest.dispatch(Advance { block, step, law, sums });
+                });
+                (sums, None)
+            }
+            Workers::Tangent(pool) => {
+                let step = step.with_tangents();
+                let advance = |block: &mut Block<_>, law: &mut _, sums: &mut _| block.advance(&step, law, sums);
+                let sums = pool.work(&step, law, (springs, next), advance);
+                (sums.values(), Some(sums.wrench.map(|load| load.slopes)))
+            }
+        }
     }
 
     fn set_temperature(&mut self, kelvin: f64) {

@@ -51,7 +51,7 @@ pub use files::{FileError, parse_scene};
 pub use fit::{FitError, FitOptions, FittedModuli, fit_moduli};
 pub use overrides::{OverrideError, Setting, item_at, with_settings};
 pub use pack::{PackError, write_fmu};
-pub use runner::{CarrierSample, Rows, Runner};
+pub use runner::{InputSample, Rows, Runner};
 pub use sweep::{
     Loads, MethodError, NeverSteady, SlidingOptions, StoredRow, SweepError, SweepMethod, SweepOptions, SweepPlan,
     SweepTable, TableFileError,

@@ -12,7 +12,7 @@ use crate::scene::{Input, Unit};
 
 use super::draft::Draft;
 use super::files::{FileError, read};
-use super::runner::CarrierSample;
+use super::runner::InputSample;
 use super::terminal::file_decimal;
 
 /// A result file cannot be read.
@@ -86,7 +86,7 @@ impl ResultWriter {
         Ok(Self { file, inputs: inputs.to_vec(), kinds })
     }
 
-    pub(crate) fn write(&mut self, carrier: CarrierSample, values: &[f64]) -> Result<(), FileError> {
+    pub(crate) fn write(&mut self, carrier: InputSample, values: &[f64]) -> Result<(), FileError> {
         let real = |value: f64| Field { kind: OutputType::Real, value };
         let variables = self.kinds.iter().zip(values).map(|(&kind, &value)| Field { kind, value });
         let inputs = self.inputs.iter().map(|&input| real(carrier.input(input)));

@@ -6,7 +6,7 @@ use crate::simulation::{MethodSwitch, Motion, Simulation, SimulationError, Start
 
 /// Time and inputs at a row: displacements of the carrier or of a body's drive, forces on a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct CarrierSample {
+pub struct InputSample {
     /// Time, s.
     pub time: f64,
     /// Displacement along x, m.
@@ -21,7 +21,7 @@ pub struct CarrierSample {
     pub temperature: f64,
 }
 
-impl CarrierSample {
+impl InputSample {
     /// The sample a time `s` (s) after this one, at which `motion` starts.
     pub fn after(self, motion: &Motion, s: f64) -> Self {
         let force = |force: Force, reached: f64| force.start.unwrap_or(reached) + force.change.at(s).position;
@@ -99,7 +99,7 @@ pub(crate) fn start(scene: &Scene, u: f64) -> Start {
 #[derive(Debug)]
 pub struct Runner {
     simulation: Simulation,
-    carrier: CarrierSample,
+    carrier: InputSample,
     rows: Rows,
     /// Times of rows besides those, s.
     also_at: Vec<f64>,
@@ -120,7 +120,7 @@ impl Runner {
         let start = start(scene, u);
         let temperature = start.temperature.unwrap_or(scene.input_start(Input::Temperature));
         let carrier =
-            CarrierSample { time: start.time, u: start.u, w: start.w, load: start.load, pull: start.pull, temperature };
+            InputSample { time: start.time, u: start.u, w: start.w, load: start.load, pull: start.pull, temperature };
         let mut simulation = Simulation::new(scene, &start)?;
         simulation.record_method_switches(true);
         Ok(Self {
@@ -162,14 +162,14 @@ impl Runner {
     pub fn run(
         &mut self,
         phases: &[Phase],
-        mut observe: impl FnMut(CarrierSample, &Snapshot<'_>),
+        mut observe: impl FnMut(InputSample, &Snapshot<'_>),
     ) -> Result<Vec<f64>, SimulationError> {
         self.observe_now(&mut observe);
         phases.iter().map(|phase| self.run_phase(phase, &mut observe)).collect()
     }
 
     /// Calls `observe` at the current time.
-    pub fn observe_now(&mut self, mut observe: impl FnMut(CarrierSample, &Snapshot<'_>)) {
+    pub fn observe_now(&mut self, mut observe: impl FnMut(InputSample, &Snapshot<'_>)) {
         observe(self.carrier, &self.simulation.snapshot());
     }
 
@@ -180,7 +180,7 @@ impl Runner {
     pub fn run_phase(
         &mut self,
         phase: &Phase,
-        mut observe: impl FnMut(CarrierSample, &Snapshot<'_>),
+        mut observe: impl FnMut(InputSample, &Snapshot<'_>),
     ) -> Result<f64, SimulationError> {
         let motion = phase.motion(self.area);
         let force = phase.end_force(self.area);
@@ -198,7 +198,7 @@ impl Runner {
         let start = self.carrier;
         let observe = |s: f64, snapshot: &Snapshot<'_>| observe(start.after(&motion, s), snapshot);
         self.simulation.advance_observed(&Motion { duration, ..motion }, None, &times, observe)?;
-        self.carrier = CarrierSample { time: self.simulation.time(), ..start.after(&motion, duration) };
+        self.carrier = InputSample { time: self.simulation.time(), ..start.after(&motion, duration) };
         Ok(duration)
     }
 

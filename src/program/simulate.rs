@@ -14,7 +14,7 @@ use super::files::{FileError, check_outputs, ends_in, load, named, print_beside}
 use super::interrupt::fail;
 use super::result_file::ResultWriter;
 use super::run_summary::RunSummary;
-use super::runner::{CarrierSample, Rows, Runner};
+use super::runner::{InputSample, Rows, Runner};
 use super::terminal::{LabelledLine, bar, is_quiet, is_verbose, lines, note, warn};
 
 /// `asperity simulate` failed.
@@ -185,7 +185,7 @@ impl Recorder {
         self.history.as_ref().map_or(scene, TimeHistory::scene)
     }
 
-    fn row(&mut self, carrier: CarrierSample, snapshot: &Snapshot<'_>) {
+    fn row(&mut self, carrier: InputSample, snapshot: &Snapshot<'_>) {
         snapshot.evaluate(&self.variables, &mut self.values);
         if let Err(error) = self.writer.write(carrier, &self.values) {
             // An observer cannot stop the run, which may take hours.

@@ -11,7 +11,7 @@ use cpu_time::ThreadTime;
 use indicatif::ProgressBar;
 
 use super::trace::{Errors, Trace};
-use crate::program::runner::{CarrierSample, Rows, Runner};
+use crate::program::runner::{InputSample, Rows, Runner};
 use crate::program::terminal::{bar, warn};
 
 /// No limit but the scene's own.
@@ -144,7 +144,7 @@ pub(super) fn follow(
     runner.observe_now(|_, snapshot| recorder.row(snapshot));
     let mut durations = Vec::new();
     for phase in &scene.excitation {
-        let observe = |carrier: CarrierSample, snapshot: &Snapshot<'_>| {
+        let observe = |carrier: InputSample, snapshot: &Snapshot<'_>| {
             recorder.row(snapshot);
             tick(carrier.time / duration);
         };
@@ -226,7 +226,7 @@ struct Master<'a> {
     simulation: Simulation,
     recorder: TraceRecorder,
     /// On the excitation, at the communication point.
-    carrier: CarrierSample,
+    carrier: InputSample,
 }
 
 impl<'a> Master<'a> {
@@ -242,12 +242,12 @@ impl<'a> Master<'a> {
         let mut simulation = Simulation::new(scene, &layer_start(scene, &inputs, 0.0))?;
         let mut recorder = TraceRecorder::new(scene);
         recorder.row(&simulation.snapshot());
-        let carrier = CarrierSample { u, ..CarrierSample::default() };
+        let carrier = InputSample { u, ..InputSample::default() };
         Ok(Self { scene, given, inputs, simulation, recorder, carrier })
     }
 
     /// Does the communication step between two times (s) of the `motion` that began at `start`.
-    fn step(&mut self, motion: &Motion, start: CarrierSample, from: f64, to: f64) -> Result<(), DriveError> {
+    fn step(&mut self, motion: &Motion, start: InputSample, from: f64, to: f64) -> Result<(), DriveError> {
         // A force jumps at the start of a phase.
         let at_start = if from == 0.0 { start.after(motion, 0.0) } else { self.carrier };
         for input in Input::MECHANICAL {

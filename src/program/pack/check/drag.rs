@@ -4,7 +4,7 @@ use crate::outputs::Variable;
 use crate::scene::{Initial, OutputGroup, Parameter, Path, Scene, Value};
 use crate::simulation::{Motion, Simulation, Start};
 
-use crate::program::runner::CarrierSample;
+use crate::program::runner::InputSample;
 
 /// Displacements of the motion to and fro, over the length over which the element sticks.
 const LEGS: [f64; 3] = [10.0, -20.0, 20.0];
@@ -31,8 +31,8 @@ impl ToAndFro {
     }
 
     /// The rows, the start included, with the carrier held at `w` (m).
-    pub(super) fn carriers(self, w: f64) -> Vec<CarrierSample> {
-        let mut carrier = CarrierSample { w, ..CarrierSample::default() };
+    pub(super) fn carriers(self, w: f64) -> Vec<InputSample> {
+        let mut carrier = InputSample { w, ..InputSample::default() };
         let mut carriers = vec![carrier];
         carriers.extend(self.steps().map(|(duration, rate)| {
             carrier.time += duration;

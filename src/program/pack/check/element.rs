@@ -18,7 +18,7 @@ use crate::program::figure::{
 };
 use crate::program::files::FileError;
 use crate::program::result_file::{CsvWriter, Head, ResultWriter};
-use crate::program::runner::CarrierSample;
+use crate::program::runner::InputSample;
 use crate::program::sweep::{Method, StopBounds, Swept, SweptPoint};
 use crate::program::terminal::{self, LabelledLine, labelled, real};
 
@@ -193,7 +193,7 @@ fn errors_plot(checks: &[PointCheck], load: Load) -> Ladders {
 /// The layer and the element along the motion to and fro, row by row.
 struct Loop {
     motion: ToAndFro,
-    carriers: Vec<CarrierSample>,
+    carriers: Vec<InputSample>,
     layer: Vec<[f64; LOOP_OUTPUTS.len()]>,
     element: Vec<[f64; LOOP_OUTPUTS.len()]>,
 }

@@ -1,10 +1,10 @@
 //! An element whose pressure changes much in a substep: it is cut where the element touches or lifts and where it is at
-//! the least pressure of the table, and each stretch between two cuts is divided into segments.
+//! the least pressure of the table, and each piece between two cuts is divided into segments.
 
 use crate::element::{Advanced, ElementLaw, ResampledLaw, Segment, SpringLaw, advance, apply_jump};
 use crate::math::Number;
 
-/// Segments of a stretch, at least.
+/// Segments of a piece, at least.
 const MIN_SEGMENTS: f64 = 4.0;
 /// Change of ln p over a segment, at most.
 const MAX_CHANGE: f64 = 0.125;
@@ -46,7 +46,7 @@ pub(super) fn advance_in_segments<T: Number>(
         if cut.value() <= here.fraction.value() {
             continue;
         }
-        // A stretch up to the next cut.
+        // A piece up to the next cut.
         let (start, there) = (here.fraction, between(law, begin, end, cut));
         let segments = segment_count(here.pressure, there.pressure);
         for segment in 1..=segments as u32 {
@@ -90,7 +90,7 @@ fn cuts<T: Number>(law: &mut ResampledLaw, begin: &Endpoint<T>, end: &Endpoint<T
     [touch.smaller(least), touch.larger(least), T::constant(1.0)]
 }
 
-/// The number of segments of a stretch with these pressures at its ends.
+/// The number of segments of a piece with these pressures at its ends.
 fn segment_count(before: f64, after: f64) -> f64 {
     let change = if before > 0.0 && after > 0.0 { (after / before).ln().abs() } else { 0.0 };
     (change / MAX_CHANGE).ceil().clamp(MIN_SEGMENTS, 1e3)
