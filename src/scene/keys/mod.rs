@@ -563,7 +563,7 @@ pub struct KeyEntry {
     pub of_material: Option<bool>,
 }
 
-/// All keys of a scene; those of its surface are the layer's roughness's too. [`RETIRED`] is left out.
+/// All keys of a scene; those of its surface are the layer's roughness's too. A retired key is left out.
 pub fn scene_keys() -> Vec<KeyEntry> {
     let left_out = ["layer.roughness.", RETIRED];
     entries("", ROOT).into_iter().filter(|key| !left_out.iter().any(|path| key.path.starts_with(path))).collect()
