@@ -67,6 +67,20 @@ def test_a_patch_beyond_its_table_warns_once(pad):
         asperity.Patch(pad, pose=(0.0, 0.0, -2e-4, 0.0, 0.0, 0.0))
 
 
+def test_a_patch_that_is_read_to_be_packed_starts_nowhere(pad, tmp_path):
+    file = tmp_path / "below.toml"
+    keys = 'offset = [0, 0, -1]\n[table]\nextrapolation = "refuse"\npath = "bed.csv"\n'
+    grid = 'shape = "flat"\nlength = 0.02\nwidth = 0.01\nnx = 2\nny = 1\n'
+    file.write_text(f'name = "below"\n[patch]\n{grid}{keys}')
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert asperity.Patch(file).pack(tmp_path / "below.fmu").exists()
+    with pytest.raises(asperity.SimulationError, match="beyond the table"):
+        asperity.Patch(file)["force.z"]
+    with pytest.raises(asperity.SimulationError, match="beyond the table"):
+        asperity.Patch(file, pose=np.zeros(6))
+
+
 DOWN = (0.0, 0.0, -5e-5, 0.0, 0.0, 0.0)
 AHEAD = (0.1, 0.0, 0.0, 0.0, 0.0, 0.0)
 

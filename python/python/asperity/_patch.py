@@ -30,8 +30,8 @@ class Patch:
         self,
         path: str | PathLike[str],
         *,
-        pose: Sequence[float] | Floats = _AT_REST,
-        rates: Sequence[float] | Floats = _AT_REST,
+        pose: Sequence[float] | Floats | None = None,
+        rates: Sequence[float] | Floats | None = None,
         transport_speed: float = 0.0,
         temperature: float | None = None,
     ) -> None:
@@ -39,20 +39,35 @@ class Patch:
 
         Args:
             path: The patch file.
-            pose: Where the body starts, m and rad, six numbers.
-            rates: How fast it moves just after the start, m/s and rad/s, six numbers.
+            pose: Where the body starts, m and rad, six numbers; None: all 0.
+            rates: How fast it moves just after the start, m/s and rad/s, six numbers; None: it rests.
             transport_speed: Speed of the tread, m/s; 0 without one.
             temperature: Temperature, K; None: as the patch has it.
 
         Raises:
             SceneError: Where the patch is refused.
-            SimulationError: Where it is beyond its table at the start, and that is refused.
+            SimulationError: Where it is beyond its table at the start given, and that is refused.
         """
         self._folder: TemporaryDirectory[str] | None = None
         self._patch = _native.Patch(Path(path))
-        self._run = _native.PatchRun(self._patch, pose, rates, transport_speed, temperature)
-        for text in self._run.take_warnings():
-            warnings.warn(text, stacklevel=2)
+        self._started: _native.PatchRun | None = None
+        # A patch that is read to be packed starts nowhere, and need not be within its table.
+        if pose is not None or rates is not None or transport_speed != 0.0 or temperature is not None:
+            at, moving = _AT_REST if pose is None else pose, _AT_REST if rates is None else rates
+            self._start(at, moving, transport_speed, temperature)
+
+    def _start(
+        self, pose: Sequence[float] | Floats, rates: Sequence[float] | Floats, speed: float, temperature: float | None
+    ) -> _native.PatchRun:
+        self._started = _native.PatchRun(self._patch, pose, rates, speed, temperature)
+        for text in self._started.take_warnings():
+            warnings.warn(text, stacklevel=3)
+        return self._started
+
+    @property
+    def _run(self) -> _native.PatchRun:
+        """The run; without a start given it begins where it is first looked at, at rest at 0."""
+        return self._start(_AT_REST, _AT_REST, 0.0, None) if self._started is None else self._started
 
     def advance(
         self,
@@ -161,7 +176,7 @@ class Patch:
 
 def _patch(native: _native.Patch, run: _native.PatchRun, folder: TemporaryDirectory[str] | None) -> Patch:
     patch = Patch.__new__(Patch)
-    patch._patch, patch._run, patch._folder = native, run, folder
+    patch._patch, patch._started, patch._folder = native, run, folder
     return patch
 
 
