@@ -1,13 +1,14 @@
 //! Errors of the library as exceptions of `asperity`.
 
 use std::fmt::Display;
+use std::io::ErrorKind;
 use std::path::Path;
 
 use asperity::patch::{MotionError, PatchError, RestoreError};
 use asperity::program::{CalibrateError, ContactError, FileError, FitError, OverrideError, PackError, SweepError};
 use asperity::scene::{ParameterError, SceneError};
 use asperity::simulation::SimulationError;
-use pyo3::exceptions::{PyKeyError, PyOSError, PyValueError};
+use pyo3::exceptions::{PyFileNotFoundError, PyKeyError, PyOSError, PyValueError};
 use pyo3::prelude::*;
 
 /// `asperity.SceneError` with file, line and key where they are known.
@@ -80,6 +81,9 @@ impl Raise for FileError {
             Self::Scene(error) => error.raise(),
             Self::Set(error) => error.raise(),
             Self::Patch(error) => error.raise(),
+            Self::Io { ref source, .. } if source.kind() == ErrorKind::NotFound => {
+                PyFileNotFoundError::new_err(self.to_string())
+            }
             Self::Io { .. } => PyOSError::new_err(self.to_string()),
             error => PyValueError::new_err(error.to_string()),
         }

@@ -87,6 +87,15 @@ impl PatchState {
 pub(crate) struct PatchRun {
     run: Mutex<asperity::patch::PatchRun>,
     variables: Vec<PatchVariable>,
+    has_tread: bool,
+}
+
+/// Refuses a speed (m/s) of a tread that the patch does not have.
+fn check_tread(has_tread: bool, speed: f64) -> PyResult<()> {
+    if has_tread || speed == 0.0 {
+        return Ok(());
+    }
+    Err(PyValueError::new_err(format!("transport_speed = {speed}: expected 0, since the patch has no tread")))
 }
 
 impl PatchRun {
@@ -105,17 +114,18 @@ impl PatchRun {
         transport_speed: f64,
         temperature: Option<f64>,
     ) -> PyResult<Self> {
+        check_tread(patch.patch.has_tread(), transport_speed)?;
         let temperature = temperature.unwrap_or(patch.patch.temperature());
         let start = PatchStart { time: 0.0, pose: Pose::from_coordinates(pose), rates, transport_speed, temperature };
         let run = asperity::patch::PatchRun::new(&patch.patch, &start).map_err(|error| error.raise())?;
-        Ok(Self { run: Mutex::new(run), variables: patch.patch.variables() })
+        Ok(Self { run: Mutex::new(run), variables: patch.patch.variables(), has_tread: patch.patch.has_tread() })
     }
 
     /// A run that goes on from a state.
     #[staticmethod]
     fn restore(patch: &Patch, state: &PatchState) -> PyResult<Self> {
         let run = asperity::patch::PatchRun::restore(&patch.patch, &state.0).map_err(|error| error.raise())?;
-        Ok(Self { run: Mutex::new(run), variables: patch.patch.variables() })
+        Ok(Self { run: Mutex::new(run), variables: patch.patch.variables(), has_tread: patch.patch.has_tread() })
     }
 
     /// Moves the body for `dt` to a pose or at rates of its coordinates; else it rests. What is not given stays.
@@ -130,6 +140,7 @@ impl PatchRun {
         temperature: Option<f64>,
     ) -> PyResult<()> {
         check_dt(dt)?;
+        check_tread(self.has_tread, transport_speed.unwrap_or(0.0))?;
         if pose.is_some() && rates.is_some() {
             return Err(PyValueError::new_err("pose and rates: expected one of them"));
         }
@@ -158,7 +169,7 @@ impl PatchRun {
 
     /// A run that goes on as this one.
     fn copy(&self) -> Self {
-        Self { run: Mutex::new(self.run().clone()), variables: self.variables.clone() }
+        Self { run: Mutex::new(self.run().clone()), variables: self.variables.clone(), has_tread: self.has_tread }
     }
 
     /// The warnings since the last call.

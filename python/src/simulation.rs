@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::{Duration, Instant};
 
 use asperity::outputs::{Variable, variables};
-use asperity::scene::{Force, Path};
+use asperity::scene::{Force, Input, Path};
 use asperity::simulation::{Interrupt, Motion, SimulationError, SimulationState, Start};
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -43,6 +43,7 @@ impl State {
 pub(crate) struct Simulation {
     run: Mutex<asperity::simulation::Simulation>,
     variables: Vec<Variable>,
+    inputs: Vec<Input>,
     /// The exception that stopped a motion.
     raised: Arc<Mutex<Option<PyErr>>>,
 }
@@ -61,6 +62,15 @@ impl Simulation {
         let found = self.variables.iter().find(|variable| variable.name == name);
         found.ok_or_else(|| no_output(name, self.variables.iter().map(|variable| variable.name.as_str())))
     }
+}
+
+/// Refuses what is given for an input that the scene does not have, which nothing would read.
+fn check_inputs(inputs: &[Input], given: &[(Input, bool)]) -> PyResult<()> {
+    let Some((unread, _)) = given.iter().find(|(input, is_given)| *is_given && !inputs.contains(input)) else {
+        return Ok(());
+    };
+    let known: Vec<&str> = inputs.iter().map(|input| input.name()).collect();
+    Err(PyValueError::new_err(format!("{}: the scene has no such input; it has {}", unread.name(), known.join(", "))))
 }
 
 /// Asks the interpreter for Ctrl-C between the steps of a motion, now and then.
@@ -116,12 +126,24 @@ impl Simulation {
         pull: f64,
         temperature: Option<f64>,
     ) -> PyResult<Self> {
+        let inputs = scene.scene.inputs();
+        let is_moved = |displacement: f64, rate: f64| displacement != 0.0 || rate != 0.0;
+        check_inputs(
+            &inputs,
+            &[
+                (Input::U, is_moved(u, u_rate)),
+                (Input::W, is_moved(w, w_rate)),
+                (Input::Load, load != 0.0),
+                (Input::Pull, pull != 0.0),
+                (Input::Temperature, temperature.is_some()),
+            ],
+        )?;
         let start = Start { time: 0.0, u, w, u_rate, w_rate, load, pull, temperature };
         let run = asperity::simulation::Simulation::new(&scene.scene, &start);
         let mut run = run.map_err(|error: SimulationError| error.raise())?;
         let raised = Arc::default();
         run.set_interrupt(Some(signals(Arc::clone(&raised))));
-        Ok(Self { run: Mutex::new(run), variables: variables(&scene.scene), raised })
+        Ok(Self { run: Mutex::new(run), variables: variables(&scene.scene), inputs, raised })
     }
 
     /// Moves the carrier for `dt`.
@@ -145,6 +167,16 @@ impl Simulation {
         temperature: Option<f64>,
     ) -> PyResult<()> {
         check_dt(dt)?;
+        check_inputs(
+            &self.inputs,
+            &[
+                (Input::U, u.is_some() || u_rate.is_some()),
+                (Input::W, w.is_some() || w_rate.is_some()),
+                (Input::Load, load.is_some() || load_rate.is_some()),
+                (Input::Pull, pull.is_some() || pull_rate.is_some()),
+                (Input::Temperature, temperature.is_some()),
+            ],
+        )?;
         let (now_u, now_w) = self.run()?.driven();
         let motion = Motion {
             duration: dt,

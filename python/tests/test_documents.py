@@ -8,7 +8,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.mark.filterwarnings("ignore")
+@pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("document", ["README.md", "docs/python.md"])
 def test_five_lines_go_from_a_file_to_a_curve(document, tmp_path, monkeypatch):
     text = (ROOT / document).read_text(encoding="utf-8")

@@ -81,6 +81,13 @@ def test_a_patch_that_is_read_to_be_packed_starts_nowhere(pad, tmp_path):
         asperity.Patch(file, pose=np.zeros(6))
 
 
+def test_a_patch_without_a_tread_has_no_speed_of_one(pad):
+    with pytest.raises(ValueError, match="the patch has no tread"):
+        asperity.Patch(pad, transport_speed=1.0)
+    with pytest.raises(ValueError, match="the patch has no tread"):
+        asperity.Patch(pad).advance(1e-3, transport_speed=1.0)
+
+
 DOWN = (0.0, 0.0, -5e-5, 0.0, 0.0, 0.0)
 AHEAD = (0.1, 0.0, 0.0, 0.0, 0.0, 0.0)
 

@@ -140,6 +140,50 @@ def test_a_sweep_of_what_does_not_slide_is_refused(small):
         small.sweep([0.1], forces=[1.0], method="fast")
 
 
+def test_points_that_are_not_steady_are_warned_of_and_hollow(block):
+    with pytest.warns(UserWarning, match="2 of 2 points are not steady or failed, the first: full contact"):
+        table = asperity.Scene.from_toml(SCENES / "grip-mujoco" / "face.toml").sweep([1e-3, 1e-2], [1e6])
+    line, hollow = table.plot().axes[0].lines
+    assert len(hollow.get_xdata()) == 2 and hollow.get_markerfacecolor() == "white"
+
+
+def test_what_is_no_table_is_refused():
+    with pytest.raises(ValueError, match="expected the text of a table"):
+        asperity.Table("speed,pressure\n1\n")
+
+
+def test_a_scene_is_saved_with_its_files(small, block, tmp_path):
+    changed = small.with_profile([0.0, 1e-4, 2e-4], [0.0, 1e-6, 0.0], periodic=True)
+    for scene in (changed, block):
+        file = scene.save(tmp_path / "folder" / "scene.toml", overwrite=True)
+        assert asperity.Scene.from_toml(file) == scene and scene.save(file) == file
+    with pytest.raises(FileExistsError, match="overwrite=True"):
+        small.save(file)
+    assert asperity.Scene.from_toml(file) == block
+
+
+def test_a_motion_counts_from_its_first_row(small):
+    motion = {"time": [0.0, 1e-3], "u": [0.0, 0.0], "w": [-1e-5, -2e-5]}
+    with pytest.warns(UserWarning, match="count from the first row of the motion, u = 0 m, w = -1e-05 m"):
+        offset = small.simulate(motion=motion)
+    motion["w"] = [0.0, -1e-5]
+    assert np.array_equal(offset["F_z"], small.simulate(motion=motion)["F_z"])
+    with pytest.raises(ValueError, match="times: expected numbers from 0 to"):
+        small.simulate(times=[np.nan])
+
+
+def test_a_compound_has_a_time_for_each_modulus(block):
+    with pytest.raises(ValueError, match="2 moduli and 1 times"):
+        block.with_prony([1e6, 2e6], [1e-3])
+
+
+def test_files_that_are_missing_are_said_so(block):
+    with pytest.raises(FileNotFoundError):
+        asperity.fit("missing.csv")
+    with pytest.raises(ValueError, match="--free: expected a parameter to fit, found none"):
+        block.calibrate({"speed": [0.1], "pressure": [1e5], "friction": [0.5]}, {})
+
+
 def test_a_table_reads_back(block, tmp_path):
     table = block.sweep([0.1, 1.0], [1e5, 2e5, 4e5], [283.15, 293.15])
     assert table["friction"].shape == (2, 3, 2) and np.all(table.status == "steady")

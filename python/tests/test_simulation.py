@@ -87,6 +87,15 @@ def test_steps_that_are_used_up_are_an_error(small):
         small.simulate()
 
 
+def test_inputs_that_the_scene_does_not_have_are_refused(small):
+    simulation = asperity.Simulation(small)
+    for given in ({"load": 1.0}, {"load_rate": 1.0}, {"pull": 1.0}, {"temperature": 300.0}):
+        with pytest.raises(ValueError, match="the scene has no such input; it has u, w"):
+            simulation.advance(1e-3, **given)
+    with pytest.raises(ValueError, match="load: the scene has no such input"):
+        asperity.Simulation(small, load=1.0)
+
+
 def test_runs_in_threads_do_not_wait_for_each_other(small):
     found = [None] * 4
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ._arguments import Floats
 
 if TYPE_CHECKING:
@@ -30,6 +32,24 @@ def stacked(title: str, x_title: str, panels: Sequence[tuple[str, Sequence[Curve
         if len(curves) > 1:
             axes.legend()
     all_axes[-1].set_xlabel(x_title)
+    return figure
+
+
+def swept(y_title: str, curves: Sequence[tuple[str, Floats, Floats, Any]]) -> Figure:
+    """Curves over the speed: name, speeds, values, and which of them are steady; the others are hollow."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7.0, 3.2), layout="constrained")
+    axes = figure.subplots()
+    for name, speeds, values, steady in curves:
+        (line,) = axes.plot(speeds, values, label=name, marker="o")
+        if not np.all(steady):
+            hollow = {"color": line.get_color(), "markerfacecolor": "white"}
+            axes.plot(speeds[~steady], values[~steady], "o", **hollow)
+    axes.set(xscale="log", xlabel="speed [m/s]", ylabel=y_title)
+    axes.grid(alpha=0.3)
+    if len(curves) > 1:
+        axes.legend()
     return figure
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
-from ._arguments import Floats, Progress, axis, numbers, positive, shown, table_text, to_toml
+from ._arguments import Floats, Progress, axis, columns_of, numbers, positive, shown, table_text, to_toml
 from ._library import options as library_options
 
 if TYPE_CHECKING:
@@ -178,8 +178,10 @@ class Scene:
             times: Relaxation times τ_j, s, shape (n,).
             equilibrium: Modulus E_∞, Pa; None: as it was.
         """
-        pairs = zip(numbers("moduli", moduli), numbers("times", times), strict=True)
-        terms = [{"modulus": modulus, "relaxation_time": time} for modulus, time in pairs]
+        moduli, times = numbers("moduli", moduli), numbers("times", times)
+        if len(moduli) != len(times):
+            raise ValueError(f"expected a time for each modulus, found {len(moduli)} moduli and {len(times)} times")
+        terms = [{"modulus": modulus, "relaxation_time": time} for modulus, time in zip(moduli, times, strict=True)]
         settings = {"material.prony": to_toml(terms)}
         if equilibrium is not None:
             settings["material.equilibrium_modulus"] = to_toml(float(equilibrium))
@@ -203,7 +205,13 @@ class Scene:
         Args:
             motion: A DataFrame, or a mapping of names to arrays of shape (n,): ``time`` (s), ``u`` and ``w`` (m); of a
                 carrier that is a body ``load``, ``pressure`` and ``pull``; ``temperature`` (K) where it is an input.
+                Time, u and w count from the first row, with a warning where that is not u = w = 0: a run of a scene
+                starts there. :class:`Simulation` starts anywhere.
         """
+        offset = {name: float(np.asarray(column)[0]) for name, column in columns_of(motion).items() if name in ("u", "w")}
+        if any(offset.values()):
+            said = ", ".join(f"{name} = {value:g} m" for name, value in offset.items())
+            warnings.warn(f"u and w count from the first row of the motion, {said}", stacklevel=2)
         settings = {"excitation": to_toml([{"file": "with_motion.csv"}])}
         return self._changed(settings, {"with_motion.csv": table_text(motion).encode()})
 
@@ -219,6 +227,27 @@ class Scene:
             scene._folder = self._folder
             return scene
         return _in_own_folder(native.source, added, {**self._read_files(), **files})
+
+    def save(self, path: str | PathLike[str], overwrite: bool = False) -> Path:
+        """Writes the scene file and, beside it, the files that it reads; returns its path.
+
+        Args:
+            path: The scene file to write.
+            overwrite: Whether other files of these names are replaced.
+
+        Raises:
+            FileExistsError: Where another file of such a name is there; nothing is then written.
+        """
+        file = Path(path)
+        contents = {file.parent / name: content for name, content in self._read_files().items()}
+        contents[file] = self.to_toml().encode()
+        others = [place for place, content in contents.items() if place.exists() and place.read_bytes() != content]
+        if others and not overwrite:
+            raise FileExistsError(f"{others[0]}: expected no other file of this name, or overwrite=True")
+        for place, content in contents.items():
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.write_bytes(content)
+        return file
 
     def _read_files(self) -> dict[str, bytes]:
         """The files that the scene reads, by the names it has for them."""
@@ -317,7 +346,7 @@ class Scene:
         Args:
             points: Number of rows for each phase; a motion has a row for each of its own.
             motion: What :meth:`with_motion` takes; None: the scene's excitation.
-            times: Times of rows besides these, s.
+            times: Times of rows besides these, s, within the run.
             elements: Whether to keep position, forces and mode of every mass.
             progress: True for a line on standard error, or a function of the fraction done.
 
@@ -329,7 +358,10 @@ class Scene:
         scene = self if motion is None else self.with_motion(motion)
         if points < 1:
             raise ValueError(f"points = {points}: expected 1 or more")
-        found = _native.simulate(scene._native, points, numbers("times", times).tolist(), elements, shown(progress))
+        also_at = numbers("times", times)
+        if not np.all((also_at >= 0.0) & (also_at <= scene.duration)):
+            raise ValueError(f"times: expected numbers from 0 to {scene.duration:g} s, the end of the run")
+        found = _native.simulate(scene._native, points, also_at.tolist(), elements, shown(progress))
         columns, units, of_masses, mass_units, said = found
         for text in said:
             warnings.warn(text, stacklevel=2)
@@ -385,7 +417,12 @@ class Scene:
         )
         for warning in said:
             warnings.warn(warning, stacklevel=2)
-        return Table(text)
+        table = Table(text)
+        failed = [status for status in table.status.ravel() if status != "steady"]
+        if failed:
+            text = f"{len(failed)} of {table.status.size} points are not steady or failed, the first: {failed[0]}"
+            warnings.warn(f"{text}; Table.status says which", stacklevel=2)
+        return table
 
     def contact(self, pressure: float, speed: float, points: int | None = None) -> Contact:
         """Where the rubber touches in steady sliding, and how hard.

@@ -45,6 +45,8 @@ class Table:
         head, *rows = csv.reader(lines)
         names = [name.split(" [")[0] for name in head]
         self.units = {name: full.partition(" [")[2].rstrip("]") for name, full in zip(names, head, strict=True)}
+        if any(len(row) != len(head) for row in rows) or not rows:
+            raise ValueError("expected the text of a table of asperity sweep, found rows of other lengths")
         columns = dict(zip(names, zip(*rows, strict=True), strict=True))
         self.load = "pressure" if "pressure" in columns else "force"
         missing = {"speed", self.load, "status", "friction"} - set(columns)
@@ -114,16 +116,19 @@ class Table:
         return xr.Dataset(data, coords=coordinates)
 
     def plot(self, column: str = "friction") -> Figure:
-        """Draws a column over the speed with matplotlib, a curve for each load and temperature."""
-        from ._plots import stacked
+        """Draws a column over the speed with matplotlib, a curve for each load and temperature.
+
+        Points that are not steady are hollow.
+        """
+        from ._plots import swept
 
         unit = "Pa" if self.load == "pressure" else "N"
         curves = [
-            (_label(load, unit, kelvin), self.speeds, self[column][:, j, k])
+            (_label(load, unit, kelvin), self.speeds, self[column][:, j, k], self.status[:, j, k] == "steady")
             for k, kelvin in enumerate(self.temperatures)
             for j, load in enumerate(self.loads)
         ]
-        return stacked("", "speed [m/s]", [(f"{column} [{self.units[column]}]", curves)], log=True)
+        return swept(f"{column} [{self.units[column]}]", curves)
 
     def pack(self, path: str | PathLike[str], libraries: Sequence[str | PathLike[str]] | None = None) -> Path:
         """Packs the table as an FMU, a point-contact element, and returns its path.

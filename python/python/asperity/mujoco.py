@@ -257,11 +257,12 @@ def attach(
     return Pad(model, data, patch, carrier, ground, driven)
 
 
-def step(model: Any, data: Any, pads: Sequence[Pad]) -> int:
+def step(model: Any, data: Any, pads: Pad | Sequence[Pad]) -> int:
     """A step of MuJoCo under the loads of its pads, in place of `mujoco.mj_step`; returns how often it corrected them.
 
-    `pads` are all those of the model: those that press on the same bodies are solved together.
+    `pads` are all those of the model, or the only one: those that press on the same bodies are solved together.
     """
+    pads = [pads] if isinstance(pads, Pad) else pads
     if not pads:
         mujoco.mj_step(model, data)
         return 0

@@ -58,6 +58,8 @@ pub enum CalibrateError {
     NoNumber { key: String },
     #[error("--free {key}: expected it once")]
     Twice { key: String },
+    #[error("--free: expected a parameter to fit, found none")]
+    None,
     #[error("--free: expected at most {most} parameters, found {found}")]
     Many { most: usize, found: usize },
     #[error("--free {key}: expected a scene whose steady sliding is solved for: the layer has no heat in it")]
@@ -154,6 +156,9 @@ impl<'a> FreeScene<'a> {
     /// The parameters are numbers of the file, each once, and the scene is possible at each of their bounds.
     fn check_parameters(&mut self) -> Result<(), CalibrateError> {
         let keys: Vec<String> = self.parameters.iter().map(|parameter| parameter.key.clone()).collect();
+        if keys.is_empty() {
+            return Err(CalibrateError::None);
+        }
         if keys.len() > MOST_FREE {
             return Err(CalibrateError::Many { most: MOST_FREE, found: keys.len() });
         }

@@ -393,7 +393,7 @@ const CARRIER_Z: &[Key] = &[
 ];
 
 /// An old key, which the reader refuses with what says the same in `surface.fine`.
-const RETIRED: &str = "friction.real_area";
+pub(super) const RETIRED: &str = "friction.real_area";
 
 const REAL_AREA: &[Key] = &[
     number("rms_slope", NOT_NEGATIVE, Unit::One, "In its place: surface.fine"),

@@ -243,7 +243,8 @@ impl<'a> TableReader<'a> {
         let form = self.source.form;
         let foreign = self.keys.iter().filter(|key| key.form.is_some_and(|other| other != form));
         if let Some(entry) = foreign.into_iter().find_map(|key| self.find(key)) {
-            let own: Vec<&str> = self.keys.iter().filter(|key| key.form == Some(form)).map(|key| key.name).collect();
+            let own = self.keys.iter().filter(|key| key.form == Some(form)).map(|key| key.name);
+            let own: Vec<&str> = own.filter(|name| self.full(name) != keys::RETIRED).collect();
             let instead = if own.is_empty() { String::new() } else { format!("; instead: {}", own.join(", ")) };
             let with = if form == Form::Direct { "without" } else { "beside" };
             return Err(entry.refuse(format_args!("no such key {with} [material]{instead}")));
@@ -261,7 +262,8 @@ impl<'a> TableReader<'a> {
         let names = self.table.keys().map(|key| (key.get_ref().as_ref(), key.span().start));
         match names.filter(|(name, _)| !allowed.contains(name)).min_by_key(|(_, offset)| *offset) {
             Some((name, offset)) => {
-                let problem = Problem::Unknown { allowed: allowed.iter().copied().map(String::from).collect() };
+                let names = allowed.iter().filter(|name| self.full(name) != keys::RETIRED);
+                let problem = Problem::Unknown { allowed: names.copied().map(String::from).collect() };
                 Err(SceneError::new(self.source.location(offset), self.full(name), problem))
             }
             None => Ok(()),
