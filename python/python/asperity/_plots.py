@@ -44,8 +44,7 @@ def swept(y_title: str, curves: Sequence[tuple[str, Floats, Floats, Any]]) -> Fi
     for name, speeds, values, steady in curves:
         (line,) = axes.plot(speeds, values, label=name, marker="o")
         if not np.all(steady):
-            hollow = {"color": line.get_color(), "markerfacecolor": "white"}
-            axes.plot(speeds[~steady], values[~steady], "o", **hollow)
+            axes.plot(speeds[~steady], values[~steady], "o", color=line.get_color(), markerfacecolor="white")
     axes.set(xscale="log", xlabel="speed [m/s]", ylabel=y_title)
     axes.grid(alpha=0.3)
     if len(curves) > 1:
