@@ -89,32 +89,24 @@ pub enum PatchKind {
     Warm,
 }
 
-/// An output of a patch.
-struct OutputRow {
-    group: PatchGroup,
-    output: PatchOutput,
-    name: &'static str,
-    unit: Unit,
-    kind: OutputType,
-    description: &'static str,
-    of: PatchKind,
-}
+/// The output of the element of an index.
+type OfElement = fn(usize) -> PatchOutput;
 
-/// A field of the elements of a patch.
-struct ElementField {
-    /// The output of an element.
-    output: fn(usize) -> PatchOutput,
-    /// Its name behind that of the element.
+/// An output of a patch, or of each of its elements: what stands for it is `O`.
+struct OutputRow<O> {
+    group: PatchGroup,
+    output: O,
+    /// Its name; of an element the part behind the element's.
     name: &'static str,
     unit: Unit,
     kind: OutputType,
-    /// What it is, the element's name put behind.
+    /// What it is; of an element the element's name follows.
     description: &'static str,
     of: PatchKind,
 }
 
 #[rustfmt::skip]
-const TABLE: &[OutputRow] = {
+const TABLE: &[OutputRow<PatchOutput>] = {
     use OutputType::{Integer, Real};
     use PatchGroup::{Contact, Dissipation, Energy, Forces, Friction};
     use PatchKind::{All, Tread, Warm};
@@ -146,47 +138,39 @@ const TABLE: &[OutputRow] = {
 };
 
 #[rustfmt::skip]
-const ELEMENT_FIELDS: &[ElementField] = &[
-    field(PatchOutput::ElementPressure, "pressure", Unit::Pascal, OutputType::Real, "Pressure on", PatchKind::All),
-    field(|i| PatchOutput::ElementTraction(i, 0), "traction.x", Unit::Pascal, OutputType::Real, "Traction along x on", PatchKind::All),
-    field(|i| PatchOutput::ElementTraction(i, 1), "traction.y", Unit::Pascal, OutputType::Real, "Traction along y on", PatchKind::All),
-    field(PatchOutput::ElementMode, "mode", Unit::One, OutputType::Integer, "Mode (0 free, 1 slipping, 2 sticking) of", PatchKind::All),
-    field(PatchOutput::ElementTemperature, "temperature", Unit::Kelvin, OutputType::Real, "Temperature of", PatchKind::Warm),
-];
+const ELEMENT_FIELDS: &[OutputRow<OfElement>] = {
+    use OutputType::{Integer, Real};
+    use PatchGroup::Elements;
+    use PatchKind::{All, Warm};
+    use Unit::{Kelvin, One, Pascal};
+    &[
+        row(Elements, PatchOutput::ElementPressure, "pressure", Pascal, Real, "Pressure on", All),
+        row(Elements, |i| PatchOutput::ElementTraction(i, 0), "traction.x", Pascal, Real, "Traction along x on", All),
+        row(Elements, |i| PatchOutput::ElementTraction(i, 1), "traction.y", Pascal, Real, "Traction along y on", All),
+        row(Elements, PatchOutput::ElementMode, "mode", One, Integer, "Mode (0 free, 1 slipping, 2 sticking) of", All),
+        row(Elements, PatchOutput::ElementTemperature, "temperature", Kelvin, Real, "Temperature of", Warm),
+    ]
+};
 
-const fn row(
+const fn row<O: Copy>(
     group: PatchGroup,
-    output: PatchOutput,
+    output: O,
     name: &'static str,
     unit: Unit,
     kind: OutputType,
     description: &'static str,
     of: PatchKind,
-) -> OutputRow {
+) -> OutputRow<O> {
     OutputRow { group, output, name, unit, kind, description, of }
 }
 
-const fn field(
-    output: fn(usize) -> PatchOutput,
-    name: &'static str,
-    unit: Unit,
-    kind: OutputType,
-    description: &'static str,
-    of: PatchKind,
-) -> ElementField {
-    ElementField { output, name, unit, kind, description, of }
-}
+impl<O> OutputRow<O> {
+    fn variable(&self, output: PatchOutput, name: String, description: String) -> PatchVariable {
+        PatchVariable { output, group: self.group, name, unit: self.unit, kind: self.kind, description }
+    }
 
-impl OutputRow {
-    fn variable(&self) -> PatchVariable {
-        PatchVariable {
-            output: self.output,
-            group: self.group,
-            name: self.name.into(),
-            unit: self.unit,
-            kind: self.kind,
-            description: self.description.into(),
-        }
+    fn entry(&self, description: String) -> PatchOutputEntry {
+        PatchOutputEntry { group: self.group, name: self.name.into(), units: vec![self.unit], description, of: self.of }
     }
 }
 
@@ -207,20 +191,6 @@ pub struct PatchOutputEntry {
 
 /// All outputs of patches, in the order of the variables.
 pub fn catalogue() -> Vec<PatchOutputEntry> {
-    let of_row = |row: &OutputRow| PatchOutputEntry {
-        group: row.group,
-        name: row.name.into(),
-        units: vec![row.unit],
-        description: row.description.into(),
-        of: row.of,
-    };
-    let of_field = |field: &ElementField| PatchOutputEntry {
-        group: PatchGroup::Elements,
-        name: field.name.into(),
-        units: vec![field.unit],
-        description: format!("{} the element", field.description),
-        of: field.of,
-    };
     let tangents = PatchOutputEntry {
         group: PatchGroup::Tangent,
         name: "tangent.LOAD.COORDINATE".into(),
@@ -228,7 +198,9 @@ pub fn catalogue() -> Vec<PatchOutputEntry> {
         description: "Change of force.x to moment.z at the end of a step with the targets of x to yaw in it".into(),
         of: PatchKind::All,
     };
-    TABLE.iter().map(of_row).chain([tangents]).chain(ELEMENT_FIELDS.iter().map(of_field)).collect()
+    let outputs = TABLE.iter().map(|row| row.entry(row.description.into()));
+    let fields = ELEMENT_FIELDS.iter().map(|row| row.entry(format!("{} the element", row.description)));
+    outputs.chain([tangents]).chain(fields).collect()
 }
 
 /// The unit of the output variable called `name`, whatever the patch; `None` for a name that no patch can have.
@@ -266,7 +238,10 @@ impl Patch {
         match group {
             PatchGroup::Tangent => tangents(),
             PatchGroup::Elements => (0..self.count()).flat_map(|i| self.fields(i)).collect(),
-            _ => TABLE.iter().filter(|row| row.group == group && self.has(row.of)).map(OutputRow::variable).collect(),
+            _ => {
+                let rows = TABLE.iter().filter(|row| row.group == group && self.has(row.of));
+                rows.map(|row| row.variable(row.output, row.name.into(), row.description.into())).collect()
+            }
         }
     }
 
@@ -288,15 +263,10 @@ impl Patch {
 
     fn fields(&self, i: usize) -> impl Iterator<Item = PatchVariable> + use<'_> {
         let element = self.element_name(i);
-        let variable = move |field: &ElementField| PatchVariable {
-            output: (field.output)(i),
-            group: PatchGroup::Elements,
-            name: format!("{element}.{}", field.name),
-            unit: field.unit,
-            kind: field.kind,
-            description: format!("{} {element}", field.description),
-        };
-        ELEMENT_FIELDS.iter().filter(|field| self.has(field.of)).map(variable)
+        ELEMENT_FIELDS.iter().filter(|row| self.has(row.of)).map(move |row| {
+            let (name, description) = (format!("{element}.{}", row.name), format!("{} {element}", row.description));
+            row.variable((row.output)(i), name, description)
+        })
     }
 }
 
