@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use asperity::program::{FitOptions, FittedModuli, WlfConstants, fit_moduli};
-use asperity::scene::text_table::Unit;
+use asperity::tables::Unit;
 use numpy::{IntoPyArray as _, PyArray1, PyArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

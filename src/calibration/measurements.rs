@@ -1,7 +1,7 @@
 //! Tables of measured friction: columns by their names and units.
 
 use crate::element::{Load, OperatingPoint};
-use crate::scene::text_table::{Block, Dimension, Head, Heading, HeadingUnit, NumberStyle, Unit, Words, decode};
+use crate::tables::{Block, Dimension, Head, Heading, HeadingUnit, NumberStyle, Unit, Words, decode};
 
 /// A measured friction coefficient.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,7 +8,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::grid::{Load, OperatingPoint, SweepGrid};
-use crate::scene::{SMALLEST, is_possible, text_table};
+use crate::scene::{SMALLEST, is_possible};
+use crate::tables;
 
 /// The first line of a table; its number grows when readers have to know of a change.
 pub const FORMAT: &str = "# asperity sweep = 1";
@@ -250,8 +251,7 @@ impl TableRow {
     pub fn line(&self) -> String {
         let text = |value: &Option<f64>| value.map(number).unwrap_or_default();
         let point = [Some(self.point.speed), Some(self.point.load), self.point.temperature];
-        let fields =
-            point.iter().map(text).chain([text_table::quoted(&self.status)]).chain(self.values.iter().map(text));
+        let fields = point.iter().map(text).chain([tables::quoted(&self.status)]).chain(self.values.iter().map(text));
         fields.collect::<Vec<_>>().join(",") + "\n"
     }
 }
@@ -339,7 +339,7 @@ impl TableText {
 
     fn divided(text: &str, file: &Path) -> Result<Self, TableError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let header = text_table::comments(text).filter_map(|(_, comment)| key_and_value(comment)).collect();
+        let header = tables::comments(text).filter_map(|(_, comment)| key_and_value(comment)).collect();
         let mut lines = text.lines().zip(1..).filter(|(line, _)| !line.starts_with('#') && !line.trim().is_empty());
         let columns = lines.next().map_or_else(Vec::new, |(line, _)| fields(line));
         let lines = lines.map(|(line, number)| TableLine { number, text: line.to_owned(), fields: fields(line) });
@@ -549,7 +549,7 @@ fn key_and_value(comment: &str) -> Option<(String, String)> {
 }
 
 fn fields(line: &str) -> Vec<String> {
-    text_table::fields(line, ',').map(Cow::into_owned).collect()
+    tables::fields(line, ',').map(Cow::into_owned).collect()
 }
 
 #[cfg(test)]

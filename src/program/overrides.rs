@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use crate::patch::{Patch, PatchError};
-use crate::scene::text_table::quantity_with_unit;
 use crate::scene::{ParameterError, Problem, Scene, SceneError, similar_keys};
+use crate::tables::quantity_with_unit;
 use toml_edit::{Array, DocumentMut, Item, Table, TableLike, Value};
 
 /// A key's path, elements of lists counted from 1, and its value.

@@ -7,8 +7,8 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::outputs::{OutputType, Variable};
-use crate::scene::text_table::{self, Row};
 use crate::scene::{Input, Unit};
+use crate::tables::{self, Row};
 
 use super::draft::Draft;
 use super::files::{FileError, read};
@@ -44,7 +44,7 @@ impl CsvWriter {
     }
 
     pub(crate) fn write<T: AsRef<str>>(&mut self, fields: impl IntoIterator<Item = T>) -> Result<(), FileError> {
-        let fields: Vec<String> = fields.into_iter().map(|field| text_table::quoted(field.as_ref())).collect();
+        let fields: Vec<String> = fields.into_iter().map(|field| tables::quoted(field.as_ref())).collect();
         writeln!(self.file, "{}", fields.join(",")).map_err(FileError::io("write", &self.path))
     }
 
@@ -154,9 +154,9 @@ impl CsvFile {
     pub(crate) fn read(path: &Path) -> Result<Self, ResultFileError> {
         let bytes = read(path)?;
         let error = |line: usize, message: String| ResultFileError::Line { path: path.to_owned(), line, message };
-        let text = text_table::decode(&bytes).map_err(|problem| error(1, problem.to_string()))?;
+        let text = tables::decode(&bytes).map_err(|problem| error(1, problem.to_string()))?;
         let owned = |row: Row<'_>| -> Vec<String> { row.fields.into_iter().map(Cow::into_owned).collect() };
-        let mut rows = text_table::rows(&text, None);
+        let mut rows = tables::rows(&text, None);
         let names = rows.next().map(owned).unwrap_or_default();
         let record = |row: Row<'_>| {
             let (line, fields) = (row.line, owned(row));

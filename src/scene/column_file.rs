@@ -2,8 +2,8 @@
 
 use super::error::ContentError;
 use super::profile::ReadingNote;
-use super::text_table::{Block, Dimension, Head, Heading, HeadingUnit, Line, NumberStyle, Unit, Words, decode};
 use super::values::NumberRange;
+use crate::tables::{Block, Dimension, Head, Heading, HeadingUnit, Line, NumberStyle, Unit, Words, decode};
 
 /// What a file must hold.
 #[derive(Debug)]

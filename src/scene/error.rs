@@ -3,6 +3,8 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use crate::tables::NotText;
+
 /// Why a scene is refused: what was expected, what was found, and where.
 ///
 /// It reads like `scene.toml:12: layer.mass = -1.0: expected a number from 1e-30 to 1e30`.
@@ -153,6 +155,12 @@ impl ParameterError {
     /// What was given and what is allowed.
     pub fn problem(&self) -> &Problem {
         &self.problem
+    }
+}
+
+impl From<NotText> for Problem {
+    fn from(_: NotText) -> Self {
+        Self::value(NotText::FOUND, NotText::EXPECTED)
     }
 }
 

@@ -28,7 +28,6 @@ mod regular_file;
 mod self_affine;
 mod spectrum;
 mod surface;
-pub mod text_table;
 mod values;
 mod warnings;
 

@@ -7,8 +7,8 @@ use super::error::ContentError;
 use super::excitation::{Force, Path, Phase};
 use super::material::Wlf;
 use super::profile::ReadingNote;
-use super::text_table::{Dimension, Words};
 use super::values::{ANY, POSITIVE};
+use crate::tables::{Dimension, Words};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum OfMotion {

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
-use super::text_table::{Dimension, quantity};
+use crate::tables::{Dimension, quantity};
 
 /// The largest size of a number in SI units that a scene, a carrier or a master may give: m, s, N/m or any other.
 ///

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::calibration::{FreeParameter, FrictionParts, Outcome, Task};
 use crate::element::{OperatingPoint, STEADY};
-use crate::scene::text_table;
+use crate::tables;
 
 use super::CalibrateError;
 use crate::program::files::FileError;
@@ -51,7 +51,7 @@ fn line(task: &Task, outcome: &Outcome) -> String {
     let point = [real(speed), real(load), temperature.map(real).unwrap_or_default()];
     let status = outcome.as_ref().err().map_or(STEADY, String::as_str);
     let parts = outcome.as_ref().map_or([None; 3], |parts| [parts.profile, parts.fine, parts.shear].map(Some));
-    let fields = values.chain(point).chain([text_table::quoted(status)]);
+    let fields = values.chain(point).chain([tables::quoted(status)]);
     let parts = parts.map(|part| part.map(real).unwrap_or_default());
     fields.chain(parts).collect::<Vec<_>>().join(",") + "\n"
 }
@@ -73,7 +73,7 @@ fn read(text: &str, path: &Path, head: &str, parameters: usize) -> Result<Vec<(T
 
 /// The point of a row, without its end; `None` where it is damaged.
 fn point(line: &str, parameters: usize) -> Option<(Task, Outcome)> {
-    let fields: Vec<String> = text_table::fields(line, ',').map(std::borrow::Cow::into_owned).collect();
+    let fields: Vec<String> = tables::fields(line, ',').map(std::borrow::Cow::into_owned).collect();
     if fields.len() != parameters + 7 {
         return None;
     }

@@ -299,7 +299,7 @@ pub(crate) struct Fit {
     pub(crate) shear: bool,
     /// The unit of a column, where its heading names none or another one, as in 'Temperature=°C'. May be repeated.
     #[arg(long, value_name = "COLUMN=UNIT", value_parser = column_unit)]
-    pub(crate) unit: Vec<(String, crate::scene::text_table::Unit)>,
+    pub(crate) unit: Vec<(String, crate::tables::Unit)>,
     /// The sheet of a workbook. Default: the only one with moduli.
     #[arg(long, value_name = "NAME")]
     pub(crate) sheet: Option<String>,

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use crate::calibration::FreeParameter;
 use crate::scene::Wlf;
-use crate::scene::text_table::{Dimension, Unit, quantity};
+use crate::tables::{Dimension, Unit, quantity};
 use clap::builder::{PathBufValueParser, StringValueParser, TypedValueParser};
 
 use crate::program::files::{ends_in, is_standard_output};

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::element::STEADY;
-use crate::scene::text_table;
+use crate::tables;
 
 use super::ConvergeError;
 use super::variants::{Dimensions, Parts, Variant};
@@ -99,7 +99,7 @@ impl RunRow {
             real(self.dimensions.length()),
             seed.map(|seed| seed.to_string()).unwrap_or_default(),
             text(longest),
-            text_table::quoted(status),
+            tables::quoted(status),
             text(self.fit_rms),
         ];
         let [friction, area] = [of(|pair| pair.friction), of(|pair| pair.area)];
@@ -213,7 +213,7 @@ impl Table {
 /// The runs of the table at `path`, which is the `text`, without the corrupt rows, which are named.
 fn runs_done(text: &str, path: &Path, header: &StudyHeader) -> Result<Vec<RunRow>, ConvergeError> {
     let not_a_table = |problem: String| ConvergeError::NotATable { path: path.to_owned(), problem };
-    let mut rows = text_table::rows(text, Some(','));
+    let mut rows = tables::rows(text, Some(','));
     if !text.starts_with(FORMAT) || rows.next().is_none_or(|names| names.fields.len() != COLUMNS.len()) {
         return Err(not_a_table(format!("expected the line `{FORMAT}` and the columns {}", header.columns())));
     }
@@ -259,7 +259,7 @@ mod tests {
         for run in [steady.clone(), failed, RunRow { dimensions: seedless, fit_rms: None, ..steady }] {
             for change in [None, Some(pair(-0.5, 0.25))] {
                 let line = run.line(change);
-                let row = text_table::rows(&line, Some(',')).next().unwrap();
+                let row = tables::rows(&line, Some(',')).next().unwrap();
                 assert_eq!((row.fields.len(), RunRow::from_fields(&row.fields)), (COLUMNS.len(), Some(run.clone())));
             }
         }

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::f64::consts::TAU;
 
-use crate::scene::text_table::{Block, Dimension, Heading, HeadingUnit, Unit, Words, words};
+use crate::tables::{Block, Dimension, Heading, HeadingUnit, Unit, Words, words};
 
 use super::moduli_error::ModuliError;
 use super::stated_temperature::without_temperature;

@@ -1,7 +1,7 @@
 //! Tables of measured moduli, as people and instruments write them: what each row says, in SI units.
 
 use crate::scene::Wlf;
-use crate::scene::text_table::{self, Block};
+use crate::tables::{self, Block};
 
 use super::columns::{EXPECTED, GivenUnits};
 use super::moduli_error::ModuliError;
@@ -50,8 +50,8 @@ pub(super) struct Reading<'a> {
 impl MeasuredModuli {
     /// Reads all tables of moduli in the bytes of a file.
     pub(super) fn parse(bytes: &[u8], reading: &Reading<'_>) -> Result<Self, ModuliError> {
-        let text = text_table::decode(bytes)
-            .map_err(|_| ModuliError::in_line(1, text_table::NotText::FOUND, text_table::NotText::EXPECTED))?;
+        let text = tables::decode(bytes)
+            .map_err(|_| ModuliError::in_line(1, tables::NotText::FOUND, tables::NotText::EXPECTED))?;
         Self::parse_text(&text, reading)
     }
 
@@ -173,7 +173,7 @@ fn no_table(text: &str, blocks: &[Block<'_>]) -> ModuliError {
 mod tests {
     use std::f64::consts::TAU;
 
-    use crate::scene::text_table::Unit;
+    use crate::tables::Unit;
 
     use super::*;
 

@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 use crate::scene::PronyTerm;
-use crate::scene::text_table::Unit;
+use crate::tables::Unit;
 
 use super::cli::{Fit, WlfConstants};
 use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::scene::Wlf;
-use crate::scene::text_table::{Block, Dimension, Unit, number, plain, words};
+use crate::tables::{Block, Dimension, Unit, number, plain, words};
 
 use super::columns::GivenUnits;
 use super::moduli_error::ModuliError;

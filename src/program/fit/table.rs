@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use crate::scene::Wlf;
-use crate::scene::text_table::{Block, Line, NumberStyle, is_missing, words};
+use crate::tables::{Block, Line, NumberStyle, is_missing, words};
 
 use super::columns::{Column, Columns, Quantity};
 use super::measured::{MeasuredPoint, Reading};

@@ -3,7 +3,7 @@
 use std::f64::consts::LN_10;
 use std::path::Path;
 
-use crate::scene::text_table::{Block, NumberStyle, decode};
+use crate::tables::{Block, NumberStyle, decode};
 
 use super::columns::{Column, Columns, Quantity};
 use super::measured::{MeasuredModuli, MeasuredPoint};

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::patch::{COORDINATES, Patch, PatchMotion, PatchStart, Pose};
 use crate::scene;
-use crate::scene::text_table::{Dimension, Heading, Unit, Words};
+use crate::tables::{Dimension, Heading, Unit, Words};
 
 use crate::program::result_file::{CsvFile, Record, ResultFileError};
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::scene::text_table;
+use crate::tables;
 
 use super::SweepError;
 use crate::program::files::{default_output, read};
@@ -26,7 +26,7 @@ pub(super) fn found(path: Option<&Path>, scene: &str) -> Result<Option<String>, 
 /// The verdict and the point that it was found at, from the header of a study's table.
 fn verdict(text: &str, scene: &str) -> Result<String, String> {
     let value = |key: &str| {
-        let found = text_table::comments(text).find_map(|(_, comment)| {
+        let found = tables::comments(text).find_map(|(_, comment)| {
             let (name, value) = comment.split_once('=')?;
             (name.trim() == key).then(|| value.trim().to_owned())
         });

@@ -1,7 +1,7 @@
 //! The values of a sweep and its shards as the command line gives them.
 
 use crate::scene::is_possible;
-use crate::scene::text_table::{Dimension, Unit, quantity};
+use crate::tables::{Dimension, Unit, quantity};
 
 use crate::program::terminal::rounded;
 

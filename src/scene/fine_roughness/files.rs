@@ -6,8 +6,8 @@ use super::{ModulusFactors, RoughnessSpectrum, Softening, SofteningRow};
 use crate::scene::column_file::{Column, ColumnFile};
 use crate::scene::error::ContentError;
 use crate::scene::profile::ReadingNote;
-use crate::scene::text_table::{Dimension, Words};
 use crate::scene::values::{POSITIVE, Word};
+use crate::tables::{Dimension, Words};
 
 /// How the file of a spectrum is normalised.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -3,8 +3,8 @@
 use super::options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ReadingNote, Tilt};
 use super::sentinels;
 use crate::scene::error::ContentError;
-use crate::scene::text_table::Unit;
 use crate::scene::{HeightMap, MOST_HEIGHTS, peak_to_valley};
+use crate::tables::Unit;
 
 /// An areal measurement: lines along x, one after the other along y.
 #[derive(Debug)]

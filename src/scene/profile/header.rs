@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::options::{LengthUnit, MeasuredPoints, ProfileOptions, ReadingNote};
 use crate::scene::error::ContentError;
-use crate::scene::text_table::{Block, Dimension, Heading, Line, Unit, Words, words};
+use crate::tables::{Block, Dimension, Heading, Line, Unit, Words, words};
 
 const ONE_UNIT: &str = "the header names a unit for one of the two columns alone; it is taken for both: x_unit and \
                         z_unit say otherwise";

@@ -28,7 +28,7 @@ use super::HeightMap;
 use super::error::{ContentError, SceneError};
 use super::regular_file::read_file;
 use super::surface::{Coordinate, Surface, check_points, remove_tilt};
-use super::text_table::{Unit, decode};
+use crate::tables::{Unit, decode};
 use options::MeasuredPoints;
 use text::Content;
 

@@ -3,8 +3,8 @@
 use std::str::FromStr;
 
 use crate::scene::error::ContentError;
-use crate::scene::text_table::Unit;
 use crate::scene::values::{Word, words};
+use crate::tables::Unit;
 
 /// How a file is to be read. What is not given is as the file says, or else as the defaults are.
 #[derive(Clone, Debug, Default, PartialEq)]

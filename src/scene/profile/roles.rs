@@ -3,7 +3,7 @@
 use super::header::{Axis, Header, cut};
 use super::options::{ProfileOptions, ThirdColumn};
 use crate::scene::error::ContentError;
-use crate::scene::text_table::{Block, words};
+use crate::tables::{Block, words};
 
 pub(super) const EXPECTED_COLUMNS: &str = "two, x and z, separated by comma, semicolon, tab or blanks";
 const CHOOSE: &str = "columns = [\"x\", \"z\"] (--columns x,z) with the names or the numbers of the columns";

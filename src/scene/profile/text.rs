@@ -10,8 +10,8 @@ use super::options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, Readin
 use super::plain::PlainLine;
 use super::roles::{EXPECTED_COLUMNS, Roles};
 use crate::scene::error::ContentError;
-use crate::scene::text_table::{Block, Heading, NumberStyle, Separator, is_missing, number};
 use crate::scene::values::ANY;
+use crate::tables::{Block, Heading, NumberStyle, Separator, is_missing, number};
 
 /// What a file holds.
 #[derive(Debug)]

@@ -5,7 +5,7 @@
 use super::{ModulusKind, WrittenSeries, WrittenTerm, note};
 use crate::scene::error::ContentError;
 use crate::scene::keys;
-use crate::scene::text_table::{Line, number};
+use crate::tables::{Line, number};
 
 /// The series in the cards of a text; `None` where there are none.
 pub(super) fn read(text: &str) -> Option<Result<WrittenSeries<'_>, ContentError>> {

@@ -8,7 +8,7 @@ use super::PronyTerm;
 use super::error::ContentError;
 use super::keys;
 use super::profile::ReadingNote;
-use super::text_table::{Dimension, Line, Unit, decode, number, plain, words};
+use crate::tables::{Dimension, Line, Unit, decode, number, plain, words};
 
 /// What relates the moduli of a file to those of the scene.
 #[derive(Clone, Copy, Debug)]

@@ -5,7 +5,7 @@ use crate::scene::column_file::check_stated;
 use crate::scene::error::ContentError;
 use crate::scene::keys;
 use crate::scene::profile::ReadingNote;
-use crate::scene::text_table::{Block, Dimension, Heading, HeadingUnit, Line, NumberStyle, Unit, Words};
+use crate::tables::{Block, Dimension, Heading, HeadingUnit, Line, NumberStyle, Unit, Words};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Quantity {

@@ -10,8 +10,8 @@ use crate::scene::keys::{AREA, COORDINATE, Form, Key, PATCH_ROOT, ShapeKind};
 use crate::scene::patch_file::{
     Backing, FaceHeat, FaceShape, Grid, MAX_ELEMENTS, PatchFile, PatchGroup, TableExtrapolation,
 };
-use crate::scene::text_table::{self, Dimension, Heading, Row, Unit, Words, decode};
 use crate::scene::{FmuOptions, SceneError, read_file, read_text};
+use crate::tables::{self, Dimension, Heading, Row, Unit, Words, decode};
 
 /// The columns of a file of points.
 const COLUMNS: [Words<usize>; 4] = [
@@ -164,7 +164,7 @@ fn read_points(entry: &Entry<'_>) -> Result<FaceShape> {
 
 fn parse_points(bytes: &[u8]) -> std::result::Result<Vec<[f64; 4]>, ContentError> {
     let text = decode(bytes).map_err(|error| ContentError::new(Some(1), "", error))?;
-    let mut rows = text_table::rows(&text, Some(','));
+    let mut rows = tables::rows(&text, Some(','));
     let header = rows.next();
     let line = header.as_ref().map(|row| row.line);
     let columns = header.as_ref().and_then(|row| columns(row));

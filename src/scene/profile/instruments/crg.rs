@@ -4,7 +4,7 @@
 use super::{Areal, check_size, check_step, refuse};
 use crate::scene::error::ContentError;
 use crate::scene::profile::options::ReadingNote;
-use crate::scene::text_table::number;
+use crate::tables::number;
 
 const KIND: &str = "an OpenCRG file";
 /// A record of text or of binary data is filled up to a multiple of these bytes, where records are long ones.

@@ -4,7 +4,7 @@
 use super::{MeasuredPoints, ProfileOptions, length_unit, refuse};
 use crate::scene::error::ContentError;
 use crate::scene::profile::options::ReadingNote;
-use crate::scene::text_table::{Unit, decode, is_missing, number};
+use crate::tables::{Unit, decode, is_missing, number};
 
 const KIND: &str = "an ERD file";
 /// The form of numbers that is text.

@@ -2,7 +2,7 @@
 
 use super::{Areal, check_size, check_step, length_unit};
 use crate::scene::error::ContentError;
-use crate::scene::text_table::{decode, is_missing, number};
+use crate::tables::{decode, is_missing, number};
 
 const KIND: &str = "a Gwyddion text file";
 

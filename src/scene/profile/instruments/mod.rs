@@ -17,7 +17,7 @@ use super::areal::Areal;
 use super::options::{MeasuredPoints, ProfileOptions};
 use super::text::Content;
 use crate::scene::error::ContentError;
-use crate::scene::text_table::{Dimension, Unit};
+use crate::tables::{Dimension, Unit};
 
 /// The points of a file that is one of these; `None` of any other.
 pub(super) fn read(bytes: &[u8], options: &ProfileOptions) -> Option<Result<LineOfMap, ContentError>> {

@@ -4,7 +4,7 @@
 use super::binary::Binary;
 use super::{Areal, check_size, check_step, refuse};
 use crate::scene::error::ContentError;
-use crate::scene::text_table::{is_missing, number};
+use crate::tables::{is_missing, number};
 
 const KIND: &str = "an SDF file";
 /// Bytes of the binary header.

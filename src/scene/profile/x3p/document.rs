@@ -10,8 +10,8 @@ use zip::ZipArchive;
 use zip::read::ZipFile;
 
 use crate::scene::error::ContentError;
-use crate::scene::text_table::decode;
 use crate::scene::values::ANY;
+use crate::tables::decode;
 
 /// The longest document, bytes: heights inline of some million points.
 const LONGEST_MAIN: u64 = 1 << 27;

@@ -15,8 +15,6 @@ pub use blocks::{Block, Head, Line, MISSING, MixedDecimals, NumberStyle, Separat
 pub use headings::{Heading, HeadingUnit, Words, plain, words};
 pub use units::{Dimension, Unit, quantity, quantity_with_unit};
 
-use super::Problem;
-
 /// The bytes are no text: some are zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}: expected {}", Self::FOUND, Self::EXPECTED)]
@@ -27,12 +25,6 @@ impl NotText {
     pub const FOUND: &str = "bytes that are zero";
     /// What was expected.
     pub const EXPECTED: &str = "text in UTF-8, UTF-16 or Latin-1";
-}
-
-impl From<NotText> for Problem {
-    fn from(_: NotText) -> Self {
-        Self::Value { given: NotText::FOUND.into(), expected: NotText::EXPECTED.into() }
-    }
 }
 
 /// The text in `bytes`: UTF-8, UTF-16 (by its mark, or by its zeros) or else Latin-1, without a byte order mark, its
