@@ -23,7 +23,7 @@
 //! | `robustness` | scene, simulation | catalogue of perturbations of a scene and the judge of their runs, for reports and tests |
 //! | [`element`] | math, tables, scene, model, outputs, simulation | a point-contact element: the forces of a layer, looked up in a table of a sweep |
 //! | `calibration` | math, tables, scene, model, steady, element | a scene's free numbers from measured friction: models, least squares, errors, plans |
-//! | [`patch`] | math, tables, scene, model, outputs, element | a contact patch: many point-contact elements on a rigid face, in three dimensions |
+//! | [`patch`] | math, scene, model, outputs, element | a contact patch: many point-contact elements on a rigid face, in three dimensions |
 //! | [`fmi`] | math, scene, model, integrator, contact, outputs, simulation, element, patch | the FMI 2.0 co-simulation interface |
 //! | `program` | math, tables, scene, model, steady, outputs, simulation, robustness, element, calibration, patch, fmi | the commands simulate, sweep, calibrate, converge, fit, pack, report, plot, and what they compute |
 //!
