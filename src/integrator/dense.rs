@@ -202,7 +202,7 @@ impl<'a> DenseOutput<'a> {
             let here = match state.mode[i] {
                 Mode::Stick => 0.0,
                 Mode::Free => {
-                    let (f_x, f_z) = (forces.on_mass_x[i] / self.model.mass, forces.on_mass_z[i] / self.model.mass);
+                    let ByAxis { x: f_x, z: f_z } = forces.on_mass(i).map(|force| force / self.model.mass);
                     missed(f_x, a_x, v_x, inertial.x).max(missed(f_z, a_z, v_z, inertial.z))
                 }
                 mode => {
@@ -372,19 +372,20 @@ impl<'a> DenseOutput<'a> {
         let carrier = self.carrier_at(theta, workspace);
         let here = self.mass_at(i, &carrier, workspace);
         let to_carrier = LinkState { velocity: here.links.velocity - carrier.now.rates(), ..here.links };
-        let mut force_x = -self.link_force(LinkKind::Horizontal, i, &to_carrier, workspace);
-        let mut force_z = -self.link_force(LinkKind::Vertical, i, &to_carrier, workspace);
+        let mut force = ByAxis {
+            x: -self.link_force(LinkKind::Horizontal, i, &to_carrier, workspace),
+            z: -self.link_force(LinkKind::Vertical, i, &to_carrier, workspace),
+        };
         for (j, link, sign) in [(i.wrapping_sub(1), i.wrapping_sub(1), -1.0), (i + 1, i, 1.0)] {
             if j >= self.model.masses() {
                 continue;
             }
             let between = LinkState::between(&here.links, &self.mass_at(j, &carrier, workspace).links, sign);
-            force_x += sign * self.link_force(LinkKind::LateralX, link, &between, workspace);
-            force_z += sign * self.link_force(LinkKind::LateralZ, link, &between, workspace);
+            force.x += sign * self.link_force(LinkKind::LateralX, link, &between, workspace);
+            force.z += sign * self.link_force(LinkKind::LateralZ, link, &between, workspace);
         }
-        let of_end = carrier.now.on_end(i, self.model.masses());
-        (force_x, force_z) = (force_x + of_end.x, force_z + of_end.z);
-        ContactForces::new(self.model, (force_x, force_z), here.links.velocity.x, &here.surface)
+        let force = force + carrier.now.on_end(i, self.model.masses());
+        ContactForces::new(self.model, force, here.links.velocity.x, &here.surface)
     }
 
     /// The forces along x and z of the lateral links between mass `i` and the next at the fraction `theta`, N.
