@@ -31,7 +31,7 @@ pub(super) struct ElementBlock<T> {
     start: usize,
     /// How many elements there are.
     count: usize,
-    pub(super) springs: Springs<T>,
+    pub(super) springs: BlockSprings<T>,
     /// By the numbers of [`ElementMode`].
     pub(super) mode: Lanes<u8>,
     /// At the beginning of the substep.
@@ -46,7 +46,7 @@ pub(super) struct ElementBlock<T> {
 
 /// The springs of a block's elements.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Springs<T> {
+pub(super) struct BlockSprings<T> {
     /// G, their forces on the ground, N.
     pub(super) force: [Lanes<T>; 2],
     /// K, their stiffnesses, N/m.
@@ -59,7 +59,7 @@ pub(super) struct Springs<T> {
     release: Lanes<f64>,
 }
 
-impl<T: Number> Springs<T> {
+impl<T: Number> BlockSprings<T> {
     /// Relaxed springs without stiffness, that have lost nothing.
     fn none() -> Self {
         let zero = T::constant(0.0);
@@ -78,7 +78,7 @@ impl<T: Number> ElementBlock<T> {
         Self {
             start: 0,
             count: 0,
-            springs: Springs::none(),
+            springs: BlockSprings::none(),
             mode: [0; BLOCK],
             begin: Box::new(BlockContacts::new()),
             end: Box::new(BlockContacts::new()),
@@ -91,7 +91,7 @@ impl<T: Number> ElementBlock<T> {
     /// yet and cold.
     pub(super) fn reset(&mut self, start: usize, count: usize) {
         (self.start, self.count) = (start, count);
-        self.springs = Springs::none();
+        self.springs = BlockSprings::none();
         self.heat.reset();
         // Both, since the law is not looked up in all lanes.
         for contacts in [&mut self.begin, &mut self.end] {
@@ -344,7 +344,7 @@ impl<T: Number> ElementBlock<T> {
         if !found || sums.beyond.is_some_and(|beyond| beyond.fraction <= fraction) {
             return;
         }
-        // The first, by the limits with their roundings.
+        // The first that bears on an area: a cell of a tread may be about to enter.
         let beyond = |i: usize| {
             let (p, v) = (self.end.pressure[i].value(), speed_of(i).sqrt());
             let bears = p > 0.0 && self.end.area[i] > 0.0;
@@ -409,8 +409,8 @@ fn total<T: Number>(lanes: &Lanes<T>) -> T {
 
 /// Lets all springs of a block follow a jump of their law to that of `contacts`.
 #[inline(always)]
-fn apply_jumps<T: Number>(springs: &mut Springs<T>, contacts: &BlockContacts<T>) {
-    let Springs { force, stiffness, release, .. } = springs;
+fn apply_jumps<T: Number>(springs: &mut BlockSprings<T>, contacts: &BlockContacts<T>) {
+    let BlockSprings { force, stiffness, release, .. } = springs;
     for i in 0..BLOCK {
         let (jumped, lost) = apply_jump([force[0][i], force[1][i]], stiffness[i], &contacts.law(i));
         (force[0][i], force[1][i]) = (jumped[0], jumped[1]);
@@ -422,12 +422,12 @@ fn apply_jumps<T: Number>(springs: &mut Springs<T>, contacts: &BlockContacts<T>)
 /// their own are left out, of slip (J) they are written to `part_slip`.
 #[inline(always)]
 fn advance_all<T: Number>(
-    springs: &mut Springs<T>,
+    springs: &mut BlockSprings<T>,
     part_slip: &mut Lanes<T>,
     (begin, end): (&BlockContacts<T>, &BlockContacts<T>),
     displacement: &[Lanes<T>; 2],
 ) {
-    let Springs { force, slips, release, .. } = springs;
+    let BlockSprings { force, slips, release, .. } = springs;
     for i in 0..lanes_of(end.count) {
         let before = [begin.velocity[0][i], begin.velocity[1][i]];
         let after = [end.velocity[0][i], end.velocity[1][i]];
