@@ -5,9 +5,9 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use asperity::patch::{MotionError, PatchError, RestoreError};
-use asperity::program::{CalibrateError, ContactError, FileError, FitError, OverrideError, PackError, SweepError};
 use asperity::scene::{ParameterError, SceneError};
 use asperity::simulation::SimulationError;
+use asperity_cli::{CalibrateError, ContactError, FileError, FitError, OverrideError, PackError, SweepError};
 use pyo3::exceptions::{PyFileNotFoundError, PyKeyError, PyOSError, PyValueError};
 use pyo3::prelude::*;
 

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use asperity::program::{Setting, item_at, parse_scene, with_settings, write_fmu};
+use asperity_cli::{Setting, item_at, parse_scene, with_settings, write_fmu};
 use numpy::{PyArray1, PyArrayMethods as _, ToPyArray as _};
 use pyo3::IntoPyObjectExt as _;
 use pyo3::exceptions::PyKeyError;

@@ -32,7 +32,5 @@ pub use point_contact::{PointContact, dependencies, variables};
 pub use resampled::{ElementLaw, LawPlace, ResampledLaw, SpeedCell, SpeedRange};
 pub use run::{Element, ElementError, ElementState, RestoreError};
 pub(crate) use spring::{Advanced, Segment, SpringLaw, advance, apply_jump};
-#[cfg(feature = "program")]
-pub(crate) use table::some_of;
-pub use table::{Node, Table};
+pub use table::{Node, Table, some_of};
 pub use table_format::{Basis, CONVERGED, FORMAT, Quantity, STEADY, TableError, TableHeader, TableRow, TableText};

@@ -1,0 +1,5 @@
+//! What one computes with scenes.
+
+pub mod calibration;
+pub mod robustness;
+pub mod steady;
