@@ -11,7 +11,8 @@ use super::figure::{Figure as _, Stroke};
 use super::files::{FileError, check_outputs, name_of, named, print_beside};
 use super::measured_friction::{self, CurveGrid, MeasuredFrictionError, ModelCurves, describe, off};
 use super::sweep::{SweepTable, TableFileError};
-use super::terminal::{labelled, lines, note, rounded, warn};
+use super::terminal::{labelled, lines, note, warn};
+use asperity_study::decimals::rounded;
 
 /// `asperity compare` failed.
 #[derive(Debug, thiserror::Error)]

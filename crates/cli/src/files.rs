@@ -3,23 +3,22 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use asperity::patch::{Patch, PatchError};
-use asperity::scene::{Scene, SceneError, read_file, read_text};
+use asperity::patch::Patch;
+use asperity::scene::Scene;
 
 use super::draft::Draft;
-use super::overrides::{self, OverrideError, Refusal, Setting};
 use super::terminal::{LabelledLine, labelled, note, warn};
+use asperity_study::files::{self, ReadError, reason};
+use asperity_study::settings::{OverrideError, Setting};
 
 /// A file cannot be read or written, or its scene is invalid.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say what they are")]
 pub enum FileError {
     #[error(transparent)]
-    Scene(#[from] SceneError),
-    #[error(transparent)]
-    Patch(#[from] PatchError),
+    Read(ReadError),
     #[error("--set: {0}")]
-    Set(#[from] OverrideError),
+    Set(OverrideError),
     #[error("cannot {action} {}: {}", named(.path), reason(.path, .source))]
     Io { action: &'static str, path: PathBuf, source: io::Error },
     #[error("will not write {}: it is read or written here already", named(.path))]
@@ -42,18 +41,13 @@ impl FileError {
     }
 }
 
-impl<E: Into<FileError>> From<Refusal<E>> for FileError {
-    fn from(refusal: Refusal<E>) -> Self {
-        match refusal {
-            Refusal::Own(error) => error.into(),
-            Refusal::Set(error) => error.into(),
+impl<E: Into<ReadError>> From<E> for FileError {
+    fn from(error: E) -> Self {
+        match error.into() {
+            ReadError::Set(error) => Self::Set(error),
+            error => Self::Read(error),
         }
     }
-}
-
-fn reason(path: &Path, source: &io::Error) -> String {
-    let folder = path.parent().filter(|folder| *folder != Path::new("") && !folder.exists());
-    folder.map_or_else(|| source.to_string(), |folder| format!("there is no folder {}", folder.display()))
 }
 
 /// What stands for standard output as the name of an output.
@@ -76,7 +70,7 @@ pub(crate) fn picture_beside(table: &Path, named: Option<&PathBuf>) -> Option<Pa
 
 /// Reads a scene, its keys overridden by `--set`, and prints its warnings and what was assumed in reading its tables.
 pub(crate) fn load(path: &Path, set: &[Setting]) -> Result<Scene, FileError> {
-    let scene = read_scene(path, set)?;
+    let scene = files::load_scene(path, set)?;
     scene.warnings.iter().for_each(|warning| warn(warning));
     print_assumptions(&scene);
     Ok(scene)
@@ -97,7 +91,7 @@ pub(crate) fn load_without_run(
     set: &[Setting],
     layer_slides: impl FnOnce(&Scene) -> bool,
 ) -> Result<Scene, FileError> {
-    let scene = read_scene(path, set)?;
+    let scene = files::load_scene(path, set)?;
     let mut unused = Vec::from_iter(scene.short_profile());
     if !layer_slides(&scene) {
         unused.extend(scene.link_warnings());
@@ -116,23 +110,9 @@ pub(crate) fn table_lines(scene: &Scene) -> Vec<LabelledLine> {
     labelled("Tables", scene.notes.iter().map(|read| read.text.clone()))
 }
 
-/// Reads a scene from `text`, its keys set to other values, as if it were the content of `file`.
-///
-/// # Errors
-/// Where the text or what is set in it is refused.
-pub fn parse_scene(text: &str, file: &Path, set: &[Setting]) -> Result<Scene, FileError> {
-    Ok(overrides::scene(text, file, set)?)
-}
-
-fn read_scene(path: &Path, set: &[Setting]) -> Result<Scene, FileError> {
-    let text = read_text(path).map_err(FileError::io("read", path))?;
-    parse_scene(&text, path, set)
-}
-
 /// Reads a patch, its keys overridden by `--set`.
 pub(crate) fn load_patch(path: &Path, set: &[Setting]) -> Result<Patch, FileError> {
-    let text = read_text(path).map_err(FileError::io("read", path))?;
-    Ok(overrides::patch(&text, path, set)?)
+    Ok(files::load_patch(path, set)?)
 }
 
 /// Refuses an output that would overwrite one of `others`, by whatever name.
@@ -165,7 +145,7 @@ pub(crate) fn check_outputs<'a>(
 }
 
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
-    read_file(path).map_err(FileError::io("read", path))
+    Ok(files::bytes(path)?)
 }
 
 /// Writes a file at once: what is at `path` is the one before or this one, whole.

@@ -8,7 +8,7 @@ use asperity::scene::{FineRoughness, Scene, Spectrum};
 use asperity_study::steady::persson::WholeFriction;
 
 use super::figure::{Curve, Panel, PanelRow, SideBySide, Stroke};
-use super::terminal::{decimal, rounded};
+use asperity_study::decimals::{decimal, rounded};
 
 /// Speeds (m/s) and pressures (Pa) at which the law is printed.
 const SPEEDS: [f64; 3] = [1e-4, 1e-2, 1.0];

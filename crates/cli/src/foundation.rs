@@ -3,7 +3,7 @@
 use asperity::scene::{Foundation, FoundationKind, LinkKind, Material, PronyTerm, Quality, Scene};
 
 use super::figure::{Curve, Panel, Stacked, Stroke};
-use super::terminal::{decimal, rounded};
+use asperity_study::decimals::{decimal, rounded};
 
 /// What the links stand for, in a line each; nothing in the direct form.
 pub(super) fn rows(scene: &Scene) -> Vec<String> {

@@ -23,7 +23,6 @@ mod lock;
 mod material;
 mod measured_friction;
 mod npz;
-mod overrides;
 mod pack;
 mod patch;
 mod reference;
@@ -47,9 +46,8 @@ pub use cli::WlfConstants;
 use cli::{Arguments, Command};
 pub use contact::{ContactError, ContactFields, ContactOptions, SolvedContact, solve_contact};
 pub use elements::{ElementField, ElementFields};
-pub use files::{FileError, parse_scene};
+pub use files::FileError;
 pub use fit::{FitError, FitOptions, FittedModuli, fit_moduli};
-pub use overrides::{OverrideError, Setting, item_at, with_settings};
 pub use pack::{PackError, write_fmu};
 pub use runner::{InputSample, Rows, Runner};
 pub use sweep::{

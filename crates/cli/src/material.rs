@@ -11,7 +11,8 @@ use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
 use super::files::{
     self, FileError, check_outputs, ends_in, is_standard_output, load_without_run, named, print_beside,
 };
-use super::terminal::{LabelledLine, decimal, lines, rounded};
+use super::terminal::{LabelledLine, lines};
+use asperity_study::decimals::{decimal, rounded};
 
 /// `asperity material` failed.
 #[derive(Debug, thiserror::Error)]

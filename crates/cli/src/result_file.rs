@@ -13,7 +13,7 @@ use asperity::tables::{self, Row};
 use super::draft::Draft;
 use super::files::{FileError, read};
 use super::runner::InputSample;
-use super::terminal::file_decimal;
+use asperity_study::decimals::file_decimal;
 
 /// A result file cannot be read.
 #[derive(Debug, thiserror::Error)]

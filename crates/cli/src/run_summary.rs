@@ -9,7 +9,8 @@ use asperity::scene::{Method, Scene};
 use asperity::simulation::Simulation;
 
 use super::figure::with_prefix;
-use super::terminal::{LabelledLine, labelled, rounded};
+use super::terminal::{LabelledLine, labelled};
+use asperity_study::decimals::rounded;
 
 /// Follows the rows of a run.
 #[derive(Debug)]

@@ -9,7 +9,8 @@ use asperity_study::calibration::{FreeParameter, FrictionParts, Outcome, Task};
 use super::CalibrateError;
 use crate::files::FileError;
 use crate::resumable_table::ResumableTable;
-use crate::terminal::{real, warn};
+use crate::terminal::warn;
+use asperity_study::decimals::real;
 
 /// The first line of a table; its number grows when readers have to know of a change.
 const FORMAT: &str = "# asperity calibrate = 1";

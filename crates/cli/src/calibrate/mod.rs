@@ -24,10 +24,11 @@ use super::files::{
 };
 use super::interrupt::Farewell;
 use super::measured_friction::{self, CurveGrid, MeasuredFrictionError, ModelCurves};
-use super::overrides::{self, OverrideError, Setting};
 use super::sweep::{Method, MethodError, NeverSteady, SlidingOptions, relevant, table_fingerprint};
-use super::terminal::{self, note, real, rounded, warn};
+use super::terminal::{self, note, warn};
 use super::{NOT_REACHED, SUCCESS};
+use asperity_study::decimals::{real, rounded};
+use asperity_study::settings::{self, OverrideError, Setting};
 use kept::KeptPoints;
 use layer_model::LayerModel;
 
@@ -144,7 +145,7 @@ impl<'a> FreeScene<'a> {
             return Err(CalibrateError::BodyAlongX);
         }
         let area = scene.layer.area().filter(|_| scene.material.is_some()).ok_or(CalibrateError::NoArea)?;
-        let text = overrides::overridden(text, &options.set).map_err(FileError::from)?.text;
+        let text = settings::overridden(text, &options.set).map_err(FileError::from)?.text;
         let (method, of_method) = options.sliding.choose(&scene)?;
         method.check(&scene)?;
         let mut free =
@@ -169,7 +170,7 @@ impl<'a> FreeScene<'a> {
             if matches!(self.method, Method::Layer) && key.starts_with("material.heat") {
                 return Err(CalibrateError::HeatOfLayer { key: key.clone() });
             }
-            let own = overrides::number(&self.text, key);
+            let own = settings::number(&self.text, key);
             self.own.push(own.ok_or_else(|| CalibrateError::NoNumber { key: key.clone() })?);
         }
         for (index, parameter) in self.parameters.iter().enumerate() {
@@ -192,7 +193,7 @@ impl<'a> FreeScene<'a> {
     /// The scene at some values.
     fn at(&self, values: &[f64]) -> Result<Scene, CalibrationError> {
         let settings = self.settings(values);
-        overrides::scene(&self.text, &self.options.scene, &settings).map_err(|refusal| {
+        settings::scene(&self.text, &self.options.scene, &settings).map_err(|refusal| {
             let named: Vec<String> = settings.iter().map(|(key, value)| format!("{key} = {value}")).collect();
             let problem = FileError::from(refusal).to_string();
             CalibrationError::Scene { parameters: named.join(", "), problem }
@@ -355,7 +356,7 @@ pub fn calibrate_scene(
     options: &CalibrationOptions,
     found: impl Fn() -> bool + Sync,
 ) -> Result<Calibration, CalibrateError> {
-    let scene = overrides::scene(text, &options.scene, &options.set).map_err(FileError::from)?;
+    let scene = settings::scene(text, &options.scene, &options.set).map_err(FileError::from)?;
     let free = FreeScene::new(options, text, scene)?;
     let measurements = free.measurements()?;
     let add = |_: &Task, _: &Outcome| match found() {

@@ -9,7 +9,8 @@ use asperity_study::calibration::{
 use super::{Calibrated, FreeScene};
 use crate::files::{name_of, named};
 use crate::measured_friction::{FAR_OFF, describe, off};
-use crate::terminal::{LabelledLine, decimal, labelled, lines, rounded};
+use crate::terminal::{LabelledLine, labelled, lines};
+use asperity_study::decimals::{decimal, rounded};
 
 /// From this on a correlation is said.
 const CORRELATED: f64 = 0.9;

@@ -8,8 +8,8 @@ use asperity_study::calibration::Measurements;
 use super::{CalibrateError, Calibrated, FreeScene};
 use crate::cli::Calibrate;
 use crate::files::{is_standard_output, name_of};
-use crate::overrides::overridden;
-use crate::terminal::{decimal, rounded};
+use asperity_study::decimals::{decimal, rounded};
+use asperity_study::settings::overridden;
 
 /// What the lines of the header begin with; those of a calibration before are replaced.
 const MARK: &str = "# asperity calibrate: ";

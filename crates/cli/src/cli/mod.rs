@@ -11,10 +11,10 @@ use asperity_study::calibration::FreeParameter;
 use clap::{ArgGroup, Args, Parser, Subcommand};
 
 use super::files::default_output;
-use super::overrides::Setting;
 use super::result_file::Head;
 use super::sweep::SweepMethod;
 use super::sweep::values::{Shard, Values};
+use asperity_study::settings::Setting;
 pub use values::WlfConstants;
 pub(crate) use values::{Condition, PlotAxis, tenth};
 use values::{

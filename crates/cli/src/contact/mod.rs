@@ -13,7 +13,8 @@ use zip::result::ZipError;
 use super::cli::{Contact, SteadyState};
 use super::files::{self, FileError, check_outputs, ends_in, load_without_run, named, print_beside};
 use super::sweep::{Method, MethodError, SlidingOptions, SweepMethod, solved_status};
-use super::terminal::{lines, rounded, warn};
+use super::terminal::{lines, warn};
+use asperity_study::decimals::rounded;
 
 /// `asperity contact` failed.
 #[derive(Debug, thiserror::Error)]

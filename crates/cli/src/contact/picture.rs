@@ -7,7 +7,7 @@ use asperity_study::steady::SurfaceGrid;
 use super::ContactFields;
 use crate::figure::{Colours, Curve, FieldMap, Figure as _, LinearPanel, LinearStack, Marks, Stroke, SurfaceMaps};
 use crate::files::FileError;
-use crate::terminal::rounded;
+use asperity_study::decimals::rounded;
 
 /// Draws the fields on a surface of which the share `area` is in contact.
 pub(super) fn write(surface: &SurfaceGrid, fields: &ContactFields, area: f64, path: &Path) -> Result<(), FileError> {

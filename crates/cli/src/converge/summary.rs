@@ -3,7 +3,8 @@
 use super::table::RunRow;
 use super::variants::Parts;
 use super::verdict::{LargestOpen, Open, Pair, Source, Verdict};
-use crate::terminal::{LabelledLine, decimal, labelled, lines, rounded};
+use crate::terminal::{LabelledLine, labelled, lines};
+use asperity_study::decimals::{decimal, rounded};
 use asperity_study::steady::persson::Theory;
 
 /// Titles of the columns after what is counted.

@@ -10,7 +10,8 @@ use super::variants::{Dimensions, Parts, Variant};
 use super::verdict::Pair;
 use crate::files::{FileError, write};
 use crate::resumable_table::ResumableTable;
-use crate::terminal::{real, warn};
+use crate::terminal::warn;
+use asperity_study::decimals::real;
 use asperity_study::steady::persson::Theory;
 
 /// The first line of a table; its number grows when readers have to know of a change.

@@ -12,7 +12,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::ConvergeError;
 use crate::files::{self, FileError};
-use crate::overrides::{self, Overridden, Setting};
+use asperity_study::settings::{self, Overridden, Setting};
 
 /// What a run differs in from the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -151,7 +151,7 @@ impl Template {
             return Err(ConvergeError::DirectForm { path: path.to_owned() });
         }
         let bytes = files::read(path)?;
-        let overridden = overrides::overridden(&String::from_utf8_lossy(&bytes), set).map_err(FileError::from)?;
+        let overridden = settings::overridden(&String::from_utf8_lossy(&bytes), set).map_err(FileError::from)?;
         Ok((Self::new(path, overridden)?, scene))
     }
 
@@ -222,7 +222,7 @@ impl Template {
     /// The scene of a variant; with points in place of masses the layer has as many masses.
     pub(super) fn scene(&self, variant: Variant) -> Result<Scene, FileError> {
         let mut scene = Scene::parse_with(&self.text_of(variant), &self.path, &Instruments)?;
-        overrides::set_in_named_files(&mut scene, &self.in_named_files)?;
+        settings::set_in_named_files(&mut scene, &self.in_named_files)?;
         Ok(scene)
     }
 
@@ -337,7 +337,7 @@ mod tests {
         roll_off_wavelength = 1e-3\ncut_off_wavelength = 2e-4\nseed = 5\n[solver]\nabsolute_tolerance = 1e-4\n";
 
     fn template(text: &str) -> Result<Template, ConvergeError> {
-        Template::new("scene.toml".as_ref(), overrides::overridden(text, &[]).unwrap())
+        Template::new("scene.toml".as_ref(), settings::overridden(text, &[]).unwrap())
     }
 
     #[test]

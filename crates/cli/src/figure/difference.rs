@@ -4,7 +4,8 @@ use super::axis::{Axis, Fit};
 use super::chart::{Chart, Curve, Stroke};
 use super::plot::{PlotError, Selection};
 use crate::cli::Plot;
-use crate::terminal::{LabelledLine, decimal, labelled, rounded};
+use crate::terminal::{LabelledLine, labelled};
+use asperity_study::decimals::{decimal, rounded};
 
 /// The second of two files less the first, at the rows of the first.
 #[derive(Debug)]

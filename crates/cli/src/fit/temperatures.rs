@@ -13,7 +13,8 @@ use super::shift::{Factor, Isotherm, Superposition, law_of, rms_with, superpose}
 use super::{FitError, FitOptions, percent, short, written};
 use crate::cli::WlfConstants;
 use crate::files;
-use crate::terminal::{LabelledLine, rounded};
+use crate::terminal::LabelledLine;
+use asperity_study::decimals::rounded;
 
 /// What is done about temperatures.
 #[derive(Debug)]

@@ -8,7 +8,7 @@ use asperity_fmi::{CAPABILITIES, Category, Experiment, FmuModel, Kind, Role, Var
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 
-use crate::terminal::decimal;
+use asperity_study::decimals::decimal;
 
 type Xml = Writer<Vec<u8>>;
 

@@ -6,8 +6,9 @@ use asperity::patch::{MotionError, Patch, PatchRun, PatchStart, Pose};
 use asperity::scene::{Backing, FaceHeat, Parameter, ParameterError, TableExtrapolation, Value};
 
 use crate::files::{FileError, load_patch, print};
-use crate::overrides::Setting;
-use crate::terminal::{LabelledLine, lines, rounded, warn};
+use crate::terminal::{LabelledLine, lines, warn};
+use asperity_study::decimals::rounded;
+use asperity_study::settings::Setting;
 
 /// `asperity describe --patch` failed.
 #[derive(Debug, thiserror::Error)]

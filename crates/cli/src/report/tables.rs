@@ -13,7 +13,7 @@ use super::run::RunFigures;
 use super::trace::{Errors, OF_ALL_SCENES, QUANTITIES};
 use crate::files::FileError;
 use crate::result_file::{CsvFile, CsvWriter, ResultFileError};
-use crate::terminal::real;
+use asperity_study::decimals::real;
 
 /// The columns of errors and run times: errors over the largest value, processor time in s. Tables of other programs
 /// have these columns.

@@ -4,7 +4,8 @@ use asperity::scene::{HeightMap, PowerLaw, Spectrum, Surface, peak_to_valley};
 use serde::Serialize;
 
 use crate::cli;
-use crate::terminal::{LabelledLine, real};
+use crate::terminal::LabelledLine;
+use asperity_study::decimals::real;
 
 /// Numbers of a map, in SI units; pairs are along x and along y.
 #[derive(Clone, Debug, PartialEq, Serialize)]

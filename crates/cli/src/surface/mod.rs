@@ -12,7 +12,8 @@ use serde::Serialize;
 use super::cli::{Reading, Surface};
 use super::figure::{Figure as _, ProfileCurves, ProfilePicture};
 use super::files::{self, FileError, check_outputs, ends_in, load_without_run, name_of, named, print_beside};
-use super::terminal::{lines, note, real, warn};
+use super::terminal::{lines, note, warn};
+use asperity_study::decimals::real;
 use map::MapAnalysis;
 
 /// `asperity surface` failed.

@@ -6,7 +6,8 @@ use asperity::element::Quantity;
 use super::plot::as_given;
 use super::table_file::{StoredRow, SweepTable};
 use crate::figure;
-use crate::terminal::{LabelledLine, labelled, rounded};
+use crate::terminal::{LabelledLine, labelled};
+use asperity_study::decimals::rounded;
 
 /// Most speeds and most loads that are printed: a terminal's worth.
 const MOST: (usize, usize) = (60, 7);

@@ -3,7 +3,7 @@
 use asperity::scene::is_possible;
 use asperity::tables::{Dimension, Unit, quantity};
 
-use crate::terminal::rounded;
+use asperity_study::decimals::rounded;
 
 /// Values of a quantity, rising, each once.
 #[derive(Clone, Debug, PartialEq)]

@@ -18,7 +18,8 @@ use crate::files::FileError;
 use crate::result_file::{CsvWriter, Head, ResultWriter};
 use crate::runner::InputSample;
 use crate::sweep::{Method, StopBounds, Swept, SweptPoint};
-use crate::terminal::{self, LabelledLine, labelled, real};
+use crate::terminal::{self, LabelledLine, labelled};
+use asperity_study::decimals::real;
 
 /// What is compared in steady sliding.
 const COMPARED: [&str; 3] = ["F_x", "F_z", "P_diss"];

@@ -14,7 +14,8 @@ use super::{CheckSetting, extent};
 use crate::files::FileError;
 use crate::pack::check::SLIDING_DISTANCE;
 use crate::pack::check::drag::ToAndFro;
-use crate::terminal::{self, real};
+use crate::terminal;
+use asperity_study::decimals::real;
 
 /// The outputs of [`COMPONENTS`].
 const OUTPUTS: [PatchOutput; COMPONENTS.len()] = [

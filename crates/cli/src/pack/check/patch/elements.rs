@@ -14,7 +14,8 @@ use crate::figure::{Curve, Figure as _, LinearPanel, LinearStack, Stroke};
 use crate::files::FileError;
 use crate::pack::check::drag::ToAndFro;
 use crate::result_file::CsvWriter;
-use crate::terminal::{self, real};
+use crate::terminal;
+use asperity_study::decimals::real;
 
 /// What is taken of a layer.
 const LAYER: [Output; 2] = [Output::ForceX, Output::ForceZ];

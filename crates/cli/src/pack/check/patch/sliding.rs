@@ -16,7 +16,8 @@ use crate::files::FileError;
 use crate::pack::check::{ERROR, SLIDING_DISTANCE};
 use crate::result_file::CsvWriter;
 use crate::sweep::StopBounds;
-use crate::terminal::{self, real};
+use crate::terminal;
+use asperity_study::decimals::real;
 
 /// What is compared of an element: along and across the plane.
 const COMPARED: [(&str, usize); 2] = [("force.x", 0), ("force.z", 2)];

@@ -1,6 +1,6 @@
 //! Wrenches of a dragged face, and the differences of two series of them.
 
-use crate::terminal::{decimal, rounded};
+use asperity_study::decimals::{decimal, rounded};
 
 /// What is compared, and its unit; without force.y, which is 0 along x.
 pub(super) const COMPONENTS: [(&str, &str); 5] =

@@ -1,4 +1,4 @@
-//! `--set KEY=VALUE`: keys of a scene or a patch file overridden in its text, as if the file had them so.
+//! Keys of a scene or a patch file set in its text, as if the file had them so.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use toml_edit::{Array, DocumentMut, Item, Table, TableLike, Value};
 /// A key's path, elements of lists counted from 1, and its value.
 pub type Setting = (String, String);
 
-/// `--set` cannot be followed.
+/// A key cannot be set.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say what they are")]
 pub enum OverrideError {
@@ -47,21 +47,24 @@ impl OverrideError {
 
 /// A file is refused: its own text, or what is set in it.
 #[derive(Debug)]
-pub(crate) enum Refusal<E> {
+pub enum Refusal<E> {
+    /// Its own text.
     Own(E),
+    /// What is set in it.
     Set(OverrideError),
 }
 
 /// The text of a file with keys set.
 #[derive(Debug)]
-pub(crate) struct Overridden {
-    pub(crate) text: String,
+pub struct Overridden {
+    /// The text.
+    pub text: String,
     /// What stands in a file that the scene names, such as a term of its Prony series: to be set once that is read.
-    pub(crate) in_named_files: Vec<Setting>,
+    pub in_named_files: Vec<Setting>,
 }
 
 /// Reads a scene from `text`, its keys overridden, as if it were the content of `file`.
-pub(crate) fn scene(text: &str, file: &Path, set: &[Setting]) -> Result<Scene, Refusal<SceneError>> {
+pub fn scene(text: &str, file: &Path, set: &[Setting]) -> Result<Scene, Refusal<SceneError>> {
     let Overridden { text: edited, in_named_files } = overridden(text, set).map_err(Refusal::Set)?;
     let parsed = Scene::parse_with(&edited, file, &Instruments);
     let mut scene = parsed.map_err(|error| refusal(error, Scene::parse_with(text, file, &Instruments).err(), file))?;
@@ -70,7 +73,7 @@ pub(crate) fn scene(text: &str, file: &Path, set: &[Setting]) -> Result<Scene, R
 }
 
 /// Reads a patch from `text`, as [`scene`] does a scene.
-pub(crate) fn patch(text: &str, file: &Path, set: &[Setting]) -> Result<Patch, Refusal<PatchError>> {
+pub fn patch(text: &str, file: &Path, set: &[Setting]) -> Result<Patch, Refusal<PatchError>> {
     let edited = overridden(text, set).map_err(Refusal::Set)?.text;
     Patch::parse(&edited, file).map_err(|error| match (error, Patch::parse(text, file).err()) {
         (PatchError::File(error), own) => {
@@ -85,7 +88,7 @@ pub(crate) fn patch(text: &str, file: &Path, set: &[Setting]) -> Result<Patch, R
 }
 
 /// Sets what stands in files that a scene names.
-pub(crate) fn set_in_named_files(scene: &mut Scene, settings: &[Setting]) -> Result<(), OverrideError> {
+pub fn set_in_named_files(scene: &mut Scene, settings: &[Setting]) -> Result<(), OverrideError> {
     settings.iter().try_for_each(|(key, value)| scene.set_by_name(key, value))?;
     Ok(scene.check()?)
 }
@@ -120,7 +123,7 @@ pub fn with_settings(text: &str, set: &[Setting]) -> Result<String, OverrideErro
 }
 
 /// Sets keys in the text of a TOML file; a text that is not TOML stays as it is, for its reader to refuse.
-pub(crate) fn overridden(text: &str, set: &[Setting]) -> Result<Overridden, OverrideError> {
+pub fn overridden(text: &str, set: &[Setting]) -> Result<Overridden, OverrideError> {
     let mut in_named_files = Vec::new();
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let Some(mut document) = Some(set).filter(|set| !set.is_empty()).and_then(|_| text.parse::<DocumentMut>().ok())
@@ -156,7 +159,7 @@ fn item_below(item: &Item, path: &[PathSegment<'_>]) -> Option<Item> {
 }
 
 /// The number at a key of the text, in SI units where it is a text with a unit; `None` where there is none.
-pub(crate) fn number(text: &str, key: &str) -> Option<f64> {
+pub fn number(text: &str, key: &str) -> Option<f64> {
     let item = item_at(text, key)?;
     let plain = item.as_float().or_else(|| item.as_integer().map(|whole| whole as f64));
     plain.or_else(|| item.as_str().and_then(quantity_with_unit))
