@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use asperity::outputs::{OutputType, Variable, variables};
-use asperity::program::{ElementField, ElementFields, InputSample, Rows, Runner};
 use asperity::scene::{Scene as SceneData, Unit};
 use asperity::simulation::SimulationError;
+use asperity_cli::{ElementField, ElementFields, InputSample, Rows, Runner};
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

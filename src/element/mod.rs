@@ -35,7 +35,5 @@ pub use quantity::Quantity;
 pub use resampled::{LawPlace, ResampledLaw, SpeedCell, SpeedRange};
 pub use run::{Element, ElementError, ElementState, RestoreError};
 pub(crate) use spring::{Advanced, Segment, SpringLaw, advance, apply_jump};
-#[cfg(feature = "program")]
-pub(crate) use table::some_of;
-pub use table::{Node, Table};
+pub use table::{Node, Table, some_of};
 pub use table_format::{Basis, CONVERGED, FORMAT, STEADY, TableError, TableHeader, TableRow, TableText};

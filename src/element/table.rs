@@ -207,7 +207,7 @@ fn check_steady(text: &TableText, load: Load, rows: &[TableRow], order: &[usize]
 }
 
 /// The first of `texts`, and how many more there are.
-pub(crate) fn some_of(texts: &[String]) -> String {
+pub fn some_of(texts: &[String]) -> String {
     const SHOWN: usize = 10;
     let shown = texts.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join("; ");
     match texts.len().saturating_sub(SHOWN) {

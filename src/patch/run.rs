@@ -355,7 +355,7 @@ impl PatchRun {
 
     /// Continues from `saved`, a state of the same patch that a run has saved or that was checked when it was read;
     /// allocates nothing.
-    pub(crate) fn continue_from(&mut self, saved: &PatchState) {
+    pub fn continue_from(&mut self, saved: &PatchState) {
         self.set_temperature(saved.totals.temperature);
         self.totals = saved.totals;
         self.springs.clone_from(&saved.springs);

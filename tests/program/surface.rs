@@ -7,8 +7,8 @@ use std::path::Path;
 
 use crate::common::scenes::SceneText;
 use crate::common::{asperity, root, run, scratch};
-use asperity::fmi::{Definition, Sources, guid};
 use asperity::scene::Scene;
+use asperity_fmi::{Definition, Sources, guid};
 use serde_json::Value;
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};

@@ -6,6 +6,7 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use crate::scene::SurfaceFormats;
 use crate::scene::error::{Location, Problem, SceneError};
 use crate::scene::keys::{self, Allowed, Form, Key};
 use crate::scene::values::{NumberRange, Word, words};
@@ -21,6 +22,8 @@ pub(super) struct Source<'a> {
     pub(super) file: &'a Path,
     pub(super) text: &'a str,
     pub(super) form: Form,
+    /// What files of surfaces it may name beside text.
+    pub(super) formats: &'a dyn SurfaceFormats,
 }
 
 /// A value, its key and the key's full path.
