@@ -365,7 +365,7 @@ pub(crate) struct Report {
 
 #[derive(Debug, Args)]
 pub(crate) struct Surface {
-    /// The profile: text with columns x and z; an areal file, X3P, SDF, SUR, PLU, OpenCRG, ERD or text of Gwyddion; or
+    /// The profile: text with columns x and z; an areal file, X3P, SDF, SUR, OpenCRG or text of Gwyddion; or
     /// a scene, whose surface is analysed.
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
