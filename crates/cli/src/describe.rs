@@ -16,10 +16,10 @@ use serde::Serialize;
 use super::cli::Describe;
 use super::figure::{Below, Figure as _};
 use super::files::{FileError, check_outputs, load, print, table_lines};
-use super::runner::start;
 use super::terminal::{LabelledLine, labelled, lines};
 use super::{fine, foundation};
 use asperity_study::decimals::{decimal, rounded};
+use asperity_study::runner::start;
 
 /// `asperity describe` failed.
 #[derive(Debug, thiserror::Error)]

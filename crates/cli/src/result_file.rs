@@ -12,8 +12,8 @@ use asperity::tables::{self, Row};
 
 use super::draft::Draft;
 use super::files::{FileError, read};
-use super::runner::InputSample;
 use asperity_study::decimals::file_decimal;
+use asperity_study::runner::InputSample;
 
 /// A result file cannot be read.
 #[derive(Debug, thiserror::Error)]

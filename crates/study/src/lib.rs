@@ -1,8 +1,12 @@
 //! What one computes with scenes.
 
 pub mod calibration;
+pub mod contact;
 pub mod decimals;
+pub mod elements;
 pub mod files;
 pub mod robustness;
+pub mod runner;
 pub mod settings;
 pub mod steady;
+pub mod sweep;
