@@ -1,8 +1,10 @@
 //! What one computes with scenes.
 
 pub mod calibration;
+pub mod csv;
 pub mod decimals;
 pub mod files;
+pub mod patch;
 pub mod robustness;
 pub mod settings;
 pub mod steady;

@@ -11,9 +11,9 @@ use asperity_study::calibration::FreeParameter;
 use clap::{ArgGroup, Args, Parser, Subcommand};
 
 use super::files::default_output;
-use super::result_file::Head;
 use super::sweep::SweepMethod;
 use super::sweep::values::{Shard, Values};
+use asperity_study::csv::Head;
 use asperity_study::settings::Setting;
 pub use values::WlfConstants;
 pub(crate) use values::{Condition, PlotAxis, tenth};

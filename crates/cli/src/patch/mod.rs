@@ -1,7 +1,6 @@
 //! Contact patches on the command line.
 
 mod describe;
-mod motion;
 mod simulate;
 
 pub(crate) use describe::{describe, rows, warn_of_missing_backing};
