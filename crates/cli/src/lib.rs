@@ -13,9 +13,7 @@ mod draft;
 mod elements;
 mod figure;
 mod files;
-mod fine;
 mod fit;
-mod foundation;
 mod html;
 mod interrupt;
 mod lock;
@@ -112,7 +110,7 @@ fn run_simulate(command: &cli::Simulate) -> Result<(), Box<dyn Error>> {
 fn run_describe(command: &cli::Describe) -> Result<(), Box<dyn Error>> {
     match (&command.scene, &command.patch) {
         (Some(scene), _) => describe::describe(command, scene)?,
-        (None, Some(patch)) => patch::describe(patch, &command.set)?,
+        (None, Some(patch)) => describe::describe_patch(patch, &command.set)?,
         // The command line has one of them.
         (None, None) => (),
     }

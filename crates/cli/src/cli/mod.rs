@@ -11,8 +11,8 @@ use asperity_study::calibration::FreeParameter;
 use clap::{ArgGroup, Args, Parser, Subcommand};
 
 use super::files::default_output;
-use super::result_file::Head;
 use super::sweep::values::{Shard, Values};
+use asperity_study::csv::Head;
 use asperity_study::settings::Setting;
 use asperity_study::sweep::SweepMethod;
 pub use values::WlfConstants;

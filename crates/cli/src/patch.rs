@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 use asperity::outputs::OutputType;
 use asperity::patch::{MotionError, Patch, PatchRun, PatchVariable};
 
-use super::motion::MotionFile;
 use crate::cli::Simulate;
 use crate::figure::{Figure as _, PatchHistory, with_prefix};
 use crate::files::{FileError, check_outputs, load_patch, named, print_beside};
-use crate::result_file::{CsvWriter, Field, ResultFileError};
+use crate::result_file::CsvWriter;
 use crate::terminal::{is_quiet, lines, warn};
+use asperity_study::csv::{CsvError, Field};
+use asperity_study::patch::MotionFile;
 
 /// `asperity simulate --patch` failed.
 #[derive(Debug, thiserror::Error)]
@@ -18,7 +19,7 @@ pub(crate) enum PatchSimulateError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]
-    Motion(#[from] ResultFileError),
+    Motion(#[from] CsvError),
     #[error("the run cannot start: {0}")]
     Start(MotionError),
     #[error("{source}; the rows so far, up to t = {time} s, are in {}", named(.output))]

@@ -1,21 +1,10 @@
-//! `asperity describe --patch`: summarises a contact patch; the same lines go into an FMU's documentation.
-
-use std::path::Path;
+//! The summary of a contact patch.
 
 use asperity::patch::{MotionError, Patch, PatchRun, PatchStart, Pose};
 use asperity::scene::{Backing, FaceHeat, Parameter, ParameterError, TableExtrapolation, Value};
 
-use crate::files::{FileError, load_patch, print};
-use crate::terminal::{LabelledLine, lines, warn};
-use asperity_study::decimals::rounded;
-use asperity_study::settings::Setting;
-
-/// `asperity describe --patch` failed.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum PatchDescribeError {
-    #[error(transparent)]
-    File(#[from] FileError),
-}
+use crate::decimals::rounded;
+use crate::labelled::LabelledLine;
 
 /// How much of the load lies below the table could not be found.
 #[derive(Debug, thiserror::Error)]
@@ -32,16 +21,8 @@ const STIFF: f64 = 3e9;
 /// Halvings of an interval of heights.
 const HALVINGS: u32 = 50;
 
-/// Prints the summary.
-pub(crate) fn describe(path: &Path, set: &[Setting]) -> Result<(), PatchDescribeError> {
-    let patch = load_patch(path, set)?;
-    warn_of_missing_backing(&patch);
-    let title = ("Name", patch.name().to_owned());
-    Ok(print(&lines(&[vec![title], rows(&patch)].concat()))?)
-}
-
 /// The summary without the name.
-pub(crate) fn rows(patch: &Patch) -> Vec<LabelledLine> {
+pub fn patch_rows(patch: &Patch) -> Vec<LabelledLine> {
     let groups: Vec<&str> = patch.groups().iter().map(|group| group.word()).collect();
     let variables = patch.variables().len();
     let mut rows = vec![("Patch", patch.description())];
@@ -63,17 +44,16 @@ pub(crate) fn rows(patch: &Patch) -> Vec<LabelledLine> {
     rows
 }
 
-/// Warns where the contacts of the table are stiffer than anything of rubber that could stand behind them: a millimetre
-/// of it at G = 3 MPa.
-pub(crate) fn warn_of_missing_backing(patch: &Patch) {
+/// A warning where the contacts of the table are stiffer than anything of rubber that could stand behind them: a
+/// millimetre of it at G = 3 MPa.
+pub fn missing_backing(patch: &Patch) -> Option<String> {
     let stiffness = patch.contact_stiffness();
-    if patch.backing().is_none() && stiffness > STIFF {
-        warn(&format!(
-            "contacts have a tangential stiffness of {} Pa/m at the table's largest pressure, and what stands behind \
-             them is left out: in rolling and where motion begins the patch is too stiff; see [patch] backing",
-            format_args!("{stiffness:.1e}")
-        ));
-    }
+    (patch.backing().is_none() && stiffness > STIFF).then(|| {
+        format!(
+            "contacts have a tangential stiffness of {stiffness:.1e} Pa/m at the table's largest pressure, and what stands \
+             behind them is left out: in rolling and where motion begins the patch is too stiff; see [patch] backing"
+        )
+    })
 }
 
 /// How much of the load lies below the table's least pressure where the largest is that of the table.
@@ -124,6 +104,8 @@ fn at_rest(patch: &Patch, z: f64) -> Result<PatchRun, MotionError> {
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
 
     #[test]

@@ -6,7 +6,7 @@ use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchStart, Pose};
 use asperity::scene;
 use asperity::tables::{Dimension, Heading, Unit, Words};
 
-use crate::result_file::{CsvFile, Record, ResultFileError};
+use crate::csv::{CsvError, CsvFile, Record};
 
 const TIME: &str = "time";
 const TRANSPORT: &str = "transport.speed";
@@ -27,16 +27,17 @@ const COLUMNS: [Words<&str>; 9] = [
 
 /// A motion, row by row.
 #[derive(Debug)]
-pub(crate) struct MotionFile {
+pub struct MotionFile {
     rows: Vec<MotionRow>,
     has_transport: bool,
     has_temperature: bool,
 }
 
+/// A row of a motion.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct MotionRow {
+pub struct MotionRow {
     /// The time of the row, s.
-    pub(crate) time: f64,
+    pub time: f64,
     pose: [f64; 6],
     /// The speed at which the tread runs, m/s; 0 without one.
     transport_speed: f64,
@@ -47,7 +48,10 @@ pub(crate) struct MotionRow {
 impl MotionFile {
     /// Reads the motion of a patch: the columns `time` and those of the pose, `transport.speed` with a tread, and
     /// `temperature` where it is an input and is to change.
-    pub(crate) fn read(path: &Path, patch: &Patch) -> Result<Self, ResultFileError> {
+    ///
+    /// # Errors
+    /// Where the file cannot be read, a column is missing or is none of these, or a field is not what its column holds.
+    pub fn read(path: &Path, patch: &Patch) -> Result<Self, CsvError> {
         let file = CsvFile::read(path)?;
         let headings: Vec<Option<Heading<&str>>> =
             file.names().iter().map(|name| Heading::parse(name, &COLUMNS)).collect();
@@ -72,22 +76,23 @@ impl MotionFile {
             let unit = headings[i].as_ref().map_or(Ok(Unit::ONE), unit_of);
             Ok((i, unit.map_err(|message| file.header_error(message))?))
         };
-        let columns = indices.into_iter().map(with_unit).collect::<Result<Vec<_>, ResultFileError>>()?;
+        let columns = indices.into_iter().map(with_unit).collect::<Result<Vec<_>, CsvError>>()?;
         let motion = Self { rows: rows(&file, &columns, patch, has_transport)?, has_transport, has_temperature };
-        if motion.rows.is_empty() { Err(ResultFileError::NoRows { path: path.to_owned() }) } else { Ok(motion) }
+        if motion.rows.is_empty() { Err(CsvError::NoRows { path: path.to_owned() }) } else { Ok(motion) }
     }
 
-    pub(crate) fn rows(&self) -> &[MotionRow] {
+    /// Its rows, one at least.
+    pub fn rows(&self) -> &[MotionRow] {
         &self.rows
     }
 
     /// The times of its rows, s.
-    pub(crate) fn times(&self) -> Vec<f64> {
+    pub fn times(&self) -> Vec<f64> {
         self.rows.iter().map(|row| row.time).collect()
     }
 
     /// The names of its columns, and their units.
-    pub(crate) fn columns(&self) -> Vec<(&'static str, scene::Unit)> {
+    pub fn columns(&self) -> Vec<(&'static str, scene::Unit)> {
         use scene::Unit::{Kelvin, Meter, MeterPerSecond, Radian, Second};
         let mut columns = vec![(TIME, Second)];
         columns.extend(COORDINATES.into_iter().zip([Meter, Meter, Meter, Radian, Radian, Radian]));
@@ -97,7 +102,7 @@ impl MotionFile {
     }
 
     /// The values of its columns.
-    pub(crate) fn values(&self, row: &MotionRow) -> Vec<f64> {
+    pub fn values(&self, row: &MotionRow) -> Vec<f64> {
         let mut values = vec![row.time];
         values.extend(row.pose);
         values.extend(self.has_transport.then_some(row.transport_speed));
@@ -106,7 +111,7 @@ impl MotionFile {
     }
 
     /// The start, at the rates of the first interval.
-    pub(crate) fn start(&self) -> PatchStart {
+    pub fn start(&self) -> PatchStart {
         let first = &self.rows[0];
         let rates = self.rows.get(1).map_or([0.0; 6], |next| first.rates_to(next));
         PatchStart {
@@ -119,7 +124,7 @@ impl MotionFile {
     }
 
     /// The motions from row to row.
-    pub(crate) fn motions(&self) -> impl Iterator<Item = (PatchMotion, &MotionRow)> {
+    pub fn motions(&self) -> impl Iterator<Item = (PatchMotion, &MotionRow)> {
         self.rows.windows(2).map(|pair| {
             let motion = PatchMotion {
                 duration: pair[1].time - pair[0].time,
@@ -150,7 +155,7 @@ fn rows(
     columns: &[(usize, Unit)],
     patch: &Patch,
     has_transport: bool,
-) -> Result<Vec<MotionRow>, ResultFileError> {
+) -> Result<Vec<MotionRow>, CsvError> {
     let mut rows: Vec<MotionRow> = Vec::new();
     for record in file.records() {
         let value = |&(i, unit): &(usize, Unit)| number(file, record, i).map(|written| unit.to_si(written));
@@ -170,7 +175,7 @@ fn rows(
     Ok(rows)
 }
 
-fn number(file: &CsvFile, record: &Record, column: usize) -> Result<f64, ResultFileError> {
+fn number(file: &CsvFile, record: &Record, column: usize) -> Result<f64, CsvError> {
     let text = &record.fields[column];
     let finite = text.parse().ok().filter(|number: &f64| number.is_finite());
     finite.ok_or_else(|| file.error(record, format!("{} = {text:?}: expected a number", file.names()[column])))

@@ -1,20 +1,20 @@
 //! The roughness below the profile in the summary of a scene: how steep it is, how it rubs, which waves give how much of
-//! friction, and how contacts warm; and the picture of its friction over speed.
+//! friction, and how contacts warm; and its friction over speed.
 
 use std::f64::consts::{SQRT_2, TAU};
 
-use asperity::model::{FineFriction, Flash, FlashKernel, FrictionLaw};
+use asperity::model::{FineFriction, FrictionLaw};
 use asperity::scene::{FineRoughness, Scene, Spectrum};
-use asperity_study::steady::persson::WholeFriction;
 
-use super::figure::{Curve, Panel, PanelRow, SideBySide, Stroke};
-use asperity_study::decimals::{decimal, rounded};
+use super::heating::{Heating, WarmedContact};
+use crate::decimals::{decimal, rounded};
+use crate::steady::persson::WholeFriction;
 
 /// Speeds (m/s) and pressures (Pa) at which the law is printed.
 const SPEEDS: [f64; 3] = [1e-4, 1e-2, 1.0];
 const PRESSURES: [f64; 3] = [1e5, 3e5, 1e6];
 /// Pressure (Pa) at which friction is divided into its parts.
-pub(super) const MIDDLE: f64 = PRESSURES[1];
+pub const MIDDLE: f64 = PRESSURES[1];
 
 /// The summary in a line each; nothing where the profile lacks nothing.
 pub(super) fn rows(scene: &Scene) -> Vec<String> {
@@ -146,7 +146,7 @@ fn flash_rows(scene: &Scene, area: f64) -> Vec<String> {
     let title =
         format!("contacts after {CONTACT_LENGTH} m under {CONTACT_PRESSURE:.0e} Pa, of rubber at {temperature} K:");
     let row = |speed: f64| {
-        let (rise, cold, warm) = heating.after(CONTACT_LENGTH, CONTACT_PRESSURE, speed);
+        let WarmedContact { rise, cold, warm } = heating.after(CONTACT_LENGTH, CONTACT_PRESSURE, speed);
         format!("{:<18}{rise:.1} K warmer, T/F_N {warm:.3} in place of {cold:.3}", format!("{speed} m/s"))
     };
     std::iter::once(title).chain(CONTACT_SPEEDS.map(row)).collect()
@@ -157,127 +157,44 @@ fn temperature(scene: &Scene) -> Option<f64> {
     Some(scene.material.as_ref()?.wlf?.temperature)
 }
 
-/// A contact that its own friction warms.
-struct Heating {
-    law: FrictionLaw,
-    kernel: FlashKernel,
-    /// A, m².
-    area: f64,
-}
-
-impl Heating {
-    /// `None` where friction heats nothing.
-    fn new(scene: &Scene, area: f64) -> Option<Self> {
-        Some(Self { law: FrictionLaw::new(scene), kernel: FlashKernel::new(scene)?, area })
-    }
-
-    /// T/F_N under a pressure (Pa) at a speed (m/s), `rise` (K) above the layer's temperature.
-    fn friction(&self, pressure: f64, speed: f64, rise: f64) -> f64 {
-        let normal = pressure * self.area;
-        self.law.slip(normal, speed, Flash::held(rise)).force() / normal
-    }
-
-    /// The rise of the temperature (K) over a contact of a length (m), and T/F_N at its start and its end.
-    ///
-    /// The terms of the kernel are integrated exactly for the mean of the power at both ends of a step, which follows
-    /// the temperature.
-    fn after(&self, length: f64, pressure: f64, speed: f64) -> (f64, f64, f64) {
-        const STEPS: usize = 1000;
-        const ITERATIONS: usize = 3;
-        let step = length / speed / STEPS as f64;
-        let decays: Vec<f64> = self.kernel.terms.iter().map(|term| (-step / term.time).exp()).collect();
-        let step_rise = self.kernel.rise(step);
-        let cold = self.friction(pressure, speed, 0.0);
-        let (mut parts, mut rise, mut friction) = (vec![0.0; decays.len()], 0.0, cold);
-        for _ in 0..STEPS {
-            let decayed: f64 = parts.iter().zip(&decays).map(|(part, decay)| part * decay).sum();
-            let (mut power, mut after) = (friction * pressure * speed, friction);
-            for _ in 0..ITERATIONS {
-                rise = decayed + power * step_rise;
-                after = self.friction(pressure, speed, rise);
-                power = 0.5 * (friction + after) * pressure * speed;
-            }
-            for ((part, decay), term) in parts.iter_mut().zip(&decays).zip(&self.kernel.terms) {
-                *part = *part * decay + power * term.weight * term.time * (1.0 - decay);
-            }
-            rise = parts.iter().sum();
-            friction = after;
-        }
-        (rise, cold, self.friction(pressure, speed, rise))
-    }
-}
-
 /// Temperatures beside the layer's at which friction is drawn, K.
 const AROUND: f64 = 20.0;
 /// Points of a curve.
 const POINTS: usize = 121;
 
-/// μ_h of a mass over speed; `None` without bands that rub.
-pub(super) fn picture(scene: &Scene) -> Option<SideBySide> {
-    if !scene.has_fine_hysteresis() {
-        return None;
+/// μ_h of a mass over speed, under the pressure [`MIDDLE`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct FineFrictionCurve {
+    /// The layer's temperature, K, where the scene has one.
+    pub temperature: Option<f64>,
+    /// Speeds (m/s) and friction coefficients.
+    pub points: Vec<(f64, f64)>,
+}
+
+impl FineFrictionCurve {
+    /// At the temperature of a scene and at those around it, from cold to warm; none without bands that rub.
+    pub fn around(scene: &Scene) -> Vec<Self> {
+        let Some(area) = scene.layer.element_area().filter(|_| scene.has_fine_hysteresis()) else { return Vec::new() };
+        let own = temperature(scene);
+        let temperatures = own.map_or(vec![None], |own| [own - AROUND, own, own + AROUND].map(Some).to_vec());
+        temperatures.into_iter().filter_map(|temperature| Self::at(scene, temperature, area)).collect()
     }
-    let area = scene.layer.element_area()?;
-    let own = temperature(scene);
-    let temperatures = own.map_or(vec![None], |own| [own - AROUND, own, own + AROUND].map(Some).to_vec());
-    let curve = |(look, temperature): (usize, Option<f64>)| {
+
+    /// `None` at a temperature that WLF does not reach.
+    fn at(scene: &Scene, temperature: Option<f64>, area: f64) -> Option<Self> {
         let scene = scene.with_temperature(temperature);
-        // A temperature that WLF does not reach is left out.
         scene.check().ok()?;
         let law = FineFriction::new(&scene)?;
         let friction = |speed: f64| law.contact(MIDDLE * area, speed).hysteresis.value / (MIDDLE * area);
         let points = (0..POINTS).map(|i| 10.0_f64.powf(-6.0 + 8.0 * i as f64 / (POINTS - 1) as f64));
-        let points = points.map(|speed| (speed, friction(speed))).collect();
-        let name = temperature.map_or_else(|| "mu_h".into(), |kelvin| format!("{} K", rounded(kelvin, 6)));
-        Some(Curve { name, look, stroke: Stroke::Line, points })
-    };
-    let curves = temperatures.into_iter().enumerate().filter_map(curve).collect();
-    let title = format!("friction below the profile, mu_h, under {} MPa", MIDDLE / 1e6);
-    let row = PanelRow { y_title: "friction coefficient".into(), panels: vec![Panel { title, curves }] };
-    Some(SideBySide { title: String::new(), x_title: "speed in m/s".into(), rows: vec![row] })
+        Some(Self { temperature, points: points.map(|speed| (speed, friction(speed))).collect() })
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::heating::tests::scene;
     use super::*;
-
-    const SCENE: &str = "name = 'w'\n\
-        layer = { masses = 8, spacing = 1e-4, width = 0.01, foundation = 'half_space' }\n\
-        surface = { kind = 'flat', fine = { hurst = 0.8, rms_slope = 0.9, longest = 4e-4, shortest = 4e-6 } }\n\
-        friction = { shear_strength = 1e6 }\n\
-        [material]\ndensity = 1100.0\npoisson_ratio = 0.5\nequilibrium_modulus = 3e6\n\
-        prony = [{ modulus = 8e6, relaxation_time = 1e-3 }, { modulus = 1e8, relaxation_time = 1e-6 }]\n\
-        wlf = { c1 = 7.5, c2 = 120.0, reference_temperature = 293.15, temperature = 303.15 }\n\
-        heat = { conductivity = 0.25, capacity = 1700.0 }\n";
-
-    fn scene(edit: impl Fn(String) -> String) -> Scene {
-        Scene::parse(&edit(SCENE.into()), "w.toml".as_ref()).unwrap()
-    }
-
-    fn heating(scene: &Scene) -> Heating {
-        Heating::new(scene, scene.layer.element_area().unwrap()).unwrap()
-    }
-
-    /// Friction that does not depend on the temperature warms as the kernel's rise says.
-    #[test]
-    fn constant_friction_warms_by_the_rise_of_the_kernel() {
-        let heating = heating(&scene(|text| {
-            text.replace("shortest = 4e-6", "shortest = 4e-6, hysteresis = false")
-                .replace("shear_strength = 1e6", "coulomb = 0.5")
-        }));
-        let (rise, cold, warm) = heating.after(1e-3, 1e6, 2.0);
-        let exact = 0.5 * 1e6 * 2.0 * heating.kernel.rise(1e-3 / 2.0);
-        assert!((rise / exact - 1.0).abs() < 1e-9 && cold == 0.5 && warm == 0.5, "{rise} {exact} {cold} {warm}");
-    }
-
-    /// Friction and temperature are those of a step that is ten times as long within the order of the rule.
-    #[test]
-    fn friction_follows_the_temperature() {
-        let heating = heating(&scene(|text| text));
-        let (rise, cold, warm) = heating.after(1e-3, 1e6, 1.0);
-        let bounds = [cold, warm].map(|friction| friction * 1e6 * heating.kernel.rise(1e-3));
-        assert!(warm < cold && bounds[1] < rise && rise < bounds[0], "{rise} in {bounds:?}, {cold} to {warm}");
-    }
 
     /// The parts of friction add up, and so do the decades to the hysteresis.
     #[test]

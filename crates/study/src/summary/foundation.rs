@@ -1,9 +1,8 @@
-//! How well the links of a scene stand for the surface of its material: rows of the summary and a picture.
+//! How well the links of a scene stand for the surface of its material: rows of the summary.
 
 use asperity::scene::{Foundation, FoundationKind, LinkKind, Material, PronyTerm, Quality, Scene};
 
-use super::figure::{Curve, Panel, Stacked, Stroke};
-use asperity_study::decimals::{decimal, rounded};
+use crate::decimals::{decimal, rounded};
 
 /// What the links stand for, in a line each; nothing in the direct form.
 pub(super) fn rows(scene: &Scene) -> Vec<String> {
@@ -69,22 +68,4 @@ fn quality_rows(direction: &str, quality: &Quality) -> [String; 2] {
             "", quality.least, quality.largest, quality.rms
         ),
     ]
-}
-
-/// The ratio r over wavelength; `None` in the direct form.
-pub(super) fn picture(scene: &Scene) -> Option<Stacked> {
-    let curve = |(look, (name, kind)): (usize, (&str, LinkKind))| {
-        let points = scene.quality(kind)?.curve;
-        Some(Curve { name: name.into(), look, stroke: Stroke::Line, points })
-    };
-    let kinds: &[(&str, LinkKind)] = match scene.layer.foundation {
-        Some(FoundationKind::HalfSpace) => &[("along z and along x", LinkKind::Vertical)],
-        _ => &[("along z", LinkKind::Vertical), ("along x", LinkKind::Horizontal)],
-    };
-    let mut curves: Vec<Curve> = kinds.iter().copied().enumerate().filter_map(curve).collect();
-    let first = &curves.first()?.points;
-    let exact = first.iter().map(|point| (point.0, 1.0)).collect();
-    curves.push(Curve { name: "the body".into(), look: 6, stroke: Stroke::Dashed, points: exact });
-    let panel = Panel { title: "stiffness of the links over the body's".into(), curves };
-    Some(Stacked { title: scene.name.clone(), x_title: "wavelength in m".into(), panels: vec![panel] })
 }
