@@ -113,7 +113,7 @@ fn masses(scene: &Scene) -> String {
         number(layer.spacing),
         number(layer.origin),
         number(layer.clearance),
-        word(scene, Parameter::Initial)
+        word(scene, Parameter::INITIAL)
     )
 }
 
@@ -304,7 +304,7 @@ fn outputs(scene: &Scene, group: OutputGroup) -> String {
 fn solver(scene: &Scene) -> String {
     format!(
         "method {}, relative_tolerance {}, absolute_tolerance {} m, max_steps {}",
-        word(scene, Parameter::Method),
+        word(scene, Parameter::METHOD),
         number(scene.solver.relative_tolerance),
         number(scene.absolute_tolerance()),
         scene.solver.max_steps()

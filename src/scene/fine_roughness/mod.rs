@@ -144,6 +144,12 @@ impl Scene {
         self.fine_bands().iter().map(square).sum::<f64>().sqrt()
     }
 
+    /// v_c of the waves, m/s; `None` where there are none, or where that of the shear strength counts.
+    pub(super) fn own_fine_creep_speed(&self) -> Option<f64> {
+        let of_shear = self.friction.as_ref().is_some_and(|friction| friction.rate_shear.is_some());
+        self.fine.as_ref().filter(|fine| fine.waves.has_bands() && !of_shear).map(|_| self.fine_creep_speed())
+    }
+
     /// v_c, m/s at the reference temperature: slip on the roughness below the profile is no slower.
     pub fn fine_creep_speed(&self) -> f64 {
         let of_shear = self.friction.as_ref().and_then(|friction| friction.rate_shear).map(|law| law.creep_speed());

@@ -4,7 +4,7 @@ use super::surface::{Found, read_path};
 use super::table::{Entry, Result, TableReader};
 use crate::scene::fine_roughness::{Convention, read_softening, read_spectrum};
 use crate::scene::keys::SurfaceKind;
-use crate::scene::{FineRoughness, FineWaves, Friction, Material, Softening, Surface};
+use crate::scene::{FineRoughness, FineWaves, Scene, Softening, Surface};
 
 /// The forms: the key by which each is told, the first one that is there, and its other keys.
 const FORMS: [(&str, &[&str]); 5] = [
@@ -103,20 +103,17 @@ fn read_waves(
 }
 
 /// Refuses what does not go with the roughness below the profile in the rest of the scene.
-pub(super) fn check_rest(
-    surface_entry: &Entry<'_>,
-    fine: Option<&FineRoughness>,
-    material: Option<(&Entry<'_>, &Material)>,
-    friction: Option<&Friction>,
-) -> Result<()> {
-    if let Some((key, expected)) = fine.and_then(|fine| fine.misses(friction)) {
+pub(super) fn check_rest(surface_entry: &Entry<'_>, material_entry: Option<&Entry<'_>>, scene: &Scene) -> Result<()> {
+    let fine = scene.fine.as_ref();
+    if let Some((key, expected)) = fine.and_then(|fine| fine.misses(scene.friction.as_ref())) {
         let entry = surface_entry.open()?.required("fine")?;
         return Err(match key {
             Some(key) => entry.open()?.required(key)?.refuse(expected),
             None => entry.refuse(expected),
         });
     }
-    let Some((entry, material)) = material.filter(|(_, material)| material.heat.is_some()) else { return Ok(()) };
+    let material = scene.material.as_ref().filter(|material| material.heat.is_some());
+    let (Some(entry), Some(material)) = (material_entry, material) else { return Ok(()) };
     let heat = entry.open()?.required("heat")?;
     match (fine.map(|fine| fine.waves.has_bands()), material.wlf.is_some()) {
         (None, _) => Err(heat.refuse("no such key without surface.fine, whose waves make the heat")),

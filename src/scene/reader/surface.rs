@@ -61,7 +61,7 @@ impl Found {
 pub(super) fn read(entry: &Entry<'_>, found: &mut Found) -> Result<Surface> {
     let mut table = entry.open()?;
     let kind = table.required("kind")?.choice::<SurfaceKind>()?;
-    table.use_keys(kind.keys())?;
+    table.use_keys(kind)?;
     let surface = match kind {
         SurfaceKind::Flat => Surface::flat(),
         SurfaceKind::Sinusoid => read_sinusoid(&mut table)?,
@@ -246,7 +246,7 @@ fn read_alone(entry: &Entry<'_>, found: &mut Found) -> Result<Surface> {
 
 /// `z` without `x`: one height for each mass.
 fn read_heights(table: &mut TableReader<'_>, masses: usize) -> Result<Vec<f64>> {
-    table.use_keys(SurfaceKind::Points.keys())?;
+    table.use_keys(SurfaceKind::Points)?;
     if let Some(entry) = table.entry("periodic") {
         return Err(entry.refuse("no such key for heights at the masses, which have no x"));
     }
