@@ -298,7 +298,7 @@ fn outputs(scene: &Scene, group: OutputGroup) -> String {
         let own = variables(scene).into_iter().filter(|variable| variable.group == group);
         own.map(|variable| variable.name).collect::<Vec<_>>().join(", ")
     };
-    format!("{:<13}{names}", group.name())
+    format!("{:<13}{names}", group.word())
 }
 
 fn solver(scene: &Scene) -> String {

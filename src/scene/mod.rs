@@ -47,12 +47,12 @@ pub use carrier::{CarrierBodies, CarrierBody, CarrierInitial, Input};
 pub use error::{ParameterError, Problem, SceneError};
 pub use excitation::{Force, Motion, Path, Phase};
 pub use fine_roughness::{
-    FineBand, FineRoughness, FineWaves, ModulusFactors, RoughnessSpectrum, Softening, SofteningRow, SplitSurface,
-    WaveModuli,
+    FineBand, FineRoughness, FineWaves, ModulusFactors, RoughnessSpectrum, Softening, SofteningRow, SplitError,
+    SplitSurface, WaveModuli,
 };
 pub use fmu::{DependencyList, FmuOptions, IntegerType};
 pub use foundation::{Body, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};
-pub use height_map::{HeightMap, MOST_HEIGHTS};
+pub use height_map::{HeightMap, MOST_HEIGHTS, MapError};
 pub use keys::{Absent, KeyEntry, patch_keys, scene_keys, similar_keys};
 pub use link_kind::{ByLink, LinkKind};
 pub use material::{Heat, Material, PronyTerm, Wlf, complex_stiffness};
@@ -358,11 +358,6 @@ impl OutputGroup {
         Self::Solver,
         Self::Elements,
     ];
-
-    /// The group's name in a scene file.
-    pub fn name(self) -> &'static str {
-        self.as_word()
-    }
 }
 
 impl Scene {

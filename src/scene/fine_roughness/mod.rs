@@ -16,7 +16,7 @@ use spectrum::isotropic;
 pub(super) use files::{Convention, read_softening, read_spectrum};
 pub use softening::{ModulusFactors, Softening, SofteningRow};
 pub use spectrum::RoughnessSpectrum;
-pub use split::SplitSurface;
+pub use split::{SplitError, SplitSurface};
 
 /// The waves that the profile lacks, and how contacts rub on them; in the material form alone.
 #[derive(Clone, Debug, PartialEq, Serialize)]

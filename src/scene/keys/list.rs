@@ -2,13 +2,13 @@
 
 use super::patch::PATCH_ROOT;
 use super::scene_file::{RETIRED, ROOT};
-use super::{Absent, Allowed, At, Form, Key, Kind};
+use super::{Absent, Allowed, At, Form, Key, KindKeys};
 use crate::scene::Unit;
 use crate::scene::values::{NumberRange, POSITIVE};
 
 /// A key and the place of its table.
 #[derive(Clone, Debug)]
-pub(in crate::scene) struct Row {
+pub(in crate::scene) struct KeyRow {
     /// Its name with those of the tables around it; `[]` behind a table that may be repeated.
     pub(in crate::scene) path: String,
     pub(in crate::scene) key: &'static Key,
@@ -78,8 +78,8 @@ pub fn patch_keys() -> Vec<KeyEntry> {
     rows(PATCH_ROOT).into_iter().map(KeyEntry::from).collect()
 }
 
-impl From<Row> for KeyEntry {
-    fn from(Row { path, key, kinds, .. }: Row) -> Self {
+impl From<KeyRow> for KeyEntry {
+    fn from(KeyRow { path, key, kinds, .. }: KeyRow) -> Self {
         let of_material = key.form.map(|form| form == Form::Material);
         let (allowed, unit, meaning, absent) = (key.allowed.to_string(), key.unit, key.meaning, key.absent);
         Self { path, allowed, unit, meaning, absent, kinds, of_material }
@@ -87,19 +87,19 @@ impl From<Row> for KeyEntry {
 }
 
 /// The keys of the scene that have a field, in the order of the parameters.
-pub(in crate::scene) fn fields() -> Vec<Row> {
+pub(in crate::scene) fn fields() -> Vec<KeyRow> {
     let mut all = below("", At::FIRST, ROOT, |keys| keys.sort_by_key(|key| !key.ahead));
     all.retain(|row| row.key.field.is_some() && !row.path.starts_with(ROUGHNESS));
     all
 }
 
 /// All keys in and below the table `root` of a file, in their order.
-pub(in crate::scene) fn rows(root: &'static [Key]) -> Vec<Row> {
+pub(in crate::scene) fn rows(root: &'static [Key]) -> Vec<KeyRow> {
     below("", At::FIRST, root, |_| ())
 }
 
 /// The keys in and below the table whose path is `start`, those of each table ordered by `sort`.
-fn below(start: &str, at: At, keys: &'static [Key], sort: fn(&mut Vec<&'static Key>)) -> Vec<Row> {
+fn below(start: &str, at: At, keys: &'static [Key], sort: fn(&mut Vec<&'static Key>)) -> Vec<KeyRow> {
     let with_those_below = |key: &'static Key| {
         let path = format!("{start}{}", key.name);
         let at = key.at.unwrap_or(at);
@@ -109,7 +109,7 @@ fn below(start: &str, at: At, keys: &'static [Key], sort: fn(&mut Vec<&'static K
             Allowed::Kinds(_, kinds) => of_kinds(&kinds(), |keys| below(&format!("{path}."), at, keys, sort)),
             _ => Vec::new(),
         };
-        std::iter::once(Row { path, key, at, kinds: Vec::new() }).chain(below)
+        std::iter::once(KeyRow { path, key, at, kinds: Vec::new() }).chain(below)
     };
     let mut keys: Vec<&'static Key> = keys.iter().collect();
     sort(&mut keys);
@@ -117,13 +117,13 @@ fn below(start: &str, at: At, keys: &'static [Key], sort: fn(&mut Vec<&'static K
 }
 
 /// The keys of a table of several kinds, each once.
-fn of_kinds(kinds: &[Kind], rows_of: impl Fn(&'static [Key]) -> Vec<Row>) -> Vec<Row> {
-    let mut all: Vec<Row> = Vec::new();
+fn of_kinds(kinds: &[KindKeys], rows_of: impl Fn(&'static [Key]) -> Vec<KeyRow>) -> Vec<KeyRow> {
+    let mut all: Vec<KeyRow> = Vec::new();
     for &(name, keys) in kinds {
         for row in rows_of(keys) {
             match all.iter_mut().find(|known| known.path == row.path) {
                 Some(known) => known.kinds.push(name),
-                None => all.push(Row { kinds: vec![name], ..row }),
+                None => all.push(KeyRow { kinds: vec![name], ..row }),
             }
         }
     }

@@ -15,7 +15,7 @@ use super::{Scene, Unit};
 
 pub(super) use field::{At, Field};
 pub use list::{KeyEntry, patch_keys, scene_keys, similar_keys};
-pub(super) use list::{Row, fields, is_similar, range_of, rows};
+pub(super) use list::{KeyRow, fields, is_similar, range_of, rows};
 pub(super) use patch::{AREA, COORDINATE, PATCH_ROOT, ShapeKind};
 pub(super) use scene_file::{RETIRED, ROOT};
 pub(super) use surface::SurfaceKind;
@@ -70,11 +70,11 @@ pub(super) enum Allowed {
     /// An array of tables, and what it is.
     Tables(&'static [Key], &'static str),
     /// A table whose keys depend on one of them: those by which that is read, and those of each kind.
-    Kinds(&'static [Key], fn() -> Vec<Kind>),
+    Kinds(&'static [Key], fn() -> Vec<KindKeys>),
 }
 
 /// The word for a kind of table, and its keys.
-type Kind = (&'static str, &'static [Key]);
+type KindKeys = (&'static str, &'static [Key]);
 
 /// What a table may be, by the word of one of its keys.
 pub(super) trait Kinds: Word {
@@ -82,7 +82,7 @@ pub(super) trait Kinds: Word {
     fn keys(self) -> &'static [Key];
 }
 
-fn kinds<T: Kinds>() -> Vec<Kind> {
+fn kinds<T: Kinds>() -> Vec<KindKeys> {
     T::WORDS.iter().map(|(name, kind)| (*name, kind.keys())).collect()
 }
 

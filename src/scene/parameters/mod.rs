@@ -8,7 +8,7 @@ mod tests;
 use std::sync::LazyLock;
 
 use super::error::{ParameterError, Problem};
-use super::keys::{self, At, Key, Row};
+use super::keys::{self, At, Key, KeyRow};
 use super::values::Value;
 use super::{Foundation, Scene, Unit};
 
@@ -22,11 +22,11 @@ pub struct Parameter {
 }
 
 /// The parameters of scenes, in their order, each list having one element.
-static OF_SCENES: LazyLock<Vec<Row>> =
+static OF_SCENES: LazyLock<Vec<KeyRow>> =
     LazyLock::new(|| keys::fields().into_iter().filter(|row| row.key.is_parameter).collect());
 
 /// The keys of a patch, some of which are parameters of elements and patches.
-static OF_PATCHES: LazyLock<Vec<Row>> = LazyLock::new(|| keys::rows(keys::PATCH_ROOT));
+static OF_PATCHES: LazyLock<Vec<KeyRow>> = LazyLock::new(|| keys::rows(keys::PATCH_ROOT));
 
 impl Parameter {
     /// How the dashpots start.
@@ -59,7 +59,7 @@ impl Parameter {
         self.key.replace("[]", &format!("[{}]", self.index + 1))
     }
 
-    fn row(self) -> Option<&'static Row> {
+    fn row(self) -> Option<&'static KeyRow> {
         OF_SCENES.iter().chain(OF_PATCHES.iter()).find(|row| row.path == self.key)
     }
 
@@ -104,12 +104,13 @@ impl Scene {
     /// The parameters that this scene has, in the order of the scene's keys.
     pub fn parameters(&self) -> Vec<Parameter> {
         let mut parameters = Vec::new();
-        let list = |row: &Row| row.path.split_once("[]").map(|(list, _)| list.to_owned());
+        let list = |row: &KeyRow| row.path.split_once("[]").map(|(list, _)| list.to_owned());
         for rows in OF_SCENES.chunk_by(|one, next| list(one).is_some() && list(one) == list(next)) {
             let in_list = rows.first().and_then(list).is_some();
             for index in 0.. {
-                let has =
-                    |row: &&Row| row.key.field.is_some_and(|field| (field.get)(self, row.at.element(index)).is_some());
+                let has = |row: &&KeyRow| {
+                    row.key.field.is_some_and(|field| (field.get)(self, row.at.element(index)).is_some())
+                };
                 let before = parameters.len();
                 parameters.extend(rows.iter().filter(has).map(|row| Parameter { key: &row.path, index }));
                 if !in_list || parameters.len() == before {

@@ -24,10 +24,10 @@ use std::path::{Path, PathBuf};
 pub(super) use areal::line_note;
 pub use options::{LengthUnit, Missing, ProfileOptions, ReadingNote, ThirdColumn, Tilt, UnknownWord};
 
-use super::HeightMap;
 use super::error::{ContentError, SceneError};
 use super::regular_file::read_file;
 use super::surface::{Coordinate, Surface, check_points, remove_tilt};
+use super::{HeightMap, MapError};
 use crate::tables::{Unit, decode};
 use options::MeasuredPoints;
 use text::Content;
@@ -159,7 +159,7 @@ fn check_line(options: &ProfileOptions) -> Result<(), ContentError> {
 }
 
 /// The line that `options` choose, and the map that it is taken of, or why there is none.
-type LineOfMap = (MeasuredPoints, Option<Result<HeightMap, String>>);
+type LineOfMap = (MeasuredPoints, Option<Result<HeightMap, MapError>>);
 
 /// The points of a file that is no text of columns; `None` of text.
 #[cfg(feature = "instruments")]
@@ -194,9 +194,9 @@ fn finish(mut raw: MeasuredPoints, options: &ProfileOptions) -> Result<Parsed, C
     }
     check(&mut raw, options.periodic)?;
     let surface = Surface::new(raw.x, raw.z, options.periodic);
-    if let Err(expected) = surface.check_slopes() {
-        return Err(ContentError::value(raw.lines.first().copied(), "points", &closest(&surface), &expected));
-    }
+    surface.check_slopes().map_err(|expected| {
+        ContentError::value(raw.lines.first().copied(), "points", &closest(&surface), &expected.to_string())
+    })?;
     Ok(Parsed { surface, warnings: raw.warnings, notes: raw.notes, extract: None })
 }
 

@@ -1,6 +1,6 @@
 //! `[carrier]`, and the phases of `[[excitation]]`, whose keys depend on it.
 
-use super::surface::{Found, read_path};
+use super::surface::{Findings, read_path};
 use super::table::{Result, TableReader};
 use crate::scene::keys::At;
 use crate::scene::motion_file;
@@ -54,7 +54,7 @@ pub(super) fn read_phases(
     table: &mut TableReader<'_>,
     carrier: &CarrierBodies,
     temperature: TemperatureInput<'_>,
-    found: &mut Found,
+    found: &mut Findings,
 ) -> Result<Vec<Phase>> {
     let Some(entry) = table.entry("file") else { return Ok(vec![read_phase(table, carrier, temperature)?]) };
     let phases = found.read_file(&entry, &read_path(&entry)?, motion_file::read_motion)?;

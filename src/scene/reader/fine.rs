@@ -1,6 +1,6 @@
 //! Reading of the roughness below the profile, `surface.fine`, and what else of a scene must go with it.
 
-use super::surface::{Found, read_path};
+use super::surface::{Findings, read_path};
 use super::table::{Entry, Result, TableReader};
 use crate::scene::fine_roughness::{Convention, read_softening, read_spectrum};
 use crate::scene::keys::SurfaceKind;
@@ -24,7 +24,7 @@ const EXPECTED: &str = "hurst, rms_slope, longest and shortest; spectrum, longes
 pub(super) fn read(
     surface_entry: &Entry<'_>,
     surface: Surface,
-    found: &mut Found,
+    found: &mut Findings,
 ) -> Result<(Surface, Option<FineRoughness>)> {
     let mut surface_table = surface_entry.open()?;
     let Some(entry) = surface_table.entry("fine") else { return Ok((surface, None)) };
@@ -61,7 +61,7 @@ fn read_waves(
     table: &mut TableReader<'_>,
     kind: SurfaceKind,
     surface: Surface,
-    found: &mut Found,
+    found: &mut Findings,
 ) -> Result<(Surface, FineWaves)> {
     let Some((form, keys)) = FORMS.into_iter().find(|(name, _)| table.has(name)) else {
         return Err(entry.refuse(EXPECTED));

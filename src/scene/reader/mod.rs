@@ -16,7 +16,7 @@ use super::{
     Material, MaxwellElement, OutputGroup, ParameterError, PronyTerm, RateShear, Scene, SceneError, Solver, Surface,
     Wlf, read_text, warnings,
 };
-use surface::Found;
+use surface::Findings;
 use table::{Entry, Result, Source, TableReader};
 
 /// The most letters of a scene's name.
@@ -48,7 +48,7 @@ impl Scene {
 }
 
 fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
-    let (mut scene, mut found) = (unread_scene(), Found::default());
+    let (mut scene, mut found) = (unread_scene(), Findings::default());
     scene.name = read_name(&root.required("name")?)?;
     scene.description = root.entry("description").map(|entry| read_description(&entry)).transpose()?;
     root.required("layer")?.table(|table| read_layer(table, &mut scene, &mut found))?;
@@ -163,7 +163,7 @@ fn read_description(entry: &Entry<'_>) -> Result<String> {
     if description.contains(illegal) { Err(entry.refuse_type()) } else { Ok(description.to_owned()) }
 }
 
-fn read_layer(table: &mut TableReader<'_>, scene: &mut Scene, found: &mut Found) -> Result<()> {
+fn read_layer(table: &mut TableReader<'_>, scene: &mut Scene, found: &mut Findings) -> Result<()> {
     table.fill(scene, At::FIRST)?;
     let foundation = table.optional_choice("foundation")?.unwrap_or_default();
     scene.layer.foundation = table.is_material().then_some(foundation);
@@ -205,7 +205,7 @@ fn fill_each(elements: &[Entry<'_>], scene: &mut Scene, at: At) -> Result<()> {
     numbered.try_for_each(|(index, entry)| entry.table(|table| table.fill(scene, at.element(index))))
 }
 
-fn read_material(table: &mut TableReader<'_>, scene: &mut Scene, found: &mut Found) -> Result<()> {
+fn read_material(table: &mut TableReader<'_>, scene: &mut Scene, found: &mut Findings) -> Result<()> {
     scene.material = Some(Material::default());
     table.fill(scene, At::FIRST)?;
     read_prony(&table.required("prony")?, scene, found)?;
@@ -218,7 +218,7 @@ fn read_material(table: &mut TableReader<'_>, scene: &mut Scene, found: &mut Fou
 }
 
 /// The Prony series, in the scene or in a file.
-fn read_prony(entry: &Entry<'_>, scene: &mut Scene, found: &mut Found) -> Result<()> {
+fn read_prony(entry: &Entry<'_>, scene: &mut Scene, found: &mut Findings) -> Result<()> {
     let Some(material) = &mut scene.material else { return Ok(()) };
     if !entry.is_text() {
         let elements = entry.elements()?;
