@@ -92,7 +92,7 @@ const U_RATE: f64 = 0.5;
 /// An instance and the state that it goes back to before each run.
 struct SteppingFmu {
     fmu: Fmu,
-    start: asperity::fmi::bindings::fmi2FMUstate,
+    start: asperity_fmi::bindings::fmi2FMUstate,
     u: u32,
 }
 

@@ -37,7 +37,7 @@ fn main() {
 
 /// The tread block, pressed and slid until it slides steadily.
 fn layer() -> Simulation {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/tread-block/tread-block.toml");
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("scenes/tread-block/tread-block.toml");
     let scene = Scene::load(&path).unwrap();
     let start = Start { w: -2.5e-5, u_rate: SPEED, ..Start::default() };
     let mut simulation = Simulation::new(&scene, &start).unwrap();

@@ -16,9 +16,9 @@ mod master;
 use std::hint::black_box;
 use std::ptr;
 
-use asperity::fmi::bindings::fmi2Type_fmi2CoSimulation;
 use asperity::scene::Scene;
 use asperity::simulation::Simulation;
+use asperity_fmi::bindings::fmi2Type_fmi2CoSimulation;
 use common::{layer, parse, pressed, slide};
 use criterion::{BenchmarkId, Criterion};
 use master::{Fmu, Folder, Messages, OK, Request, callbacks};
@@ -66,10 +66,10 @@ fn instantiate(criterion: &mut Criterion) {
 }
 
 #[allow(unsafe_code, reason = "C's interface")]
-fn free(instance: asperity::fmi::bindings::fmi2Component) {
+fn free(instance: asperity_fmi::bindings::fmi2Component) {
     assert!(!instance.is_null());
     // SAFETY: from fmi2Instantiate, and freed once.
-    unsafe { asperity::fmi::fmi2FreeInstance(instance) }
+    unsafe { asperity_fmi::fmi2FreeInstance(instance) }
 }
 
 /// A run in contact, kept and gone back to: as a clone, and as what is written to a file.

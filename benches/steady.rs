@@ -11,7 +11,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use asperity::scene::Scene;
-use asperity::steady::{Convolution, GridSize, SlidingRubber, SteadySolver, SurfaceGrid};
+use asperity_study::steady::{Convolution, GridSize, SlidingRubber, SteadySolver, SurfaceGrid};
 use common::side_by_side;
 
 const BUDGET: Duration = Duration::from_secs(2);
@@ -19,7 +19,8 @@ const BUDGET: Duration = Duration::from_secs(2);
 fn main() {
     println!("{:<34} {:>10} {:>10} {:>8} {:>8}", "point", "ms", "bare pair", "ratio", "pairs");
     for (case, pressure) in [("half-plane/rough", 1e5), ("half-plane/rough", 4e5), ("half-plane/steep", 5e5)] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/reference/{case}.toml"));
+        let path =
+            Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join(format!("tests/reference/{case}.toml"));
         let scene = Scene::parse(&std::fs::read_to_string(&path).unwrap(), &path).unwrap();
         let rubber = SlidingRubber::new(&scene).unwrap();
         point(

@@ -106,22 +106,13 @@
 //! | E_impact | `Energies::impact` | J | energy lost in impacts |
 //! | T, V | `kinetic_energy()`, `elastic_energy()` | J | energy balance E_in = Δ(T + V + T_c + V_c) + E_damper + E_maxwell + E_friction + E_impact + E_c |
 
-#[cfg(feature = "program")]
-pub mod calibration;
 pub mod contact;
 pub mod element;
-pub mod fmi;
 pub mod integrator;
 pub mod math;
 pub mod model;
 pub mod outputs;
 pub mod patch;
-#[cfg(feature = "program")]
-pub mod program;
-#[cfg(feature = "program")]
-pub mod robustness;
 pub mod scene;
 pub mod simulation;
-#[cfg(feature = "program")]
-pub mod steady;
 pub mod tables;

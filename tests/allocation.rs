@@ -10,11 +10,11 @@ use std::cell::Cell;
 use std::path::Path as FilePath;
 
 use asperity::element::{PointContact, Table};
-use asperity::fmi::{Definition, Inputs};
 use asperity::outputs::{Snapshot, Variable, variables};
 use asperity::patch::{Patch, PatchMotion, PatchRun, PatchStart, Pose};
 use asperity::scene::{Force, Path, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
+use asperity_fmi::{Definition, Inputs};
 use pairs::{pairs, reduced, started};
 
 thread_local! {

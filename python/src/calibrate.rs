@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use asperity::calibration::FreeParameter;
-use asperity::program::{Calibration, CalibrationOptions, calibrate_scene};
+use asperity_cli::{Calibration, CalibrationOptions, calibrate_scene};
+use asperity_study::calibration::FreeParameter;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};

@@ -5,9 +5,13 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use asperity::patch::{MotionError, PatchError, RestoreError};
-use asperity::program::{CalibrateError, ContactError, FileError, FitError, OverrideError, PackError, SweepError};
 use asperity::scene::{ParameterError, SceneError};
 use asperity::simulation::SimulationError;
+use asperity_cli::{CalibrateError, FileError, FitError, PackError};
+use asperity_study::contact::ContactError;
+use asperity_study::files::ReadError;
+use asperity_study::settings::OverrideError;
+use asperity_study::sweep::SweepError;
 use pyo3::exceptions::{PyFileNotFoundError, PyKeyError, PyOSError, PyValueError};
 use pyo3::prelude::*;
 
@@ -75,12 +79,25 @@ impl Raise for PatchError {
     }
 }
 
-impl Raise for FileError {
+impl Raise for ReadError {
     fn raise(self) -> PyErr {
         match self {
             Self::Scene(error) => error.raise(),
             Self::Set(error) => error.raise(),
             Self::Patch(error) => error.raise(),
+            Self::Io { ref source, .. } if source.kind() == ErrorKind::NotFound => {
+                PyFileNotFoundError::new_err(self.to_string())
+            }
+            Self::Io { .. } => PyOSError::new_err(self.to_string()),
+        }
+    }
+}
+
+impl Raise for FileError {
+    fn raise(self) -> PyErr {
+        match self {
+            Self::Read(error) => error.raise(),
+            Self::Set(error) => error.raise(),
             Self::Io { ref source, .. } if source.kind() == ErrorKind::NotFound => {
                 PyFileNotFoundError::new_err(self.to_string())
             }
@@ -117,19 +134,13 @@ impl Raise for RestoreError {
 
 impl Raise for SweepError {
     fn raise(self) -> PyErr {
-        match self {
-            Self::File(error) => error.raise(),
-            error => scene_error(&error, None, None, ""),
-        }
+        scene_error(&self, None, None, "")
     }
 }
 
 impl Raise for ContactError {
     fn raise(self) -> PyErr {
-        match self {
-            Self::File(error) => error.raise(),
-            error => scene_error(&error, None, None, ""),
-        }
+        scene_error(&self, None, None, "")
     }
 }
 

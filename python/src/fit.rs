@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use asperity::program::{FitOptions, FittedModuli, WlfConstants, fit_moduli};
 use asperity::tables::Unit;
+use asperity_cli::{FitOptions, FittedModuli, WlfConstants, fit_moduli};
 use numpy::{IntoPyArray as _, PyArray1, PyArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

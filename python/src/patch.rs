@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use asperity::patch::{PatchMotion, PatchStart, PatchVariable, Pose};
-use asperity::program::write_fmu;
+use asperity_cli::write_fmu;
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -10,5 +10,5 @@ use pyo3::prelude::*;
 #[pyfunction]
 #[pyo3(signature = (words, library=None))]
 pub(crate) fn main(py: Python<'_>, words: Vec<OsString>, library: Option<PathBuf>) -> u8 {
-    py.detach(|| asperity::program::execute(words, library))
+    py.detach(|| asperity_cli::execute(words, library))
 }

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use asperity::outputs::{OutputType, Variable, variables};
-use asperity::program::{ElementField, ElementFields, InputSample, Rows, Runner};
 use asperity::scene::{Scene as SceneData, Unit};
 use asperity::simulation::SimulationError;
+use asperity_study::elements::{ElementField, ElementFields};
+use asperity_study::runner::{InputSample, Rows, Runner};
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

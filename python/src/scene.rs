@@ -4,7 +4,9 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use asperity::program::{Setting, item_at, parse_scene, with_settings, write_fmu};
+use asperity_cli::write_fmu;
+use asperity_study::files::parse_scene;
+use asperity_study::settings::{Setting, item_at, with_settings};
 use numpy::{PyArray1, PyArrayMethods as _, ToPyArray as _};
 use pyo3::IntoPyObjectExt as _;
 use pyo3::exceptions::PyKeyError;

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::grid::{Load, OperatingPoint, SweepGrid};
-use super::table_format::{Basis, Quantity, STEADY, TableError, TableRow, TableText};
+use super::quantity::Quantity;
+use super::table_format::{Basis, STEADY, TableError, TableRow, TableText};
 use crate::scene::read_text;
 
 /// A table, checked: every point of the grid has a row and was steady.
@@ -206,7 +207,7 @@ fn check_steady(text: &TableText, load: Load, rows: &[TableRow], order: &[usize]
 }
 
 /// The first of `texts`, and how many more there are.
-pub(crate) fn some_of(texts: &[String]) -> String {
+pub fn some_of(texts: &[String]) -> String {
     const SHOWN: usize = 10;
     let shown = texts.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join("; ");
     match texts.len().saturating_sub(SHOWN) {

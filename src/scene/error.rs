@@ -74,12 +74,15 @@ pub(super) struct Location {
 }
 
 /// What is wrong in the content of a file that a scene names, before it is known which file that is.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct ContentError {
-    pub(super) line: Option<usize>,
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}", problem.about(key))]
+pub struct ContentError {
+    /// The line, counted from 1.
+    pub line: Option<usize>,
     /// The column or the element; empty where there is none.
-    pub(super) key: String,
-    pub(super) problem: Problem,
+    pub key: String,
+    /// What is wrong.
+    pub problem: Problem,
 }
 
 impl SceneError {
@@ -126,12 +129,13 @@ impl SceneError {
 }
 
 impl ContentError {
-    pub(super) fn new(line: Option<usize>, key: impl Into<String>, problem: impl Into<Problem>) -> Self {
+    /// The `problem` of what stands at `key`.
+    pub fn new(line: Option<usize>, key: impl Into<String>, problem: impl Into<Problem>) -> Self {
         Self { line, key: key.into(), problem: problem.into() }
     }
 
     /// The error of a value that is not what was `expected`. Texts of the file are shown on one line.
-    pub(super) fn value(line: Option<usize>, key: &str, given: &str, expected: &str) -> Self {
+    pub fn value(line: Option<usize>, key: &str, given: &str, expected: &str) -> Self {
         let [key, given] = [key, given].map(|text| text.replace(['\n', '\r'], " "));
         Self::new(line, key, Problem::value(given, expected))
     }

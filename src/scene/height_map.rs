@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Complex;
 use serde::Serialize;
 
-use super::error::Problem;
+use super::error::ContentError;
 use super::surface::{STEEPEST, peak_to_valley};
 use super::values::{LARGEST, SMALLEST};
 use super::{RoughnessSpectrum, Surface};
@@ -62,13 +62,11 @@ pub enum MapError {
     #[error("heights, not gaps alone")]
     OnlyGaps,
     /// Numbers stand for no height.
-    #[error("{}", problem.about(column))]
-    Sentinels {
-        /// Where they are.
-        column: String,
-        /// What they are.
-        problem: Problem,
-    },
+    #[error(transparent)]
+    Sentinels(#[from] ContentError),
+    /// What a map takes in a format of files.
+    #[error("{0}")]
+    Format(String),
     /// The line was smoothed.
     #[error("a map as it is: smoothing and splitting are of one line")]
     Smoothed,

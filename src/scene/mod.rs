@@ -44,7 +44,7 @@ use values::Word;
 
 pub use axis::{Axis, ByAxis};
 pub use carrier::{CarrierBodies, CarrierBody, CarrierInitial, Input};
-pub use error::{ParameterError, Problem, SceneError};
+pub use error::{ContentError, ParameterError, Problem, SceneError};
 pub use excitation::{Force, Motion, Path, Phase};
 pub use fine_roughness::{
     FineBand, FineRoughness, FineWaves, ModulusFactors, RoughnessSpectrum, Softening, SofteningRow, SplitError,
@@ -59,13 +59,14 @@ pub use material::{Heat, Material, PronyTerm, Wlf, complex_stiffness};
 pub use parameters::Parameter;
 pub use patch_file::{Backing, FaceHeat, FaceShape, Grid, NotDoubled, PatchFile, PatchGroup, TableExtrapolation};
 pub use profile::{
-    Extract, LengthUnit, LoadedProfile, Missing, ProfileOptions, ReadingNote, ThirdColumn, Tilt, UnknownWord,
+    Areal, Extract, LengthUnit, LoadedProfile, MeasuredPoints, MeasuredSurface, Missing, ProfileOptions, ReadingNote,
+    SurfaceFormats, TextAlone, ThirdColumn, Tilt, UnknownWord, line_note,
 };
 pub use regular_file::{read_file, read_text};
 pub use self_affine::SelfAffine;
 pub use spectrum::{Band, PowerLaw, Spectrum};
 pub use surface::{MeanLine, Surface, peak_to_valley};
-pub use values::{LARGEST, LOOSEST_TOLERANCE, SMALLEST, Unit, Value, is_possible};
+pub use values::{ANY, LARGEST, LOOSEST_TOLERANCE, NumberRange, SMALLEST, Unit, Value, is_possible};
 
 /// A whole scene, checked. Serialised, it is every number of it: what the scene does not name is null or empty.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -23,7 +23,7 @@ pub fn is_possible(number: f64) -> bool {
 
 /// Numbers whose size lies between two bounds, both included; 0 and negative numbers where they are allowed.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct NumberRange {
+pub struct NumberRange {
     smallest: f64,
     largest: f64,
     zero: bool,
@@ -36,7 +36,7 @@ pub(super) const POSITIVE: NumberRange =
 /// 0, and from [`SMALLEST`] to [`LARGEST`].
 pub(super) const NOT_NEGATIVE: NumberRange = NumberRange { zero: true, ..POSITIVE };
 /// Up to [`LARGEST`] in size.
-pub(super) const ANY: NumberRange = NumberRange { smallest: 0.0, negative: true, ..NOT_NEGATIVE };
+pub const ANY: NumberRange = NumberRange { smallest: 0.0, negative: true, ..NOT_NEGATIVE };
 
 impl NumberRange {
     /// These numbers up to another bound.
@@ -49,7 +49,8 @@ impl NumberRange {
         Self { smallest, ..self }
     }
 
-    pub(super) fn holds(&self, number: f64) -> bool {
+    /// Whether `number` is one of them.
+    pub fn holds(&self, number: f64) -> bool {
         let size = number.abs();
         let in_range = self.smallest <= size && size <= self.largest && (self.negative || number > 0.0);
         in_range || (self.zero && number == 0.0)

@@ -26,7 +26,7 @@ mod start;
 mod state;
 mod stepper;
 #[cfg(test)]
-pub(crate) mod tests;
+mod tests;
 mod time_stepping;
 
 use std::sync::Arc;

@@ -7,40 +7,10 @@ use crate::outputs::variables;
 use crate::scene::{Path, Scene};
 
 /// Six masses over a wave, Maxwell elements on all links, both parts of friction, all outputs.
-pub(crate) const TEXT: &str = r#"
-name = "everything"
-[layer]
-masses = 6
-spacing = 1.1e-4
-mass = 1e-7
-vertical = { stiffness = 2e3, damping = 8e-3, maxwell = [{ stiffness = 1e3, relaxation_time = 1e-4 }] }
-horizontal = { stiffness = 1e3, damping = 5e-3, maxwell = [
-    { stiffness = 6e2, relaxation_time = 1e-4 }, { stiffness = 2e2, relaxation_time = 1e-6 } ] }
-lateral_x = { stiffness = 5e2, damping = 2e-3, maxwell = [{ stiffness = 2e2, relaxation_time = 1e-5 }] }
-lateral_z = { stiffness = 3e2, damping = 2e-3, maxwell = [{ stiffness = 1e2, relaxation_time = 1e-5 }] }
-[surface]
-kind = "sinusoid"
-amplitude = 3e-6
-wavelength = 5e-4
-[friction]
-coulomb = 0.4
-shear_force = 5e-5
-[solver]
-relative_tolerance = 1e-11
-[fmu]
-outputs = ["forces", "dissipation", "friction", "contact", "energy", "tangent", "solver", "elements"]
-"#;
+pub(super) const TEXT: &str = include_str!("../../tests/common/everything.toml");
 
 /// Six hardly damped masses that stick and slip: what they do after a few slips depends on every error before.
-pub(crate) const STICK_SLIP: &str = "
-name = 'stick-slip'
-layer = { masses = 6, spacing = 1e-4, mass = 1e-7, clearance = -1e-5, vertical = { stiffness = 2e3, damping = 8e-3 },
-          horizontal = { stiffness = 300 }, lateral_x = { stiffness = 2000 } }
-surface = { kind = 'sinusoid', amplitude = 2e-6, wavelength = 2.7e-4 }
-friction = { coulomb = 0.1, rate_shear = { force = 8e-3, reference_speed = 1e-4, sharpness = 0.3 } }
-solver = { relative_tolerance = 1e-2 }
-fmu = { outputs = ['forces', 'solver'] }
-";
+pub(super) const STICK_SLIP: &str = include_str!("../../tests/common/stick-slip.toml");
 
 /// A motion after which masses are free, slip and stick.
 pub(super) const WAVE: Motion = Motion {

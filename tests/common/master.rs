@@ -8,10 +8,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::{fs, mem, process, ptr};
 
 use asperity::element::{PointContact, Table};
-use asperity::fmi::bindings::*;
-use asperity::fmi::{self, Definition, PATCH_FILE, SCENE_FILE, Sources, TABLE_FILE, VariableTable};
 use asperity::patch::Patch;
 use asperity::scene::Scene;
+use asperity_fmi::bindings::*;
+use asperity_fmi::{Definition, PATCH_FILE, SCENE_FILE, Sources, TABLE_FILE, VariableTable};
 
 pub const OK: fmi2Status = fmi2Status_fmi2OK;
 pub const DISCARD: fmi2Status = fmi2Status_fmi2Discard;
@@ -128,7 +128,7 @@ pub fn describe(file: &Path) -> (String, VariableTable) {
         Scene::load(file).unwrap().into()
     };
     let variables = definition.variables();
-    (fmi::guid(&Sources::new(file, &*definition).unwrap(), &variables), variables)
+    (asperity_fmi::guid(&Sources::new(file, &*definition).unwrap(), &variables), variables)
 }
 
 impl Drop for Folder {
@@ -202,7 +202,9 @@ impl Request {
         let pointer = |text: &Option<CString>| text.as_ref().map_or(ptr::null(), |text| text.as_ptr());
         let (name, guid, location) = (pointer(&name), pointer(&guid), pointer(&location));
         // SAFETY: strings that live, NULL or callbacks that live.
-        unsafe { fmi::fmi2Instantiate(name, self.kind, guid, location, self.functions, 0, self.logging.into()) }
+        unsafe {
+            asperity_fmi::fmi2Instantiate(name, self.kind, guid, location, self.functions, 0, self.logging.into())
+        }
     }
 }
 
@@ -304,10 +306,10 @@ impl Fmu {
 
     /// All outputs but the processor time, bit by bit.
     pub fn bits(&self) -> Vec<u64> {
-        let is_time = |entry: &fmi::VariableRef| entry.name == "solver.run_time";
+        let is_time = |entry: &asperity_fmi::VariableRef| entry.name == "solver.run_time";
         let outputs = self.variables.entries().filter(|(_, entry)| entry.is_calculated());
-        let bits = |(reference, entry): (u32, &fmi::VariableRef)| match entry.kind {
-            fmi::Kind::Real => self.real(&entry.name).to_bits(),
+        let bits = |(reference, entry): (u32, &asperity_fmi::VariableRef)| match entry.kind {
+            asperity_fmi::Kind::Real => self.real(&entry.name).to_bits(),
             _ => {
                 let mut value = [0];
                 assert_eq!(self.get_integers(&[reference], &mut value), OK);
@@ -352,65 +354,72 @@ impl Instance {
         let (given, tolerance) = (tolerance.is_some().into(), tolerance.unwrap_or_default());
         // SAFETY: see above.
         unsafe {
-            fmi::fmi2SetupExperiment(self.c, given, tolerance, start, stop.is_some().into(), stop.unwrap_or_default())
+            asperity_fmi::fmi2SetupExperiment(
+                self.c,
+                given,
+                tolerance,
+                start,
+                stop.is_some().into(),
+                stop.unwrap_or_default(),
+            )
         }
     }
 
     pub fn enter(&self) -> fmi2Status {
         // SAFETY: see above.
-        unsafe { fmi::fmi2EnterInitializationMode(self.c) }
+        unsafe { asperity_fmi::fmi2EnterInitializationMode(self.c) }
     }
 
     pub fn exit(&self) -> fmi2Status {
         // SAFETY: see above.
-        unsafe { fmi::fmi2ExitInitializationMode(self.c) }
+        unsafe { asperity_fmi::fmi2ExitInitializationMode(self.c) }
     }
 
     pub fn step(&self, point: f64, h: f64) -> fmi2Status {
         // SAFETY: see above.
-        unsafe { fmi::fmi2DoStep(self.c, point, h, 1) }
+        unsafe { asperity_fmi::fmi2DoStep(self.c, point, h, 1) }
     }
 
     pub fn terminate(&self) -> fmi2Status {
         // SAFETY: see above.
-        unsafe { fmi::fmi2Terminate(self.c) }
+        unsafe { asperity_fmi::fmi2Terminate(self.c) }
     }
 
     pub fn free(self) {
         // SAFETY: from fmi2Instantiate, and used no more.
-        unsafe { fmi::fmi2FreeInstance(self.c) }
+        unsafe { asperity_fmi::fmi2FreeInstance(self.c) }
     }
 
     pub fn reset(&self) -> fmi2Status {
         // SAFETY: see above.
-        unsafe { fmi::fmi2Reset(self.c) }
+        unsafe { asperity_fmi::fmi2Reset(self.c) }
     }
 
     pub fn get_reals(&self, references: &[u32], values: &mut [f64]) -> fmi2Status {
         // SAFETY: see above.
-        unsafe { fmi::fmi2GetReal(self.c, references.as_ptr(), references.len(), values.as_mut_ptr()) }
+        unsafe { asperity_fmi::fmi2GetReal(self.c, references.as_ptr(), references.len(), values.as_mut_ptr()) }
     }
 
     pub fn set_reals(&self, references: &[u32], values: &[f64]) -> fmi2Status {
         // SAFETY: see above.
-        unsafe { fmi::fmi2SetReal(self.c, references.as_ptr(), references.len(), values.as_ptr()) }
+        unsafe { asperity_fmi::fmi2SetReal(self.c, references.as_ptr(), references.len(), values.as_ptr()) }
     }
 
     pub fn get_integers(&self, references: &[u32], values: &mut [i32]) -> fmi2Status {
         // SAFETY: see above.
-        unsafe { fmi::fmi2GetInteger(self.c, references.as_ptr(), references.len(), values.as_mut_ptr()) }
+        unsafe { asperity_fmi::fmi2GetInteger(self.c, references.as_ptr(), references.len(), values.as_mut_ptr()) }
     }
 
     pub fn set_integers(&self, references: &[u32], values: &[i32]) -> fmi2Status {
         // SAFETY: see above.
-        unsafe { fmi::fmi2SetInteger(self.c, references.as_ptr(), references.len(), values.as_ptr()) }
+        unsafe { asperity_fmi::fmi2SetInteger(self.c, references.as_ptr(), references.len(), values.as_ptr()) }
     }
 
     pub fn get_text(&self, reference: u32) -> Result<String, fmi2Status> {
         let mut value = ptr::null();
         // SAFETY: see above; the string lives until the next call.
         unsafe {
-            match fmi::fmi2GetString(self.c, &reference, 1, &mut value) {
+            match asperity_fmi::fmi2GetString(self.c, &reference, 1, &mut value) {
                 OK => Ok(CStr::from_ptr(value).to_str().unwrap().to_owned()),
                 status => Err(status),
             }
@@ -420,28 +429,28 @@ impl Instance {
     pub fn set_text(&self, reference: u32, value: &str) -> fmi2Status {
         let value = CString::new(value).unwrap();
         // SAFETY: see above.
-        unsafe { fmi::fmi2SetString(self.c, &reference, 1, &value.as_ptr()) }
+        unsafe { asperity_fmi::fmi2SetString(self.c, &reference, 1, &value.as_ptr()) }
     }
 
     pub fn set_rates(&self, references: &[u32], orders: &[i32], rates: &[f64]) -> fmi2Status {
         let (count, orders) = (references.len(), orders.as_ptr());
         // SAFETY: see above.
-        unsafe { fmi::fmi2SetRealInputDerivatives(self.c, references.as_ptr(), count, orders, rates.as_ptr()) }
+        unsafe { asperity_fmi::fmi2SetRealInputDerivatives(self.c, references.as_ptr(), count, orders, rates.as_ptr()) }
     }
 
     pub fn get_state(&self, state: &mut fmi2FMUstate) -> fmi2Status {
         // SAFETY: see above.
-        unsafe { fmi::fmi2GetFMUstate(self.c, state) }
+        unsafe { asperity_fmi::fmi2GetFMUstate(self.c, state) }
     }
 
     pub fn set_state(&self, state: fmi2FMUstate) -> fmi2Status {
         // SAFETY: see above.
-        unsafe { fmi::fmi2SetFMUstate(self.c, state) }
+        unsafe { asperity_fmi::fmi2SetFMUstate(self.c, state) }
     }
 
     pub fn free_state(&self, state: &mut fmi2FMUstate) -> fmi2Status {
         // SAFETY: see above.
-        unsafe { fmi::fmi2FreeFMUstate(self.c, state) }
+        unsafe { asperity_fmi::fmi2FreeFMUstate(self.c, state) }
     }
 
     /// An FMU state.
@@ -456,7 +465,7 @@ impl Instance {
     pub fn serialised(&self, state: fmi2FMUstate) -> Vec<u8> {
         let mut size = 0;
         // SAFETY: see above.
-        assert_eq!(unsafe { fmi::fmi2SerializedFMUstateSize(self.c, state, &mut size) }, OK);
+        assert_eq!(unsafe { asperity_fmi::fmi2SerializedFMUstateSize(self.c, state, &mut size) }, OK);
         let mut bytes = vec![0; size];
         assert_eq!(self.serialise(state, &mut bytes), OK);
         bytes
@@ -472,44 +481,46 @@ impl Instance {
 
     pub fn serialise(&self, state: fmi2FMUstate, bytes: &mut [u8]) -> fmi2Status {
         // SAFETY: see above.
-        unsafe { fmi::fmi2SerializeFMUstate(self.c, state, bytes.as_mut_ptr().cast(), bytes.len()) }
+        unsafe { asperity_fmi::fmi2SerializeFMUstate(self.c, state, bytes.as_mut_ptr().cast(), bytes.len()) }
     }
 
     pub fn deserialise(&self, bytes: &[u8], state: &mut fmi2FMUstate) -> fmi2Status {
         // SAFETY: see above.
-        unsafe { fmi::fmi2DeSerializeFMUstate(self.c, bytes.as_ptr().cast(), bytes.len(), state) }
+        unsafe { asperity_fmi::fmi2DeSerializeFMUstate(self.c, bytes.as_ptr().cast(), bytes.len(), state) }
     }
 
     pub fn get_derivatives(&self, unknowns: &[u32], knowns: &[u32], by: &[f64], values: &mut [f64]) -> fmi2Status {
         let (known, by, values) = (knowns.as_ptr(), by.as_ptr(), values.as_mut_ptr());
         let (n, m) = (unknowns.len(), knowns.len());
         // SAFETY: see above.
-        unsafe { fmi::fmi2GetDirectionalDerivative(self.c, unknowns.as_ptr(), n, known, m, by, values) }
+        unsafe { asperity_fmi::fmi2GetDirectionalDerivative(self.c, unknowns.as_ptr(), n, known, m, by, values) }
     }
 
     pub fn get_rates(&self, references: &[u32], orders: &[i32], values: &mut [f64]) -> fmi2Status {
         let (count, orders) = (references.len(), orders.as_ptr());
         // SAFETY: see above.
-        unsafe { fmi::fmi2GetRealOutputDerivatives(self.c, references.as_ptr(), count, orders, values.as_mut_ptr()) }
+        unsafe {
+            asperity_fmi::fmi2GetRealOutputDerivatives(self.c, references.as_ptr(), count, orders, values.as_mut_ptr())
+        }
     }
 
     pub fn set_debug_logging(&self, on: bool, categories: &[&CStr]) -> fmi2Status {
         let categories: Vec<_> = categories.iter().map(|category| category.as_ptr()).collect();
         // SAFETY: see above.
-        unsafe { fmi::fmi2SetDebugLogging(self.c, on.into(), categories.len(), categories.as_ptr()) }
+        unsafe { asperity_fmi::fmi2SetDebugLogging(self.c, on.into(), categories.len(), categories.as_ptr()) }
     }
 
     pub fn last_step(&self) -> (fmi2Status, fmi2Status) {
         let mut value = fmi2Status_fmi2Pending;
         // SAFETY: see above.
-        (unsafe { fmi::fmi2GetStatus(self.c, fmi2StatusKind_fmi2DoStepStatus, &mut value) }, value)
+        (unsafe { asperity_fmi::fmi2GetStatus(self.c, fmi2StatusKind_fmi2DoStepStatus, &mut value) }, value)
     }
 
     pub fn last_successful_time(&self) -> f64 {
         let mut time = f64::NAN;
         let kind = fmi2StatusKind_fmi2LastSuccessfulTime;
         // SAFETY: see above.
-        assert_eq!(unsafe { fmi::fmi2GetRealStatus(self.c, kind, &mut time) }, OK);
+        assert_eq!(unsafe { asperity_fmi::fmi2GetRealStatus(self.c, kind, &mut time) }, OK);
         time
     }
 }

@@ -1,5 +1,5 @@
 //! The catalogue: families of scenes from the tables in `data`, and a scene with the perturbations of
-//! [`asperity::robustness`].
+//! [`asperity_study::robustness`].
 //!
 //! A family has a base scene, values set in all of its scenes, and a list of variations, each one scene: tables that
 //! override each other. The key `run` is not part of the scene: it says how the scene is driven and judged.
@@ -8,8 +8,8 @@ use std::fs;
 use std::path::Path;
 
 use asperity::math::SplitMix64;
-use asperity::robustness::{Perturbation, ScaledQuantity};
 use asperity::simulation::Start;
+use asperity_study::robustness::{Perturbation, ScaledQuantity};
 use toml::{Table, Value};
 
 use crate::common;

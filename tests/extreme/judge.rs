@@ -1,7 +1,7 @@
 //! Judges the runs of a case: method against method, and both against a tight run.
 
-use asperity::robustness::{Accuracy, KEPT, Perturbation, ScaledQuantity, Verdict};
 use asperity::scene::Axis;
+use asperity_study::robustness::{Accuracy, KEPT, Perturbation, ScaledQuantity, Verdict};
 
 use crate::catalogue::{Case, number};
 use crate::fmu::by_fmu;

@@ -8,7 +8,7 @@ mod catalogue;
 mod common;
 mod fmu;
 #[allow(dead_code, reason = "the program's own")]
-#[path = "../../src/program/html.rs"]
+#[path = "../../crates/cli/src/html.rs"]
 mod html;
 mod judge;
 #[allow(dead_code, reason = "shared by several tests")]

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 
-use asperity::robustness::{KEPT, Verdict};
+use asperity_study::robustness::{KEPT, Verdict};
 
 use crate::catalogue::Case;
 use crate::common;

@@ -4,9 +4,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use asperity::outputs::{self, Snapshot, Variable};
-use asperity::robustness::{ForceHistory, ScaledQuantity};
 use asperity::scene::{ByAxis, Scene};
 use asperity::simulation::{Inaccuracy, Motion, Simulation, SimulationError, Start};
+use asperity_study::robustness::{ForceHistory, ScaledQuantity};
 use toml::{Table, Value};
 
 use crate::catalogue::{self, Case};

@@ -1,10 +1,10 @@
 //! Least squares of measured friction: Persson's theory against scipy's fit of the same residuals.
 
-use asperity::calibration::{
+use asperity::scene::Scene;
+use asperity_study::calibration::{
     CalibrationError, Done, FreeParameter, FrictionModel, FrictionParts, Measurements, Problem, Task, TheoryModel,
     Tolerance, map_space, minimise,
 };
-use asperity::scene::Scene;
 
 use crate::common::{Table, root};
 
@@ -106,7 +106,7 @@ fn a_derivative_is_not_taken_across_a_jump() {
     let parameter = FreeParameter::new("friction.coulomb".to_owned(), 1.0, 3.0).unwrap();
     let measured = Measurements::parse(b"speed [m/s],pressure [Pa],mu,sigma\n1,1e5,2,1\n2,1e5,2,1\n", 1.0).unwrap();
     let problem = Problem::new(vec![parameter], &measured);
-    let derivative = |linearised: asperity::calibration::Linearised| linearised.jacobian[(0, 0)];
+    let derivative = |linearised: asperity_study::calibration::Linearised| linearised.jacobian[(0, 0)];
     // Two between the bounds; the step of 2e-4 is lost in rounding to 1e-12 of the quotient.
     assert!((derivative(problem.linearised_to_both_sides(&Jump, &[0.5]).unwrap()) - 2.0).abs() < 1e-9);
     assert!(derivative(problem.linearised(&Jump, &[0.5]).unwrap()) > 500.0);

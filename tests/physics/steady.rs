@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use asperity::math::SplitMix64;
 use asperity::scene::Scene;
-use asperity::steady::{GridSize, SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
+use asperity_study::steady::{GridSize, SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 
 use crate::common::{Table, root};
 

@@ -140,7 +140,7 @@ fn without<F: PartialEq>(key: &KeyEntry, examples: &[Example], parse: impl Fn(&s
 
 /// Checks all keys by all files that `parse` can read.
 fn check<F: PartialEq>(keys: &[KeyEntry], parse: impl Fn(&str, &Path) -> Option<F>) {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("motion.csv"), "time [s],u [m],w [m]\n0,0,0\n1,1,0\n").unwrap();
     fs::write(folder.path().join("line.csv"), "x [m],z [m]\n0,0\n1,0\n2,0\n").unwrap();

@@ -1,14 +1,14 @@
 //! Heights over a grid, and the line along x that is taken of them.
 
 use super::options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ReadingNote, Tilt};
-use super::sentinels;
+use super::{MeasuredSurface, sentinels};
 use crate::scene::error::ContentError;
 use crate::scene::{HeightMap, MOST_HEIGHTS, MapError, peak_to_valley};
 use crate::tables::Unit;
 
 /// An areal measurement: lines along x, one after the other along y.
 #[derive(Debug)]
-pub(super) struct Areal {
+pub struct Areal {
     /// What the file is, for messages: "an SDF file".
     kind: &'static str,
     /// The positions of the points of a line.
@@ -18,22 +18,22 @@ pub(super) struct Areal {
     /// Line by line; NaN where there is none.
     heights: Vec<f64>,
     /// The unit of x, if it is not the metre; numbers of the spacing are in m.
-    pub(super) x_unit: Option<Unit>,
+    pub x_unit: Option<Unit>,
     /// The unit of the heights that the file names.
-    pub(super) unit: Option<Unit>,
-    pub(super) notes: Vec<ReadingNote>,
+    pub unit: Option<Unit>,
+    /// How it was read.
+    pub notes: Vec<ReadingNote>,
 }
 
 impl Areal {
     /// `size` points along x and lines along y at even `spacing`, m.
-    pub(super) fn even(kind: &'static str, size: [usize; 2], spacing: [f64; 2], heights: Vec<f64>) -> Self {
+    pub fn even(kind: &'static str, size: [usize; 2], spacing: [f64; 2], heights: Vec<f64>) -> Self {
         let positions = |axis: usize| (0..size[axis]).map(|i| spacing[axis] * i as f64).collect();
         Self { kind, x: positions(0), y: positions(1), heights, x_unit: None, unit: None, notes: Vec::new() }
     }
 
     /// Lines at these positions along y with points at these along x.
-    #[cfg(feature = "instruments")]
-    pub(super) fn at(kind: &'static str, x: Vec<f64>, y: Vec<f64>, heights: Vec<f64>) -> Self {
+    pub fn at(kind: &'static str, x: Vec<f64>, y: Vec<f64>, heights: Vec<f64>) -> Self {
         Self { kind, x, y, heights, x_unit: None, unit: None, notes: Vec::new() }
     }
 
@@ -55,9 +55,18 @@ impl Areal {
         Ok(Self { kind: "a map of points", x: x_values, y: y_values, heights, x_unit, unit, notes: raw.notes })
     }
 
+    /// The line that `options` choose, and the map, or why there is none; no map of a single line.
+    ///
+    /// # Errors
+    /// [`ContentError`] where there is no such line, or heights are missing and may not be.
+    pub fn surface(&self, options: &ProfileOptions) -> Result<MeasuredSurface, ContentError> {
+        let is_map = self.x.len() > 1 && self.y.len() > 1;
+        Ok(MeasuredSurface { line: self.line(options)?, map: is_map.then(|| self.whole(options)) })
+    }
+
     /// The line that `options` choose, or the middle one. That of a periodic map is closed by its first height, unless
     /// the map's edges repeat each other.
-    pub(super) fn line(&self, options: &ProfileOptions) -> Result<MeasuredPoints, ContentError> {
+    fn line(&self, options: &ProfileOptions) -> Result<MeasuredPoints, ContentError> {
         let (width, lines) = (self.x.len(), self.y.len());
         let line = match options.line {
             Some(line) if line <= lines => line,
@@ -87,11 +96,6 @@ impl Areal {
             Some(i) => Err(raw.refuse(i, "z", "missing", "a height, or missing = \"fill\" where heights are missing")),
             None => Ok(raw),
         }
-    }
-
-    /// The map, or why there is none; nothing of a single line.
-    pub(super) fn map(&self, options: &ProfileOptions) -> Option<Result<HeightMap, MapError>> {
-        (self.x.len() > 1 && self.y.len() > 1).then(|| self.whole(options))
     }
 
     fn whole(&self, options: &ProfileOptions) -> Result<HeightMap, MapError> {
@@ -127,8 +131,7 @@ impl Areal {
     fn known_heights(&self, missing: Missing) -> Result<Vec<f64>, MapError> {
         let mut all = MeasuredPoints { z: self.heights.clone(), ..MeasuredPoints::default() };
         // Numbers that stand for no height are gaps too; they are counted below.
-        sentinels::take_out(&mut all, Missing::Fill)
-            .map_err(|error| MapError::Sentinels { column: error.key, problem: error.problem })?;
+        sentinels::take_out(&mut all, Missing::Fill)?;
         let (mut heights, nx) = (all.z, self.x.len());
         let Some(first) = heights.iter().position(|z| z.is_nan()) else { return Ok(heights) };
         if missing == Missing::Refuse {
@@ -195,7 +198,7 @@ fn fill_evenly(heights: &mut [f64]) -> bool {
 }
 
 /// Says which line was taken.
-pub(in crate::scene) fn line_note(kind: &str, line: usize, lines: usize, is_chosen: bool) -> ReadingNote {
+pub fn line_note(kind: &str, line: usize, lines: usize, is_chosen: bool) -> ReadingNote {
     let assumed = lines > 1 && !is_chosen;
     let which = if assumed { ", the middle one: `line` takes another" } else { "" };
     ReadingNote { text: format!("{kind}: line {line} of {lines} along x{which}"), assumed }

@@ -1,35 +1,31 @@
 //! Measured profiles: files as they come from instruments, and what is done to them before they are a surface.
 //!
-//! Text holds columns x and z, see [`text`]; an X3P file holds an image of heights, see [`x3p`]; other files of
-//! instruments are in [`instruments`]. An FMU carries text in place of all that is no text of x and z.
+//! Text holds columns x and z, see [`text`]; what is no text is read by the [`SurfaceFormats`] that a scene is read with.
+//! An FMU carries text in place of all that is no text of x and z.
 
 mod areal;
 mod header;
-#[cfg(feature = "instruments")]
-mod instruments;
 mod options;
 mod plain;
 mod roles;
 mod sentinels;
 mod text;
-#[cfg(feature = "instruments")]
-mod x3p;
 
 #[cfg(test)]
 mod tests;
 
+use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
-pub(super) use areal::line_note;
-pub use options::{LengthUnit, Missing, ProfileOptions, ReadingNote, ThirdColumn, Tilt, UnknownWord};
+pub use areal::{Areal, line_note};
+pub use options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ReadingNote, ThirdColumn, Tilt, UnknownWord};
 
 use super::error::{ContentError, SceneError};
 use super::regular_file::read_file;
 use super::surface::{Coordinate, Surface, check_points, remove_tilt};
 use super::{HeightMap, MapError};
 use crate::tables::{Unit, decode};
-use options::MeasuredPoints;
 use text::Content;
 
 /// A line of an areal measurement, as an FMU carries it: text in place of the file that it was taken from.
@@ -62,13 +58,17 @@ pub(super) enum ReadFailure {
 }
 
 impl Surface {
-    /// Reads the profile in the file at `path`.
+    /// Reads the profile in the file at `path`, one of text or of `formats`.
     ///
     /// # Errors
     /// [`SceneError`] with the file, the line, the column, what was given and what is allowed.
-    pub fn load(path: &Path, options: &ProfileOptions) -> Result<LoadedProfile, SceneError> {
+    pub fn load(
+        path: &Path,
+        options: &ProfileOptions,
+        formats: &dyn SurfaceFormats,
+    ) -> Result<LoadedProfile, SceneError> {
         let bytes = read_file(path).map_err(|error| SceneError::unreadable(path, &error))?;
-        let parsed = parse(&bytes, options, false).map_err(|error| error.in_file(path.to_owned()))?;
+        let parsed = parse(&bytes, options, formats, false).map_err(|error| error.in_file(path.to_owned()))?;
         Ok(LoadedProfile { surface: parsed.surface, warnings: parsed.warnings, notes: parsed.notes })
     }
 }
@@ -85,7 +85,12 @@ pub struct LoadedProfile {
 }
 
 /// Reads the profile at `path`, which is relative to `folder`. Where that file is not there, its extract may be.
-pub(super) fn read(folder: &Path, path: &Path, options: &ProfileOptions) -> Result<Profile, ReadFailure> {
+pub(super) fn read(
+    folder: &Path,
+    path: &Path,
+    options: &ProfileOptions,
+    formats: &dyn SurfaceFormats,
+) -> Result<Profile, ReadFailure> {
     let (file, bytes) = match read_file(&folder.join(path)) {
         Ok(bytes) => (path.to_owned(), bytes),
         Err(error) => {
@@ -95,7 +100,7 @@ pub(super) fn read(folder: &Path, path: &Path, options: &ProfileOptions) -> Resu
         }
     };
     let is_extract = file != path;
-    let parsed = parse(&bytes, options, is_extract);
+    let parsed = parse(&bytes, options, formats, is_extract);
     let Parsed { surface, warnings, notes, extract } =
         parsed.map_err(|error| ReadFailure::Refused(error.in_file(folder.join(&file))))?;
     let file = if extract.is_some() { extract_name(path, options) } else { file };
@@ -119,7 +124,12 @@ struct Parsed {
     extract: Option<String>,
 }
 
-fn parse(bytes: &[u8], options: &ProfileOptions, is_extract: bool) -> Result<Parsed, ContentError> {
+fn parse(
+    bytes: &[u8],
+    options: &ProfileOptions,
+    formats: &dyn SurfaceFormats,
+    is_extract: bool,
+) -> Result<Parsed, ContentError> {
     if is_extract {
         // It has x and z in m, whatever the file had that it stands for.
         let of_text =
@@ -127,7 +137,7 @@ fn parse(bytes: &[u8], options: &ProfileOptions, is_extract: bool) -> Result<Par
         let Content::Profile(raw) = read_text(bytes, &of_text)? else { return Err(no_profile()) };
         return finish(MeasuredPoints { is_spaced: !options.spacing.is_empty(), ..raw }, options);
     }
-    let (raw, map) = match read_instrument(bytes, options) {
+    let MeasuredSurface { line: raw, map } = match formats.read(bytes, options) {
         Some(read) => read?,
         None => match read_text(bytes, options)? {
             Content::Profile(raw) => {
@@ -158,20 +168,31 @@ fn check_line(options: &ProfileOptions) -> Result<(), ContentError> {
     Err(ContentError::value(None, "line", &line.to_string(), expected))
 }
 
-/// The line that `options` choose, and the map that it is taken of, or why there is none.
-type LineOfMap = (MeasuredPoints, Option<Result<HeightMap, MapError>>);
-
-/// The points of a file that is no text of columns; `None` of text.
-#[cfg(feature = "instruments")]
-fn read_instrument(bytes: &[u8], options: &ProfileOptions) -> Option<Result<LineOfMap, ContentError>> {
-    if bytes.starts_with(b"PK\x03\x04") { Some(x3p::read(bytes, options)) } else { instruments::read(bytes, options) }
+/// A surface as it was measured: the line that the options choose, and the map that it is taken of, or why there is
+/// none.
+#[derive(Debug)]
+pub struct MeasuredSurface {
+    /// The line along x.
+    pub line: MeasuredPoints,
+    /// The map, or what is expected of one; `None` of a single line.
+    pub map: Option<Result<HeightMap, MapError>>,
 }
 
-#[cfg(not(feature = "instruments"))]
-fn read_instrument(bytes: &[u8], _: &ProfileOptions) -> Option<Result<LineOfMap, ContentError>> {
-    let expected = "text: this library was built without the reader of X3P files (feature instruments)";
-    let is_archive = bytes.starts_with(b"PK\x03\x04");
-    is_archive.then(|| Err(ContentError::value(None, "", "a zip archive", expected)))
+/// The formats of files of surfaces that a scene is read with, beside text of columns.
+pub trait SurfaceFormats: fmt::Debug {
+    /// The measurement that a file of these `bytes` holds; `None` of a file of another format.
+    fn read(&self, bytes: &[u8], options: &ProfileOptions) -> Option<Result<MeasuredSurface, ContentError>>;
+}
+
+/// No format but text: that of the files in an FMU.
+#[derive(Clone, Copy, Debug)]
+pub struct TextAlone;
+
+impl SurfaceFormats for TextAlone {
+    fn read(&self, bytes: &[u8], _: &ProfileOptions) -> Option<Result<MeasuredSurface, ContentError>> {
+        let is_archive = bytes.starts_with(b"PK\x03\x04");
+        is_archive.then(|| Err(ContentError::value(None, "", "a zip archive", "text of columns")))
+    }
 }
 
 /// Converts to metres, fills gaps, removes the tilt and checks the points.

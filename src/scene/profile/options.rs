@@ -130,18 +130,21 @@ pub struct ReadingNote {
 
 /// Points as they stand in a file.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct MeasuredPoints {
-    pub(super) x: Vec<f64>,
-    /// NaN where it is missing.
-    pub(super) z: Vec<f64>,
+pub struct MeasuredPoints {
+    /// Positions.
+    pub x: Vec<f64>,
+    /// Heights; NaN where one is missing.
+    pub z: Vec<f64>,
     /// The lines of the points in the file; none where it has no lines.
-    pub(super) lines: Vec<usize>,
+    pub lines: Vec<usize>,
     /// The units of x and z that the file names.
-    pub(super) units: [Option<Unit>; 2],
+    pub units: [Option<Unit>; 2],
     /// Whether x follows from a spacing, which is in m whatever the units are.
-    pub(super) is_spaced: bool,
-    pub(super) warnings: Vec<String>,
-    pub(super) notes: Vec<ReadingNote>,
+    pub is_spaced: bool,
+    /// What may not be meant in them.
+    pub warnings: Vec<String>,
+    /// How they were read.
+    pub notes: Vec<ReadingNote>,
 }
 
 impl MeasuredPoints {
@@ -152,14 +155,14 @@ impl MeasuredPoints {
     }
 
     /// Adds a point in a line of the file.
-    pub(super) fn push(&mut self, line: usize, x: f64, z: f64) {
+    pub fn push(&mut self, line: usize, x: f64, z: f64) {
         self.x.push(x);
         self.z.push(z);
         self.lines.push(line);
     }
 
     /// Refuses point `i`, by its line or else by its number from 1.
-    pub(super) fn refuse(&self, i: usize, axis: &str, given: &str, expected: &str) -> ContentError {
+    pub fn refuse(&self, i: usize, axis: &str, given: &str, expected: &str) -> ContentError {
         match self.lines.get(i) {
             Some(&line) => ContentError::value(Some(line), axis, given, expected),
             None => ContentError::value(None, &format!("{axis}[{}]", i + 1), given, expected),

@@ -9,7 +9,7 @@ fn filled() -> ProfileOptions {
 }
 
 fn points_of(bytes: &[u8], options: &ProfileOptions) -> Vec<(f64, f64)> {
-    let surface = parse(bytes, options, false).unwrap_or_else(|error| unreachable!("{error:?}")).surface;
+    let surface = parse(bytes, options, &TextAlone, false).unwrap_or_else(|error| unreachable!("{error:?}")).surface;
     surface.x().iter().copied().zip(surface.z().iter().copied()).collect()
 }
 
@@ -18,7 +18,7 @@ fn points(text: &str) -> Vec<(f64, f64)> {
 }
 
 fn refused(bytes: &[u8], options: &ProfileOptions) -> (usize, String) {
-    match parse(bytes, options, false) {
+    match parse(bytes, options, &TextAlone, false) {
         Err(error) => (error.line.unwrap_or(0), error.problem.about(&error.key)),
         Ok(parsed) => unreachable!("accepted as {parsed:?}"),
     }
@@ -146,7 +146,8 @@ fn units_are_read_from_the_header() {
     }
     let given = ProfileOptions { z_unit: Some(LengthUnit::Nanometre), ..options() };
     assert_eq!(points_of(b"x [mm];z [mm]\n0;1\n1;2\n", &given), [(0.0, 1e-9), (1e-3, 2e-9)]);
-    let warnings = |text: &str| parse(text.as_bytes(), &options(), false).map_or(9, |parsed| parsed.warnings.len());
+    let warnings =
+        |text: &str| parse(text.as_bytes(), &options(), &TextAlone, false).map_or(9, |parsed| parsed.warnings.len());
     assert_eq!((warnings("X_(microns),y1\n0,1\n1,2"), warnings("x [mm],z [mm]\n0,1\n1,2")), (1, 0));
 }
 
@@ -322,9 +323,10 @@ fn a_column_of_heights_and_a_matrix_have_a_spacing() {
 #[test]
 fn points_on_a_grid_are_a_map() {
     let text = "x [mm],y [mm],z [um]\n0,0,1\n1,0,2\n2,0,3\n0,1,4\n1,1,5\n2,1,6\n0,2,7\n1,2,8\n2,2,9\n";
-    let parsed = parse(text.as_bytes(), &options(), false).unwrap_or_else(|error| unreachable!("{error:?}"));
+    let parsed =
+        parse(text.as_bytes(), &options(), &TextAlone, false).unwrap_or_else(|error| unreachable!("{error:?}"));
     assert_eq!(parsed.surface.z(), [4e-6, 5e-6, 6e-6]);
-    let again = parse(parsed.extract.unwrap_or_default().as_bytes(), &options(), true);
+    let again = parse(parsed.extract.unwrap_or_default().as_bytes(), &options(), &TextAlone, true);
     assert!(again.is_ok_and(|again| again.surface.x().len() == 3));
     let (_, message) = refused(b"x,y,z\n0,0,1\n1,0,2\n0,1,4\n", &options());
     assert!(message.starts_with("points = 3 points with 2 values of x and 2 of y: expected a grid"), "{message}");
@@ -333,7 +335,8 @@ fn points_on_a_grid_are_a_map() {
 #[test]
 fn what_was_assumed_is_said() {
     let assumed = |text: &str| {
-        let parsed = parse(text.as_bytes(), &options(), false).unwrap_or_else(|error| unreachable!("{error:?}"));
+        let parsed =
+            parse(text.as_bytes(), &options(), &TextAlone, false).unwrap_or_else(|error| unreachable!("{error:?}"));
         parsed.notes.iter().filter(|note| note.assumed).count()
     };
     assert_eq!(assumed("x [mm],z [mm]\n0,1\n1,2"), 0);
@@ -343,7 +346,7 @@ fn what_was_assumed_is_said() {
 }
 
 fn surface(text: &str, options: &ProfileOptions) -> Surface {
-    parse(text.as_bytes(), options, false).unwrap_or_else(|error| unreachable!("{error:?}")).surface
+    parse(text.as_bytes(), options, &TextAlone, false).unwrap_or_else(|error| unreachable!("{error:?}")).surface
 }
 
 fn spaced() -> ProfileOptions {

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use super::LineOfMap;
+use super::MeasuredSurface;
 use super::areal::Areal;
 use super::header::{Header, VOCABULARY, cut, note};
 use super::options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ReadingNote, ThirdColumn};
@@ -22,10 +22,10 @@ pub(super) enum Content {
 
 impl Content {
     /// The profile, or the line of the map that `options` choose.
-    pub(super) fn line(self, options: &ProfileOptions) -> Result<LineOfMap, ContentError> {
+    pub(super) fn line(self, options: &ProfileOptions) -> Result<MeasuredSurface, ContentError> {
         match self {
-            Self::Profile(raw) => Ok((raw, None)),
-            Self::Map(areal) => Ok((areal.line(options)?, areal.map(options))),
+            Self::Profile(line) => Ok(MeasuredSurface { line, map: None }),
+            Self::Map(areal) => areal.surface(options),
         }
     }
 }

@@ -14,7 +14,7 @@ use super::values::Word;
 use super::{
     CarrierBodies, Extrapolation, FmuOptions, Foundation, FoundationKind, Friction, Heat, Layer, Link, LinkKind,
     Material, MaxwellElement, OutputGroup, ParameterError, PronyTerm, RateShear, Scene, SceneError, Solver, Surface,
-    Wlf, read_text, warnings,
+    SurfaceFormats, TextAlone, Wlf, read_text, warnings,
 };
 use surface::Findings;
 use table::{Entry, Result, Source, TableReader};
@@ -28,8 +28,16 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] with the file, the line, the key, what was given and what is allowed.
     pub fn load(path: &FilePath) -> Result<Self> {
+        Self::load_with(path, &TextAlone)
+    }
+
+    /// As [`load`](Self::load), with `formats` for the files of surfaces that are no text.
+    ///
+    /// # Errors
+    /// As for [`load`](Self::load).
+    pub fn load_with(path: &FilePath, formats: &dyn SurfaceFormats) -> Result<Self> {
         let text = read_text(path).map_err(|error| SceneError::unreadable(path, &error))?;
-        Self::parse(&text, path)
+        Self::parse_with(&text, path, formats)
     }
 
     /// Reads a scene from `text` as if it were the content of `file`; the files that it names are looked for in the
@@ -38,8 +46,16 @@ impl Scene {
     /// # Errors
     /// As for [`load`](Self::load).
     pub fn parse(text: &str, file: &FilePath) -> Result<Self> {
+        Self::parse_with(text, file, &TextAlone)
+    }
+
+    /// As [`parse`](Self::parse), with `formats` for the files of surfaces that are no text.
+    ///
+    /// # Errors
+    /// As for [`load`](Self::load).
+    pub fn parse_with(text: &str, file: &FilePath, formats: &dyn SurfaceFormats) -> Result<Self> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let source = Source { file, text, form: Form::Direct };
+        let source = Source { file, text, form: Form::Direct, formats };
         let document = source.parse()?;
         let document = document.get_ref();
         let form = if document.contains_key("material") { Form::Material } else { Form::Direct };

@@ -10,7 +10,7 @@ use crate::scene::keys::{AREA, COORDINATE, Form, Key, PATCH_ROOT, ShapeKind};
 use crate::scene::patch_file::{
     Backing, FaceHeat, FaceShape, Grid, MAX_ELEMENTS, PatchFile, PatchGroup, TableExtrapolation,
 };
-use crate::scene::{FmuOptions, SceneError, read_file, read_text};
+use crate::scene::{FmuOptions, SceneError, TextAlone, read_file, read_text};
 use crate::tables::{self, Dimension, Heading, Row, Unit, Words, decode};
 
 /// The columns of a file of points.
@@ -38,7 +38,7 @@ impl PatchFile {
     /// As for [`load`](Self::load).
     pub fn parse(text: &str, file: &FilePath) -> Result<Self> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let source = Source { file, text, form: Form::Direct };
+        let source = Source { file, text, form: Form::Direct, formats: &TextAlone };
         let document = source.parse()?;
         let mut root = TableReader::root(source, document.get_ref(), PATCH_ROOT)?;
         let name = read_name(&root.required("name")?)?;

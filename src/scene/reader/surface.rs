@@ -162,7 +162,8 @@ fn read_file(table: &mut TableReader<'_>, found: &mut Findings) -> Result<Surfac
     let options = read_options(table)?;
     let entry = table.required("path")?;
     let path = read_path(&entry)?;
-    let profile = profile::read(entry.source().folder(), &path, &options).map_err(|failure| match failure {
+    let source = entry.source();
+    let profile = profile::read(source.folder(), &path, &options, source.formats).map_err(|failure| match failure {
         ReadFailure::Unreadable(error) => entry.unreadable(&error),
         ReadFailure::Refused(error) => error.named_by(entry.location(), entry.path()),
     })?;

@@ -6,10 +6,10 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::scene::Scene;
 use crate::scene::error::{Location, Problem, SceneError};
 use crate::scene::keys::{self, Absent, Allowed, At, Field, Form, Key, Kinds};
 use crate::scene::values::{NumberRange, Value, Word, words};
+use crate::scene::{Scene, SurfaceFormats};
 
 pub(super) type Result<T> = std::result::Result<T, SceneError>;
 
@@ -22,6 +22,8 @@ pub(super) struct Source<'a> {
     pub(super) file: &'a Path,
     pub(super) text: &'a str,
     pub(super) form: Form,
+    /// What files of surfaces it may name beside text.
+    pub(super) formats: &'a dyn SurfaceFormats,
 }
 
 /// A value, its key and the key's full path.

@@ -1,7 +1,7 @@
 //! A carrier that is a body through the FMU: its inputs and their order, forces that jump, derivatives, states, errors; and
 //! the layer's temperature as an input.
 
-use asperity::fmi::{Role, VariableRef};
+use asperity_fmi::{Role, VariableRef};
 
 use crate::common::scenes::SceneText;
 use crate::fmi_interface::master::{ERROR, Fmu, OK};

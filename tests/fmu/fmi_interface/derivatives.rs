@@ -2,7 +2,7 @@
 
 use std::ptr;
 
-use asperity::fmi::{Kind, Role, fmi2GetDirectionalDerivative, fmi2GetRealOutputDerivatives};
+use asperity_fmi::{Kind, Role, fmi2GetDirectionalDerivative, fmi2GetRealOutputDerivatives};
 
 use crate::fmi_interface::master::{DISCARD, ERROR, EVERYTHING, Fmu, OK};
 

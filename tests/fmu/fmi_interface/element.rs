@@ -1,6 +1,6 @@
 //! A point-contact element through the same interface as a layer.
 
-use asperity::fmi::Kind;
+use asperity_fmi::Kind;
 
 use crate::fmi_interface::master::{DISCARD, ERROR, Fmu, OK};
 use crate::fmi_interface::states::{self};

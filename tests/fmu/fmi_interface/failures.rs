@@ -1,6 +1,6 @@
 //! Steps that fail: the status, the message and the state after it.
 
-use asperity::fmi::{Kind, Role, VariableRef};
+use asperity_fmi::{Kind, Role, VariableRef};
 
 use crate::fmi_interface::master::{DISCARD, ERROR, EVERYTHING, Fmu, Message, OK};
 

@@ -3,8 +3,8 @@
 #[cfg(target_arch = "x86_64")]
 use std::arch::asm;
 
-use asperity::fmi::Kind;
-use asperity::fmi::bindings::fmi2Status;
+use asperity_fmi::Kind;
+use asperity_fmi::bindings::fmi2Status;
 
 use crate::common::root;
 use crate::fmi_interface::master::{DISCARD, ERROR, EVERYTHING, Fmu, OK, SCENE};
@@ -145,7 +145,7 @@ fn a_stack_of_64_kib_is_enough() {
 mod memory {
     use std::process::Command;
 
-    use asperity::fmi::bindings::fmi2Type_fmi2CoSimulation;
+    use asperity_fmi::bindings::fmi2Type_fmi2CoSimulation;
 
     use crate::fmi_interface::master::{Folder, Messages, Request, SCENE, callbacks};
 

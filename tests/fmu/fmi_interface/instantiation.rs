@@ -3,8 +3,8 @@
 use std::ffi::CStr;
 use std::{fs, ptr};
 
-use asperity::fmi::bindings::*;
-use asperity::fmi::{fmi2FreeInstance, fmi2GetTypesPlatform, fmi2GetVersion};
+use asperity_fmi::bindings::*;
+use asperity_fmi::{fmi2FreeInstance, fmi2GetTypesPlatform, fmi2GetVersion};
 
 use crate::fmi_interface::master::{ERROR, Folder, Messages, Request, SCENE, callbacks};
 
@@ -143,7 +143,7 @@ fn null_is_no_instance() {
     // SAFETY: NULL is what is tested.
     unsafe {
         fmi2FreeInstance(ptr::null_mut());
-        assert_eq!(asperity::fmi::fmi2DoStep(ptr::null_mut(), 0.0, 1.0, 0), ERROR);
+        assert_eq!(asperity_fmi::fmi2DoStep(ptr::null_mut(), 0.0, 1.0, 0), ERROR);
     }
 }
 

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::process::Command;
 use std::ptr;
 
-use asperity::fmi::bindings::*;
-use asperity::fmi::*;
+use asperity_fmi::bindings::*;
+use asperity_fmi::*;
 
 use crate::common::{library, run};
 use crate::fmi_interface::master::{DISCARD, ERROR, Fmu, OK};

@@ -92,7 +92,7 @@ const SMALL: [(f64, f64); 3] = [(1e-6, 9e6), (1e-3, 6e6), (1.0, 3e6)];
 
 /// (τ, E) of the compound shipped.
 fn compound() -> Vec<(f64, f64)> {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/tread-block-rubber/compound.csv");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/tread-block-rubber/compound.csv");
     let text = fs::read_to_string(path).unwrap();
     let row = |line: &str| line.split_once(", ").and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
     text.lines().filter_map(row).collect()

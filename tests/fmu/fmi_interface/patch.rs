@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use asperity::fmi::bindings::fmi2Status;
 use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchRun, PatchStart, Pose};
+use asperity_fmi::bindings::fmi2Status;
 
 use crate::common::root;
 use crate::fmi_interface::lifecycle::try_all;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::{env, fs, ptr};
 
-use asperity::fmi::*;
+use asperity_fmi::*;
 
 use crate::common::scratch;
 use crate::fmi_interface::lifecycle::STATES;

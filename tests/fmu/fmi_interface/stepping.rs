@@ -1,6 +1,6 @@
 //! Experiments and communication steps.
 
-use asperity::fmi::bindings::fmi2StatusKind_fmi2LastSuccessfulTime;
+use asperity_fmi::bindings::fmi2StatusKind_fmi2LastSuccessfulTime;
 
 use asperity::outputs::{Output, variables};
 use asperity::scene::{Path, Scene};
@@ -121,7 +121,7 @@ fn a_status_that_does_not_exist_is_discarded() {
     let (fmu, mut value) = (Fmu::running(), 0);
     let kind = fmi2StatusKind_fmi2LastSuccessfulTime;
     // SAFETY: the instance and the value live.
-    assert_eq!(unsafe { asperity::fmi::fmi2GetStatus(fmu.c, kind, &mut value) }, DISCARD);
+    assert_eq!(unsafe { asperity_fmi::fmi2GetStatus(fmu.c, kind, &mut value) }, DISCARD);
     assert!(fmu.message().contains("asynchronous"));
 }
 

@@ -2,7 +2,7 @@
 
 use std::ptr;
 
-use asperity::fmi::*;
+use asperity_fmi::*;
 
 use crate::fmi_interface::master::{ERROR, Fmu, OK};
 

@@ -7,8 +7,8 @@ use std::ffi::{CString, c_char};
 use std::ptr;
 
 use arbitrary::{Arbitrary, Unstructured};
-use asperity::fmi::bindings::*;
-use asperity::fmi::*;
+use asperity_fmi::bindings::*;
+use asperity_fmi::*;
 
 use super::fmu::{self, Fmu, OK, Outputs, Site, checked, show};
 use super::number::Number;

@@ -5,9 +5,9 @@ use std::ops::Deref;
 use std::sync::{Mutex, OnceLock};
 use std::{env, fmt, fs, process, ptr};
 
-use asperity::fmi::bindings::*;
-use asperity::fmi::{self, Kind, PATCH_FILE, Role, SCENE_FILE, TABLE_FILE, VariableRef};
 use asperity::scene::OutputGroup;
+use asperity_fmi::bindings::*;
+use asperity_fmi::{Kind, PATCH_FILE, Role, SCENE_FILE, TABLE_FILE, VariableRef};
 
 use super::master::{self, Instance};
 use super::patches::{self, PATCHES};
@@ -208,7 +208,9 @@ impl Site {
         let kind = fmi2Type_fmi2CoSimulation;
         let (guid, location, callbacks) = (self.guid.as_ptr(), self.location.as_ptr(), callbacks());
         // SAFETY: strings and callbacks that live.
-        unsafe { fmi::fmi2Instantiate(c"fuzzed".as_ptr(), kind, guid, location, &callbacks, 0, logging.into()) }
+        unsafe {
+            asperity_fmi::fmi2Instantiate(c"fuzzed".as_ptr(), kind, guid, location, &callbacks, 0, logging.into())
+        }
     }
 }
 
@@ -305,7 +307,8 @@ impl Fmu {
     pub fn time(&self) -> Option<f64> {
         let mut time = f64::NAN;
         // SAFETY: as above.
-        let status = unsafe { fmi::fmi2GetRealStatus(self.c, fmi2StatusKind_fmi2LastSuccessfulTime, &mut time) };
+        let status =
+            unsafe { asperity_fmi::fmi2GetRealStatus(self.c, fmi2StatusKind_fmi2LastSuccessfulTime, &mut time) };
         (checked(status) == OK).then_some(time)
     }
 
@@ -405,7 +408,7 @@ fn forget(instance: Instance, mut state: fmi2FMUstate) {
 fn serialised(instance: Instance, state: fmi2FMUstate) -> Option<Vec<u8>> {
     let mut size = 0;
     // SAFETY: an instance that lives, any handle.
-    let status = unsafe { fmi::fmi2SerializedFMUstateSize(instance.c, state, &mut size) };
+    let status = unsafe { asperity_fmi::fmi2SerializedFMUstateSize(instance.c, state, &mut size) };
     if checked(status) != OK {
         return None;
     }

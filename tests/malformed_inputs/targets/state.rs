@@ -5,7 +5,7 @@ use std::ptr;
 use std::thread::LocalKey;
 
 use arbitrary::{Arbitrary, Unstructured};
-use asperity::fmi;
+
 use uuid::Uuid;
 
 use super::fmu::{CHECKSUM, Fmu, MAX_STEPS, OK, Site, checked, patch_sites, show, sites};
@@ -93,7 +93,8 @@ impl Bases {
         let bytes = case.bytes(base);
         // SAFETY: an instance that lives, a slice of the length given.
         let mut state = ptr::null_mut();
-        let status = unsafe { fmi::fmi2DeSerializeFMUstate(fmu.c, bytes.as_ptr().cast(), bytes.len(), &mut state) };
+        let status =
+            unsafe { asperity_fmi::fmi2DeSerializeFMUstate(fmu.c, bytes.as_ptr().cast(), bytes.len(), &mut state) };
         let status = checked(status);
         assert_eq!(status == OK, !state.is_null());
         if status != OK {
@@ -103,7 +104,7 @@ impl Bases {
         let again = fmu.serialised(state).unwrap();
         assert!(again == bytes || case.sealed, "another state than was given");
         // SAFETY: as above.
-        assert_eq!(unsafe { fmi::fmi2SetFMUstate(fmu.c, state) }, OK);
+        assert_eq!(unsafe { asperity_fmi::fmi2SetFMUstate(fmu.c, state) }, OK);
         fmu.forget(state);
         go_on(fmu, &case.steps);
     }
@@ -119,7 +120,9 @@ fn go_on(fmu: &Fmu, steps: &[(Number, Number, Number)]) {
     }
     for (u, w, h) in steps.iter().take(2) {
         // SAFETY: as above.
-        checked(unsafe { fmi::fmi2SetReal(fmu.c, fmu.site.inputs.as_ptr(), 2, [u.value(), w.value()].as_ptr()) });
+        checked(unsafe {
+            asperity_fmi::fmi2SetReal(fmu.c, fmu.site.inputs.as_ptr(), 2, [u.value(), w.value()].as_ptr())
+        });
         let point = fmu.time().unwrap_or_default();
         if fmu.checked_step(point, h.value()) == OK {
             fmu.check_derivatives([1.0, 1.0]);

@@ -250,7 +250,7 @@ fn friction_that_depends_on_the_speed_shifts_too() {
 /// The compound of the scene beside its file: 16 terms, from the glassy range to the rubbery one.
 #[test]
 fn the_compound_shipped_is_read_from_its_file() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/tread-block-rubber/tread-block-rubber.toml");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/tread-block-rubber/tread-block-rubber.toml");
     let mut scene = Scene::load(path.as_ref()).unwrap();
     scene.set_by_name("material.wlf.temperature", "293.15").unwrap();
     let Material { prony, equilibrium_modulus, .. } = scene.material.clone().unwrap();

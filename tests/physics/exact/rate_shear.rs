@@ -323,7 +323,7 @@ fn strength_of_rubber_moves_with_temperature() {
 /// The steps and F_z after 0.2 s of a slow slide over a wave, where masses fall from creep into a slip and
 /// are to come to creep again. The curve's maximum, at 2e-5 m/s, is far below the tolerance of velocities.
 fn slow_slide(tolerance: f64) -> (f64, f64) {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/physics/scenes/wave.toml");
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/physics/scenes/wave.toml");
     let mut scene = Scene::load(FilePath::new(file)).unwrap();
     scene.set_by_name("material.wlf.temperature", "283.15").unwrap();
     scene.solver.method = Method::Event;

@@ -91,7 +91,7 @@ fn rows_are_good_in_a_slow_slide() {
 }
 
 /// A coarse tolerance stops no run that a finer one can do: here of a tread block.
-const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/physics/scenes/block/block.toml");
+const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/physics/scenes/block/block.toml");
 /// Falls with the speed from 15 µm/s on: the block slides a thousand times as fast.
 const LAW: &str = "rate_shear = { strength = 9.194e5, reference_speed = 1.48e-5, sharpness = 1.0 }\n[solver]\n";
 /// 4 bar on 100 mm², N.

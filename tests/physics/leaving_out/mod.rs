@@ -5,9 +5,9 @@ mod pairs;
 
 use std::collections::BTreeSet;
 
-use asperity::fmi::Definition;
 use asperity::outputs::{Snapshot, Variable, variables};
 use asperity::scene::Scene;
+use asperity_fmi::Definition;
 use pairs::{PIECES, Pair, pairs, piece, started};
 
 const MASSES: usize = 12;

@@ -2,8 +2,8 @@
 
 use std::ptr;
 
-use asperity::fmi::bindings::*;
-use asperity::fmi::*;
+use asperity_fmi::bindings::*;
+use asperity_fmi::*;
 
 use super::super::fmu::{Fmu, MAX_STEPS, OK, checked};
 use super::super::number::Number;

@@ -1,0 +1,73 @@
+//! `asperity contact`: where the rubber touches in steady sliding, and how hard, as a picture and as data.
+
+mod data;
+mod picture;
+
+use std::path::PathBuf;
+
+use asperity::element::STEADY;
+use asperity::scene::Scene;
+use asperity_study::contact::{ContactError, ContactFields, ContactOptions, SolvedContact, solve_contact};
+use asperity_study::steady::SteadySlide;
+use zip::result::ZipError;
+
+use super::cli::{Contact, SteadyState};
+use super::files::{self, FileError, check_outputs, ends_in, load_without_run, named, print_beside};
+use super::terminal::{lines, warn};
+use asperity_study::decimals::rounded;
+
+/// `asperity contact` failed.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum ContactCommandError {
+    #[error(transparent)]
+    Contact(#[from] ContactError),
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error("cannot write {}: {source}", .path.display())]
+    Data { path: PathBuf, source: ZipError },
+}
+
+/// Solves for steady sliding, prints what it is, and writes the picture and the data.
+pub(crate) fn contact(command: &Contact) -> Result<(), ContactCommandError> {
+    let scene = load_without_run(&command.scene, &command.set, |_| false)?;
+    let outputs: Vec<_> = [&command.output].into_iter().chain(&command.data).cloned().collect();
+    check_outputs(&outputs, scene.sources(&command.scene))?;
+    let SteadyState { pressure, speed } = command.at;
+    let solved = solve_contact(&scene, &ContactOptions { pressure, speed, points: command.points })?;
+    let SolvedContact { surface, slide, fields, status } = &solved;
+    picture::write(surface, fields, slide.area, &command.output)?;
+    if let Some(path) = &command.data {
+        let bytes = if ends_in(path, "npz") {
+            data::npz(fields).map_err(|source| ContactCommandError::Data { path: path.clone(), source })?
+        } else {
+            data::csv(fields).into_bytes()
+        };
+        files::write(path, bytes)?;
+    }
+    if status != STEADY {
+        warn(status);
+    }
+    Ok(print_beside(&outputs, &summary(&scene, command, slide, fields))?)
+}
+
+fn summary(scene: &Scene, command: &Contact, slide: &SteadySlide, fields: &ContactFields) -> String {
+    let digits = |value: f64| rounded(value, 4);
+    let largest = fields.pressures.iter().copied().fold(0.0, f64::max);
+    let mut labelled = vec![
+        ("Scene", format!("{}, {} Pa at {} m/s", scene.name, command.at.pressure, command.at.speed)),
+        ("Contact", format!("{} of the area, pressure up to {} Pa", digits(slide.area), digits(largest))),
+        ("Separation", format!("{} m between the mean planes", digits(slide.contact.separation))),
+        (
+            "Friction",
+            format!("{}, of it {} by the slopes of the surface", digits(slide.friction()), {
+                digits(slide.profile_hysteresis)
+            }),
+        ),
+    ];
+    if let Some(flash) = slide.flash_mean {
+        labelled.push(("Flash", format!("{} K above the mean of the surface", digits(flash))));
+    }
+    let names: Vec<String> = [&command.output].into_iter().chain(&command.data).map(|path| named(path)).collect();
+    labelled.push(("Written", names.join(", ")));
+    lines(&labelled)
+}

@@ -1,0 +1,52 @@
+//! The masses of a run as arrays of numpy.
+
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+use asperity::outputs::OutputType;
+
+use asperity_study::elements::ElementField;
+
+use super::{ElementHistory, Instant};
+use crate::files::{self, FileError};
+use crate::npz::{Array, Values, npz};
+
+/// The arrays cannot be written.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum ArraysError {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error("cannot write {}: {source}", .path.display())]
+    Archive { path: PathBuf, source: zip::result::ZipError },
+}
+
+impl ElementHistory {
+    /// Writes the rows' times, displacements and forces, the fields of the masses with a line for each row, the masses'
+    /// positions at rest, the area that each stands for where the scene gives it, and the data points of the profile.
+    pub(crate) fn write_arrays(&self, path: &Path) -> Result<(), ArraysError> {
+        let of_rows = |value: fn(&Instant) -> f64| self.rows.iter().map(value).collect::<Vec<_>>();
+        let lines = [
+            Array::line("time", of_rows(|row| row.time)),
+            Array::line("u", of_rows(|row| row.u)),
+            Array::line("w", of_rows(|row| row.w)),
+            Array::line("F_x", of_rows(|row| row.force_x)),
+            Array::line("F_z", of_rows(|row| row.force_z)),
+            Array::line("rest_x", self.rest.as_slice()),
+            Array::line("profile_x", self.surface.x()),
+            Array::line("profile_z", self.surface.z()),
+        ];
+        let area = self.area.map(|area| Array::single("area", area));
+        let fields = self.fields.fields().iter().map(|field| array(field, self.rest.len()));
+        let archive = npz(lines.into_iter().chain(area).chain(fields));
+        let archive = archive.map_err(|source| ArraysError::Archive { path: path.to_owned(), source })?;
+        Ok(files::write(path, archive)?)
+    }
+}
+
+fn array(field: &ElementField, masses: usize) -> Array<'_> {
+    let values = match field.kind {
+        OutputType::Real => Values::Reals(Cow::Borrowed(&field.values)),
+        OutputType::Integer => Values::Integers(field.values.iter().map(|&value| value as i8).collect()),
+    };
+    Array { name: &field.name, shape: vec![field.values.len() / masses, masses], values }
+}

@@ -1,0 +1,188 @@
+//! Scenes and other files that commands read and write.
+
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+use asperity::patch::Patch;
+use asperity::scene::Scene;
+
+use super::draft::Draft;
+use super::terminal::{LabelledLine, labelled, note, warn};
+use asperity_study::files::{self, ReadError, reason};
+use asperity_study::settings::{OverrideError, Setting};
+
+/// A file cannot be read or written, or its scene is invalid.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what they are")]
+pub enum FileError {
+    #[error(transparent)]
+    Read(ReadError),
+    #[error("--set: {0}")]
+    Set(OverrideError),
+    #[error("cannot {action} {}: {}", named(.path), reason(.path, .source))]
+    Io { action: &'static str, path: PathBuf, source: io::Error },
+    #[error("will not write {}: it is read or written here already", named(.path))]
+    Overwrites { path: PathBuf },
+    #[error("cannot write {}: {holder} writes it; wait for that, or name another -o", .path.display())]
+    Locked { path: PathBuf, holder: String },
+    #[error("cannot draw {}: {message}", .path.display())]
+    Picture { path: PathBuf, message: String },
+}
+
+impl FileError {
+    /// For `map_err`: `action` ("read", "write") on `path` failed.
+    pub(crate) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self + use<> {
+        let path = path.to_owned();
+        move |source| Self::Io { action, path, source }
+    }
+
+    pub(crate) fn picture(path: &Path, error: &dyn std::error::Error) -> Self {
+        Self::Picture { path: path.to_owned(), message: error.to_string() }
+    }
+}
+
+impl<E: Into<ReadError>> From<E> for FileError {
+    fn from(error: E) -> Self {
+        match error.into() {
+            ReadError::Set(error) => Self::Set(error),
+            error => Self::Read(error),
+        }
+    }
+}
+
+/// What stands for standard output as the name of an output.
+const STANDARD_OUTPUT: &str = "-";
+
+/// Whether an output goes to standard output.
+pub(crate) fn is_standard_output(path: &Path) -> bool {
+    path == Path::new(STANDARD_OUTPUT)
+}
+
+/// An output's name in messages.
+pub(crate) fn named(path: &Path) -> String {
+    if is_standard_output(path) { "standard output".into() } else { path.display().to_string() }
+}
+
+/// The picture beside a table: the one named, else one with the table's name; none of a table on standard output.
+pub(crate) fn picture_beside(table: &Path, named: Option<&PathBuf>) -> Option<PathBuf> {
+    named.cloned().or_else(|| (!is_standard_output(table)).then(|| table.with_extension("svg")))
+}
+
+/// Reads a scene, its keys overridden by `--set`, and prints its warnings and what was assumed in reading its tables.
+pub(crate) fn load(path: &Path, set: &[Setting]) -> Result<Scene, FileError> {
+    let scene = files::load_scene(path, set)?;
+    scene.warnings.iter().for_each(|warning| warn(warning));
+    print_assumptions(&scene);
+    Ok(scene)
+}
+
+/// Where a table of a `scene` goes that is given no place: beside where the program runs, with this extension.
+pub(crate) fn default_output(scene: &Path, extension: &str) -> PathBuf {
+    // Not by `with_extension`, which would cut "run-0.5" at its dot.
+    let mut name = scene.file_stem().unwrap_or(scene.as_os_str()).to_owned();
+    name.push(format!(".{extension}"));
+    name.into()
+}
+
+/// Reads a scene that is not run: [`load`] without the warnings about its excitation and, unless the layer slides all the
+/// same, about the layer's masses and links.
+pub(crate) fn load_without_run(
+    path: &Path,
+    set: &[Setting],
+    layer_slides: impl FnOnce(&Scene) -> bool,
+) -> Result<Scene, FileError> {
+    let scene = files::load_scene(path, set)?;
+    let mut unused = Vec::from_iter(scene.short_profile());
+    if !layer_slides(&scene) {
+        unused.extend(scene.link_warnings());
+    }
+    scene.warnings.iter().filter(|warning| !unused.contains(warning)).for_each(|text| warn(text));
+    print_assumptions(&scene);
+    Ok(scene)
+}
+
+fn print_assumptions(scene: &Scene) {
+    scene.notes.iter().filter(|read| read.assumed).for_each(|read| note(&read.text));
+}
+
+/// How the tables of a scene were read, as lines of a summary.
+pub(crate) fn table_lines(scene: &Scene) -> Vec<LabelledLine> {
+    labelled("Tables", scene.notes.iter().map(|read| read.text.clone()))
+}
+
+/// Reads a patch, its keys overridden by `--set`.
+pub(crate) fn load_patch(path: &Path, set: &[Setting]) -> Result<Patch, FileError> {
+    Ok(files::load_patch(path, set)?)
+}
+
+/// Refuses an output that would overwrite one of `others`, by whatever name.
+pub(crate) fn check_output(output: &Path, others: &[PathBuf]) -> Result<(), FileError> {
+    let same = |other: &PathBuf| {
+        let is_there = || same_file::is_same_file(output, other).unwrap_or(false);
+        other == output || is_there() || (place(output).is_some() && place(output) == place(other))
+    };
+    if others.iter().any(same) { Err(FileError::Overwrites { path: output.to_owned() }) } else { Ok(()) }
+}
+
+/// Where a file is, or will be, by the one name of its folder; `None` where that is not there.
+fn place(path: &Path) -> Option<PathBuf> {
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    Some(folder.canonicalize().ok()?.join(path.file_name()?))
+}
+
+/// Refuses outputs that would overwrite one of `taken` or one another, and those that cannot be written: before
+/// anything is computed.
+pub(crate) fn check_outputs<'a>(
+    outputs: impl IntoIterator<Item = &'a PathBuf>,
+    mut taken: Vec<PathBuf>,
+) -> Result<(), FileError> {
+    outputs.into_iter().try_for_each(|output| {
+        check_output(output, &taken)?;
+        Draft::check(output)?;
+        taken.push(output.clone());
+        Ok(())
+    })
+}
+
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
+    Ok(files::bytes(path)?)
+}
+
+/// Writes a file at once: what is at `path` is the one before or this one, whole.
+pub(crate) fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), FileError> {
+    let mut draft = Draft::create(path)?;
+    draft.write_all(content.as_ref()).map_err(FileError::io("write", path))?;
+    draft.finish()
+}
+
+pub(crate) fn print(text: &str) -> Result<(), FileError> {
+    write(Path::new(STANDARD_OUTPUT), text)
+}
+
+/// Prints what is said of `outputs`: to standard error where one of them has standard output for itself.
+pub(crate) fn print_beside<'a>(outputs: impl IntoIterator<Item = &'a PathBuf>, text: &str) -> Result<(), FileError> {
+    if outputs.into_iter().any(|output| is_standard_output(output)) {
+        return io::stderr().write_all(text.as_bytes()).map_err(FileError::io("write", Path::new("standard error")));
+    }
+    print(text)
+}
+
+/// Whether the file has the extension `ending`, in either case.
+pub(crate) fn ends_in(path: &Path, ending: &str) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(ending))
+}
+
+/// The file's name without its folder.
+pub(crate) fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_usual_table_of_a_scene_keeps_the_dots_of_its_name() {
+        assert_eq!(default_output(Path::new("scenes/run-0.5.toml"), "csv"), Path::new("run-0.5.csv"));
+    }
+}

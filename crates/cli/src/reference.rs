@@ -1,0 +1,205 @@
+//! What the program says of itself: the page of all keys, outputs and options, completions of shells, manual pages.
+
+use std::fmt::Write as _;
+use std::fs;
+
+use asperity::outputs::{OutputEntry, catalogue};
+use asperity::patch::{self, PatchKind, PatchOutputEntry};
+use asperity::scene::{Absent, KeyEntry, Unit, patch_keys, scene_keys};
+use clap::{Arg, Command, CommandFactory as _};
+
+use super::Arguments;
+use super::cli::{Completions, Manual};
+use super::files::{FileError, print};
+
+const NAME: &str = "asperity";
+
+/// `asperity reference`: prints docs/reference.md.
+pub(super) fn reference() -> Result<(), FileError> {
+    print(&page())
+}
+
+/// `asperity completions SHELL`.
+pub(super) fn completions(command: &Completions) -> Result<(), FileError> {
+    let mut script = Vec::new();
+    clap_complete::generate(command.shell, &mut Arguments::command(), NAME, &mut script);
+    print(&String::from_utf8_lossy(&script))
+}
+
+/// `asperity manual -o FOLDER`.
+pub(super) fn manual(command: &Manual) -> std::io::Result<()> {
+    fs::create_dir_all(&command.output)?;
+    clap_mangen::generate_to(Arguments::command(), &command.output)
+}
+
+const HEAD: &str = "# Reference
+
+All keys of scenes and patches, all outputs, and all commands with their options. This page is made by
+`asperity reference` from the tables that the program itself reads.
+
+Numbers are in SI units. A number that has a unit may also be a text with another one: `\"2 bar\"`, `\"25 µm\"`,
+`\"60 °C\"`, `\"8 MPa\"`, `\"1 kHz\"`, also behind numbers of options (`--pressures 1bar,2bar`). `[]` stands behind
+tables of which there may be several. An absent key has the value under *absent*; one that is required must be there
+wherever its table is. *M* marks keys of scenes with a `[material]` alone, *D* those of scenes without, whose links
+have constants of their own; else *only* names the kinds or shapes of the table that have the key.
+";
+
+fn page() -> String {
+    let mut page = HEAD.to_owned();
+    page += &format!("\n## Keys of a scene\n{}", key_tables(&scene_keys()));
+    page += &format!("\n## Keys of a patch\n{}", key_tables(&patch_keys()));
+    page += "\n## Outputs of a scene\n\nBy the groups of `[fmu] outputs`; those of `elements` are of each mass, `element[i].…`.\n";
+    page += &output_tables(&outputs_of_scenes());
+    page += "\n## Outputs of a patch\n\nBy the groups of `[fmu] outputs`; those of `elements` are of each element, `element[i,j].…`. *only* names the key\nof `[patch]` without which there is no such output.\n";
+    page += &output_tables(&outputs_of_patches());
+    page += "\n## Commands\n\nAll of them take `-q`, `--quiet`: results and warnings alone, neither notes nor progress; and `-v`,\n`--verbose`: every note where only some or their number would be printed.\n";
+    let mut command = Arguments::command();
+    command.build();
+    for of in command.get_subcommands().filter(|of| !of.is_hide_set() && of.get_name() != "help") {
+        page += &options(of);
+    }
+    page
+}
+
+/// A table for each table of the file.
+fn key_tables(keys: &[KeyEntry]) -> String {
+    let mut text = String::new();
+    let table_of = |key: &KeyEntry| key.path.rsplit_once('.').map_or("", |(table, _)| table).to_owned();
+    let mut tables: Vec<String> = Vec::new();
+    for key in keys {
+        if !tables.contains(&table_of(key)) {
+            tables.push(table_of(key));
+        }
+    }
+    for table in tables {
+        let title = if table.is_empty() { "Above all tables".into() } else { format!("`{table}`") };
+        let _ = writeln!(
+            text,
+            "\n### {title}\n\n| key | holds | unit | absent | only | meaning |\n|---|---|---|---|---|---|"
+        );
+        for key in keys.iter().filter(|key| table_of(key) == table) {
+            let name = key.path.rsplit('.').next().unwrap_or_default();
+            let only = match key.of_material {
+                Some(true) => "M".to_owned(),
+                Some(false) => "D".to_owned(),
+                None => key.kinds.join(", "),
+            };
+            let (allowed, unit, meaning) = (cell(&key.allowed), plain_unit(key.unit), cell(key.meaning));
+            let absent = absent(key.absent);
+            let _ = writeln!(text, "| `{name}` | {allowed} | {unit} | {absent} | {only} | {meaning} |");
+        }
+    }
+    text
+}
+
+/// An output in a table.
+struct OutputLine {
+    group: &'static str,
+    name: String,
+    unit: String,
+    only: &'static str,
+    description: String,
+}
+
+fn outputs_of_scenes() -> Vec<OutputLine> {
+    let line = |entry: OutputEntry| OutputLine {
+        group: entry.group.word(),
+        name: entry.name.to_owned(),
+        unit: plain_unit(entry.unit),
+        only: "",
+        description: entry.description.to_owned(),
+    };
+    catalogue().map(line).collect()
+}
+
+fn outputs_of_patches() -> Vec<OutputLine> {
+    let only = |of: PatchKind| match of {
+        PatchKind::All => "",
+        PatchKind::Tread => "transport",
+        PatchKind::Warm => "heat",
+    };
+    let line = |entry: PatchOutputEntry| OutputLine {
+        group: entry.group.word(),
+        name: entry.name,
+        unit: entry.units.into_iter().map(plain_unit).collect::<Vec<_>>().join(", "),
+        only: only(entry.of),
+        description: entry.description,
+    };
+    patch::catalogue().into_iter().map(line).collect()
+}
+
+/// A table for each group of outputs.
+fn output_tables(outputs: &[OutputLine]) -> String {
+    let mut text = String::new();
+    let mut group = "";
+    for line in outputs {
+        // Writing to a text cannot fail.
+        if line.group != group {
+            group = line.group;
+            let _ = writeln!(text, "\n### `{group}`\n\n| output | unit | only | meaning |\n|---|---|---|---|");
+        }
+        let OutputLine { name, unit, only, description, .. } = line;
+        let _ = writeln!(text, "| `{name}` | {unit} | {only} | {} |", cell(description));
+    }
+    text
+}
+
+fn absent(absent: Absent) -> String {
+    match absent {
+        Absent::Refused => "required".to_owned(),
+        Absent::Value(value) => format!("`{value}`"),
+        Absent::Follows(what) => what.to_owned(),
+        Absent::None => String::new(),
+    }
+}
+
+fn plain_unit(unit: Unit) -> String {
+    if unit == Unit::One { String::new() } else { unit.name().replace('.', " ") }
+}
+
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|")
+}
+
+fn options(command: &Command) -> String {
+    let about = command.get_about().map(ToString::to_string).unwrap_or_default();
+    let mut text = format!("\n### `{NAME} {}`\n\n{about}.\n", command.get_name());
+    text += "\n| option | meaning |\n|---|---|\n";
+    let given = |argument: &&Arg| !argument.is_hide_set() && !argument.is_global_set() && argument.get_id() != "help";
+    for argument in command.get_arguments().filter(given) {
+        let names: Vec<String> = argument
+            .get_short()
+            .map(|short| format!("-{short}"))
+            .into_iter()
+            .chain(argument.get_long().map(|long| format!("--{long}")))
+            .collect();
+        let takes_value = argument.get_action().takes_values();
+        let values = argument.get_value_names().filter(|_| takes_value).unwrap_or_default();
+        let values: String = values.iter().map(|value| format!(" {value}")).collect();
+        let meaning = argument.get_help().map(ToString::to_string).unwrap_or_default();
+        let defaults: Vec<_> = argument.get_default_values().iter().map(|value| value.to_string_lossy()).collect();
+        let default = if takes_value && !defaults.is_empty() {
+            format!(". Default: {}", defaults.join(" "))
+        } else {
+            String::new()
+        };
+        let option = format!("{}{values}", names.join(", "));
+        let _ = writeln!(text, "| `{}` | {} |", option.trim(), cell(&format!("{meaning}{default}")));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The page in docs is the one that the program makes: asperity reference > docs/reference.md.
+    #[test]
+    fn the_page_in_docs_is_that_of_the_tables() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/reference.md");
+        let committed = fs::read_to_string(path).unwrap();
+        let made = page();
+        let different = committed.lines().zip(made.lines()).find(|(old, new)| old != new);
+        assert!(committed == made, "run asperity reference > docs/reference.md: {different:?}");
+    }
+}

@@ -1,0 +1,61 @@
+//! The folder that a report is written to.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::figure::{Figure as _, Ladders};
+use crate::files::{FileError, check_output, write};
+
+/// The page.
+pub(super) const INDEX: &str = "index.html";
+/// The table and the pictures of errors and run times, without their endings.
+pub(super) const ERRORS: &str = "error-run-time";
+/// The table and the pictures of errors over the tolerance and estimates over errors.
+pub(super) const JUDGEMENTS: &str = "tolerance-estimate";
+/// The table and the pictures of errors and communication steps.
+pub(super) const COMMUNICATION: &str = "error-communication-step";
+/// The table of the perturbed runs.
+pub(super) const STRESS: &str = "stress";
+
+#[derive(Debug)]
+pub(super) struct ReportFolder {
+    path: PathBuf,
+}
+
+impl ReportFolder {
+    /// Checks that no file written, with a table and pictures of each of `names`, takes the place of one of `taken`.
+    pub(super) fn new(path: &Path, names: &[&str], taken: &[PathBuf]) -> Result<Self, FileError> {
+        let folder = Self { path: path.to_owned() };
+        let drawn = names.iter().flat_map(|name| ["csv", "svg", "png"].map(|ending| folder.file(name, ending)));
+        let mut files = drawn.chain([folder.file(STRESS, "csv"), folder.path.join(INDEX)]);
+        files.try_for_each(|file| check_output(&file, taken))?;
+        Ok(folder)
+    }
+
+    /// Creates the folder if it does not exist.
+    pub(super) fn create(&self) -> Result<(), FileError> {
+        std::fs::create_dir_all(&self.path).map_err(FileError::io("create", &self.path))
+    }
+
+    pub(super) fn file(&self, name: &str, ending: &str) -> PathBuf {
+        self.path.join(format!("{name}.{ending}"))
+    }
+
+    pub(super) fn write(&self, file: &str, text: String) -> Result<(), FileError> {
+        write(&self.path.join(file), text)
+    }
+
+    /// For `map_err`: the page cannot be written.
+    pub(super) fn error(&self) -> impl FnOnce(io::Error) -> FileError + use<> {
+        FileError::io("write", &self.path.join(INDEX))
+    }
+
+    /// Draws a picture as SVG and PNG. Returns the text of the SVG.
+    pub(super) fn draw(&self, name: &str, picture: &Ladders) -> Result<String, FileError> {
+        let [svg_file, png_file] = ["svg", "png"].map(|ending| self.file(name, ending));
+        let svg = picture.svg().map_err(|error| FileError::picture(&svg_file, &*error))?;
+        write(&svg_file, &svg)?;
+        picture.write(&png_file)?;
+        Ok(svg)
+    }
+}

@@ -1,0 +1,86 @@
+//! `asperity report`: what the runs of scenes cost and how accurate they are, as tables, pictures and pages.
+
+mod convergence;
+mod folder;
+mod judgement;
+mod machine;
+mod page;
+mod reference;
+mod robustness;
+mod run;
+mod scene_report;
+mod tables;
+mod trace;
+
+use std::path::{Path, PathBuf};
+
+use asperity_study::robustness::RunFailure;
+
+use super::cli::Report;
+use super::files::FileError;
+use asperity_study::csv::CsvError;
+use folder::{INDEX, JUDGEMENTS, ReportFolder};
+use judgement::Judgement;
+use page::SceneJudgements;
+use scene_report::SceneReport;
+
+/// `asperity report` failed.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum ReportError {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error(transparent)]
+    Peers(#[from] CsvError),
+    #[error("{}: the scene {why}", .scene.display())]
+    NoRun { scene: PathBuf, why: &'static str },
+    #[error("two scenes have the same folder: {}", .0.display())]
+    SameFolder(PathBuf),
+    #[error("{}: no reference: not even the loosest tolerance comes to its end: {failure}", .scene.display())]
+    Reference { scene: PathBuf, failure: RunFailure },
+}
+
+/// Runs the scenes in every way and writes the results: of one scene into the folder, of several into folders within
+/// it, with a page of all.
+pub(crate) fn report(command: &Report) -> Result<(), ReportError> {
+    let [path] = command.scenes.as_slice() else { return report_all(command) };
+    SceneReport::prepare(command, path, &command.output)?.run().map(drop)
+}
+
+fn report_all(command: &Report) -> Result<(), ReportError> {
+    let paths: Vec<PathBuf> = command.scenes.iter().map(|scene| command.output.join(stem(scene))).collect();
+    for (i, path) in paths.iter().enumerate() {
+        if paths[..i].contains(path) {
+            return Err(ReportError::SameFolder(path.clone()));
+        }
+    }
+    let scenes = command.scenes.iter().zip(&paths);
+    let reports =
+        scenes.map(|(scene, path)| SceneReport::prepare(command, scene, path)).collect::<Result<Vec<_>, _>>()?;
+    let folder = ReportFolder::new(
+        &command.output,
+        &[JUDGEMENTS],
+        &reports.iter().flat_map(SceneReport::sources).collect::<Vec<_>>(),
+    )?;
+    let judgements = reports.iter().map(SceneReport::run).collect::<Result<Vec<_>, _>>()?;
+    let names: Vec<String> = command.scenes.iter().map(|scene| stem(scene)).collect();
+    Ok(write_overview(&folder, &names, &judgements)?)
+}
+
+/// Writes the page of several scenes.
+fn write_overview(folder: &ReportFolder, names: &[String], judgements: &[Vec<Judgement>]) -> Result<(), FileError> {
+    let scenes = names.iter().zip(judgements).map(|(name, judgements)| (name.as_str(), judgements.as_slice()));
+    let section = write_judgements(folder, &scenes.collect::<Vec<_>>())?;
+    folder.write(INDEX, page::overview(names, section))
+}
+
+/// Writes the table and the picture of errors over the tolerance, and returns the section.
+fn write_judgements(folder: &ReportFolder, scenes: &[SceneJudgements<'_>]) -> Result<String, FileError> {
+    tables::write_judgements(&folder.file(JUDGEMENTS, "csv"), scenes.iter().copied())?;
+    let picture = folder.draw(JUDGEMENTS, &page::judgement_picture(scenes))?;
+    page::judgements(scenes, &picture).map_err(folder.error())
+}
+
+/// The name of a file without folder and ending.
+fn stem(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}

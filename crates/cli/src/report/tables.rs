@@ -1,0 +1,240 @@
+//! The tables as CSV files: those that a report writes, and that of other programs, which it reads.
+
+use std::path::Path;
+
+use asperity_study::robustness::{Perturbation, ScaledQuantity};
+
+use super::convergence::{CommunicationRow, Timed, ToleranceRow};
+use super::judgement::Judgement;
+use super::machine::{Machine, build};
+use super::reference::Reference;
+use super::robustness::Robustness;
+use super::run::RunFigures;
+use super::trace::{Errors, OF_ALL_SCENES, QUANTITIES};
+use crate::files::FileError;
+use crate::result_file::CsvWriter;
+use asperity_study::csv::{CsvError, CsvFile};
+use asperity_study::decimals::real;
+
+/// The columns of errors and run times: errors over the largest value, processor time in s. Tables of other programs
+/// have these columns.
+const MEASURED: [&str; 10] = [
+    "scene",
+    "program",
+    "method",
+    "tolerance",
+    "error_F_x",
+    "error_F_z",
+    "error_E_diss",
+    "run_time",
+    "steps",
+    "events",
+];
+
+/// What those of other programs may have too: what the time is that of, how many timings there are and their spread.
+const TIMED: &str = "timed";
+const SPREAD: &str = "most_above_least";
+const TIMINGS: &str = "runs";
+
+/// What this program adds to them.
+const ADDED: &str = "timed,most_above_least,runs,rejected,newton_iterations,energy_residual,estimate,below_reference,failure,\
+    cpu,cores,system,build,error_u,error_w";
+
+const COMMUNICATION: &str = "scene,given,communication_step,error_F_x,error_F_z,error_E_diss,mean_square_error_F_x,\
+    mean_square_error_F_z,mean_square_error_E_diss,run_time,steps,events,below_reference,failure,error_u,error_w,mean_square_error_u,mean_square_error_w";
+
+const JUDGEMENTS: &str = "scene,stiffness,mass,relaxation_times,speed,carrier_mass,drive,load,communication_step,method,tolerance,error,\
+    error_over_tolerance,estimate,estimate_over_error,warned,left_out";
+
+const ROBUSTNESS: &str = "scene,stiffness,mass,relaxation_times,speed,carrier_mass,drive,load,communication_step,status,reason,error,\
+    moved_start_changes,energy_residual,steps,times_the_steps,rejected,events,newton_iterations";
+
+/// Writes errors and run times, the reference first.
+pub(super) fn write_errors(
+    path: &Path,
+    scene: &str,
+    reference: &Reference,
+    rows: &[ToleranceRow],
+) -> Result<(), FileError> {
+    let own = ToleranceRow::from_reference(reference);
+    let machine = Machine::here();
+    let records = std::iter::once(&own).chain(rows).map(|row| {
+        let figures = row.result.as_ref().copied().unwrap_or_default();
+        let mut fields = vec![scene.to_owned(), row.program.clone(), row.method.clone(), real(row.tolerance)];
+        let errors = figures.errors.map(optional);
+        fields.extend_from_slice(&errors[..OF_ALL_SCENES]);
+        fields.push(optional(figures.time));
+        fields.extend([figures.steps, figures.events].map(count));
+        fields.extend([row.timed.name().to_owned(), optional(figures.spread.map(short)), count(figures.timings)]);
+        fields.extend([figures.rejected, figures.iterations].map(count));
+        fields.extend([figures.residual, figures.estimate.map(|estimate| estimate.error)].map(optional));
+        fields.push(below(reference, &figures.errors));
+        fields.push(row.result.as_ref().err().cloned().unwrap_or_default());
+        fields.extend(measured_on(row.timed, &machine));
+        fields.extend_from_slice(&errors[OF_ALL_SCENES..]);
+        fields
+    });
+    write(path, MEASURED.into_iter().chain(ADDED.split(',')), records)
+}
+
+/// The columns on machine and build; those of a file of other programs are in that file.
+fn measured_on(timed: Timed, machine: &Machine) -> [String; 4] {
+    match timed {
+        Timed::RunAlone => [machine.cpu.clone(), machine.cores.to_string(), machine.system.clone(), build()],
+        Timed::WholeProcess => [const { String::new() }; 4],
+    }
+}
+
+pub(super) fn write_communication(
+    path: &Path,
+    scene: &str,
+    reference: &Reference,
+    rows: &[CommunicationRow],
+) -> Result<(), FileError> {
+    let records = rows.iter().map(|row| {
+        let (figures, mean_square) = row.result.clone().unwrap_or_default();
+        let mut fields = vec![scene.to_owned(), row.given.name().to_owned(), optional(row.step)];
+        let kinds = [figures.errors, mean_square.unwrap_or_default()].map(|errors| errors.map(optional));
+        kinds.iter().for_each(|errors| fields.extend_from_slice(&errors[..OF_ALL_SCENES]));
+        fields.push(optional(figures.time));
+        fields.extend([figures.steps, figures.events].map(count));
+        fields.push(below(reference, &figures.errors));
+        fields.push(row.result.as_ref().err().cloned().unwrap_or_default());
+        kinds.iter().for_each(|errors| fields.extend_from_slice(&errors[OF_ALL_SCENES..]));
+        fields
+    });
+    write(path, COMMUNICATION.split(','), records)
+}
+
+/// Writes the perturbed runs: the factors of what is scaled, and the outcome.
+pub(super) fn write_robustness(path: &Path, scene: &str, robustness: &Robustness) -> Result<(), FileError> {
+    let records = robustness.trials().map(|(perturbation, trial)| {
+        let mut fields = vec![scene.to_owned()];
+        fields.extend(factors(*perturbation));
+        fields.extend([robustness.verdict(trial).name().to_owned(), robustness.reason(trial)]);
+        let (accuracy, counts) = (trial.ended().map(|ended| &ended.accuracy), trial.counts());
+        let error = accuracy.and_then(|accuracy| Some(accuracy.error()?.share));
+        let moved = accuracy.and_then(|accuracy| accuracy.moved());
+        fields.extend([error, moved, counts.map(|counts| counts.residual)].map(optional));
+        fields.push(count(counts.map(|counts| counts.steps)));
+        fields.push(optional(robustness.times_the_steps(trial).map(short)));
+        let rest = counts.map(|counts| [counts.rejected, counts.events, counts.iterations]);
+        fields.extend([0, 1, 2].map(|i| count(rest.map(|rest| rest[i]))));
+        fields
+    });
+    write(path, ROBUSTNESS.split(','), records)
+}
+
+/// Writes errors over tolerances and estimates over errors of some scenes, each with its name.
+pub(super) fn write_judgements<'a>(
+    path: &Path,
+    scenes: impl IntoIterator<Item = (&'a str, &'a [Judgement])>,
+) -> Result<(), FileError> {
+    let runs = scenes.into_iter().flat_map(|(scene, runs)| runs.iter().map(move |run| (scene, run)));
+    let records = runs.map(|(scene, run)| {
+        let mut fields = vec![scene.to_owned()];
+        fields.extend(factors(run.perturbation.unwrap_or_default()));
+        let ratios = [run.error_over_tolerance(), run.estimate_over_error()];
+        fields.extend([run.method.clone(), real(run.tolerance), real(run.error), real(ratios[0])]);
+        fields.extend([real(run.estimate.error), real(ratios[1])]);
+        fields.extend([run.warning(), run.standing.name()].map(str::to_owned));
+        fields
+    });
+    write(path, JUDGEMENTS.split(','), records)
+}
+
+/// The factors of everything that may be scaled.
+fn factors(perturbation: Perturbation) -> [String; 8] {
+    ScaledQuantity::ALL.map(|quantity| optional(perturbation.factor(quantity)))
+}
+
+/// A ratio of counts or times, rounded to the digits that it is worth.
+fn short(ratio: f64) -> f64 {
+    const DIGITS: f64 = 1e4;
+    (ratio * DIGITS).round() / DIGITS
+}
+
+fn write<'a>(
+    path: &Path,
+    head: impl IntoIterator<Item = &'a str>,
+    mut records: impl Iterator<Item = Vec<String>>,
+) -> Result<(), FileError> {
+    let mut file = CsvWriter::create(path, head)?;
+    records.try_for_each(|record| file.write(record))?;
+    file.finish()
+}
+
+fn optional(value: Option<f64>) -> String {
+    value.map_or_else(String::new, real)
+}
+
+fn count(value: Option<u64>) -> String {
+    value.map_or_else(String::new, |count| count.to_string())
+}
+
+/// The quantities whose errors are below the reference's own.
+fn below(reference: &Reference, errors: &Errors) -> String {
+    let flags = reference.below(errors);
+    let names = QUANTITIES.iter().zip(flags).filter(|(_, below)| *below).map(|(name, _)| *name);
+    names.collect::<Vec<_>>().join(" ")
+}
+
+/// Runs of whole processes, measured elsewhere: other programs, and this one beside them.
+#[derive(Debug, Default)]
+pub(super) struct Peers {
+    pub(super) rows: Vec<ToleranceRow>,
+    /// All scenes of the file, each once.
+    pub(super) scenes: Vec<String>,
+}
+
+/// Reads the rows of the scene with one of these `names` whose times are those of whole processes. The file has the
+/// columns of [`MEASURED`], and perhaps [`TIMED`], [`SPREAD`] and [`TIMINGS`]; others are ignored.
+pub(super) fn read_peers(path: &Path, names: &[&str]) -> Result<Peers, CsvError> {
+    let file = CsvFile::read(path)?;
+    let mut columns = [0; MEASURED.len()];
+    for (column, name) in columns.iter_mut().zip(MEASURED) {
+        *column = file.column(name)?;
+    }
+    let optional_columns = [TIMED, SPREAD, TIMINGS].map(|name| file.column(name).ok());
+    let mut peers = Peers::default();
+    for record in file.records() {
+        let fields = columns.map(|column| record.fields[column].as_str());
+        let more = optional_columns.map(|column| column.map_or("", |column| record.fields[column].as_str()));
+        if !peers.scenes.iter().any(|scene| scene == fields[0]) {
+            peers.scenes.push(fields[0].to_owned());
+        }
+        if names.contains(&fields[0]) && more[0] != Timed::RunAlone.name() {
+            peers.rows.push(row(fields, more).map_err(|message| file.error(record, message))?);
+        }
+    }
+    Ok(peers)
+}
+
+/// A row without a time is that of a run that did not come to its end.
+fn row(
+    [_, program, method, tolerance, x, z, lost, time, steps, events]: [&str; MEASURED.len()],
+    [_, spread, timings]: [&str; 3],
+) -> Result<ToleranceRow, String> {
+    let tolerance = number(tolerance)?.ok_or("expected a tolerance, found none")?;
+    let time = number(time)?;
+    let figures = RunFigures {
+        errors: [number(x)?, number(z)?, number(lost)?, None, None],
+        time,
+        spread: number(spread)?,
+        timings: number(timings)?.map(|count| count as u64),
+        steps: number(steps)?.map(|count| count as u64),
+        events: number(events)?.map(|count| count as u64),
+        ..RunFigures::default()
+    };
+    let result = if time.is_some() { Ok(figures) } else { Err("no run time".into()) };
+    Ok(ToleranceRow { program: program.into(), method: method.into(), tolerance, timed: Timed::WholeProcess, result })
+}
+
+/// A number; `None` where the field is empty or NaN.
+fn number(text: &str) -> Result<Option<f64>, String> {
+    if text.is_empty() {
+        return Ok(None);
+    }
+    let number: f64 = text.parse().map_err(|_| format!("expected a number, found {text:?}"))?;
+    Ok(Some(number).filter(|number| !number.is_nan()))
+}

@@ -1,0 +1,213 @@
+//! `asperity simulate`: runs a scene along its excitation, writes a result file and draws what is asked for.
+
+use std::path::{Path, PathBuf};
+
+use asperity::outputs::{Snapshot, Variable, variables};
+use asperity::scene::Scene;
+use asperity::simulation::{MethodSwitch, SimulationError};
+use indicatif::ProgressBar;
+
+use super::cli::Simulate;
+use super::elements::{ArraysError, ElementHistory, Span};
+use super::figure::{Figure as _, LayerPicture, TimeHistory, write_film};
+use super::files::{FileError, check_outputs, ends_in, load, named, print_beside};
+use super::interrupt::fail;
+use super::result_file::ResultWriter;
+use super::run_summary::RunSummary;
+use super::terminal::{LabelledLine, bar, is_quiet, is_verbose, lines, note, warn};
+use asperity_study::runner::{InputSample, Rows, Runner};
+
+/// `asperity simulate` failed.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum SimulateError {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error(transparent)]
+    Arrays(#[from] ArraysError),
+    #[error("--contact {time}: the run ends at t = {end} s")]
+    AfterEnd { time: f64, end: f64 },
+    #[error("the run cannot start: {0}")]
+    Start(SimulationError),
+    #[error("{source}; the rows so far, up to t = {time} s, are in {}", named(.output))]
+    Run { source: SimulationError, time: f64, output: PathBuf },
+}
+
+/// Runs the scene, writes the rows and draws what is asked for.
+pub(crate) fn simulate(command: &Simulate, path: &Path) -> Result<(), SimulateError> {
+    let scene = load(path, &command.set)?;
+    let output = command.output(path);
+    let pictures = command.plot.iter().chain(&command.animate).chain(&command.elements);
+    let outputs = [&output].into_iter().chain(pictures).chain(command.contact.iter().map(|(_, picture)| picture));
+    check_outputs(outputs, scene.sources(path))?;
+    check_end(command, scene.duration())?;
+    if scene.excitation.is_empty() {
+        warn("the scene has no [[excitation]]: the carrier rests, and the result file has the initial row only");
+    }
+    let mut recorder = Recorder::new(&scene, command, &output)?;
+    let result = run(&scene, command, &mut recorder);
+    if let Err(error @ SimulateError::Start(_)) = result {
+        return Err(error);
+    }
+    let (history, elements) = recorder.finish()?;
+    let mut summary = result?;
+    if let (Some(path), Some(history)) = (&command.plot, history) {
+        history.write(path)?;
+    }
+    if let Some(elements) = elements {
+        write_elements(&elements, command)?;
+    }
+    summary.push(("Written", written(command, &output)));
+    if is_quiet() && !command.stats { Ok(()) } else { Ok(print_beside([&output], &lines(&summary))?) }
+}
+
+/// The files of a run.
+fn written(command: &Simulate, output: &Path) -> String {
+    let pictures = command.contact.iter().map(|(_, picture)| picture);
+    let others = [&command.plot, &command.animate, &command.elements].into_iter().flatten();
+    let files = others.chain(pictures).map(|path| path.display().to_string());
+    [named(output)].into_iter().chain(files).collect::<Vec<_>>().join(", ")
+}
+
+/// Refuses a picture of a time after the run's `end` (s).
+fn check_end(command: &Simulate, end: f64) -> Result<(), SimulateError> {
+    /// Relative rounding error of a sum of durations.
+    const ROUNDING: f64 = 1e-9;
+    let late = command.contact.iter().find(|(time, _)| *time > end * (1.0 + ROUNDING));
+    late.map_or(Ok(()), |&(time, _)| Err(SimulateError::AfterEnd { time, end }))
+}
+
+/// Writes what shows the masses.
+fn write_elements(elements: &ElementHistory, command: &Simulate) -> Result<(), SimulateError> {
+    if let Some(path) = &command.elements {
+        elements.write_arrays(path)?;
+    }
+    match &command.animate {
+        Some(path) if ends_in(path, "html") => elements.write_page(path)?,
+        Some(path) => write_frames(elements, path)?,
+        None => (),
+    }
+    // A phase that a force ends may end the run before its nominal duration.
+    check_end(command, elements.rows().last().map_or(0.0, |row| row.time))?;
+    for (time, path) in &command.contact {
+        if let Some(row) = elements.row_at(*time) {
+            LayerPicture::alone(elements, row).write(path)?;
+        }
+    }
+    Ok(())
+}
+
+/// Animates the masses in pictures, of which there are at most as many as one likes to wait for.
+fn write_frames(elements: &ElementHistory, path: &Path) -> Result<(), FileError> {
+    const MOST: usize = 100;
+    let rows = elements.evenly_in_time(MOST);
+    let span = Span::over(elements, &rows);
+    write_film(rows.len(), |i| LayerPicture::in_film(elements, rows[i], span), path)
+}
+
+/// Runs the scene; what the run comes to.
+fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<Vec<LabelledLine>, SimulateError> {
+    let rows = Rows::PerPhase(command.points);
+    let runner = Runner::new(recorder.shown(scene), rows, 0.0).map_err(SimulateError::Start)?;
+    let mut runner = runner.with_rows_at(command.contact.iter().map(|&(time, _)| time).collect());
+    let result = runner.run(&scene.excitation, |carrier, snapshot| recorder.row(carrier, snapshot));
+    runner.take_warnings().iter().for_each(|warning| warn(warning));
+    print_method_switches(&runner.take_method_switches());
+    if let Some(inaccuracy) = runner.simulation().inaccuracy() {
+        warn(&inaccuracy.to_string());
+    }
+    if let Err(source) = result {
+        return Err(SimulateError::Run { source, time: recorder.time, output: recorder.output.clone() });
+    }
+    let shown = recorder.shown(scene);
+    let mut summary = recorder.summary.lines(shown, runner.simulation());
+    if command.stats {
+        summary.extend(recorder.summary.statistics(shown, runner.simulation()));
+    }
+    Ok(summary)
+}
+
+/// The switches of method *auto* in one line, each with why where every note is asked for.
+fn print_method_switches(switches: &[MethodSwitch]) {
+    const MOST: usize = 4;
+    if is_verbose() {
+        switches.iter().for_each(|switch| note(&switch.to_string()));
+        return;
+    }
+    let brief = |switch: &MethodSwitch| {
+        let driver = if switch.to_time_stepping { "time-stepping" } else { "event-driven" };
+        format!("{driver} from t = {:.4e} s on", switch.time)
+    };
+    let mut texts: Vec<String> = switches.iter().take(MOST).map(brief).collect();
+    if switches.len() > MOST {
+        texts.push(format!("and {} more switches (-v prints all)", switches.len() - MOST));
+    }
+    if !texts.is_empty() {
+        note(&format!("method auto: {}", texts.join(", ")));
+    }
+}
+
+/// Writes the rows of a run to the file, keeps them for pictures and moves the progress bar.
+struct Recorder {
+    variables: Vec<Variable>,
+    values: Vec<f64>,
+    output: PathBuf,
+    writer: ResultWriter,
+    history: Option<TimeHistory>,
+    elements: Option<ElementHistory>,
+    summary: RunSummary,
+    progress: ProgressBar,
+    duration: f64,
+    time: f64,
+}
+
+const PROGRESS_LENGTH: f64 = 1000.0;
+
+impl Recorder {
+    fn new(scene: &Scene, command: &Simulate, output: &Path) -> Result<Self, FileError> {
+        let variables = variables(scene);
+        let shows_elements = command.animate.is_some() || command.elements.is_some() || !command.contact.is_empty();
+        Ok(Self {
+            values: vec![0.0; variables.len()],
+            output: output.to_owned(),
+            writer: ResultWriter::create(output, &scene.inputs(), &variables, command.head())?,
+            variables,
+            history: command.plot.is_some().then(|| TimeHistory::new(scene)),
+            elements: shows_elements.then(|| ElementHistory::new(scene)),
+            summary: RunSummary::new(),
+            progress: bar(PROGRESS_LENGTH as u64),
+            duration: scene.duration(),
+            time: 0.0,
+        })
+    }
+
+    /// The `scene`, with the output groups that the plot needs.
+    fn shown<'a>(&'a self, scene: &'a Scene) -> &'a Scene {
+        self.history.as_ref().map_or(scene, TimeHistory::scene)
+    }
+
+    fn row(&mut self, carrier: InputSample, snapshot: &Snapshot<'_>) {
+        snapshot.evaluate(&self.variables, &mut self.values);
+        if let Err(error) = self.writer.write(carrier, &self.values) {
+            // An observer cannot stop the run, which may take hours.
+            fail(&error);
+        }
+        if let Some(history) = &mut self.history {
+            history.add(carrier.time, snapshot);
+        }
+        if let Some(elements) = &mut self.elements {
+            elements.add(carrier.time, snapshot);
+        }
+        self.summary.add(snapshot);
+        self.time = carrier.time;
+        if self.duration > 0.0 && !self.progress.is_hidden() {
+            self.progress.set_position((PROGRESS_LENGTH * self.time / self.duration) as u64);
+            self.progress.set_message(format!("t = {:.4e} s", self.time));
+        }
+    }
+
+    fn finish(self) -> Result<(Option<TimeHistory>, Option<ElementHistory>), FileError> {
+        self.progress.finish_and_clear();
+        self.writer.finish()?;
+        Ok((self.history, self.elements))
+    }
+}

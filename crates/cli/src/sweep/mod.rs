@@ -1,0 +1,185 @@
+//! `asperity sweep`: the friction coefficient over speed, load and temperature, as a table and a plot.
+
+mod plot;
+mod printed;
+mod table_file;
+pub(super) mod values;
+
+use std::path::{Path, PathBuf};
+
+use asperity::element::OperatingPoint;
+use asperity::scene::{Scene, Wlf};
+use asperity_study::sweep::{Loads, SlidingOptions, SweepError, SweepOptions, SweepPlan, SweepTable, verdict};
+
+use super::cli::{Sliding, Sweep};
+use super::draft::TablePlace;
+use super::files::{
+    FileError, check_outputs, default_output, load_without_run, named, picture_beside, print_beside, read, write,
+};
+use super::interrupt::Farewell;
+use super::terminal::{self, lines, warn};
+use table_file::{TableFile, TableFileError};
+use values::Values;
+
+/// `asperity sweep` failed, or not all of its points are steady.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum SweepCommandError {
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error(transparent)]
+    TableFile(#[from] TableFileError),
+    #[error("expected --pressures or --forces, the loads to sweep over")]
+    NoLoad,
+    #[error("--master: the scene has no material.wlf, by whose factors speeds would be shifted")]
+    NoMaster,
+    #[error("{}: not a study of this scene's convergence: {problem}", .path.display())]
+    NotAStudy { path: PathBuf, problem: String },
+    #[error("{failed} of {total} points are not steady or failed: the column status in {} says why", named(.path))]
+    NotSteady { failed: usize, total: usize, path: PathBuf },
+}
+
+/// Computes a table or merges several.
+pub(crate) fn sweep(command: &Sweep) -> Result<(), SweepCommandError> {
+    match (&command.scene, &command.speeds, &command.output) {
+        (Some(scene), Some(speeds), _) => compute(command, scene, speeds),
+        (_, _, Some(output)) => merge(command, output),
+        // clap requires a scene and speeds, or tables and an output.
+        _ => Ok(()),
+    }
+}
+
+fn merge(command: &Sweep, output: &PathBuf) -> Result<(), SweepCommandError> {
+    let picture = picture(command, output);
+    check_outputs([output].into_iter().chain(&picture), command.merge.clone())?;
+    let place = TablePlace::new(output)?;
+    let table = table_file::merge(&command.merge, &place.path, command.force)?;
+    place.finish()?;
+    finish(output, &table, picture.as_deref(), None)
+}
+
+fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCommandError> {
+    let scene = load_without_run(path, &command.set, |scene| !command.sliding.options().solves(scene))?;
+    let output = command.output.clone().unwrap_or_else(|| default_output(path, "sweep.csv"));
+    let picture = picture(command, &output);
+    let study = study_file(command.converged.as_ref(), path);
+    let taken = scene.sources(path).into_iter().chain(study.clone()).collect();
+    check_outputs([&output].into_iter().chain(&picture).chain(&command.master), taken)?;
+    let master = match &command.master {
+        Some(path) => Some((path.as_path(), wlf(&scene).ok_or(SweepCommandError::NoMaster)?)),
+        None => None,
+    };
+    let convergence = study_verdict(study.as_deref(), &scene.name)?;
+    let plan = SweepPlan::new(scene, &options(command, speeds)?, convergence)?;
+    plan.warning().iter().for_each(|warning| warn(warning));
+    let place = TablePlace::new(&output)?;
+    let file = TableFile::open(&place.path, plan.header(), command.force)?;
+    run(command, &plan, &file, &output)?;
+    let mut table =
+        SweepTable { header: plan.header().clone(), ..SweepTable::read(&place.path).map_err(TableFileError::from)? };
+    table.sort();
+    let few = plan.few_points(table.rows.iter().map(|stored| &stored.row));
+    few.iter().for_each(|warning| warn(warning));
+    table.find_low_end(&output);
+    write(&place.path, table.text())?;
+    drop(file);
+    place.finish()?;
+    finish(&output, &table, picture.as_deref(), master)
+}
+
+/// The table of the study named, or of the one that `asperity converge` has written for the scene; `None` without one.
+fn study_file(named: Option<&PathBuf>, scene_file: &Path) -> Option<PathBuf> {
+    let usual = default_output(scene_file, "converge.csv");
+    named.cloned().or(Some(usual).filter(|usual| usual.exists()))
+}
+
+/// The verdict of the study at `path` on `scene`.
+fn study_verdict(path: Option<&Path>, scene: &str) -> Result<Option<String>, SweepCommandError> {
+    let Some(path) = path else { return Ok(None) };
+    let text = String::from_utf8_lossy(&read(path)?).into_owned();
+    match verdict(&text, scene) {
+        Ok(verdict) => Ok(Some(verdict)),
+        Err(problem) => Err(SweepCommandError::NotAStudy { path: path.to_owned(), problem }),
+    }
+}
+
+fn options(command: &Sweep, speeds: &Values) -> Result<SweepOptions, SweepCommandError> {
+    let loads = match (&command.pressures, &command.forces) {
+        (_, Some(forces)) => Loads::Forces(forces.0.clone()),
+        (Some(pressures), None) => Loads::Pressures(pressures.0.clone()),
+        (None, None) => return Err(SweepCommandError::NoLoad),
+    };
+    Ok(SweepOptions {
+        speeds: speeds.0.clone(),
+        loads,
+        temperatures: command.temperatures.as_ref().map(|values| values.0.clone()),
+        sliding: command.sliding.options(),
+    })
+}
+
+/// Computes the points that are not done yet, on all cores.
+fn run(command: &Sweep, plan: &SweepPlan, file: &TableFile, output: &Path) -> Result<(), FileError> {
+    let in_shard = |index: usize| command.shard.is_none_or(|shard| shard.has(index));
+    let points = plan.header().grid.points().enumerate().filter(|(index, _)| in_shard(*index)).map(|(_, point)| point);
+    let points: Vec<OperatingPoint> = points.collect();
+    let is_done = |point: &OperatingPoint| file.done.iter().any(|stored| stored.row.point == *point);
+    let left: Vec<OperatingPoint> = points.iter().filter(|point| !is_done(point)).copied().collect();
+    let bar = terminal::bar(points.len() as u64);
+    bar.set_position((points.len() - left.len()) as u64);
+    bar.reset_eta();
+    bar.set_message(format!("of {} points", points.len()));
+    bar.enable_steady_tick(std::time::Duration::from_secs(1));
+    let done = bar.clone();
+    let _farewell = Farewell::new(output, move || {
+        let (points, all) = (done.position(), done.length().unwrap_or_default());
+        done.finish_and_clear();
+        format!("{points} of {all} points are done")
+    });
+    let work = plan.find(&left, None, |row| {
+        file.add(&row)?;
+        bar.inc(1);
+        Ok(())
+    });
+    bar.finish_and_clear();
+    work
+}
+
+impl Sliding {
+    /// What of it is not the command line's.
+    pub(crate) fn options(&self) -> SlidingOptions {
+        let Self { method, points, error, distance } = *self;
+        SlidingOptions { method, points, error, distance }
+    }
+}
+
+/// The picture to draw; none of a shard.
+fn picture(command: &Sweep, output: &Path) -> Option<PathBuf> {
+    if command.shard.is_some() { None } else { picture_beside(output, command.plot.as_ref()) }
+}
+
+/// Draws friction over speed and, with the compound's shift, the master curve; prints friction and what lies at the low
+/// end; counts the points that are not steady.
+fn finish(
+    output: &PathBuf,
+    table: &SweepTable,
+    picture: Option<&Path>,
+    master: Option<(&Path, Wlf)>,
+) -> Result<(), SweepCommandError> {
+    picture.map_or(Ok(()), |path| plot::draw(path, table))?;
+    master.map_or(Ok(()), |(path, wlf)| plot::draw_master(path, table, &wlf))?;
+    let mut summary = if terminal::is_quiet() { Vec::new() } else { printed::lines(table) };
+    summary.extend(table.header.low_end.iter().map(|low_end| ("Low end", low_end.clone())));
+    if !terminal::is_quiet() {
+        let files = [output.as_path()].into_iter().chain(picture).chain(master.map(|(path, _)| path)).map(named);
+        summary.push(("Written", files.collect::<Vec<_>>().join(", ")));
+    }
+    print_beside([output], &lines(&summary))?;
+    let (failed, total) = (table.rows.iter().filter(|stored| !stored.row.is_steady()).count(), table.rows.len());
+    if failed == 0 { Ok(()) } else { Err(SweepCommandError::NotSteady { failed, total, path: output.to_owned() }) }
+}
+
+/// The shift of the compound with temperature.
+fn wlf(scene: &Scene) -> Option<Wlf> {
+    scene.material.as_ref().and_then(|material| material.wlf)
+}

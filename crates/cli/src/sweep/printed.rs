@@ -1,0 +1,56 @@
+//! The friction of a table as lines of text: a line for each speed, a column for each load, a block for each
+//! temperature.
+
+use asperity::element::Quantity;
+
+use crate::figure;
+use crate::terminal::{LabelledLine, labelled};
+use asperity_study::decimals::{as_given, rounded};
+use asperity_study::sweep::{StoredRow, SweepTable};
+
+/// Most speeds and most loads that are printed: a terminal's worth.
+const MOST: (usize, usize) = (60, 7);
+/// Characters of a column.
+const WIDTH: usize = 12;
+/// Behind friction that cannot be relied on.
+const NOT_STEADY: char = '*';
+
+/// Friction over speed and load; none of a table too large to be read in a terminal.
+pub(super) fn lines(table: &SweepTable) -> Vec<LabelledLine> {
+    let (grid, unit) = (&table.header.grid, table.header.load.unit());
+    if grid.speeds.len() > MOST.0 || grid.loads.len() > MOST.1 {
+        return Vec::new();
+    }
+    let temperatures: Vec<Option<f64>> = match grid.temperatures.as_slice() {
+        [] => vec![None],
+        values => values.iter().copied().map(Some).collect(),
+    };
+    let mut texts: Vec<String> = Vec::new();
+    for temperature in temperatures {
+        let of_block = || table.rows.iter().filter(move |stored| stored.row.point.temperature == temperature);
+        let title = temperature.map_or_else(|| "speed".to_owned(), |kelvin| format!("{kelvin} K"));
+        texts.push(columns(title, grid.loads.iter().map(|&load| as_given(load, unit))));
+        for &speed in &grid.speeds {
+            let friction = |&load: &f64| {
+                let found = of_block().find(|one| one.row.point.speed == speed && one.row.point.load == load);
+                found.map_or_else(String::new, friction)
+            };
+            texts.push(columns(figure::with_prefix(speed, speed, "m/s"), grid.loads.iter().map(friction)));
+        }
+    }
+    if texts.iter().any(|text| text.contains(NOT_STEADY)) {
+        texts.push(format!("{NOT_STEADY} not steady"));
+    }
+    labelled("Friction", texts)
+}
+
+fn friction(stored: &StoredRow) -> String {
+    let value =
+        stored.row.value(Quantity::Friction).map_or_else(|| "-".to_owned(), |value| rounded(value, 4).to_string());
+    if stored.row.is_steady() { value } else { format!("{value}{NOT_STEADY}") }
+}
+
+fn columns(first: String, others: impl Iterator<Item = String>) -> String {
+    let columns: String = others.map(|text| format!("{text:<WIDTH$}")).collect();
+    format!("{first:<WIDTH$}{columns}").trim_end().to_owned()
+}

@@ -1,0 +1,172 @@
+//! Text for the terminal: aligned lines, warnings, the progress bar.
+
+use std::io::{self, IsTerminal as _};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+pub(crate) use asperity_study::labelled::{LabelledLine, labelled};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle, TermLike};
+
+/// The lines as text, aligned after their labels, and broken between words where they are long.
+pub(crate) fn lines(lines: &[LabelledLine]) -> String {
+    let options = textwrap::Options::new(LINE_LENGTH).subsequent_indent(CONTINUED).break_words(false);
+    lines.iter().map(|(label, text)| textwrap::fill(&format!("{label:<12}{text}"), &options) + "\n").collect()
+}
+
+/// Characters of a line.
+const LINE_LENGTH: usize = 120;
+/// What is before the continuation of a line.
+const CONTINUED: &str = "              ";
+
+/// Prints a warning to standard error.
+#[expect(clippy::print_stderr, reason = "standard output holds results only")]
+pub(crate) fn warn(message: &str) {
+    eprintln!("asperity: warning: {message}");
+}
+
+/// Prints a note to standard error.
+#[expect(clippy::print_stderr, reason = "standard output holds results only")]
+pub(crate) fn note(message: &str) {
+    if !is_quiet() {
+        eprintln!("asperity: {message}");
+    }
+}
+
+/// Whether notes and progress are left out: `--quiet`.
+static QUIET: AtomicBool = AtomicBool::new(false);
+/// Whether every note is printed: `--verbose`.
+static VERBOSE: AtomicBool = AtomicBool::new(false);
+
+/// From now on leaves notes and progress out where `quiet`, and prints every note where `verbose`; warnings stay.
+pub(crate) fn set_verbosity(quiet: bool, verbose: bool) {
+    QUIET.store(quiet, Ordering::Relaxed);
+    VERBOSE.store(verbose, Ordering::Relaxed);
+}
+
+/// Whether notes and progress are left out.
+pub(crate) fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
+
+/// Whether every note is to be printed.
+pub(crate) fn is_verbose() -> bool {
+    VERBOSE.load(Ordering::Relaxed)
+}
+
+/// A progress bar of `length` positions; where standard error is no terminal a line every ten seconds.
+pub(crate) fn bar(length: u64) -> ProgressBar {
+    progress(Some(length), "{bar:40} {percent:>3} %  {msg}  {eta} left", "{percent} % done, {eta} left  {msg}")
+}
+
+/// A count of `what` is done, where nobody knows of how many; shown as [`bar`] is.
+pub(crate) fn counter(what: &str) -> ProgressBar {
+    progress(
+        None,
+        &format!("{{spinner}} {{pos}} {what}  {{msg}}  {{elapsed}}"),
+        &format!("{{pos}} {what}, {{elapsed}}  {{msg}}"),
+    )
+}
+
+fn progress(length: Option<u64>, for_terminals: &str, as_lines: &str) -> ProgressBar {
+    let (target, template) = match is_quiet() {
+        true => (ProgressDrawTarget::hidden(), for_terminals),
+        false if io::stderr().is_terminal() => (ProgressDrawTarget::stderr(), for_terminals),
+        false => (ProgressDrawTarget::term_like(Box::new(ProgressLines::new())), as_lines),
+    };
+    let bar = ProgressBar::with_draw_target(length, target);
+    match ProgressStyle::with_template(template) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
+/// Draws a progress bar as lines, the first one late enough for short runs to have none.
+#[derive(Debug)]
+struct ProgressLines(Mutex<ProgressLine>);
+
+#[derive(Debug)]
+struct ProgressLine {
+    text: String,
+    printed: Instant,
+}
+
+impl ProgressLines {
+    const INTERVAL: Duration = Duration::from_secs(10);
+    /// Characters of a line.
+    const WIDTH: u16 = 120;
+
+    fn new() -> Self {
+        Self(Mutex::new(ProgressLine { text: String::new(), printed: Instant::now() }))
+    }
+
+    fn with_line(&self, change: impl FnOnce(&mut ProgressLine)) -> io::Result<()> {
+        change(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner));
+        Ok(())
+    }
+}
+
+impl TermLike for ProgressLines {
+    fn width(&self) -> u16 {
+        Self::WIDTH
+    }
+
+    fn move_cursor_up(&self, _: usize) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn move_cursor_down(&self, _: usize) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn move_cursor_right(&self, _: usize) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn move_cursor_left(&self, _: usize) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn write_line(&self, text: &str) -> io::Result<()> {
+        self.write_str(text)
+    }
+
+    fn write_str(&self, text: &str) -> io::Result<()> {
+        self.with_line(|line| line.text += text)
+    }
+
+    fn clear_line(&self) -> io::Result<()> {
+        self.with_line(|line| line.text.clear())
+    }
+
+    fn flush(&self) -> io::Result<()> {
+        self.with_line(|line| {
+            let text = std::mem::take(&mut line.text);
+            if !text.trim().is_empty() && line.printed.elapsed() >= Self::INTERVAL {
+                note(text.trim());
+                line.printed = Instant::now();
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_lines_are_broken_between_words() {
+        let text = lines(&[("Label", "word ".repeat(60))]);
+        let rows: Vec<&str> = text.lines().collect();
+        assert!(rows.len() == 3 && rows.iter().all(|row| row.chars().count() <= LINE_LENGTH), "{text}");
+        assert!(rows[1].starts_with("              word") && text.matches("word").count() == 60, "{text}");
+        // A long word stays whole.
+        let word = "x".repeat(300);
+        assert!(lines(&[("Label", word.clone())]).contains(&word));
+    }
+
+    #[test]
+    fn lines_are_aligned() {
+        assert_eq!(lines(&labelled("Scene", ["a".into(), "b".into()])), "Scene       a\n            b\n");
+    }
+}

@@ -1,0 +1,214 @@
+//! Weighted residuals of a model, and their derivatives by the parameters.
+
+use nalgebra::DMatrix;
+use std::sync::{Mutex, PoisonError};
+
+use super::error::CalibrationError;
+use super::measurements::Measurements;
+use super::model::{FrictionModel, FrictionParts, Outcome, Task};
+use super::parameter::FreeParameter;
+use asperity::element::OperatingPoint;
+
+/// A measurement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// The index of its point.
+    pub point: usize,
+    /// Its friction coefficient.
+    pub friction: f64,
+    /// The standard deviation of that, measured or assumed.
+    pub sigma: f64,
+}
+
+/// Measurements to be met by free parameters.
+///
+/// Parameters are given by their [places](FreeParameter::place) between their bounds, from 0 to 1.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// The free parameters.
+    pub parameters: Vec<FreeParameter>,
+    /// The points that were measured, each once.
+    pub points: Vec<OperatingPoint>,
+    /// The measurements, repeats included.
+    pub rows: Vec<Row>,
+    /// Whether the standard deviations were measured.
+    pub has_sigma: bool,
+}
+
+/// Residuals at some places, and their derivatives by these.
+#[derive(Clone, Debug)]
+pub struct Linearised {
+    /// (model - measured)/sigma of the rows.
+    pub residuals: Vec<f64>,
+    /// A row for each measurement, a column for each parameter.
+    pub jacobian: DMatrix<f64>,
+}
+
+/// Sum of squares.
+pub(super) fn sum_of_squares(residuals: &[f64]) -> f64 {
+    residuals.iter().map(|residual| residual * residual).sum()
+}
+
+impl Problem {
+    /// The problem of some measurements.
+    pub fn new(parameters: Vec<FreeParameter>, measurements: &Measurements) -> Self {
+        let (mut points, mut rows): (Vec<OperatingPoint>, Vec<Row>) = (Vec::new(), Vec::new());
+        for measured in &measurements.rows {
+            let point = points.iter().position(|point| *point == measured.point).unwrap_or_else(|| {
+                points.push(measured.point);
+                points.len() - 1
+            });
+            rows.push(Row { point, friction: measured.friction, sigma: measured.sigma_or_assumed() });
+        }
+        Self { parameters, points, rows, has_sigma: measurements.has_sigma() }
+    }
+
+    /// The values of the parameters at some places.
+    pub fn values(&self, places: &[f64]) -> Vec<f64> {
+        self.parameters.iter().zip(places).map(|(parameter, place)| parameter.value(*place)).collect()
+    }
+
+    /// The places of some values, moved to the bounds where they lie beyond.
+    pub fn places(&self, values: &[f64]) -> Vec<f64> {
+        let place = |(parameter, value): (&FreeParameter, &f64)| parameter.place(*value).clamp(0.0, 1.0);
+        self.parameters.iter().zip(values).map(place).collect()
+    }
+
+    /// The outcomes of a model at its points, for the parameters at each of several places.
+    ///
+    /// # Errors
+    /// Those of the model.
+    pub fn outcomes(
+        &self,
+        model: &dyn FrictionModel,
+        places: &[Vec<f64>],
+    ) -> Result<Vec<Vec<Outcome>>, CalibrationError> {
+        let tasks: Vec<Task> = places
+            .iter()
+            .flat_map(|places| {
+                let parameters = self.values(places);
+                self.points.iter().map(move |&point| Task { parameters: parameters.clone(), point })
+            })
+            .collect();
+        let found: Vec<Mutex<Option<Outcome>>> = tasks.iter().map(|_| Mutex::new(None)).collect();
+        model.evaluate(&tasks, &|index, outcome| {
+            *found[index].lock().unwrap_or_else(PoisonError::into_inner) = Some(outcome);
+            Ok(())
+        })?;
+        let outcome = |found: Mutex<Option<Outcome>>| {
+            let found = found.into_inner().unwrap_or_else(PoisonError::into_inner);
+            found.unwrap_or_else(|| Err("the model gave no friction".to_owned()))
+        };
+        let mut found = found.into_iter().map(outcome);
+        Ok(places.iter().map(|_| found.by_ref().take(self.points.len()).collect()).collect())
+    }
+
+    /// [`outcomes`](Self::outcomes) of points that all slide steadily.
+    ///
+    /// # Errors
+    /// Those of the model, and [`CalibrationError::NotSteady`] with the points that do not.
+    pub fn frictions(
+        &self,
+        model: &dyn FrictionModel,
+        places: &[Vec<f64>],
+    ) -> Result<Vec<Vec<FrictionParts>>, CalibrationError> {
+        let outcomes = self.outcomes(model, places)?;
+        let mut failed: Vec<(OperatingPoint, String)> = Vec::new();
+        for outcomes in &outcomes {
+            for (point, outcome) in self.points.iter().zip(outcomes) {
+                if let Err(why) = outcome
+                    && !failed.iter().any(|(known, _)| known == point)
+                {
+                    failed.push((*point, why.clone()));
+                }
+            }
+        }
+        if failed.is_empty() {
+            Ok(outcomes.into_iter().map(|outcomes| outcomes.into_iter().flatten().collect()).collect())
+        } else {
+            Err(CalibrationError::NotSteady(failed))
+        }
+    }
+
+    /// (model - measured)/sigma of all rows.
+    pub fn residuals_of(&self, frictions: &[FrictionParts]) -> Vec<f64> {
+        let residual = |row: &Row| (frictions[row.point].friction() - row.friction) / row.sigma;
+        self.rows.iter().map(residual).collect()
+    }
+
+    /// The residuals at some places.
+    ///
+    /// # Errors
+    /// Those of [`frictions`](Self::frictions).
+    pub fn residuals(&self, model: &dyn FrictionModel, places: &[f64]) -> Result<Vec<f64>, CalibrationError> {
+        let frictions = self.frictions(model, &[places.to_vec()])?;
+        Ok(frictions.iter().flat_map(|frictions| self.residuals_of(frictions)).collect())
+    }
+
+    /// The residuals at some places and their derivatives, by differences upwards where the bounds leave room.
+    ///
+    /// # Errors
+    /// Those of [`frictions`](Self::frictions).
+    pub fn linearised(&self, model: &dyn FrictionModel, places: &[f64]) -> Result<Linearised, CalibrationError> {
+        self.differences(model, places, model.step())
+    }
+
+    /// As [`linearised`](Self::linearised), each derivative the smaller one of the differences to both sides, or zero
+    /// where they have opposite signs. Friction jumps where a hot surface has several steady states; across a jump a
+    /// difference is as large as its step is short, and the data would seem to tell the parameter exactly.
+    ///
+    /// # Errors
+    /// Those of [`frictions`](Self::frictions).
+    pub fn linearised_to_both_sides(
+        &self,
+        model: &dyn FrictionModel,
+        places: &[f64],
+    ) -> Result<Linearised, CalibrationError> {
+        let upwards = self.differences(model, places, model.step())?;
+        let downwards = self.differences(model, places, -model.step())?;
+        let smaller = |a: f64, b: f64| if a * b > 0.0 { a.abs().min(b.abs()).copysign(a) } else { 0.0 };
+        Ok(Linearised { jacobian: upwards.jacobian.zip_map(&downwards.jacobian, smaller), ..upwards })
+    }
+
+    /// The residuals at some places and their difference quotients by a step, taken the other way where it would leave
+    /// the bounds.
+    fn differences(
+        &self,
+        model: &dyn FrictionModel,
+        places: &[f64],
+        step: f64,
+    ) -> Result<Linearised, CalibrationError> {
+        let shifted = |parameter: usize| {
+            let mut shifted = places.to_vec();
+            let along = shifted[parameter] + step;
+            shifted[parameter] = if (0.0..=1.0).contains(&along) { along } else { shifted[parameter] - step };
+            shifted
+        };
+        let all: Vec<Vec<f64>> = std::iter::once(places.to_vec()).chain((0..places.len()).map(shifted)).collect();
+        let frictions = self.frictions(model, &all)?;
+        let residuals: Vec<Vec<f64>> = frictions.iter().map(|frictions| self.residuals_of(frictions)).collect();
+        let derivative = |row: usize, parameter: usize| {
+            let change = residuals[1 + parameter][row] - residuals[0][row];
+            change / (all[1 + parameter][parameter] - places[parameter])
+        };
+        let jacobian = DMatrix::from_fn(self.rows.len(), places.len(), derivative);
+        Ok(Linearised { residuals: residuals.into_iter().next().unwrap_or_default(), jacobian })
+    }
+
+    /// The problem without the measurements at some points.
+    pub fn without(&self, left_out: &[OperatingPoint]) -> Self {
+        let mut kept = Self { points: Vec::new(), rows: Vec::new(), ..self.clone() };
+        for row in &self.rows {
+            let point = self.points[row.point];
+            if left_out.contains(&point) {
+                continue;
+            }
+            let index = kept.points.iter().position(|known| *known == point).unwrap_or_else(|| {
+                kept.points.push(point);
+                kept.points.len() - 1
+            });
+            kept.rows.push(Row { point: index, ..*row });
+        }
+        kept
+    }
+}

@@ -1,0 +1,322 @@
+//! The contact of a sliding surface of rubber: which points touch, and under what pressure.
+//!
+//! For a set of points the pressures follow [linearly](super::linear). Points that would be pulled leave the set, points
+//! that would lie below the surface come to it, until there are neither; the first set is that of a grid twice as coarse.
+
+use std::collections::HashSet;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use super::compliance::Compliance;
+use super::linear::{LinearSolver, gather};
+use super::surface::SurfaceGrid;
+use super::transform::{Convolution, GridSize};
+use asperity::math::{SplitMix64, sum};
+use asperity::scene::Material;
+
+/// The residual (root mean square over the contact) of the last set over the rms height.
+const ACCURACY: f64 = 1.0e-6;
+/// That of the first set of the finest grid, of ridges and of maps, where more of the points lie at edges and are wrong at
+/// first; each set after it has a tenth.
+const FIRST_ACCURACIES: (f64, f64) = (1.0e-3, 3.0e-2);
+/// Those of the first and of the last set of a grid from which a finer one starts, ...
+const COARSE_ACCURACIES: (f64, f64) = (1.0e-3, 1.0e-4);
+/// ... and the part of the points of its set that may still be wrong.
+const COARSE_WRONG: f64 = 0.2;
+/// Points this part of the peak to valley below the surface come to the contact.
+const BELOW: f64 = 1.0e-7;
+/// The pressure that a point begins with as it comes to the contact, over the mean.
+const NEXT_TO_NOTHING: f64 = 1.0e-6;
+/// The most sets of a grid.
+const MOST_SETS: usize = 60;
+/// The most sets of a grid from which a finer one starts.
+const MOST_COARSE_SETS: usize = 6;
+/// The accuracy of the derivative by the separation.
+const DERIVATIVE_ACCURACY: f64 = 1.0e-3;
+
+/// What a contact is in.
+#[derive(Clone, Debug)]
+pub struct Contact {
+    /// The points in contact, ascending.
+    pub points: Vec<u32>,
+    /// Their pressures, Pa.
+    pub pressures: Vec<f64>,
+    /// The gaps of all points of the surface, m: 0 of those in contact.
+    pub gaps: Vec<f64>,
+    /// Separation d of the mean planes, m.
+    pub separation: f64,
+    /// Whether all points are in contact.
+    pub is_full: bool,
+    /// Points that are pulled or lie below the surface: 0 but where no set was found.
+    pub left_over: usize,
+    /// How many sets were tried on the grid itself.
+    pub sets: usize,
+}
+
+/// The solver of contacts on a surface and the coarser grids of it, with its memory.
+#[derive(Debug)]
+pub(super) struct ContactSolver {
+    /// From the finest.
+    levels: Vec<Level>,
+}
+
+#[derive(Debug)]
+struct Level {
+    surface: SurfaceGrid,
+    linear: LinearSolver,
+    rms: f64,
+    peak_to_valley: f64,
+}
+
+/// How far a grid is solved.
+#[derive(Clone, Copy, Debug)]
+struct Goal {
+    first_accuracy: f64,
+    accuracy: f64,
+    /// Points that may be wrong, as a part of the set.
+    wrong: f64,
+    sets: usize,
+}
+
+impl ContactSolver {
+    /// The solver on a surface.
+    pub(super) fn new(surface: SurfaceGrid) -> Self {
+        let coarser = |surface: &SurfaceGrid| surface.coarser();
+        let levels = std::iter::successors(Some(surface), coarser).map(Level::new).collect();
+        Self { levels }
+    }
+
+    /// The surface.
+    pub(super) fn surface(&self) -> &SurfaceGrid {
+        &self.levels[0].surface
+    }
+
+    /// The transforms of the surface's grid.
+    pub(super) fn convolution(&mut self) -> &mut Convolution {
+        &mut self.levels[0].linear.convolution
+    }
+
+    /// The pairs of transforms so far, those of a coarser grid by its part of the points.
+    pub(super) fn pairs(&self) -> f64 {
+        let points = |level: &Level| level.surface.size.points() as f64;
+        let whole = points(&self.levels[0]);
+        self.levels.iter().map(|level| level.linear.convolution.pairs() as f64 * points(level) / whole).sum()
+    }
+
+    /// The contact of `material` under the mean `pressure` (Pa), sliding at `speed` (m/s); and its compliance.
+    pub(super) fn solve(
+        &mut self,
+        material: &Material,
+        wave_stiffness: impl Fn(f64) -> f64,
+        speed: f64,
+        pressure: f64,
+    ) -> (Contact, Compliance) {
+        let compliance = |level: &Level| Compliance::new(&level.surface, material, &wave_stiffness, speed);
+        let finest = compliance(&self.levels[0]);
+        if let Some(full) = self.levels[0].full_contact(&finest, pressure) {
+            return (full, finest);
+        }
+        let mut start: Option<(Contact, usize)> = None;
+        for index in (0..self.levels.len()).rev() {
+            let level = &mut self.levels[index];
+            let first = match &start {
+                None => vec![pressure; level.surface.size.points()],
+                Some((coarse, nx)) => level.interpolated(coarse, *nx),
+            };
+            if index == 0 {
+                return (level.solve(&finest, first, pressure, Goal::finest(level.surface.size)), finest);
+            }
+            let compliance = compliance(level);
+            let found = level.solve(&compliance, first, pressure, Goal::COARSE);
+            start = Some((found, level.surface.size.nx));
+        }
+        // There is always a finest level, which returns.
+        (Contact::nothing(), finest)
+    }
+
+    /// The change of the mean pressure with the separation at a contact whose points stay, Pa/m, under a compliance; `None`
+    /// of full contact.
+    pub(super) fn stiffness(&mut self, compliance: &Compliance, contact: &Contact) -> Option<f64> {
+        if contact.is_full || contact.points.len() < 2 {
+            return None;
+        }
+        let level = &mut self.levels[0];
+        let n = contact.points.len() as f64;
+        // Of the mean 1 over the grid; the pressures themselves are a good start.
+        let scale = level.surface.size.points() as f64 / sum(&contact.pressures);
+        let mut p: Vec<f64> = contact.pressures.iter().map(|pressure| scale * pressure).collect();
+        let mut residual = vec![0.0; p.len()];
+        let moved = level.linear.moved(compliance, &contact.points, &p);
+        gather(&contact.points, moved, &mut residual);
+        residual.iter_mut().for_each(|value| *value = -*value);
+        let separation = |residual: &[f64]| (sum(residual) / n).abs();
+        let accuracy = DERIVATIVE_ACCURACY * separation(&residual);
+        level.linear.solve(compliance, &contact.points, &mut p, &mut residual, accuracy);
+        let moved = level.linear.moved(compliance, &contact.points, &p);
+        gather(&contact.points, moved, &mut residual);
+        // C p' + d' = 0
+        Some(1.0 / separation(&residual))
+    }
+}
+
+impl Goal {
+    const COARSE: Self = Self {
+        first_accuracy: COARSE_ACCURACIES.0,
+        accuracy: COARSE_ACCURACIES.1,
+        wrong: COARSE_WRONG,
+        sets: MOST_COARSE_SETS,
+    };
+
+    fn finest(size: GridSize) -> Self {
+        let first_accuracy = if size.ny == 1 { FIRST_ACCURACIES.0 } else { FIRST_ACCURACIES.1 };
+        Self { first_accuracy, accuracy: ACCURACY, wrong: 0.0, sets: MOST_SETS }
+    }
+
+    /// The accuracy of the set after one.
+    fn next(self, accuracy: f64) -> f64 {
+        let tenth = 0.1 * accuracy;
+        // No set for what rounding leaves of the last power of ten.
+        if tenth < 1.5 * self.accuracy { self.accuracy } else { tenth }
+    }
+}
+
+impl Contact {
+    fn nothing() -> Self {
+        Self {
+            points: Vec::new(),
+            pressures: Vec::new(),
+            gaps: Vec::new(),
+            separation: 0.0,
+            is_full: false,
+            left_over: 0,
+            sets: 0,
+        }
+    }
+
+    /// Points in contact over all, 1.
+    pub fn area(&self, surface: &SurfaceGrid) -> f64 {
+        self.points.len() as f64 / surface.size.points() as f64
+    }
+}
+
+impl Level {
+    fn new(surface: SurfaceGrid) -> Self {
+        let linear = LinearSolver::new(Convolution::new(surface.size));
+        let (rms, peak_to_valley) = (surface.rms_height(), surface.peak_to_valley());
+        Self { surface, linear, rms, peak_to_valley }
+    }
+
+    /// p = P + M K h, where that is nowhere a pull.
+    fn full_contact(&mut self, compliance: &Compliance, pressure: f64) -> Option<Contact> {
+        let mut p = self.surface.heights.clone();
+        self.linear.convolution.apply(&mut p, &compliance.stiffness);
+        p.iter_mut().for_each(|p| *p += pressure);
+        p.iter().all(|&p| p > 0.0).then(|| Contact {
+            points: (0..p.len() as u32).collect(),
+            gaps: vec![0.0; p.len()],
+            pressures: p,
+            is_full: true,
+            ..Contact::nothing()
+        })
+    }
+
+    /// The pressures of a coarser grid, of rows of `coarse_nx`, between its points.
+    fn interpolated(&self, coarse: &Contact, coarse_nx: usize) -> Vec<f64> {
+        let (nx, ny) = (self.surface.size.nx, self.surface.size.ny);
+        let coarse_ny = if ny == 1 { 1 } else { ny / 2 };
+        let mut values = vec![0.0; coarse_nx * coarse_ny];
+        coarse.points.iter().zip(&coarse.pressures).for_each(|(&point, p)| values[point as usize] = *p);
+        let mut fine = vec![0.0; nx * ny];
+        let step_y = if ny == 1 { 1 } else { 2 };
+        for (j, row) in fine.chunks_exact_mut(nx).enumerate() {
+            let (here, next) = (j / step_y, (j + 1) / step_y % coarse_ny);
+            let next = if step_y == 1 { here } else { next };
+            for (i, value) in row.iter_mut().enumerate() {
+                let (left, right) = (i / 2, i.div_ceil(2) % coarse_nx);
+                let at = |i: usize, j: usize| values[j * coarse_nx + i];
+                *value = 0.25 * (at(left, here) + at(right, here) + at(left, next) + at(right, next));
+            }
+        }
+        fine
+    }
+
+    /// The contact from the pressures `field` (Pa) at all points, of any mean: the first set is where they are positive.
+    fn solve(&mut self, compliance: &Compliance, mut field: Vec<f64>, pressure: f64, goal: Goal) -> Contact {
+        let count = self.surface.size.points();
+        let (mut seen, mut accuracy) = (HashSet::new(), goal.first_accuracy);
+        let mut gaps = vec![0.0; count];
+        let mut found = Contact::nothing();
+        for sets in 1..=goal.sets {
+            let points: Vec<u32> = (0..count as u32).filter(|&point| field[point as usize] > 0.0).collect();
+            let mut pressures: Vec<f64> = points.iter().map(|&point| field[point as usize]).collect();
+            let scale = pressure * count as f64 / sum(&pressures);
+            pressures.iter_mut().for_each(|p| *p *= scale);
+            let separation = self.solve_set(compliance, &points, &mut pressures, accuracy * self.rms, &mut gaps);
+
+            // Who is wrong: gaps are known as well as they were solved for.
+            let known = if accuracy > goal.accuracy { accuracy * self.rms } else { 0.0 };
+            let below = -known.max(BELOW * self.peak_to_valley);
+            let leave = pressures.iter().filter(|&&p| p < 0.0).count();
+            let come = gaps.iter().filter(|&&gap| gap < below).count();
+            let left_over = leave + come;
+            let is_full = points.len() == count;
+            found = Contact { points, pressures, separation, is_full, left_over, sets, ..Contact::nothing() };
+            if left_over as f64 <= goal.wrong * found.points.len() as f64 && accuracy <= goal.accuracy {
+                break;
+            }
+
+            // The next set; half of the wrong ones change where this one has been before.
+            let is_new = left_over == 0 || seen.insert((fingerprint(&found.points), accuracy.to_bits()));
+            let mut random = SplitMix64::new(sets as u64);
+            let mut changes = || is_new || random.unit() < 0.5;
+            let least = NEXT_TO_NOTHING * pressure;
+            field.fill(0.0);
+            for (&point, &p) in found.points.iter().zip(&found.pressures) {
+                field[point as usize] = if p >= 0.0 {
+                    p.max(least)
+                } else if changes() {
+                    0.0
+                } else {
+                    least
+                };
+            }
+            for (value, gap) in field.iter_mut().zip(&gaps) {
+                if *gap < below && changes() {
+                    *value = least;
+                }
+            }
+            accuracy = goal.next(accuracy);
+        }
+        Contact { gaps, ..found }
+    }
+
+    /// Solves for the pressures on a set, and writes the gaps of all points, 0 on the set; returns the separation, m.
+    fn solve_set(
+        &mut self,
+        compliance: &Compliance,
+        set: &[u32],
+        pressures: &mut [f64],
+        tolerance: f64,
+        gaps: &mut [f64],
+    ) -> f64 {
+        let heights = &self.surface.heights;
+        let mut residual = vec![0.0; set.len()];
+        let off = |moved: &[f64], residual: &mut [f64]| {
+            set.iter().zip(residual).for_each(|(&point, off)| *off = heights[point as usize] - moved[point as usize]);
+        };
+        off(self.linear.moved(compliance, set, pressures), &mut residual);
+        self.linear.solve(compliance, set, pressures, &mut residual, tolerance);
+        let moved = self.linear.moved(compliance, set, pressures);
+        off(moved, &mut residual);
+        let separation = sum(&residual) / residual.len() as f64;
+        let gap = |(moved, height): (&f64, &f64)| moved + separation - height;
+        gaps.iter_mut().zip(moved.iter().zip(heights).map(gap)).for_each(|(gap, found)| *gap = found);
+        set.iter().for_each(|&point| gaps[point as usize] = 0.0);
+        separation
+    }
+}
+
+fn fingerprint(points: &[u32]) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    points.hash(&mut hasher);
+    hasher.finish()
+}
