@@ -51,7 +51,7 @@ pub use fine_roughness::{
     SplitSurface, WaveModuli,
 };
 pub use fmu::{DependencyList, FmuOptions, IntegerType};
-pub use foundation::{Body, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};
+pub use foundation::{ElasticBody, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};
 pub use height_map::{HeightMap, MOST_HEIGHTS, MapError};
 pub use keys::{Absent, KeyEntry, patch_keys, scene_keys, similar_keys};
 pub use link_kind::{ByLink, LinkKind};
@@ -227,7 +227,7 @@ impl RateShear {
     }
 }
 
-/// The integrator's settings.
+/// The integrator's settings. What a scene leaves out is said by the table of keys: the default here is no tolerance.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Solver {
     /// How mode changes are treated.

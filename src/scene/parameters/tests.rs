@@ -364,3 +364,22 @@ fn wavelengths_that_clash_are_found_once_all_is_set() {
     scene.set_by_name("surface.fine.shortest", "1e-7").unwrap();
     assert_eq!(scene.check(), Ok(()));
 }
+
+/// Those that elements, patches and masters use by themselves are keys.
+#[test]
+fn parameters_by_name_have_their_keys() {
+    let constants = [
+        (Parameter::INITIAL, "one of \"relaxed\", \"undeformed\""),
+        (Parameter::TEMPERATURE, "a number from 1e-30 to 1e30"),
+        (Parameter::METHOD, "one of \"event\", \"step\", \"auto\""),
+        (Parameter::RELATIVE_TOLERANCE, "a number from 1e-30 to 0.1"),
+        (Parameter::EXTRAPOLATION, "one of \"linear\", \"hold\""),
+        (Parameter::TABLE_EXTRAPOLATION, "one of \"refuse\", \"hold\""),
+        (Parameter::REFINE, "a whole number from 1 to 1000"),
+        (Parameter::new("patch.backing.normal"), "a number from 1e-30 to 1e30"),
+        (Parameter::new("patch.heat.share"), "a number from 1e-30 to 1.0"),
+    ];
+    for (parameter, allowed) in constants {
+        assert_eq!(parameter.allowed(), allowed, "{}", parameter.path());
+    }
+}
