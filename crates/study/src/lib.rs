@@ -5,6 +5,7 @@ pub mod contact;
 pub mod decimals;
 pub mod elements;
 pub mod files;
+pub mod progress;
 pub mod robustness;
 pub mod runner;
 pub mod settings;

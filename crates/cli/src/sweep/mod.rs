@@ -5,10 +5,12 @@ mod printed;
 mod table_file;
 pub(super) mod values;
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use asperity::element::OperatingPoint;
 use asperity::scene::{Scene, Wlf};
+use asperity_study::progress::Stop;
 use asperity_study::sweep::{Loads, SlidingOptions, SweepError, SweepOptions, SweepPlan, SweepTable, verdict};
 
 use super::cli::{Sliding, Sweep};
@@ -136,13 +138,15 @@ fn run(command: &Sweep, plan: &SweepPlan, file: &TableFile, output: &Path) -> Re
         done.finish_and_clear();
         format!("{points} of {all} points are done")
     });
-    let work = plan.find(&left, None, |row| {
-        file.add(&row)?;
+    let work = plan.find(&left, &Stop::default(), |row| {
+        if let Err(error) = file.add(&row) {
+            return ControlFlow::Break(error);
+        }
         bar.inc(1);
-        Ok(())
+        ControlFlow::Continue(())
     });
     bar.finish_and_clear();
-    work
+    work.break_value().map_or(Ok(()), Err)
 }
 
 impl Sliding {
