@@ -15,6 +15,7 @@ mod figure;
 mod files;
 mod fine;
 mod fit;
+mod flags;
 mod foundation;
 mod html;
 mod interrupt;
@@ -62,7 +63,7 @@ pub fn execute(words: impl IntoIterator<Item = OsString>, library: Option<PathBu
     match run(Arguments::parse_from(words), library) {
         Ok(status) => status,
         Err(error) => {
-            eprintln!("asperity: {error}");
+            eprintln!("asperity: {}", flags::with_flags(error));
             FAILURE
         }
     }

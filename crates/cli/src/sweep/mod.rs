@@ -18,6 +18,7 @@ use super::draft::TablePlace;
 use super::files::{
     FileError, check_outputs, default_output, load_without_run, named, picture_beside, print_beside, read, write,
 };
+use super::flags::with_flags;
 use super::interrupt::Farewell;
 use super::terminal::{self, lines, warn};
 use table_file::{TableFile, TableFileError};
@@ -74,7 +75,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
     };
     let convergence = study_verdict(study.as_deref(), &scene.name)?;
     let plan = SweepPlan::new(scene, &options(command, speeds)?, convergence)?;
-    plan.warning().iter().for_each(|warning| warn(warning));
+    plan.warning().iter().for_each(|warning| warn(&with_flags(warning)));
     let place = TablePlace::new(&output)?;
     let file = TableFile::open(&place.path, plan.header(), command.force)?;
     run(command, &plan, &file, &output)?;
@@ -82,7 +83,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
         SweepTable { header: plan.header().clone(), ..SweepTable::read(&place.path).map_err(TableFileError::from)? };
     table.sort();
     let few = plan.few_points(table.rows.iter().map(|stored| &stored.row));
-    few.iter().for_each(|warning| warn(warning));
+    few.iter().for_each(|warning| warn(&with_flags(warning)));
     table.find_low_end(&output);
     write(&place.path, table.text())?;
     drop(file);

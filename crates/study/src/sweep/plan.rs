@@ -154,8 +154,8 @@ fn loads(loads: &Loads, scene: &Scene) -> Result<(Load, Vec<f64>), SweepError> {
 fn hard_pressure(scene: &Scene, load: Load, loads: &[f64]) -> Option<String> {
     let largest = loads.iter().copied().fold(0.0, f64::max);
     match load {
-        Load::Pressure { .. } => scene.hard_pressure("the largest of --pressures", largest),
-        Load::Force => scene.hard_pressure("the largest of --forces over the area", largest / scene.layer.area()?),
+        Load::Pressure { .. } => scene.hard_pressure("the largest of `pressures`", largest),
+        Load::Force => scene.hard_pressure("the largest of `forces` over the area", largest / scene.layer.area()?),
     }
 }
 

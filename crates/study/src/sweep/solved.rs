@@ -107,7 +107,7 @@ impl SolvedPoints {
         let (first, count) = few.first()?;
         Some(format!(
             "fewer than {FEW} points of the surface are in contact at {} of the points of the table, {count} at {}: give more \
-             --points",
+             `points`",
             few.len(),
             first.point.describe(header.load)
         ))
