@@ -3,7 +3,7 @@
 use asperity::scene::{FoundationKind, HeightMap, Scene};
 
 use super::never_steady::{NeverSteady, check_can_be_steady};
-use super::point::StopBounds;
+use super::search::StopBounds;
 use crate::steady::{GridSize, SurfaceGrid};
 
 /// A method that is asked for.

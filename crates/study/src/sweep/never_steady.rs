@@ -2,7 +2,7 @@
 
 use asperity::scene::Scene;
 
-use super::point::MIN_BLOCKS;
+use super::search::MIN_BLOCKS;
 use super::slide::Blocks;
 
 /// No slide of the layer could become steady.

@@ -10,8 +10,9 @@ use rayon::prelude::*;
 use super::error::SweepError;
 use super::load_search::separation_at_rest;
 use super::method::{Method, SlidingOptions};
-use super::point::{self, StopBounds};
+use super::point;
 use super::scenes::{relevant, scene_at};
+use super::search::StopBounds;
 use super::solved::SolvedPoints;
 use super::table;
 use crate::progress::Stop;
@@ -98,8 +99,7 @@ impl SweepPlan {
             Some(solved) => solved.row(*point, &self.header),
             None => {
                 let scene = scene_at(&self.scene, point);
-                let force = self.header.load.force(point.load);
-                point::find(&scene, point.speed, force, self.bounds, Some(interrupt)).row(*point, &self.header)
+                point::row(&scene, *point, &self.header, self.bounds, interrupt)
             }
         }
     }
