@@ -8,6 +8,7 @@ pub mod elements;
 pub mod files;
 pub mod labelled;
 pub mod patch;
+pub mod progress;
 pub mod robustness;
 pub mod runner;
 pub mod settings;
