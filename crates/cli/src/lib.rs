@@ -1,7 +1,7 @@
 //! The commands of the program, one module each, and what they share.
 //!
 //! [`execute`] is the program. What its commands compute is there without command line, files and messages too: runs
-//! along an excitation ([`Runner`]), sweeps ([`SweepPlan`]), contacts ([`solve_contact`]), Prony series ([`fit_moduli`]),
+//! along an excitation ([`Runner`]), sweeps ([`SweepPlan`]), contacts ([`solve_contact`]),
 //! calibrations ([`calibrate_scene`]) and FMUs ([`write_fmu`]).
 
 mod calibrate;
@@ -42,12 +42,10 @@ use std::path::PathBuf;
 
 pub use calibrate::{CalibrateError, CalibratedParameter, Calibration, CalibrationOptions, calibrate_scene};
 use clap::Parser as _;
-pub use cli::WlfConstants;
 use cli::{Arguments, Command};
 pub use contact::{ContactError, ContactFields, ContactOptions, SolvedContact, solve_contact};
 pub use elements::{ElementField, ElementFields};
 pub use files::FileError;
-pub use fit::{FitError, FitOptions, FittedModuli, fit_moduli};
 pub use pack::{PackError, write_fmu};
 pub use runner::{InputSample, Rows, Runner};
 pub use sweep::{

@@ -3,6 +3,7 @@
 pub mod calibration;
 pub mod decimals;
 pub mod files;
+pub mod fit;
 pub mod robustness;
 pub mod settings;
 pub mod steady;
