@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::grid::{Load, OperatingPoint, SweepGrid};
 use super::quantity::Quantity;
-use super::table_format::{Basis, STEADY, TableError, TableRow, TableText};
+use super::table_format::{Basis, TableError, TableRow, TableText};
 use crate::scene::read_text;
 
 /// A table, checked: every point of the grid has a row and was steady.
@@ -194,8 +194,8 @@ fn rows_of_points(text: &TableText, grid: &SweepGrid, load: Load, rows: &[TableR
 }
 
 fn check_steady(text: &TableText, load: Load, rows: &[TableRow], order: &[usize]) -> Result<(), TableError> {
-    let failed = order.iter().map(|&row| &rows[row]).filter(|row| row.status != STEADY);
-    let failed = failed.map(|row| format!("{} is not steady: {}", row.point.describe(load), row.status));
+    let failed = order.iter().map(|&row| &rows[row]).filter(|row| !row.is_steady());
+    let failed = failed.map(|row| format!("{} is not steady: {}", row.point.describe(load), row.status.text()));
     let failed: Vec<String> = failed.collect();
     if failed.is_empty() {
         return Ok(());

@@ -9,6 +9,7 @@ pub mod files;
 pub mod fit;
 pub mod labelled;
 pub mod patch;
+pub mod progress;
 pub mod robustness;
 pub mod runner;
 pub mod settings;
