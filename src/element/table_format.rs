@@ -8,8 +8,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::grid::{Load, OperatingPoint, SweepGrid};
-use super::quantity::{Need, Quantity, column_name};
 use super::point_status::PointStatus;
+use super::quantity::{Need, Quantity, column_name};
 use crate::scene::{SMALLEST, is_possible};
 use crate::tables;
 

@@ -6,6 +6,7 @@ pub mod csv;
 pub mod decimals;
 pub mod elements;
 pub mod files;
+pub mod fit;
 pub mod labelled;
 pub mod patch;
 pub mod progress;
