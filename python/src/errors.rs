@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::io::ErrorKind;
 use std::path::Path;
 
-use asperity::patch::{MotionError, PatchError, RestoreError};
+use asperity::patch::{MotionError, PatchError, PatchRestoreError};
 use asperity::scene::{ParameterError, SceneError};
 use asperity::simulation::SimulationError;
 use asperity_cli::{CalibrateError, FileError, PackError};
@@ -127,7 +127,7 @@ impl Raise for MotionError {
     }
 }
 
-impl Raise for RestoreError {
+impl Raise for PatchRestoreError {
     fn raise(self) -> PyErr {
         PyValueError::new_err(self.to_string())
     }
