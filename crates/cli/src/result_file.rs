@@ -1,14 +1,13 @@
 //! CSV files with a header, also with semicolons or tabs for commas; result files among them: columns `time` and the
 //! inputs, then the output variables.
 
-use std::borrow::Cow;
 use std::fmt::{self, Display, Formatter};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use asperity::outputs::{OutputType, Variable};
 use asperity::scene::{Input, Unit};
-use asperity::tables::{self, Row};
+use asperity::tables::{self, ContentError, Csv, decode};
 
 use super::draft::Draft;
 use super::files::{FileError, read};
@@ -20,10 +19,8 @@ use asperity_study::decimals::file_decimal;
 pub(crate) enum ResultFileError {
     #[error(transparent)]
     File(#[from] FileError),
-    #[error("{}: line {line}: {message}", .path.display())]
-    Line { path: PathBuf, line: usize, message: String },
-    #[error("{}: no column {name}; there are {}", .path.display(), .columns.join(", "))]
-    NoColumn { path: PathBuf, name: String, columns: Vec<String> },
+    #[error("{}", .error.within(.path))]
+    Content { path: PathBuf, error: ContentError },
     #[error("{}: expected a line with the columns' names and rows of numbers below it, found no rows", .path.display())]
     NoRows { path: PathBuf },
 }
@@ -135,71 +132,18 @@ impl Display for Field {
     }
 }
 
-/// A CSV file with a header, its fields as text.
-#[derive(Debug)]
-pub(crate) struct CsvFile {
-    path: PathBuf,
-    names: Vec<String>,
-    records: Vec<Record>,
+impl ResultFileError {
+    /// What is wrong in the content of the file at `path`.
+    pub(crate) fn content(path: &Path, error: ContentError) -> Self {
+        Self::Content { path: path.to_owned(), error }
+    }
 }
 
-/// The fields of a line, as many as there are columns.
-#[derive(Debug)]
-pub(crate) struct Record {
-    line: usize,
-    pub(crate) fields: Vec<String>,
-}
-
-impl CsvFile {
-    pub(crate) fn read(path: &Path) -> Result<Self, ResultFileError> {
-        let bytes = read(path)?;
-        let error = |line: usize, message: String| ResultFileError::Line { path: path.to_owned(), line, message };
-        let text = tables::decode(&bytes).map_err(|problem| error(1, problem.to_string()))?;
-        let owned = |row: Row<'_>| -> Vec<String> { row.fields.into_iter().map(Cow::into_owned).collect() };
-        let mut rows = tables::rows(&text, None);
-        let names = rows.next().map(owned).unwrap_or_default();
-        let record = |row: Row<'_>| {
-            let (line, fields) = (row.line, owned(row));
-            if fields.len() == names.len() {
-                return Ok(Record { line, fields });
-            }
-            let (expected, found) = (names.len(), fields.len());
-            Err(error(line, format!("expected as many fields as in the first line, {expected}, found {found}")))
-        };
-        let records = rows.map(record).collect::<Result<_, _>>()?;
-        Ok(Self { path: path.to_owned(), names, records })
-    }
-
-    /// Index of the column `name`; the unit of a header such as `speed [m/s]` may be left out.
-    pub(crate) fn column(&self, name: &str) -> Result<usize, ResultFileError> {
-        let without_unit = |header: &str| header.split_once(" [").is_some_and(|(start, _)| start == name);
-        let named = self.names.iter().position(|other| other == name);
-        let named = named.or_else(|| self.names.iter().position(|other| without_unit(other)));
-        named.ok_or_else(|| ResultFileError::NoColumn {
-            path: self.path.clone(),
-            name: name.to_owned(),
-            columns: self.names.clone(),
-        })
-    }
-
-    /// The names of the columns.
-    pub(crate) fn names(&self) -> &[String] {
-        &self.names
-    }
-
-    /// The error `message` about the names of the columns.
-    pub(crate) fn header_error(&self, message: String) -> ResultFileError {
-        ResultFileError::Line { path: self.path.clone(), line: 1, message }
-    }
-
-    pub(crate) fn records(&self) -> &[Record] {
-        &self.records
-    }
-
-    /// The error `message` about a record, with its line.
-    pub(crate) fn error(&self, record: &Record, message: String) -> ResultFileError {
-        ResultFileError::Line { path: self.path.clone(), line: record.line, message }
-    }
+/// The file at `path`, which begins with the names of its columns.
+pub(crate) fn read_csv(path: &Path) -> Result<Csv, ResultFileError> {
+    let bytes = read(path)?;
+    let parsed = decode(&bytes).map_err(ContentError::from).and_then(|text| Csv::parse(&text, None));
+    parsed.map_err(|error| ResultFileError::content(path, error))
 }
 
 #[cfg(test)]
@@ -213,8 +157,8 @@ mod tests {
         let quoted = "\"time; from the start\",F_x [N]\n0,1\n";
         for text in ["time [s],F_x [N]\n0,1\n", "time [s];F_x [N]\n0;1\n", "time [s]\tF_x [N]\n0\t1\n", quoted] {
             std::fs::write(&path, text).unwrap();
-            let file = CsvFile::read(&path).unwrap();
-            assert_eq!((file.column("F_x").unwrap(), &file.records()[0].fields[1][..]), (1, "1"), "{text}");
+            let file = read_csv(&path).unwrap();
+            assert_eq!((file.column("F_x").unwrap(), &file.rows[0].fields[1][..]), (1, "1"), "{text}");
         }
         std::fs::remove_file(path).unwrap();
     }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use asperity::outputs;
 use asperity::patch;
+use asperity::tables::{ContentError, Csv, Row};
 
 use super::axis::{Axis, Fit};
 use super::chart::{Chart, Curve, Stroke};
@@ -11,7 +12,7 @@ use super::difference::Comparison;
 use super::{Backend, Canvas, DrawResult, Figure};
 use crate::cli::{Condition, Plot, PlotAxis};
 use crate::files::{FileError, check_outputs, named, print_beside};
-use crate::result_file::{CsvFile, Record, ResultFileError};
+use crate::result_file::{ResultFileError, read_csv};
 use crate::terminal::{lines, warn};
 
 /// `asperity plot` failed.
@@ -123,21 +124,21 @@ fn panels<'a>(command: &Plot, files: &[Selection<'_>], drawn: &'a [String]) -> R
 #[derive(Debug)]
 pub(super) struct Selection<'a> {
     path: &'a Path,
-    file: CsvFile,
+    file: Csv,
     rows: Vec<usize>,
 }
 
 impl<'a> Selection<'a> {
     fn read(path: &'a Path, command: &Plot) -> Result<Self, PlotError> {
-        let file = CsvFile::read(path)?;
-        let mut rows: Vec<usize> = (0..file.records().len()).collect();
+        let file = read_csv(path)?;
+        let mut rows: Vec<usize> = (0..file.rows.len()).collect();
         if rows.is_empty() {
             return Err(ResultFileError::NoRows { path: path.to_owned() }.into());
         }
         for condition in &command.conditions {
-            let column = file.column(&condition.column)?;
-            let holds = |row: usize| condition.holds_for(&file.records()[row].fields[column]);
-            if !(0..file.records().len()).any(holds) {
+            let column = file.column(&condition.column).map_err(|error| ResultFileError::content(path, error))?;
+            let holds = |row: usize| condition.holds_for(&file.rows[row].fields[column]);
+            if !(0..file.rows.len()).any(holds) {
                 return Err(no_such_row(&file, path, condition, column));
             }
             rows.retain(|&row| holds(row));
@@ -149,9 +150,17 @@ impl<'a> Selection<'a> {
         Ok(Self { path, file, rows })
     }
 
+    fn refuse(&self, error: ContentError) -> PlotError {
+        ResultFileError::content(self.path, error).into()
+    }
+
+    fn column(&self, name: &str) -> Result<usize, PlotError> {
+        self.file.column(name).map_err(|error| self.refuse(error))
+    }
+
     /// The unit of a column, from its header or by its name; empty for a plain number or an unknown column.
     pub(super) fn unit(&self, column: &str) -> Result<String, PlotError> {
-        let header = &self.file.names()[self.file.column(column)?];
+        let header = &self.file.names[self.column(column)?];
         let unit = match header.rsplit_once('[').and_then(|(name, rest)| Some((name, rest.strip_suffix(']')?))) {
             Some((name, unit)) if name.ends_with(' ') => unit,
             _ => unit_of_name(header),
@@ -161,21 +170,20 @@ impl<'a> Selection<'a> {
 
     /// The names of all columns, without their units.
     pub(super) fn columns(&self) -> impl Iterator<Item = &str> {
-        self.file.names().iter().map(|name| name.split_once(" [").map_or(name.as_str(), |(name, _)| name))
+        self.file.names.iter().map(|name| name.split_once(" [").map_or(name.as_str(), |(name, _)| name))
     }
 
     /// The numbers of a column; where a field is empty, none is.
     pub(super) fn numbers(&self, column: &str) -> Result<Vec<f64>, PlotError> {
-        let index = self.file.column(column)?;
-        let number = |record: &Record| match record.fields[index].trim() {
+        let index = self.column(column)?;
+        let number = |row: &Row<'_>| match row.fields[index].trim() {
             "" => Ok(f64::NAN),
             text => text.parse().map_err(|_| {
-                let expected =
-                    format!("{column} = {text:?}: expected a number; rows are chosen by --where {column}={text}");
-                self.file.error(record, expected).into()
+                let expected = format!("a number; rows are chosen by --where {column}={text}");
+                self.refuse(ContentError::value(Some(row.line), column, &format!("{text:?}"), &expected))
             }),
         };
-        self.rows.iter().map(|&row| number(&self.file.records()[row])).collect()
+        self.rows.iter().map(|&row| number(&self.file.rows[row])).collect()
     }
 
     fn curve(&self, command: &Plot, column: &str, name: String, look: usize) -> Result<Curve, PlotError> {
@@ -193,11 +201,11 @@ impl<'a> Selection<'a> {
     }
 }
 
-fn no_such_row(file: &CsvFile, path: &Path, condition: &Condition, column: usize) -> PlotError {
+fn no_such_row(file: &Csv, path: &Path, condition: &Condition, column: usize) -> PlotError {
     const SHOWN: usize = 12;
     let mut values: Vec<&str> = Vec::new();
-    for record in file.records() {
-        let value = record.fields[column].as_str();
+    for record in &file.rows {
+        let value = &*record.fields[column];
         if !values.contains(&value) {
             values.push(value);
         }

@@ -2,7 +2,6 @@
 
 mod columns;
 mod measured;
-mod moduli_error;
 mod nnls;
 mod search;
 mod shift;
@@ -14,7 +13,7 @@ use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 use asperity::scene::PronyTerm;
-use asperity::tables::Unit;
+use asperity::tables::{ContentError, Unit};
 
 use super::cli::{Fit, WlfConstants};
 use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
@@ -23,7 +22,6 @@ use super::terminal::{lines, note, warn};
 use super::{NOT_REACHED, SUCCESS};
 use asperity_study::decimals::{decimal, rounded};
 use measured::{MeasuredModuli, Reading};
-use moduli_error::ModuliError;
 use search::{Compound, FitErrors, RelativeError, Sample, Target, Test, search};
 use temperatures::{Shift, ShiftError};
 
@@ -33,8 +31,8 @@ use temperatures::{Shift, ShiftError};
 pub enum FitError {
     #[error(transparent)]
     File(#[from] FileError),
-    #[error("{}:{error}", .path.display())]
-    Moduli { path: PathBuf, error: ModuliError },
+    #[error("{}", .error.within(.path))]
+    Moduli { path: PathBuf, error: ContentError },
     #[error("{}: {error}", .path.display())]
     Shift { path: PathBuf, error: ShiftError },
     #[error("{}: the workbook cannot be read: {error}", .path.display())]
@@ -151,7 +149,7 @@ pub(crate) fn fit(command: &Fit) -> Result<u8, FitError> {
     Ok(NOT_REACHED)
 }
 
-fn in_data(options: &FitOptions, error: ModuliError) -> FitError {
+fn in_data(options: &FitOptions, error: ContentError) -> FitError {
     FitError::Moduli { path: options.data.clone(), error }
 }
 
@@ -174,7 +172,7 @@ fn read_moduli(options: &FitOptions) -> Result<MeasuredModuli, FitError> {
     let wanted = |(name, _): &&(String, String)| options.sheet.as_ref().is_none_or(|wanted| wanted == name);
     let chosen: Vec<&(String, String)> = sheets.iter().filter(wanted).collect();
     let refuse = |expected| FitError::Sheets { path: options.data.clone(), found: names.clone(), expected };
-    let mut read: Vec<(&str, Result<MeasuredModuli, ModuliError>)> =
+    let mut read: Vec<(&str, Result<MeasuredModuli, ContentError>)> =
         chosen.iter().map(|(name, text)| (name.as_str(), MeasuredModuli::parse_text(text, &reading))).collect();
     if read.len() > 1 {
         read.retain(|(_, measured)| measured.is_ok());

@@ -86,7 +86,10 @@ fn sur_of_digital_surf() {
     assert!(refusal(&bytes, &last()).starts_with("z[1] = missing"));
     bytes[212..214].copy_from_slice(b"V\0");
     assert!(refusal(&bytes, &options()).starts_with("unit of z = \"V\": expected a unit of length"));
-    assert!(refusal(b"DSCOMPRESSED", &options()).starts_with("a file of Digital Surf, compressed, which is not read: expected"));
+    assert!(
+        refusal(b"DSCOMPRESSED", &options())
+            .starts_with("a file of Digital Surf, compressed, which is not read: expected")
+    );
 }
 
 #[test]

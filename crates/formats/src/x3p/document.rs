@@ -9,9 +9,7 @@ use quick_xml::events::{BytesStart, Event};
 use zip::ZipArchive;
 use zip::read::ZipFile;
 
-use asperity::scene::ANY;
-use asperity::scene::ContentError;
-use asperity::tables::decode;
+use asperity::tables::{ANY, ContentError, decode};
 
 /// The longest document, bytes: heights inline of some million points.
 const LONGEST_MAIN: u64 = 1 << 27;
