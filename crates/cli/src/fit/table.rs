@@ -56,7 +56,7 @@ impl<'a> Table<'a> {
             Some(before) => {
                 let header: Vec<Line<'a>> =
                     before.block.above.iter().copied().filter(|(line, _)| *line >= before.line).collect();
-                Self::with_own_header(&block.below(&header), reading)
+                Self::with_own_header(&block.with_header(&header), reading)
             }
             None => Ok(found),
         }
