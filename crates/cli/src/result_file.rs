@@ -1,29 +1,15 @@
-//! CSV files with a header, also with semicolons or tabs for commas; result files among them: columns `time` and the
-//! inputs, then the output variables.
+//! CSV files written line by line; result files among them: columns `time` and the inputs, then the output variables.
 
-use std::fmt::{self, Display, Formatter};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use asperity::outputs::{OutputType, Variable};
 use asperity::scene::{Input, Unit};
-use asperity::tables::{self, ContentError, Csv, decode};
+use asperity_study::csv::{Field, Head, line};
 
 use super::draft::Draft;
-use super::files::{FileError, read};
-use super::runner::InputSample;
-use asperity_study::decimals::file_decimal;
-
-/// A result file cannot be read.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum ResultFileError {
-    #[error(transparent)]
-    File(#[from] FileError),
-    #[error("{}", .error.within(.path))]
-    Content { path: PathBuf, error: ContentError },
-    #[error("{}: expected a line with the columns' names and rows of numbers below it, found no rows", .path.display())]
-    NoRows { path: PathBuf },
-}
+use super::files::FileError;
+use asperity_study::runner::InputSample;
 
 /// Writes a CSV file line by line.
 #[derive(Debug)]
@@ -41,8 +27,7 @@ impl CsvWriter {
     }
 
     pub(crate) fn write<T: AsRef<str>>(&mut self, fields: impl IntoIterator<Item = T>) -> Result<(), FileError> {
-        let fields: Vec<String> = fields.into_iter().map(|field| tables::quoted(field.as_ref())).collect();
-        writeln!(self.file, "{}", fields.join(",")).map_err(FileError::io("write", &self.path))
+        writeln!(self.file, "{}", line(fields)).map_err(FileError::io("write", &self.path))
     }
 
     /// Writes a line of values, none of which needs quotation marks.
@@ -93,78 +78,5 @@ impl ResultWriter {
     /// Puts the file in its place.
     pub(crate) fn finish(self) -> Result<(), FileError> {
         self.file.finish()
-    }
-}
-
-/// What is above a column of a result file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Head {
-    /// Its name.
-    Name,
-    /// Its name and, in brackets, its unit: `F_x [N]`.
-    NameAndUnit,
-}
-
-impl Head {
-    pub(crate) fn of(self, name: &str, unit: Unit) -> String {
-        match self {
-            Self::NameAndUnit if unit != Unit::One => format!("{name} [{}]", unit.name()),
-            _ => name.to_owned(),
-        }
-    }
-}
-
-/// A value as files have it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Field {
-    pub(crate) kind: OutputType,
-    pub(crate) value: f64,
-}
-
-impl Display for Field {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match self.kind {
-            OutputType::Real => file_decimal(self.value).fmt(f),
-            // A whole number is written faster as one.
-            OutputType::Integer if self.value == self.value as i64 as f64 => (self.value as i64).fmt(f),
-            OutputType::Integer => write!(f, "{:.0}", self.value),
-        }
-    }
-}
-
-impl ResultFileError {
-    /// What is wrong in the content of the file at `path`.
-    pub(crate) fn content(path: &Path, error: ContentError) -> Self {
-        Self::Content { path: path.to_owned(), error }
-    }
-}
-
-/// The file at `path`, which begins with the names of its columns.
-pub(crate) fn read_csv(path: &Path) -> Result<Csv, ResultFileError> {
-    let bytes = read(path)?;
-    let parsed = decode(&bytes).map_err(ContentError::from).and_then(|text| Csv::parse(&text, None));
-    parsed.map_err(|error| ResultFileError::content(path, error))
-}
-
-#[cfg(test)]
-#[allow(clippy::unwrap_used)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn fields_are_separated_as_the_header_is() {
-        let path = std::env::temp_dir().join(format!("asperity-separators-{}.csv", std::process::id()));
-        let quoted = "\"time; from the start\",F_x [N]\n0,1\n";
-        for text in ["time [s],F_x [N]\n0,1\n", "time [s];F_x [N]\n0;1\n", "time [s]\tF_x [N]\n0\t1\n", quoted] {
-            std::fs::write(&path, text).unwrap();
-            let file = read_csv(&path).unwrap();
-            assert_eq!((file.column("F_x").unwrap(), &file.rows[0].fields[1][..]), (1, "1"), "{text}");
-        }
-        std::fs::remove_file(path).unwrap();
-    }
-
-    #[test]
-    fn integers_have_no_exponent() {
-        assert_eq!(Field { kind: OutputType::Integer, value: 1e7 }.to_string(), "10000000");
     }
 }

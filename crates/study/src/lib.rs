@@ -1,8 +1,16 @@
 //! What one computes with scenes.
 
 pub mod calibration;
+pub mod contact;
+pub mod csv;
 pub mod decimals;
+pub mod elements;
 pub mod files;
+pub mod labelled;
+pub mod patch;
 pub mod robustness;
+pub mod runner;
 pub mod settings;
 pub mod steady;
+pub mod summary;
+pub mod sweep;

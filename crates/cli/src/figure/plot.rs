@@ -12,8 +12,8 @@ use super::difference::Comparison;
 use super::{Backend, Canvas, DrawResult, Figure};
 use crate::cli::{Condition, Plot, PlotAxis};
 use crate::files::{FileError, check_outputs, named, print_beside};
-use crate::result_file::{ResultFileError, read_csv};
 use crate::terminal::{lines, warn};
+use asperity_study::csv::{self, CsvError};
 
 /// `asperity plot` failed.
 #[derive(Debug, thiserror::Error)]
@@ -21,7 +21,7 @@ pub(crate) enum PlotError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]
-    ResultFile(#[from] ResultFileError),
+    ResultFile(#[from] CsvError),
     #[error("--labels: expected {files}, one name for each file, found {labels}")]
     Labels { labels: usize, files: usize },
     #[error("--where: {file} has no row with {condition}; its {column} has the values {values}")]
@@ -130,13 +130,14 @@ pub(super) struct Selection<'a> {
 
 impl<'a> Selection<'a> {
     fn read(path: &'a Path, command: &Plot) -> Result<Self, PlotError> {
-        let file = read_csv(path)?;
+        let file = csv::read(path)?;
         let mut rows: Vec<usize> = (0..file.rows.len()).collect();
         if rows.is_empty() {
-            return Err(ResultFileError::NoRows { path: path.to_owned() }.into());
+            let expected = "a line with the columns' names and rows of numbers below it";
+            return Err(CsvError::content(path, ContentError::value(None, "rows", "0", expected)).into());
         }
         for condition in &command.conditions {
-            let column = file.column(&condition.column).map_err(|error| ResultFileError::content(path, error))?;
+            let column = file.column(&condition.column).map_err(|error| CsvError::content(path, error))?;
             let holds = |row: usize| condition.holds_for(&file.rows[row].fields[column]);
             if !(0..file.rows.len()).any(holds) {
                 return Err(no_such_row(&file, path, condition, column));
@@ -151,7 +152,7 @@ impl<'a> Selection<'a> {
     }
 
     fn refuse(&self, error: ContentError) -> PlotError {
-        ResultFileError::content(self.path, error).into()
+        CsvError::content(self.path, error).into()
     }
 
     fn column(&self, name: &str) -> Result<usize, PlotError> {

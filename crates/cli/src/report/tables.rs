@@ -13,7 +13,8 @@ use super::robustness::Robustness;
 use super::run::RunFigures;
 use super::trace::{Errors, OF_ALL_SCENES, QUANTITIES};
 use crate::files::FileError;
-use crate::result_file::{CsvWriter, ResultFileError, read_csv};
+use crate::result_file::CsvWriter;
+use asperity_study::csv::{self, CsvError};
 use asperity_study::decimals::real;
 
 /// The columns of errors and run times: errors over the largest value, processor time in s. Tables of other programs
@@ -189,9 +190,9 @@ pub(super) struct Peers {
 
 /// Reads the rows of the scene with one of these `names` whose times are those of whole processes. The file has the
 /// columns of [`MEASURED`], and perhaps [`TIMED`], [`SPREAD`] and [`TIMINGS`]; others are ignored.
-pub(super) fn read_peers(path: &Path, names: &[&str]) -> Result<Peers, ResultFileError> {
-    let file = read_csv(path)?;
-    let refuse = |error| ResultFileError::content(path, error);
+pub(super) fn read_peers(path: &Path, names: &[&str]) -> Result<Peers, CsvError> {
+    let file = csv::read(path)?;
+    let refuse = |error| CsvError::content(path, error);
     let mut columns = [0; MEASURED.len()];
     for (column, name) in columns.iter_mut().zip(MEASURED) {
         *column = file.column(name).map_err(refuse)?;

@@ -15,11 +15,12 @@ use super::{CheckError, ERROR, SLIDING_DISTANCE, deviation, folder_beside, scene
 use crate::cli::Pack;
 use crate::figure::{Curve, Figure as _, Ladder, LadderPanel, Ladders, LinearPanel, LinearStack, Rung, Stroke};
 use crate::files::FileError;
-use crate::result_file::{CsvWriter, Head, ResultWriter};
-use crate::runner::InputSample;
-use crate::sweep::{Method, StopBounds, Swept, SweptPoint};
+use crate::result_file::{CsvWriter, ResultWriter};
 use crate::terminal::{self, LabelledLine, labelled};
+use asperity_study::csv::Head;
 use asperity_study::decimals::real;
+use asperity_study::runner::InputSample;
+use asperity_study::sweep::{Method, StopBounds, Swept, SweptPoint};
 
 /// What is compared in steady sliding.
 const COMPARED: [&str; 3] = ["F_x", "F_z", "P_diss"];

@@ -1,0 +1,259 @@
+//! Runs a scene along its excitation, phase by phase, with rows at even intervals of each phase.
+
+use asperity::outputs::Snapshot;
+use asperity::scene::{Force, Input, Phase, Scene};
+use asperity::simulation::{MethodSwitch, Motion, Simulation, SimulationError, Start};
+
+/// Time and inputs at a row: displacements of the carrier or of a body's drive, forces on a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct InputSample {
+    /// Time, s.
+    pub time: f64,
+    /// Displacement along x, m.
+    pub u: f64,
+    /// Displacement along z, m.
+    pub w: f64,
+    /// Load on a body without its constant part, N.
+    pub load: f64,
+    /// Tangential force on a body without its constant part, N.
+    pub pull: f64,
+    /// Temperature of the layer where it is an input, K; else 0.
+    pub temperature: f64,
+}
+
+impl InputSample {
+    /// The sample a time `s` (s) after this one, at which `motion` starts.
+    pub fn after(self, motion: &Motion, s: f64) -> Self {
+        let force = |force: Force, reached: f64| force.start.unwrap_or(reached) + force.change.at(s).position;
+        Self {
+            time: self.time + s,
+            u: self.u + motion.u.at(s).position,
+            w: self.w + motion.w.at(s).position,
+            load: force(motion.load, self.load),
+            pull: force(motion.pull, self.pull),
+            temperature: motion.temperature.unwrap_or(self.temperature),
+        }
+    }
+
+    /// The value of an input.
+    pub fn input(&self, input: Input) -> f64 {
+        match input {
+            Input::U => self.u,
+            Input::W => self.w,
+            Input::Load => self.load,
+            Input::Pull => self.pull,
+            Input::Temperature => self.temperature,
+        }
+    }
+}
+
+/// Number of even intervals that a phase is divided into.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rows {
+    /// This number for every phase.
+    PerPhase(u32),
+    /// The fewest intervals of at most `longest`, each divided into `parts`.
+    Within {
+        /// Longest interval, s.
+        longest: f64,
+        /// Parts of each, 1 or more.
+        parts: u32,
+    },
+}
+
+impl Rows {
+    /// Number of intervals of a phase of `duration` (s); 0 for a phase without duration.
+    pub fn intervals(self, duration: f64) -> u32 {
+        /// Relative rounding error of a duration that is a multiple of the interval.
+        const ROUNDING: f64 = 1e-9;
+        match self {
+            _ if duration <= 0.0 => 0,
+            Self::PerPhase(points) => points,
+            Self::Within { longest, parts } => (duration / longest * (1.0 - ROUNDING)).ceil() as u32 * parts,
+        }
+    }
+
+    /// Ends of the intervals of a phase of `duration` (s), in s from its start. The last is the duration itself: a row
+    /// later by a rounding error would never be reached.
+    pub fn times(self, duration: f64) -> impl Iterator<Item = f64> {
+        let count = self.intervals(duration);
+        (1..=count).map(move |i| if i == count { duration } else { duration * f64::from(i) / f64::from(count) })
+    }
+}
+
+/// The start with the carrier at `u` (m), moving as the first phase of the excitation begins.
+pub fn start(scene: &Scene, u: f64) -> Start {
+    let first = scene.excitation.first();
+    Start {
+        u_rate: first.map_or(0.0, |phase| phase.u.at(0.0).speed),
+        w_rate: first.map_or(0.0, |phase| phase.w.at(0.0).speed),
+        u,
+        load: scene.first_load(),
+        pull: scene.first_pull(),
+        temperature: first.and_then(|phase| phase.temperature),
+        ..Start::default()
+    }
+}
+
+/// A simulation that follows phases of motion.
+#[derive(Debug)]
+pub struct Runner {
+    simulation: Simulation,
+    carrier: InputSample,
+    rows: Rows,
+    /// Times of rows besides those, s.
+    also_at: Vec<f64>,
+    /// Number of phases followed so far.
+    phases: usize,
+    /// Area of the layer, m², if the scene gives it.
+    area: Option<f64>,
+    /// Of phases that ended before their force was reached.
+    warnings: Vec<String>,
+}
+
+impl Runner {
+    /// Starts a run of `scene` with the carrier at `u` (m), moving as the first phase begins.
+    ///
+    /// # Errors
+    /// As for [`Simulation::new`].
+    pub fn new(scene: &Scene, rows: Rows, u: f64) -> Result<Self, SimulationError> {
+        let start = start(scene, u);
+        let temperature = start.temperature.unwrap_or(scene.input_start(Input::Temperature));
+        let carrier =
+            InputSample { time: start.time, u: start.u, w: start.w, load: start.load, pull: start.pull, temperature };
+        let mut simulation = Simulation::new(scene, &start)?;
+        simulation.record_method_switches(true);
+        Ok(Self {
+            simulation,
+            carrier,
+            rows,
+            also_at: Vec::new(),
+            phases: 0,
+            area: scene.layer.area(),
+            warnings: Vec::new(),
+        })
+    }
+
+    /// The run with rows at `times` (s) too.
+    pub fn with_rows_at(self, times: Vec<f64>) -> Self {
+        Self { also_at: times, ..self }
+    }
+
+    /// The simulation as it stands.
+    pub fn simulation(&mut self) -> &mut Simulation {
+        &mut self.simulation
+    }
+
+    /// The changes between event-driven and time-stepping driver since the last call; only method *auto* has any.
+    pub fn take_method_switches(&mut self) -> Vec<MethodSwitch> {
+        self.simulation.take_method_switches()
+    }
+
+    /// The warnings since the last call: of phases that ended before their force was reached.
+    pub fn take_warnings(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.warnings)
+    }
+
+    /// Calls `observe` at the current time, then follows `phases` and calls it at their rows. Returns the actual
+    /// durations of the phases, s: a phase that a force ends may be shorter than its nominal duration.
+    ///
+    /// # Errors
+    /// As for [`Simulation::advance`]; the simulation then stands at the start of the phase that failed.
+    pub fn run(
+        &mut self,
+        phases: &[Phase],
+        mut observe: impl FnMut(InputSample, &Snapshot<'_>),
+    ) -> Result<Vec<f64>, SimulationError> {
+        self.observe_now(&mut observe);
+        phases.iter().map(|phase| self.run_phase(phase, &mut observe)).collect()
+    }
+
+    /// Calls `observe` at the current time.
+    pub fn observe_now(&mut self, mut observe: impl FnMut(InputSample, &Snapshot<'_>)) {
+        observe(self.carrier, &self.simulation.snapshot());
+    }
+
+    /// Follows one phase and calls `observe` at its rows. Returns the actual duration, s.
+    ///
+    /// # Errors
+    /// As for [`run`](Self::run).
+    pub fn run_phase(
+        &mut self,
+        phase: &Phase,
+        mut observe: impl FnMut(InputSample, &Snapshot<'_>),
+    ) -> Result<f64, SimulationError> {
+        let motion = phase.motion(self.area);
+        let force = phase.end_force(self.area);
+        let reached = self.time_of_force(&motion, force)?;
+        self.phases += 1;
+        if force.is_some() && reached.is_none() {
+            self.warnings.push(missed_force(self.phases, phase));
+        }
+        let duration = reached.unwrap_or(phase.duration);
+        if duration <= 0.0 {
+            return Ok(0.0);
+        }
+        let rows = if phase.is_row { Rows::PerPhase(1) } else { self.rows };
+        let times = self.times(rows, duration);
+        let start = self.carrier;
+        let observe = |s: f64, snapshot: &Snapshot<'_>| observe(start.after(&motion, s), snapshot);
+        self.simulation.advance_observed(&Motion { duration, ..motion }, None, &times, observe)?;
+        self.carrier = InputSample { time: self.simulation.time(), ..start.after(&motion, duration) };
+        Ok(duration)
+    }
+
+    /// Times of the rows of a phase of `duration` (s) that begins now, in s from its start.
+    fn times(&self, rows: Rows, duration: f64) -> Vec<f64> {
+        /// Share of the duration by which a time differs from that of a row by rounding.
+        const ROUNDING: f64 = 1e-9;
+        let mut times: Vec<f64> = rows.times(duration).collect();
+        for s in self.also_at.iter().map(|time| time - self.carrier.time) {
+            let is_there = |other: &f64| (other - s).abs() <= ROUNDING * duration;
+            if ROUNDING * duration < s && s < duration && !times.iter().any(is_there) {
+                times.push(s);
+            }
+        }
+        times.sort_by(f64::total_cmp);
+        times
+    }
+
+    /// The time at which F_z rises to `force` (N), in s from the start of the motion. A copy of the simulation finds
+    /// it, so that rows can divide the phase evenly.
+    fn time_of_force(&self, motion: &Motion, force: Option<f64>) -> Result<Option<f64>, SimulationError> {
+        force.map_or(Ok(None), |force| self.simulation.clone().advance_observed(motion, Some(force), &[], |_, _| ()))
+    }
+}
+
+/// The warning that phase `number`, counted from 1, ended before its force was reached.
+fn missed_force(number: usize, phase: &Phase) -> String {
+    let end = match (phase.until_force, phase.until_pressure) {
+        (None, Some(pressure)) => format!("F_z over the layer's area did not rise to until_pressure = {pressure} Pa"),
+        (force, _) => format!("F_z did not rise to until_force = {} N", force.unwrap_or_default()),
+    };
+    format!("phase {number} of the excitation: {end} within {} s", phase.duration)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_row_is_the_end_despite_rounding() {
+        const POINTS: u32 = 50;
+        let mut above = 0;
+        for duration in (1..200).map(|i| 1e-6 * f64::from(i)) {
+            above += usize::from(duration * f64::from(POINTS) / f64::from(POINTS) > duration);
+            let times: Vec<f64> = Rows::PerPhase(POINTS).times(duration).collect();
+            assert_eq!((times.len(), times.last()), (POINTS as usize, Some(&duration)));
+        }
+        assert!(above > 0, "no duration is rounded up");
+    }
+
+    #[test]
+    fn intervals_are_no_longer_than_asked_for_and_divide_evenly() {
+        let rows = |parts| Rows::Within { longest: 1e-5, parts };
+        assert_eq!([0.0, 1e-5, 3.0 * 1e-5, 3.1e-5, 1e-9].map(|duration| rows(1).intervals(duration)), [0, 1, 3, 4, 1]);
+        let (coarse, fine): (Vec<_>, Vec<_>) = (rows(1).times(7.7e-5).collect(), rows(4).times(7.7e-5).collect());
+        assert_eq!(coarse, fine.chunks(4).map(|part| part[3]).collect::<Vec<_>>());
+    }
+}

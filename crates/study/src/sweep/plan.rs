@@ -1,0 +1,169 @@
+//! What a sweep computes: the points of a scene over speed, load and temperature, and the row of each.
+
+use asperity::element::{Basis, Load, OperatingPoint, SweepGrid, TableHeader, TableRow};
+use asperity::scene::{FineRoughness, Scene};
+use asperity::simulation::Interrupt;
+use rayon::prelude::*;
+
+use super::error::SweepError;
+use super::load_search::separation_at_rest;
+use super::method::{Method, SlidingOptions};
+use super::point::{self, StopBounds};
+use super::scenes::{relevant, scene_at};
+use super::solved::SolvedPoints;
+use super::table;
+
+/// Mean loads to sweep over, rising.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Loads {
+    /// Mean pressures, Pa; of a scene in the material form.
+    Pressures(Vec<f64>),
+    /// Mean normal forces F_z of the whole layer, N.
+    Forces(Vec<f64>),
+}
+
+/// What a sweep goes over, and how its points are found.
+#[derive(Clone, Debug)]
+pub struct SweepOptions {
+    /// Speeds, m/s, rising.
+    pub speeds: Vec<f64>,
+    /// Loads.
+    pub loads: Loads,
+    /// Temperatures, K, rising; `None`: the scene's own.
+    pub temperatures: Option<Vec<f64>>,
+    /// How steady sliding is found.
+    pub sliding: SlidingOptions,
+}
+
+/// A sweep of a scene, its points not found yet.
+#[derive(Debug)]
+pub struct SweepPlan {
+    scene: Scene,
+    header: TableHeader,
+    bounds: StopBounds,
+    /// Where steady sliding is solved for; else the layer slides.
+    solved: Option<SolvedPoints>,
+    warning: Option<String>,
+}
+
+impl SweepPlan {
+    /// The sweep of a `scene`, of which a study of convergence found what `convergence` says.
+    ///
+    /// # Errors
+    /// Where the scene does not go with the options, or could never slide steadily.
+    pub fn new(scene: Scene, options: &SweepOptions, convergence: Option<String>) -> Result<Self, SweepError> {
+        if scene.carrier.x.is_some() {
+            return Err(SweepError::BodyAlongX);
+        }
+        let (load, loads) = loads(&options.loads, &scene)?;
+        let (method, of_method) = options.sliding.choose(&scene)?;
+        let warning = if matches!(method, Method::Layer) { hard_pressure(&scene, load, &loads) } else { None };
+        let temperatures = temperatures(options.temperatures.as_deref(), &scene)?;
+        let grid = SweepGrid { speeds: options.speeds.clone(), loads, temperatures };
+        method.check(&scene)?;
+        let scene = relevant(scene);
+        let bounds = options.sliding.bounds();
+        let header = TableHeader {
+            fingerprint: fingerprint(&scene, bounds, load, &method)?,
+            scene: scene.name.clone(),
+            load,
+            rest_separation: separation_at_rest(&scene),
+            basis: Basis { method: Some(of_method), ..basis(&scene, convergence) },
+            grid,
+            low_end: None,
+        };
+        let solved = match method {
+            Method::Steady(surface) => Some(SolvedPoints::new(&scene, &header.grid.temperatures, surface)?),
+            Method::Layer => None,
+        };
+        Ok(Self { scene, header, bounds, solved, warning })
+    }
+
+    /// The header of the table, with all points in its grid.
+    pub fn header(&self) -> &TableHeader {
+        &self.header
+    }
+
+    /// What to look at before the points are found: a load that presses the layer harder than its links stand for.
+    pub fn warning(&self) -> Option<&str> {
+        self.warning.as_deref()
+    }
+
+    /// The row of a point; one of a layer that `interrupt` stops as it slides says so in its status.
+    pub fn row(&self, point: &OperatingPoint, interrupt: Option<&Interrupt>) -> TableRow {
+        match &self.solved {
+            Some(solved) => solved.row(*point, &self.header),
+            None => {
+                let scene = scene_at(&self.scene, point);
+                let force = self.header.load.force(point.load);
+                point::find(&scene, point.speed, force, self.bounds, interrupt).row(*point, &self.header)
+            }
+        }
+    }
+
+    /// Finds points on all cores, in any order, and hands each row to `found`; ends with its first error.
+    ///
+    /// # Errors
+    /// Those of `found`, after which no further point is begun.
+    pub fn find<E: Send>(
+        &self,
+        points: &[OperatingPoint],
+        interrupt: Option<&Interrupt>,
+        found: impl Fn(TableRow) -> Result<(), E> + Sync,
+    ) -> Result<(), E> {
+        points.par_iter().with_max_len(1).try_for_each(|point| found(self.row(point, interrupt)))
+    }
+
+    /// The warning where some of the rows have few points of the surface in contact.
+    pub fn few_points<'a>(&self, rows: impl Iterator<Item = &'a TableRow>) -> Option<String> {
+        self.solved.as_ref()?.few_points(rows, &self.header)
+    }
+}
+
+/// What the table rests on, for those who use it.
+fn basis(scene: &Scene, convergence: Option<String>) -> Basis {
+    let foundation = scene.layer.foundation.map(|kind| kind.word().to_owned());
+    let fine = scene.fine.as_ref().map(FineRoughness::describe);
+    let held = scene.carrier.z.map(|body| format!("load, on a carrier of {} kg", body.mass));
+    Basis { method: None, foundation, fine, convergence, held }
+}
+
+fn loads(loads: &Loads, scene: &Scene) -> Result<(Load, Vec<f64>), SweepError> {
+    match loads {
+        Loads::Forces(forces) => Ok((Load::Force, forces.clone())),
+        Loads::Pressures(pressures) => {
+            let area = scene.layer.area().ok_or(SweepError::NoArea)?;
+            Ok((Load::Pressure { area }, pressures.clone()))
+        }
+    }
+}
+
+/// The warning where the largest of `loads` presses the layer harder than its links stand for.
+fn hard_pressure(scene: &Scene, load: Load, loads: &[f64]) -> Option<String> {
+    let largest = loads.iter().copied().fold(0.0, f64::max);
+    match load {
+        Load::Pressure { .. } => scene.hard_pressure("the largest of --pressures", largest),
+        Load::Force => scene.hard_pressure("the largest of --forces over the area", largest / scene.layer.area()?),
+    }
+}
+
+/// Those asked for, or the scene's own; none where it has none.
+fn temperatures(asked: Option<&[f64]>, scene: &Scene) -> Result<Vec<f64>, SweepError> {
+    let own = scene.material.as_ref().and_then(|material| material.wlf.as_ref()).map(|wlf| wlf.temperature);
+    let Some(own) = own else {
+        return if asked.is_some() { Err(SweepError::NoWlf) } else { Ok(Vec::new()) };
+    };
+    let values = asked.map_or_else(|| vec![own], <[f64]>::to_vec);
+    for &temperature in &values {
+        scene.with_temperature(temperature).check().map_err(SweepError::Temperature)?;
+    }
+    Ok(values)
+}
+
+fn fingerprint(scene: &Scene, bounds: StopBounds, load: Load, method: &Method) -> Result<String, serde_json::Error> {
+    // The same for all temperatures: each point has its own.
+    let scene = scene.with_temperature(0.0);
+    let StopBounds { error, distance } = bounds;
+    let settings = method.settings(|| format!("{error:?} {distance:?}"));
+    table::fingerprint(&scene, &format!("{} {settings}", load.name()))
+}

@@ -1,0 +1,120 @@
+//! Points of a sweep by the solver of steady sliding.
+
+use std::sync::{Mutex, PoisonError};
+
+use asperity::element::{Load, OperatingPoint, Quantity, STEADY, TableHeader, TableRow};
+use asperity::scene::Scene;
+
+use super::error::SweepError;
+use crate::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
+
+/// The solver of the points of a sweep, on all threads.
+#[derive(Debug)]
+pub struct SolvedPoints {
+    surface: SurfaceGrid,
+    /// The rubber at each temperature.
+    rubbers: Vec<(Option<f64>, SlidingRubber)>,
+    /// The area of the layer, m².
+    area: f64,
+    /// Solvers that no thread uses now: what they find does not depend on what they found before.
+    idle: Mutex<Vec<SteadySolver>>,
+}
+
+/// With fewer points in contact friction and area are chance.
+const FEW: f64 = 20.0;
+
+impl SolvedPoints {
+    pub(super) fn new(scene: &Scene, temperatures: &[f64], surface: SurfaceGrid) -> Result<Self, SweepError> {
+        let temperatures: Vec<Option<f64>> =
+            if temperatures.is_empty() { vec![None] } else { temperatures.iter().copied().map(Some).collect() };
+        let rubber =
+            |temperature: Option<f64>| Some((temperature, SlidingRubber::new(&scene.with_temperature(temperature))?));
+        let rubbers = temperatures.into_iter().map(rubber).collect::<Option<Vec<_>>>().ok_or(SweepError::NoArea)?;
+        let area = scene.layer.area().ok_or(SweepError::NoArea)?;
+        Ok(Self { surface, rubbers, area, idle: Mutex::new(Vec::new()) })
+    }
+
+    /// The row of a point.
+    pub(super) fn row(&self, point: OperatingPoint, header: &TableHeader) -> TableRow {
+        let pressure = self.pressure(&point, header.load);
+        match self.slide(&point, pressure) {
+            Some(slide) => self.written(point, pressure, &slide),
+            None => TableRow::new(point, "no such temperature".to_owned()),
+        }
+    }
+
+    /// The area of the layer, m².
+    pub(super) fn area(&self) -> f64 {
+        self.area
+    }
+
+    /// Root mean square height of the surface, m.
+    pub(super) fn rms_height(&self) -> f64 {
+        self.surface.rms_height()
+    }
+
+    /// The mean pressure of a point, Pa.
+    pub(super) fn pressure(&self, point: &OperatingPoint, load: Load) -> f64 {
+        load.force(point.load) / self.area
+    }
+
+    /// Steady sliding at the speed and the temperature of a point under a pressure (Pa); `None` at another temperature.
+    pub(super) fn slide(&self, point: &OperatingPoint, pressure: f64) -> Option<SteadySlide> {
+        let (_, rubber) = self.rubbers.iter().find(|(temperature, _)| *temperature == point.temperature)?;
+        let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut solver = idle.unwrap_or_else(|| SteadySolver::new(self.surface.clone()));
+        let slide = solver.slide(rubber, point.speed, pressure);
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(solver);
+        Some(slide)
+    }
+
+    fn written(&self, point: OperatingPoint, pressure: f64, slide: &SteadySlide) -> TableRow {
+        let mut row = TableRow::new(point, status(slide));
+        let power = |friction: f64| friction * pressure * self.area * point.speed;
+        let viscous = slide.viscous_share.map(|share| share * power(slide.profile_hysteresis).max(0.0));
+        let hysteresis = slide.profile_hysteresis + slide.fine_hysteresis.unwrap_or(0.0);
+        let of_contacts = slide.fine_hysteresis.unwrap_or(0.0) + slide.adhesion;
+        let values = [
+            (Quantity::Friction, Some(slide.friction().max(0.0))),
+            (Quantity::FrictionStandardError, Some(0.0)),
+            (Quantity::Hysteresis, Some(hysteresis)),
+            (Quantity::FineHysteresis, slide.fine_hysteresis),
+            (Quantity::Adhesion, Some(slide.adhesion)),
+            (Quantity::MeanLoad, Some(point.load)),
+            (Quantity::ContactRatio, Some(slide.area)),
+            (Quantity::RealArea, slide.real_area),
+            (Quantity::FlashMean, slide.flash_mean),
+            (Quantity::DamperPower, viscous),
+            (Quantity::MaxwellPower, Some(power(slide.profile_hysteresis).max(0.0) - viscous.unwrap_or(0.0))),
+            (Quantity::FrictionPower, slide.has_friction.then(|| power(of_contacts))),
+            (Quantity::Separation, Some(slide.contact.separation)),
+            (Quantity::Stiffness, slide.tangential_stiffness.map(|stiffness| stiffness * self.area)),
+        ];
+        values.into_iter().for_each(|(quantity, value)| row.set(quantity, value));
+        row
+    }
+
+    /// The warning where some of the rows have few points in contact.
+    pub(super) fn few_points<'a>(
+        &self,
+        rows: impl Iterator<Item = &'a TableRow>,
+        header: &TableHeader,
+    ) -> Option<String> {
+        let points = self.surface.size.points() as f64;
+        let in_contact = |row: &TableRow| row.value(Quantity::ContactRatio).map(|ratio| (ratio * points).round());
+        let few: Vec<(&TableRow, f64)> =
+            rows.filter_map(|row| Some((row, in_contact(row)?))).filter(|(_, count)| *count < FEW).collect();
+        let (first, count) = few.first()?;
+        Some(format!(
+            "fewer than {FEW} points of the surface are in contact at {} of the points of the table, {count} at {}: give more \
+             --points",
+            few.len(),
+            first.point.describe(header.load)
+        ))
+    }
+}
+
+/// [`STEADY`], or why the values cannot be relied on.
+pub fn status(slide: &SteadySlide) -> String {
+    slide.problem().map_or_else(|| STEADY.to_owned(), |problem| problem.to_string())
+}
