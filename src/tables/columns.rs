@@ -254,6 +254,14 @@ impl<Q: Copy> Column<Q> {
         if is_plain { range.to_string() } else { format!("{range} in {}", Unit::si(dimension)) }
     }
 
+    /// A number in SI units, with its unit, for messages.
+    pub(super) fn in_si_units(&self, number: f64) -> String {
+        match self.unit.dimension {
+            Dimension::Number => format!("{number:?}"),
+            dimension => format!("{number:?} {}", Unit::si(dimension)),
+        }
+    }
+
     /// The error of what was `found` in a line; empty where nothing was.
     pub fn refuse(&self, line: usize, found: &str, expected: &str) -> ContentError {
         let given = if found.is_empty() { String::new() } else { format!("\"{}\"", shortened(found)) };

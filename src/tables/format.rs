@@ -284,13 +284,9 @@ impl<Q: Copy + PartialEq, const N: usize> Format<Q, N> {
             if let (Some(before), Some(column)) = (table.rows.last().filter(|_| self.rises), &table.columns[0])
                 && numbers[0] <= before[0]
             {
-                let expected = format!("more than {:?}, that of the row before: they must rise", before[0]);
-                return Err(ContentError::value(
-                    Some(row.line),
-                    &column.label(),
-                    &format!("{:?}", numbers[0]),
-                    &expected,
-                ));
+                let [found, before] = [numbers[0], before[0]].map(|number| column.in_si_units(number));
+                let expected = format!("more than {before}, that of the row before: they must rise");
+                return Err(ContentError::value(Some(row.line), &column.label(), &found, &expected));
             }
             table.rows.push(numbers);
             table.lines.push(row.line);

@@ -255,7 +255,7 @@ fn result_files_are_drawn_over_each_other() {
     assert!(text.contains("one") && text.contains("two") && text.contains("a &lt;title&gt;"), "{text}");
     let refused = plot(&["--y", "nothing"]).output().unwrap();
     assert_eq!(refused.status.code(), Some(1));
-    assert!(String::from_utf8(refused.stderr).unwrap().contains("no column nothing; there are time, u, w,"));
+    assert!(String::from_utf8(refused.stderr).unwrap().contains("columns = time, u, w,"));
 }
 
 #[test]

@@ -208,12 +208,12 @@ mod tests {
             (
                 "q [1/m],C [m^4]\n2,1\n1,1\n",
                 3,
-                "column 1 (q [1/m]) = 1.0: expected more than 2.0, that of the row before",
+                "column 1 (q [1/m]) = 1.0 1/m: expected more than 2.0 1/m, that of the row before",
             ),
             (
                 "q [1/m],C [m^4]\n1,1\n1,1\n",
                 3,
-                "column 1 (q [1/m]) = 1.0: expected more than 1.0, that of the row before",
+                "column 1 (q [1/m]) = 1.0 1/m: expected more than 1.0 1/m, that of the row before",
             ),
             ("q [1/m],C [m^4]\n1,1\n2,0\n", 3, "column 2 (C [m^4]) = \"0\": expected a number from 1e-90 to 1e30"),
             ("q [1/m],C [m^4]\n1,1\n2,-1\n", 3, "column 2 (C [m^4]) = \"-1\": expected a number from 1e-90 to 1e30"),
