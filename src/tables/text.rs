@@ -129,10 +129,10 @@ fn numbered_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
 /// The fields of a line, without blanks around them. A field in quotation marks may hold separators, and quotation
 /// marks doubled.
 pub fn fields(line: &str, separator: char) -> impl Iterator<Item = Cow<'_, str>> {
-    let mut rest = Some(line);
+    let (mut rest, has_marks) = (Some(line), line.contains('"'));
     iter::from_fn(move || {
         let text = rest?;
-        let end = field_end(text, separator);
+        let end = if has_marks { field_end(text, separator) } else { text.find(separator) };
         rest = end.map(|end| &text[end + separator.len_utf8()..]);
         Some(unquoted(text[..end.unwrap_or(text.len())].trim()))
     })

@@ -53,12 +53,13 @@ pub(super) struct Header<'a> {
 impl<'a> Header<'a> {
     pub(super) fn read(block: &Block<'a>) -> Self {
         let is_setting = |line: &str| setting(line).is_some();
+        let is_known = |name: &str| Heading::parse(name, &VOCABULARY).is_some();
         let mut named = block.clone();
         named.above.retain(|(_, line)| !is_setting(line));
         let mut table = TableHeader::read(&named, &VOCABULARY, None);
         // Words above such settings name the file, not its columns.
         let is_above = |names: usize| block.above.iter().any(|(line, text)| *line > names && is_setting(text));
-        if table.line.is_some_and(is_above) && table.headings.iter().all(Option::is_none) {
+        if table.line.is_some_and(is_above) && !table.names.iter().any(|name| is_known(name)) {
             (table.names, table.line, table.headings) = (Vec::new(), None, Vec::new());
         }
         if table.names.is_empty() && table.head.units.len() == block.columns {

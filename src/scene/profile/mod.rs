@@ -6,7 +6,6 @@
 mod areal;
 mod header;
 mod options;
-mod plain;
 mod roles;
 mod sentinels;
 mod text;

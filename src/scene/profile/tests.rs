@@ -286,7 +286,7 @@ fn names_and_numbers_that_do_not_tell_are_refused() {
         ("1 0 5\n2 1 6\n3 3 5\n", 1, "columns = 3: expected two, x and z"),
         ("x,z\n0,1.5\n1,-9999\n2,1.4\n3,-9999\n", 3, "z = -9999.0 (2 times, more than 10 times the range"),
         ("x,z\n0,0\n1e-200,1\n2e-200,0\n", 2, "points = steps along x down to 1e-200 m: expected"),
-        ("x;z\n0;1,5\n1;2.5\n", 3, "number = \"2.5\": expected numbers with decimal points or with decimal commas"),
+        ("x;z\n0;1,5\n1;2.5\n", 3, "z = \"2.5\": expected numbers with decimal points or with decimal commas"),
     ];
     for (text, line, message) in cases {
         let (found, error) = refusal(text.as_bytes(), false);
