@@ -1,6 +1,6 @@
 //! The commands of the program, one module each, and what they share.
 //!
-//! [`execute`] is the program. What its commands compute is in `asperity-study`, but for Prony series ([`fit_moduli`]),
+//! [`execute`] is the program. What its commands compute is in `asperity-study`, but for
 //! calibrations ([`calibrate_scene`]) and FMUs ([`write_fmu`]).
 
 mod calibrate;
@@ -14,6 +14,7 @@ mod elements;
 mod figure;
 mod files;
 mod fit;
+mod flags;
 mod html;
 mod interrupt;
 mod lock;
@@ -38,10 +39,8 @@ use std::path::PathBuf;
 
 pub use calibrate::{CalibrateError, CalibratedParameter, Calibration, CalibrationOptions, calibrate_scene};
 use clap::Parser as _;
-pub use cli::WlfConstants;
 use cli::{Arguments, Command};
 pub use files::FileError;
-pub use fit::{FitError, FitOptions, FittedModuli, fit_moduli};
 pub use pack::{PackError, write_fmu};
 
 /// Exit status of a command that did what was asked for.
@@ -60,7 +59,7 @@ pub fn execute(words: impl IntoIterator<Item = OsString>, library: Option<PathBu
     match run(Arguments::parse_from(words), library) {
         Ok(status) => status,
         Err(error) => {
-            eprintln!("asperity: {error}");
+            eprintln!("asperity: {}", flags::with_flags(error));
             FAILURE
         }
     }

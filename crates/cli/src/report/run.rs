@@ -1,6 +1,7 @@
 //! One run of a scene for a report: along the excitation or driven by a master, within a budget; and what is recorded.
 
 use std::cell::Cell;
+use std::ops::ControlFlow;
 
 use asperity::outputs::{Output, Snapshot, Variable, variables};
 use asperity::scene::{Input, OutputGroup, Phase, Scene};
@@ -147,6 +148,7 @@ pub(super) fn follow(
         let observe = |carrier: InputSample, snapshot: &Snapshot<'_>| {
             recorder.row(snapshot);
             tick(carrier.time / duration);
+            ControlFlow::Continue(())
         };
         durations.push(runner.run_phase(phase, observe).map_err(failed)?);
         recorder.end_phase();

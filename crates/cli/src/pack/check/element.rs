@@ -96,7 +96,7 @@ fn centres(grid: &SweepGrid) -> SweepGrid {
 pub(super) fn element_at(contact: &PointContact, point: &OperatingPoint, start: &Start) -> Result<Element, String> {
     let mut contact = contact.clone();
     if let (Some(kelvin), true) = (point.temperature, contact.table().grid.temperatures.len() > 1) {
-        let parameter = Parameter::Temperature;
+        let parameter = Parameter::TEMPERATURE;
         contact.set_parameter(parameter, Value::Real(kelvin)).map_err(|error| error.to_string())?;
     }
     Element::new(&contact, start).map_err(|error| error.to_string())

@@ -56,7 +56,7 @@ fn whole(name: &str, description: &str, sections: String) -> String {
 
 /// The method in a word of the scene file.
 pub(super) fn method(scene: &Scene) -> String {
-    scene.parameter(Parameter::Method).to_string().replace('"', "")
+    scene.parameter(Parameter::METHOD).to_string().replace('"', "")
 }
 
 /// The head of a table: names of text columns, then of columns of numbers.

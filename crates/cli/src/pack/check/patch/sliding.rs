@@ -189,6 +189,7 @@ fn layer_force(
     let (load, share) = (patch.table().load, tilted.element.area / patch.nominal_area());
     let at = OperatingPoint { load: load.at_force(force_z / share), ..point(patch, speed) };
     let w = tilted.separation - patch.table().rest_separation;
-    let found = swept.sliding_at(scene, &at, w, load, StopBounds { error: ERROR, distance: None })?;
+    let found = swept.sliding_at(scene, &at, w, load, StopBounds { error: ERROR, distance: None });
+    let found = found.map_err(|problem| problem.to_string())?;
     Ok([-share * found.drag, 0.0, share * found.force_z])
 }

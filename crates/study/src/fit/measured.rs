@@ -4,7 +4,7 @@ use asperity::scene::Wlf;
 use asperity::tables::{Block, ContentError, decode, shortened};
 
 use super::columns::{EXPECTED, GivenUnits};
-use super::search::{Sample, Test};
+use super::sample::{Sample, Test};
 use super::table::Table;
 
 /// Measured moduli of tension, in SI units.

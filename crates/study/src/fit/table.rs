@@ -7,7 +7,7 @@ use asperity::tables::{ABOVE_ZERO, Block, ContentError, Line, NumberStyle, POSIT
 
 use super::columns::{self, Column, Columns, Quantity, with_unit};
 use super::measured::{MeasuredPoint, Reading};
-use super::search::{Sample, Test};
+use super::sample::{Sample, Test};
 use super::stated_temperature::{Setting, setting, temperatures_above};
 
 /// E' of any rubber is above it, Pa: without a unit, a modulus below it is in another one.
