@@ -3,7 +3,7 @@
 use super::blocks::Block;
 use super::columns::{Column, Header, ReadingNote, UnitRule};
 use super::error::{ContentError, shortened};
-use super::headings::Words;
+use super::headings::{Heading, Words};
 use super::lines::Line;
 use super::range::{ANY, NumberRange};
 use super::units::Dimension;
@@ -179,7 +179,7 @@ impl<Q: Copy + PartialEq, const N: usize> Format<Q, N> {
         let mut columns = [const { None }; N];
         for (place, wanted) in columns.iter_mut().zip(&self.columns) {
             let Some(index) = self.place(wanted, header)? else { continue };
-            let is_first = |heading: &super::Heading<Q>| heading.quantity == wanted.quantities[0];
+            let is_first = |heading: &Heading<Q>| heading.quantity == wanted.quantities[0];
             let rule = match wanted.unit {
                 UnitRule::AssumedOfFirst if header.headings[index].as_ref().is_some_and(is_first) => UnitRule::Assumed,
                 UnitRule::AssumedOfFirst => UnitRule::Named,
@@ -213,7 +213,7 @@ impl<Q: Copy + PartialEq, const N: usize> Format<Q, N> {
             [index] => Ok(Some(index)),
             [first, second, ..] => {
                 let [first, second] = [first, second].map(|index| header.names[index].trim());
-                refuse(&format!("`{first}` and `{second}`"), &format!("one of them; {}", self.expected))
+                refuse(&format!("\"{first}\" and \"{second}\""), &format!("one of them; {}", self.expected))
             }
         }
     }
@@ -262,7 +262,7 @@ impl<Q: Copy + PartialEq, const N: usize> Format<Q, N> {
         }
         match block.stray_line(&header.head).or_else(|| block.below(text).next()) {
             Some((line, text)) => {
-                Err(ContentError::value(Some(line), "row", &format!("`{}`", shortened(text)), "numbers"))
+                Err(ContentError::value(Some(line), "row", &format!("\"{}\"", shortened(text)), "numbers"))
             }
             None => Ok(()),
         }
@@ -356,11 +356,11 @@ mod tests {
         for (text, message) in [
             (
                 "t,force,x\n1,2,3\n",
-                "t.csv:1: columns = `t, force, x` in 3 columns: expected time and load alone, in 2 columns",
+                "t.csv:1: columns = \"t, force, x\" in 3 columns: expected time and load alone, in 2 columns",
             ),
-            ("t,force\n1,2,3\n", "t.csv:1: columns = `t, force, ` in 3 columns: expected time and load alone"),
-            ("t,force\none,two\n1,2\n", "t.csv:2: row = `one,two`: expected numbers"),
-            ("t,force\n1,2\nend\n", "t.csv:3: row = `end`: expected numbers"),
+            ("t,force\n1,2,3\n", "t.csv:1: columns = \"t, force, \" in 3 columns: expected time and load alone"),
+            ("t,force\none,two\n1,2\n", "t.csv:2: row = \"one,two\": expected numbers"),
+            ("t,force\n1,2\nend\n", "t.csv:3: row = \"end\": expected numbers"),
             ("1,2\n", "t.csv:1: columns = no names: expected time and load"),
             (
                 "t,force [kN]\n1,2\n1,-2\n",

@@ -3,19 +3,7 @@
 use std::borrow::Cow;
 use std::iter;
 
-use super::error::ContentError;
-
-/// The bytes are no text: some are zero.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}: expected {}", Self::FOUND, Self::EXPECTED)]
-pub struct NotText;
-
-impl NotText {
-    /// What was found.
-    pub const FOUND: &str = "bytes that are zero";
-    /// What was expected.
-    pub const EXPECTED: &str = "text in UTF-8, UTF-16 or Latin-1";
-}
+use super::error::{ContentError, NotText};
 
 /// The text in `bytes`: UTF-8, UTF-16 (by its mark, or by its zeros) or else Latin-1, without a byte order mark, its
 /// lines ended by line feeds.

@@ -106,7 +106,7 @@ impl<'a> Header<'a> {
         if let (None, None, Some(((line, text), unit))) = (x, z, self.stated) {
             let expected =
                 format!("the units beside the names, as in x [{unit}]; or x_unit and z_unit (--unit {unit})");
-            return Err(ContentError::value(Some(line), "units", &format!("`{}`", shortened(text)), &expected));
+            return Err(ContentError::value(Some(line), "units", &format!("\"{}\"", shortened(text)), &expected));
         }
         let Some(x_column) = x_column else {
             raw.notes.push(note(&format!("heights from {}", self.table.label(z_column)), z));

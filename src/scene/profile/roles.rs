@@ -111,7 +111,7 @@ fn no_spacing(block: &Block<'_>, header: &Header<'_>) -> ContentError {
     let hint = block.above.iter().find(|(_, line)| {
         ["spacing", "step", "increment", "interval"].iter().any(|word| line.to_lowercase().contains(word))
     });
-    let hint = hint.map_or_else(String::new, |(line, text)| format!("; line {line} says `{}`", shortened(text)));
+    let hint = hint.map_or_else(String::new, |(line, text)| format!("; line {line} says \"{}\"", shortened(text)));
     let expected = format!(
         "the distance of the points in m, spacing = 1e-5 (--spacing 1e-5), for {} holds heights without x{hint}",
         if block.columns == 1 { "the only column".into() } else { header.table.label(0) },

@@ -112,7 +112,7 @@ fn refuse_all(text: &str) -> ContentError {
 }
 
 fn refuse_count(count: usize, number: usize, line: &str, expected: &str) -> ContentError {
-    ContentError::value(Some(number), "columns", &format!("{count} in `{}`", shortened(line)), expected)
+    ContentError::value(Some(number), "columns", &format!("{count} in \"{}\"", shortened(line)), expected)
 }
 
 fn refuse_field(field: &str, axis: &str, number: usize) -> ContentError {

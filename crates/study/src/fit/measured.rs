@@ -365,7 +365,7 @@ mod tests {
             ),
             (
                 "# moduli in MPa\nf [Hz],E',E''\n1,2e6,3".into(),
-                "1: unit = `moduli in MPa`: expected the unit beside the name of its column, as in E' [MPa]; or --unit",
+                "1: unit = \"moduli in MPa\": expected the unit beside the name of its column, as in E' [MPa]; or --unit",
             ),
             ("f [Hz],|E*| [Pa],delta\n1,2,3".into(), "1: column 3 (delta): expected the unit beside the name"),
             (
