@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use super::moduli_error::ModuliError;
 use super::shift_error::ShiftError;
 use crate::files::ReadError;
+use asperity::tables::ContentError;
 
 /// The moduli cannot be read or put together.
 #[derive(Debug, thiserror::Error)]
@@ -12,8 +12,8 @@ use crate::files::ReadError;
 pub enum FitError {
     #[error(transparent)]
     Read(#[from] ReadError),
-    #[error("{}:{error}", .path.display())]
-    Moduli { path: PathBuf, error: ModuliError },
+    #[error("{}", .error.within(.path))]
+    Moduli { path: PathBuf, error: ContentError },
     #[error("{}: {error}", .path.display())]
     Shift { path: PathBuf, error: ShiftError },
     #[error("{}: the workbook cannot be read: {error}", .path.display())]
