@@ -2,6 +2,7 @@
 
 pub mod calibration;
 pub mod contact;
+pub mod converge;
 pub mod decimals;
 pub mod elements;
 pub mod files;
