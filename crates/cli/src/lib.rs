@@ -1,6 +1,6 @@
 //! The commands of the program, one module each, and what they share.
 //!
-//! [`execute`] is the program. What its commands compute is in `asperity-study`, but for Prony series ([`fit_moduli`]),
+//! [`execute`] is the program. What its commands compute is in `asperity-study`, but for
 //! calibrations ([`calibrate_scene`]) and FMUs ([`write_fmu`]).
 
 mod calibrate;
@@ -13,10 +13,8 @@ mod draft;
 mod elements;
 mod figure;
 mod files;
-mod fine;
 mod fit;
 mod flags;
-mod foundation;
 mod html;
 mod interrupt;
 mod lock;
@@ -41,10 +39,8 @@ use std::path::PathBuf;
 
 pub use calibrate::{CalibrateError, CalibratedParameter, Calibration, CalibrationOptions, calibrate_scene};
 use clap::Parser as _;
-pub use cli::WlfConstants;
 use cli::{Arguments, Command};
 pub use files::FileError;
-pub use fit::{FitError, FitOptions, FittedModuli, fit_moduli};
 pub use pack::{PackError, write_fmu};
 
 /// Exit status of a command that did what was asked for.
@@ -113,7 +109,7 @@ fn run_simulate(command: &cli::Simulate) -> Result<(), Box<dyn Error>> {
 fn run_describe(command: &cli::Describe) -> Result<(), Box<dyn Error>> {
     match (&command.scene, &command.patch) {
         (Some(scene), _) => describe::describe(command, scene)?,
-        (None, Some(patch)) => patch::describe(patch, &command.set)?,
+        (None, Some(patch)) => describe::describe_patch(patch, &command.set)?,
         // The command line has one of them.
         (None, None) => (),
     }

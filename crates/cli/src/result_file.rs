@@ -1,32 +1,15 @@
-//! CSV files with a header, also with semicolons or tabs for commas; result files among them: columns `time` and the
-//! inputs, then the output variables.
+//! CSV files written line by line; result files among them: columns `time` and the inputs, then the output variables.
 
-use std::borrow::Cow;
-use std::fmt::{self, Display, Formatter};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use asperity::outputs::{OutputType, Variable};
 use asperity::scene::{Input, Unit};
-use asperity::tables::{self, Row};
+use asperity_study::csv::{Field, Head, line};
 
 use super::draft::Draft;
-use super::files::{FileError, read};
-use asperity_study::decimals::file_decimal;
+use super::files::FileError;
 use asperity_study::runner::InputSample;
-
-/// A result file cannot be read.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum ResultFileError {
-    #[error(transparent)]
-    File(#[from] FileError),
-    #[error("{}: line {line}: {message}", .path.display())]
-    Line { path: PathBuf, line: usize, message: String },
-    #[error("{}: no column {name}; there are {}", .path.display(), .columns.join(", "))]
-    NoColumn { path: PathBuf, name: String, columns: Vec<String> },
-    #[error("{}: expected a line with the columns' names and rows of numbers below it, found no rows", .path.display())]
-    NoRows { path: PathBuf },
-}
 
 /// Writes a CSV file line by line.
 #[derive(Debug)]
@@ -44,8 +27,7 @@ impl CsvWriter {
     }
 
     pub(crate) fn write<T: AsRef<str>>(&mut self, fields: impl IntoIterator<Item = T>) -> Result<(), FileError> {
-        let fields: Vec<String> = fields.into_iter().map(|field| tables::quoted(field.as_ref())).collect();
-        writeln!(self.file, "{}", fields.join(",")).map_err(FileError::io("write", &self.path))
+        writeln!(self.file, "{}", line(fields)).map_err(FileError::io("write", &self.path))
     }
 
     /// Writes a line of values, none of which needs quotation marks.
@@ -96,131 +78,5 @@ impl ResultWriter {
     /// Puts the file in its place.
     pub(crate) fn finish(self) -> Result<(), FileError> {
         self.file.finish()
-    }
-}
-
-/// What is above a column of a result file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Head {
-    /// Its name.
-    Name,
-    /// Its name and, in brackets, its unit: `F_x [N]`.
-    NameAndUnit,
-}
-
-impl Head {
-    pub(crate) fn of(self, name: &str, unit: Unit) -> String {
-        match self {
-            Self::NameAndUnit if unit != Unit::One => format!("{name} [{}]", unit.name()),
-            _ => name.to_owned(),
-        }
-    }
-}
-
-/// A value as files have it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Field {
-    pub(crate) kind: OutputType,
-    pub(crate) value: f64,
-}
-
-impl Display for Field {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match self.kind {
-            OutputType::Real => file_decimal(self.value).fmt(f),
-            // A whole number is written faster as one.
-            OutputType::Integer if self.value == self.value as i64 as f64 => (self.value as i64).fmt(f),
-            OutputType::Integer => write!(f, "{:.0}", self.value),
-        }
-    }
-}
-
-/// A CSV file with a header, its fields as text.
-#[derive(Debug)]
-pub(crate) struct CsvFile {
-    path: PathBuf,
-    names: Vec<String>,
-    records: Vec<Record>,
-}
-
-/// The fields of a line, as many as there are columns.
-#[derive(Debug)]
-pub(crate) struct Record {
-    line: usize,
-    pub(crate) fields: Vec<String>,
-}
-
-impl CsvFile {
-    pub(crate) fn read(path: &Path) -> Result<Self, ResultFileError> {
-        let bytes = read(path)?;
-        let error = |line: usize, message: String| ResultFileError::Line { path: path.to_owned(), line, message };
-        let text = tables::decode(&bytes).map_err(|problem| error(1, problem.to_string()))?;
-        let owned = |row: Row<'_>| -> Vec<String> { row.fields.into_iter().map(Cow::into_owned).collect() };
-        let mut rows = tables::rows(&text, None);
-        let names = rows.next().map(owned).unwrap_or_default();
-        let record = |row: Row<'_>| {
-            let (line, fields) = (row.line, owned(row));
-            if fields.len() == names.len() {
-                return Ok(Record { line, fields });
-            }
-            let (expected, found) = (names.len(), fields.len());
-            Err(error(line, format!("expected as many fields as in the first line, {expected}, found {found}")))
-        };
-        let records = rows.map(record).collect::<Result<_, _>>()?;
-        Ok(Self { path: path.to_owned(), names, records })
-    }
-
-    /// Index of the column `name`; the unit of a header such as `speed [m/s]` may be left out.
-    pub(crate) fn column(&self, name: &str) -> Result<usize, ResultFileError> {
-        let without_unit = |header: &str| header.split_once(" [").is_some_and(|(start, _)| start == name);
-        let named = self.names.iter().position(|other| other == name);
-        let named = named.or_else(|| self.names.iter().position(|other| without_unit(other)));
-        named.ok_or_else(|| ResultFileError::NoColumn {
-            path: self.path.clone(),
-            name: name.to_owned(),
-            columns: self.names.clone(),
-        })
-    }
-
-    /// The names of the columns.
-    pub(crate) fn names(&self) -> &[String] {
-        &self.names
-    }
-
-    /// The error `message` about the names of the columns.
-    pub(crate) fn header_error(&self, message: String) -> ResultFileError {
-        ResultFileError::Line { path: self.path.clone(), line: 1, message }
-    }
-
-    pub(crate) fn records(&self) -> &[Record] {
-        &self.records
-    }
-
-    /// The error `message` about a record, with its line.
-    pub(crate) fn error(&self, record: &Record, message: String) -> ResultFileError {
-        ResultFileError::Line { path: self.path.clone(), line: record.line, message }
-    }
-}
-
-#[cfg(test)]
-#[allow(clippy::unwrap_used)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn fields_are_separated_as_the_header_is() {
-        let path = std::env::temp_dir().join(format!("asperity-separators-{}.csv", std::process::id()));
-        let quoted = "\"time; from the start\",F_x [N]\n0,1\n";
-        for text in ["time [s],F_x [N]\n0,1\n", "time [s];F_x [N]\n0;1\n", "time [s]\tF_x [N]\n0\t1\n", quoted] {
-            std::fs::write(&path, text).unwrap();
-            let file = CsvFile::read(&path).unwrap();
-            assert_eq!((file.column("F_x").unwrap(), &file.records()[0].fields[1][..]), (1, "1"), "{text}");
-        }
-        std::fs::remove_file(path).unwrap();
-    }
-
-    #[test]
-    fn integers_have_no_exponent() {
-        assert_eq!(Field { kind: OutputType::Integer, value: 1e7 }.to_string(), "10000000");
     }
 }

@@ -5,10 +5,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+pub(crate) use asperity_study::labelled::{LabelledLine, labelled};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle, TermLike};
-
-/// A line with a label; without one it continues the line above.
-pub(crate) type LabelledLine = (&'static str, String);
 
 /// The lines as text, aligned after their labels, and broken between words where they are long.
 pub(crate) fn lines(lines: &[LabelledLine]) -> String {
@@ -20,11 +18,6 @@ pub(crate) fn lines(lines: &[LabelledLine]) -> String {
 const LINE_LENGTH: usize = 120;
 /// What is before the continuation of a line.
 const CONTINUED: &str = "              ";
-
-/// Lines of which the first has the label.
-pub(crate) fn labelled(label: &'static str, texts: impl IntoIterator<Item = String>) -> Vec<LabelledLine> {
-    texts.into_iter().enumerate().map(|(i, text)| (if i == 0 { label } else { "" }, text)).collect()
-}
 
 /// Prints a warning to standard error.
 #[expect(clippy::print_stderr, reason = "standard output holds results only")]

@@ -8,19 +8,19 @@ use std::path::{Path, PathBuf};
 
 use asperity::scene::{LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt};
 use asperity_study::calibration::FreeParameter;
+use asperity_study::fit::WlfConstants;
 use clap::{ArgGroup, Args, Parser, Subcommand};
 
 use super::files::default_output;
-use super::result_file::Head;
 use super::sweep::values::{Shard, Values};
+use asperity_study::csv::Head;
 use asperity_study::settings::Setting;
 use asperity_study::sweep::SweepMethod;
-pub use values::WlfConstants;
 pub(crate) use values::{Condition, PlotAxis, tenth};
 use values::{
     Frequencies, Tolerances, animation, arrays, column_unit, count, fit_error, free_parameter, frequency,
     key_and_value, length, moment, picture, picture_or_table, poisson_ratio, powers, pressure, seconds, seeds, share,
-    speed, sweep_method, table_or_arrays, temperature, wavelengths,
+    speed, sweep_method, table_or_arrays, temperature, wavelengths, wlf_constants,
 };
 
 /// Simulates rubber on a rough surface and packs the simulation as an FMU.
@@ -276,7 +276,7 @@ pub(crate) struct Fit {
     pub(crate) error: f64,
     /// Constants of the Williams-Landel-Ferry equation, which shifts rows at other temperatures to TREF: C1 (1), C2
     /// (K), TREF (K). Default: shift factors are found where the curves overlap, and constants for them.
-    #[arg(long, value_name = "C1,C2,TREF", value_parser = WlfConstants::parse)]
+    #[arg(long, value_name = "C1,C2,TREF", value_parser = wlf_constants)]
     pub(crate) wlf: Option<WlfConstants>,
     /// Also fits a Kelvin-Voigt viscosity in parallel to the terms.
     #[arg(long)]
@@ -365,7 +365,7 @@ pub(crate) struct Report {
 
 #[derive(Debug, Args)]
 pub(crate) struct Surface {
-    /// The profile: text with columns x and z; an areal file, X3P, SDF, SUR, PLU, OpenCRG, ERD or text of Gwyddion; or
+    /// The profile: text with columns x and z; an areal file, X3P, SDF, SUR, OpenCRG or text of Gwyddion; or
     /// a scene, whose surface is analysed.
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,

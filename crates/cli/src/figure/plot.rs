@@ -11,8 +11,8 @@ use super::difference::Comparison;
 use super::{Backend, Canvas, DrawResult, Figure};
 use crate::cli::{Condition, Plot, PlotAxis};
 use crate::files::{FileError, check_outputs, named, print_beside};
-use crate::result_file::{CsvFile, Record, ResultFileError};
 use crate::terminal::{lines, warn};
+use asperity_study::csv::{CsvError, CsvFile, Record};
 
 /// `asperity plot` failed.
 #[derive(Debug, thiserror::Error)]
@@ -20,7 +20,7 @@ pub(crate) enum PlotError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]
-    ResultFile(#[from] ResultFileError),
+    ResultFile(#[from] CsvError),
     #[error("--labels: expected {files}, one name for each file, found {labels}")]
     Labels { labels: usize, files: usize },
     #[error("--where: {file} has no row with {condition}; its {column} has the values {values}")]
@@ -132,7 +132,7 @@ impl<'a> Selection<'a> {
         let file = CsvFile::read(path)?;
         let mut rows: Vec<usize> = (0..file.records().len()).collect();
         if rows.is_empty() {
-            return Err(ResultFileError::NoRows { path: path.to_owned() }.into());
+            return Err(CsvError::NoRows { path: path.to_owned() }.into());
         }
         for condition in &command.conditions {
             let column = file.column(&condition.column)?;

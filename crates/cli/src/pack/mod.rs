@@ -12,11 +12,10 @@ use std::path::{Component, Path, PathBuf};
 
 use asperity::element::{Basis, PointContact, Table, TableError};
 use asperity_fmi::{Definition, Sources, guid};
+use asperity_study::summary::{missing_backing, patch_rows, scene_rows, table_rows};
 
 use super::cli::Pack;
-use super::describe;
 use super::files::{self, FileError, check_outputs, print, read, write};
-use super::patch;
 use super::terminal::{LabelledLine, labelled, lines, warn};
 use archive::{ArchiveEntry, ArchiveError};
 use check::CheckError;
@@ -91,7 +90,7 @@ fn load(command: &Pack) -> Result<(Definition, PathBuf), PackError> {
         (Some(path), _) => {
             let patch = files::load_patch(path, &[])?;
             warn_of(&patch.table().basis);
-            patch::warn_of_missing_backing(&patch);
+            missing_backing(&patch).iter().for_each(|warning| warn(warning));
             Ok((patch.into(), path.clone()))
         }
         (None, Some(path)) => {
@@ -128,9 +127,9 @@ fn summary(command: &Pack, definition: &Definition) -> Result<Vec<LabelledLine>,
 /// What there is in the scene or in the table.
 fn what_is_there(definition: &Definition) -> Vec<LabelledLine> {
     match definition {
-        Definition::Layer(scene) => describe::rows(scene),
-        Definition::Element(contact) => documentation::table_rows(contact.table()),
-        Definition::Patch(patch) => [patch::rows(patch), documentation::table_rows(patch.table())].concat(),
+        Definition::Layer(scene) => scene_rows(scene),
+        Definition::Element(contact) => table_rows(contact.table()),
+        Definition::Patch(patch) => [patch_rows(patch), table_rows(patch.table())].concat(),
     }
 }
 

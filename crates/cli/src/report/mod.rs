@@ -18,7 +18,7 @@ use asperity_study::robustness::RunFailure;
 
 use super::cli::Report;
 use super::files::FileError;
-use super::result_file::ResultFileError;
+use asperity_study::csv::CsvError;
 use folder::{INDEX, JUDGEMENTS, ReportFolder};
 use judgement::Judgement;
 use page::SceneJudgements;
@@ -30,7 +30,7 @@ pub(crate) enum ReportError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]
-    Peers(#[from] ResultFileError),
+    Peers(#[from] CsvError),
     #[error("{}: the scene {why}", .scene.display())]
     NoRun { scene: PathBuf, why: &'static str },
     #[error("two scenes have the same folder: {}", .0.display())]

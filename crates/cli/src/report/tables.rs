@@ -12,7 +12,8 @@ use super::robustness::Robustness;
 use super::run::RunFigures;
 use super::trace::{Errors, OF_ALL_SCENES, QUANTITIES};
 use crate::files::FileError;
-use crate::result_file::{CsvFile, CsvWriter, ResultFileError};
+use crate::result_file::CsvWriter;
+use asperity_study::csv::{CsvError, CsvFile};
 use asperity_study::decimals::real;
 
 /// The columns of errors and run times: errors over the largest value, processor time in s. Tables of other programs
@@ -188,7 +189,7 @@ pub(super) struct Peers {
 
 /// Reads the rows of the scene with one of these `names` whose times are those of whole processes. The file has the
 /// columns of [`MEASURED`], and perhaps [`TIMED`], [`SPREAD`] and [`TIMINGS`]; others are ignored.
-pub(super) fn read_peers(path: &Path, names: &[&str]) -> Result<Peers, ResultFileError> {
+pub(super) fn read_peers(path: &Path, names: &[&str]) -> Result<Peers, CsvError> {
     let file = CsvFile::read(path)?;
     let mut columns = [0; MEASURED.len()];
     for (column, name) in columns.iter_mut().zip(MEASURED) {

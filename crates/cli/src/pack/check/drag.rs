@@ -80,7 +80,7 @@ fn relaxed(scene: &Scene, temperature: Option<f64>) -> Result<Scene, String> {
     let mut scene = Scene { outputs, excitation: Vec::new(), ..scene.clone() };
     scene.layer.initial = Initial::Relaxed;
     if let Some(kelvin) = temperature {
-        let parameter = Parameter::Temperature;
+        let parameter = Parameter::TEMPERATURE;
         scene.set_parameter(parameter, Value::Real(kelvin)).map_err(|error| error.to_string())?;
     }
     Ok(scene)

@@ -15,8 +15,9 @@ use super::{CheckError, ERROR, SLIDING_DISTANCE, deviation, folder_beside, scene
 use crate::cli::Pack;
 use crate::figure::{Curve, Figure as _, Ladder, LadderPanel, Ladders, LinearPanel, LinearStack, Rung, Stroke};
 use crate::files::FileError;
-use crate::result_file::{CsvWriter, Head, ResultWriter};
+use crate::result_file::{CsvWriter, ResultWriter};
 use crate::terminal::{self, LabelledLine, labelled};
+use asperity_study::csv::Head;
 use asperity_study::decimals::real;
 use asperity_study::runner::InputSample;
 use asperity_study::sweep::{Method, StopBounds, Swept, SweptPoint};
@@ -95,7 +96,7 @@ fn centres(grid: &SweepGrid) -> SweepGrid {
 pub(super) fn element_at(contact: &PointContact, point: &OperatingPoint, start: &Start) -> Result<Element, String> {
     let mut contact = contact.clone();
     if let (Some(kelvin), true) = (point.temperature, contact.table().grid.temperatures.len() > 1) {
-        let parameter = Parameter::Temperature;
+        let parameter = Parameter::TEMPERATURE;
         contact.set_parameter(parameter, Value::Real(kelvin)).map_err(|error| error.to_string())?;
     }
     Element::new(&contact, start).map_err(|error| error.to_string())

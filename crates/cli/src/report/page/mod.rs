@@ -7,12 +7,12 @@ mod robustness;
 use std::io;
 
 use asperity::scene::{Parameter, Scene};
+use asperity_study::summary::scene_rows;
 use quick_xml::escape::escape;
 
 use super::machine::{Machine, build};
 use super::reference::Reference;
 use super::trace::Errors;
-use crate::describe;
 use crate::html::{Cell, fill, table};
 
 pub(super) use convergence::{communication, communication_picture, tolerance_picture, tolerances};
@@ -26,7 +26,7 @@ const NOTHING: &str = "–";
 
 /// The page of a scene.
 pub(super) fn page(scene: &Scene, sections: &[String]) -> io::Result<String> {
-    let rows = describe::rows(scene).into_iter().map(|(name, text)| vec![name.into(), text.into()]);
+    let rows = scene_rows(scene).into_iter().map(|(name, text)| vec![name.into(), text.into()]);
     let rows = table(&["", "What is there"].map(Cell::from), &rows.collect::<Vec<_>>())?;
     let sections = sections.concat() + &fill(SCENE, &[("scene", rows)]);
     let description = escape(scene.description.as_deref().unwrap_or_default());
@@ -56,7 +56,7 @@ fn whole(name: &str, description: &str, sections: String) -> String {
 
 /// The method in a word of the scene file.
 pub(super) fn method(scene: &Scene) -> String {
-    scene.parameter(Parameter::Method).to_string().replace('"', "")
+    scene.parameter(Parameter::METHOD).to_string().replace('"', "")
 }
 
 /// The head of a table: names of text columns, then of columns of numbers.

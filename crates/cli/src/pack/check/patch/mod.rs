@@ -55,7 +55,7 @@ pub(in crate::pack) fn check(command: &Pack, patch: &Patch, scene: &Path) -> Res
     let hold = Value::Text(TableExtrapolation::Hold.word().into());
     // Layers stand on what does not give way, and at one temperature.
     let mut patch = patch.contacts_alone();
-    patch.set_parameter(Parameter::TableExtrapolation, hold.clone())?;
+    patch.set_parameter(Parameter::TABLE_EXTRAPOLATION, hold.clone())?;
     let speeds = speeds(&patch.table().grid);
     let faces: Vec<_> = speeds.map(|speed| TiltedFace::new(&patch, speed, command.points as usize)).collect();
     if faces.iter().any(|face| face.tilted_elements.is_empty()) {
@@ -63,7 +63,7 @@ pub(in crate::pack) fn check(command: &Pack, patch: &Patch, scene: &Path) -> Res
     }
     let middle = &faces[faces.len() / 2];
     let mut contact = PointContact::new(patch.table().clone());
-    contact.set_parameter(Parameter::TableExtrapolation, hold)?;
+    contact.set_parameter(Parameter::TABLE_EXTRAPOLATION, hold)?;
     let motion = ToAndFro { speed: middle.speed, length: stick_length(&contact, &patch, middle) };
     let lever = faces.iter().map(TiltedFace::lever).fold(0.0, f64::max);
     let setting = CheckSetting { patch: &patch, scene: &scene, swept: &swept, faces: &faces, motion, lever };

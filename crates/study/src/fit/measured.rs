@@ -1,0 +1,419 @@
+//! Tables of measured moduli, as people and instruments write them: what each row says, in SI units.
+
+use asperity::scene::Wlf;
+use asperity::tables::{self, Block};
+
+use super::columns::{EXPECTED, GivenUnits};
+use super::moduli_error::ModuliError;
+use super::sample::{Sample, Test};
+use super::table::Table;
+
+/// Measured moduli of tension, in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct MeasuredModuli {
+    pub(super) points: Vec<MeasuredPoint>,
+    pub(super) test: Test,
+    /// Whether the file gives frequencies in Hz, not in rad/s.
+    pub(super) in_hertz: bool,
+    /// Whether the frequencies were multiplied by a_T already.
+    pub(super) reduced: bool,
+    /// How the table was read, and what was assumed.
+    pub(super) notes: Vec<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct MeasuredPoint {
+    /// Line number in the file.
+    pub(super) line: usize,
+    pub(super) sample: Sample,
+    /// K.
+    pub(super) temperature: Option<f64>,
+    /// a_T as the table has it.
+    pub(super) shift: Option<f64>,
+    /// The measurement that it belongs to, where the table numbers them.
+    pub(super) set: Option<f64>,
+}
+
+/// How a table is read beside what it says.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reading<'a> {
+    pub(super) ignored: &'a [String],
+    pub(super) units: &'a GivenUnits,
+    /// The frequency of a table without one, rad/s.
+    pub(super) frequency: Option<f64>,
+    /// Of moduli of shear.
+    pub(super) poisson_ratio: f64,
+    /// "Storage modulus" without a letter is G'.
+    pub(super) shear: bool,
+}
+
+impl MeasuredModuli {
+    /// Reads all tables of moduli in the bytes of a file.
+    pub(super) fn parse(bytes: &[u8], reading: &Reading<'_>) -> Result<Self, ModuliError> {
+        let text = tables::decode(bytes)
+            .map_err(|_| ModuliError::in_line(1, tables::NotText::FOUND, tables::NotText::EXPECTED))?;
+        Self::parse_text(&text, reading)
+    }
+
+    /// The same from text.
+    pub(super) fn parse_text(text: &str, reading: &Reading<'_>) -> Result<Self, ModuliError> {
+        let blocks = Block::all(text, true);
+        let mut tables: Vec<Table<'_>> = Vec::new();
+        let (mut notes, mut errors) = (Vec::new(), Vec::new());
+        for block in &blocks {
+            match Table::read(block, tables.last(), reading) {
+                Ok(Some(table)) => tables.push(table),
+                Ok(None) if block.rows > 1 => notes.push(format!(
+                    "lines {} to {}: numbers without names of moduli above them are left out",
+                    block.first, block.last
+                )),
+                Ok(None) => (),
+                Err(error) => errors.push((block, error)),
+            }
+        }
+        for (block, error) in errors {
+            // A line or two with a name in a preamble are no table that is missed.
+            if block.rows > 2 || tables.is_empty() {
+                return Err(error);
+            }
+            notes.push(format!("lines {} to {} are left out: {error}", block.first, block.last));
+        }
+        let Some(first) = tables.first() else { return Err(no_table(text, &blocks)) };
+        if let Some(name) = reading.ignored.iter().find(|name| !first.has(name, text)) {
+            return Err(ModuliError::in_line(first.line, format!("--ignore {name}"), "one of the headings"));
+        }
+        let (test, in_hertz, reduced) = (first.test(), first.in_hertz(), first.is_reduced());
+        let mut points = Vec::new();
+        for table in &tables {
+            if (table.test(), table.is_reduced()) != (test, reduced) {
+                let expected = "tables of one kind in a file: all of oscillation, or all of relaxation";
+                return Err(ModuliError::in_line(table.line, "another kind of table", expected));
+            }
+            if tables.len() > 1 {
+                table.check_temperature()?;
+            }
+            match table.add_points(text, reading, &mut points)? {
+                0 => (),
+                1 => notes.push("a row whose loss is 0, below what was measured, is left out".into()),
+                zeros => notes.push(format!("{zeros} rows whose loss is 0, below what was measured, are left out")),
+            }
+        }
+        notes.splice(0..0, first.notes(reading, tables.len()));
+        if points.is_empty() {
+            return Err(ModuliError::in_line(first.line + 1, "", "a row of numbers"));
+        }
+        Ok(Self { points, test, in_hertz, reduced, notes })
+    }
+
+    /// The samples as they stand in the file.
+    pub(super) fn samples(&self) -> Vec<Sample> {
+        self.points.iter().map(|point| point.sample).collect()
+    }
+
+    /// The lines of two rows at one frequency or time whose moduli differ by far more than scatter.
+    pub(super) fn contradiction(&self) -> Option<[usize; 2]> {
+        /// Ratio of the moduli.
+        const FAR: f64 = 1.5;
+        let mut sorted: Vec<&MeasuredPoint> = self.points.iter().collect();
+        sorted.sort_by(|a, b| a.sample.at.total_cmp(&b.sample.at));
+        let differ = |a: &Sample, b: &Sample| {
+            let ratio = (a.storage / b.storage).ln().abs();
+            (a.at / b.at - 1.0).abs() < 1e-9 && ratio > FAR.ln()
+        };
+        let found = sorted.windows(2).find(|pair| differ(&pair[0].sample, &pair[1].sample))?;
+        Some([found[0].line.min(found[1].line), found[0].line.max(found[1].line)])
+    }
+
+    /// The samples at a_T ω, or t/a_T, for the factor of each point.
+    pub(super) fn shifted(&self, factor: impl Fn(&MeasuredPoint) -> f64) -> Vec<Sample> {
+        self.points.iter().map(|point| point.sample.shifted(factor(point), self.test)).collect()
+    }
+
+    /// The points at the reference temperature by known constants: their moduli unchanged.
+    pub(super) fn at_reference(&self, wlf: impl Fn(f64) -> Wlf) -> Result<Vec<Sample>, ModuliError> {
+        /// Far above the shift of any rubber: closer to the pole, a fit would depend on the constants alone.
+        const LARGEST: f64 = 1e60;
+        let factor = |point: &MeasuredPoint| {
+            let Some(temperature) = point.temperature else { return Ok(1.0) };
+            let wlf = wlf(temperature);
+            let factor = wlf.shift_factor();
+            if temperature > wlf.lowest_temperature() && (1.0 / LARGEST..=LARGEST).contains(&factor) {
+                return Ok(factor);
+            }
+            let expected = format!(
+                "more than TREF - C2 = {:.2} K, and not close to it: there the shift has its pole",
+                wlf.lowest_temperature()
+            );
+            Err(ModuliError::in_line(point.line, format!("a temperature of {temperature} K"), expected))
+        };
+        let shifted = |point: &MeasuredPoint| Ok(point.sample.shifted(factor(point)?, self.test));
+        self.points.iter().map(shifted).collect()
+    }
+}
+
+/// No table has what is needed: the nearest that was found, or what is expected.
+fn no_table(text: &str, blocks: &[Block<'_>]) -> ModuliError {
+    match blocks.iter().max_by_key(|block| block.rows) {
+        None if text.trim().is_empty() => ModuliError::in_line(1, "", "a header line, then rows"),
+        None => {
+            let begins_with_digit =
+                |(_, line): &(usize, &str)| line.trim_start().starts_with(|c: char| c.is_ascii_digit());
+            let (line, found) =
+                (1..).zip(text.lines()).find(begins_with_digit).unwrap_or((text.lines().count() + 1, ""));
+            ModuliError::in_line(line, found, "a row of numbers")
+        }
+        Some(block) => {
+            let (line, header) = block.above.last().copied().unwrap_or((block.first, ""));
+            ModuliError::in_line(line, header, EXPECTED)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use asperity::tables::Unit;
+
+    use super::*;
+
+    const READING: Reading<'_> =
+        Reading { ignored: &[], units: &[], frequency: None, poisson_ratio: 0.5, shear: false };
+
+    fn read_with(text: &str, reading: &Reading<'_>) -> MeasuredModuli {
+        MeasuredModuli::parse(text.as_bytes(), reading).unwrap_or_else(|error| panic!("{text}: {error}"))
+    }
+
+    fn read(text: &str) -> MeasuredModuli {
+        read_with(text, &READING)
+    }
+
+    fn refusal(text: &str) -> String {
+        MeasuredModuli::parse(text.as_bytes(), &READING).unwrap_err().to_string()
+    }
+
+    /// 2 Hz, E' = 3 MPa, E'' = 0.6 MPa, 20 °C, however they are written.
+    #[test]
+    fn tables_as_people_and_instruments_write_them() {
+        let texts = [
+            "frequency [Hz],E' [MPa],E'' [MPa],T [K]\n2,3,0.6,293.15\n",
+            "\u{feff}f (Hz);E' (kPa);E'' (Pa);temperature [°C]\r\n2;3000;6e5;20\r\n",
+            "# by hand\n\ntan delta\ttemperature (C)\tstorage modulus [GPa]\tf [kHz]\n0,2\t20,0\t0,003\t0,002\n",
+            "Frequency,Storage modulus,Loss modulus,Temperature\nHz,MPa,MPa,°C\n2,3,0.6,20",
+            "\"Frequency, Hz\",\"E\"\" [MPa]\",\"E' [MPa]\",\"T (K)\"\n\"2\",\"0.6\",\"3\",\"293.15\"\n",
+            "omega [rad/s];E' [MPa];loss modulus;T [K];;\n;MPa;MPa;;;\n12.566370614359172;3;0.6;293.15;;\n",
+            "# T = 20 °C\n# Frequency (Hz)\tE' (MPa)\tE'' (MPa)\n2\t3\t0.6\n",
+            "T=20 °C;Mw=90;\nFreq\tG'\tG\"\tStrain\nrad/s\tMPa\tMPa\t%\n12.566370614359172\t1\t0.2\t1\n",
+            "Point,Time [s],f [Hz],E' [MPa],E'' [MPa],Strain [%],T [°F]\na,1,2,3,0.6,9,68\n",
+            "log f [Hz];log E' [Pa];tan(d);T [°C]\n0,30102999566398120;6,47712125471966244;0,2;20",
+            "f [Hz];|E*| [MPa];delta [°];T [°C]\n2;3.0594117081556709;11.309932474020213;20",
+            "Oscillation frequency\tDyn. Storage Modulus\tDyn. Loss Modulus\tTemperature\nHz\tksi\tpsi\t°C\n\
+             2\t0.43511321319\t87.022642638\t20\n",
+            ",20 °C,,30 °C,\nf [Hz],E' [MPa],E'' [MPa],E' [MPa],E'' [MPa]\n2,3,0.6,2,0.2\n",
+            "f [Hz],E' [MPa] 20 °C,E'' [MPa] 20 °C,E' [MPa] 30 °C,E'' [MPa] 30 °C\n2,3,0.6,2,0.2\n",
+            "f [Hz],E' [MPa] 20 °C,E' [MPa] 30 °C,E'' [MPa] 30 °C,E'' [MPa] 20 °C\n2,3,2,0.2,0.6\n",
+            "[Step]\nNumber of points\t1\nVariables\tTemperature\tFrequency\tStorage modulus\tLoss modulus\n\
+             Units\t°C\tHz\tMPa\tMPa\nData point\t20\t2\t3\t0.6\n[Step]\nNumber of points\t1\n\
+             Variables\tTemperature\tFrequency\tStorage modulus\tLoss modulus\nUnits\t°C\tHz\tMPa\tMPa\n\
+             Data point\t30\t2\t2\t0.2\n",
+        ];
+        for text in texts {
+            let row = read(text).points[0];
+            // Ten digits are written.
+            let close = |value: f64, wanted: f64| (value / wanted - 1.0).abs() < 1e-9;
+            let Sample { at, storage, loss } = row.sample;
+            assert!(close(at, 2.0 * TAU) && close(storage, 3e6) && close(loss, 6e5), "{text}: {row:?}");
+            assert!(close(row.temperature.unwrap(), 293.15), "{text}: {row:?}");
+        }
+        let last = texts[texts.len() - 4..].iter().map(|text| read(text).points);
+        assert!(
+            last.map(|points| points[1]).all(|point| point.temperature == Some(303.15) && point.sample.storage == 2e6)
+        );
+    }
+
+    #[test]
+    fn every_encoding_gives_the_same() {
+        let bytes = b"f [Hz];E' [N/mm\xb2];tan d;Temp. [\xb0C]\r\n1;2;0,1;-10\r\n";
+        let measured = MeasuredModuli::parse(bytes, &READING).unwrap();
+        assert_eq!((measured.points[0].temperature, measured.points[0].sample.storage), (Some(263.15), 2e6));
+        let text: String = bytes.iter().copied().map(char::from).collect();
+        let utf_16: Vec<u8> = [0xfeff].into_iter().chain(text.encode_utf16()).flat_map(u16::to_le_bytes).collect();
+        assert_eq!(MeasuredModuli::parse(&utf_16, &READING), Ok(measured));
+    }
+
+    #[test]
+    fn relaxation_has_times() {
+        let measured = read("t,E_relax\ns,MPa\n0.01,20\n10,11\n");
+        assert_eq!(measured.test, Test::Relaxation);
+        assert_eq!(measured.samples()[1], Sample { at: 10.0, storage: 11e6, loss: 0.0 });
+        assert_eq!(read("Time (min),G(t) (MPa)\n1,2\n").samples()[0], Sample { at: 60.0, storage: 6e6, loss: 0.0 });
+    }
+
+    #[test]
+    fn frequencies_may_be_reduced_or_given() {
+        assert!(read("a_T f [Hz],E' [MPa],E'' [MPa],T [°C]\n1,2,3,20\n").reduced);
+        assert!(!read("f [Hz],E' [MPa],E'' [MPa],T [°C]\n1,2,3,20\n").reduced);
+        let at = Reading { frequency: Some(5.0), ..READING };
+        assert_eq!(read_with("T [°C],E' [MPa],E'' [MPa]\n20,2,3\n", &at).points[0].sample.at, 5.0);
+        let factors = read("f [Hz],E' [MPa],E'' [MPa],T [°C],log aT\n1,2,3,20,2\n");
+        assert_eq!(factors.points[0].shift, Some(100.0));
+    }
+
+    #[test]
+    fn shear_is_converted_and_assumptions_are_noted() {
+        let notes = |text: &str| read(text).notes.join("; ");
+        let shear = read_with("f [Hz],G' [MPa],G'' [MPa]\n1,2,3\n", &Reading { poisson_ratio: 0.25, ..READING });
+        assert_eq!(shear.points[0].sample.storage, 5e6);
+        assert!(shear.notes.join("; ").contains("moduli of shear: E = 2(1 + ν) G, with ν = 0.25"));
+        let named = "f [Hz],Storage modulus [MPa],Loss modulus [MPa]\n1,2,3\n";
+        assert!(notes(named).contains("does not say whether of tension or shear: E is assumed"));
+        assert_eq!(read_with(named, &Reading { shear: true, ..READING }).points[0].sample.loss, 9e6);
+        assert!(notes("f,E' [MPa],E'' [MPa]\n1,2,3").contains("column 1 (f) names no unit: Hz is assumed"));
+        assert!(notes("omega,E',tan(d)\n1,2e6,3").contains("column 1 (omega) names no unit: rad/s is assumed"));
+        assert!(notes("omega,E',tan(d)\n1,2e6,3").contains("column 2 (E') names no unit: Pa is assumed"));
+        let both = "f [Hz],E' [Pa],E'' [Pa],tan(d)\n1,2,3,1.5";
+        assert!(notes(both).contains("both E'' and tan delta are given: E'' is used"));
+        assert!(notes("Point,f [Hz],E' [Pa],E'' [Pa],F [N]\n1,1,2,3,9").contains("columns left out: Point, F [N]"));
+        assert!(notes("f [Hz],E' [Pa],E'' [Pa]\n1,2,3\n2,2,0\n").contains("a row whose loss is 0"));
+    }
+
+    #[test]
+    fn a_unit_may_be_given_and_a_column_ignored() {
+        let text = "f [Hz],E' [MPa],E'' [MPa],Temperature\n1,2,3,20";
+        let celsius = [("temperature".to_owned(), Unit::parse("°C").unwrap())];
+        let given = Reading { units: &celsius, ..READING };
+        assert_eq!(read_with(text, &given).points[0].temperature, Some(293.15));
+        let wide = ",20,,40,\nf [Hz],E' [MPa],E'' [MPa],E' [MPa],E'' [MPa]\n1,2,3,4,5\n";
+        assert_eq!(read_with(wide, &given).points[1].temperature, Some(313.15));
+        let ignored = |name: &str| {
+            let ignored = [name.to_owned()];
+            MeasuredModuli::parse(text.as_bytes(), &Reading { ignored: &ignored, ..READING })
+        };
+        assert_eq!(ignored("Temperature").unwrap().points[0].temperature, None);
+        assert_eq!(ignored("temp").unwrap_err().to_string(), "1: --ignore temp: expected one of the headings");
+    }
+
+    #[test]
+    fn what_is_wrong_is_refused_with_line_and_column() {
+        let head = "f [Hz],E' [MPa],E'' [MPa]";
+        let cases = [
+            (format!("{head}\n1,2,3\n\n2,x,3\n3,2,1"), "4: column 2 (E' [MPa]) = \"x\": expected a number above 0"),
+            (format!("{head}\n1,2,-3"), "2: column 3 (E'' [MPa]) = \"-3\": expected a number above 0"),
+            (format!("{head}\n0,2,3"), "2: column 1 (f [Hz]) = \"0\": expected a number above 0"),
+            (format!("{head}\n1,,3"), "2: column 2 (E' [MPa]): expected a number above 0"),
+            (format!("{head}\n1,1e-40,3"), "2: column 2 (E' [MPa]) = \"1e-40\": expected a number above 0"),
+            (head.into(), "2: expected a row of numbers"),
+            (String::new(), "1: expected a header line, then rows"),
+            ("f [Hz],E'' [Pa]\n1,2".into(), "1: expected a column of the storage modulus: E' [MPa]"),
+            ("f [Hz],E' [Pa]\n1,2".into(), "1: expected a column of the loss: E'' [MPa] or tan delta"),
+            (
+                "T [°C],E' [Pa],E'' [Pa]\n1,2,3".into(),
+                "1: expected a frequency column, f [Hz] or omega [rad/s]; or --frequency",
+            ),
+            ("f [Hz],|E*| [Pa]\n1,2".into(), "1: expected a column of the phase beside |E*|"),
+            (
+                "f [Hz],omega [rad/s],E' [Pa],E'' [Pa]\n1,2,3,4".into(),
+                "2: column 2 (omega [rad/s]) = \"2.0000e0 rad/s\"",
+            ),
+            (
+                "f [Hz],E' [Pa],E' [Pa],E'' [Pa]\n1,2,3,4".into(),
+                "1: 2 columns of moduli, 1 of losses, 1 of frequencies: expected a pair",
+            ),
+            (
+                "f [Hz],E' [Pa],E'' [Pa],temperature\n1,2,3,4".into(),
+                "2: column 4 (temperature) = \"4\": expected the unit beside the name, as in temperature [°C]; or \
+                --unit",
+            ),
+            (
+                "f [Hz],E' [Pa],E'' [Pa],T [°C]\n1,2,3,-300".into(),
+                "2: column 4 (T [°C]) = \"-300\": expected a temperature above 0 K",
+            ),
+            (
+                "f [Hz],E' [furlong],E'' [Pa]\n1,2,3".into(),
+                "1: column 2 (E' [furlong]) = \"furlong\": expected a unit: one of Pa",
+            ),
+            (
+                "f [Hz],E' [MPa],E'' [kPa],tan d\n1,2,0.2,0.1".into(),
+                "2: column 4 (tan d) = \"0.1\": expected 0.0001, which",
+            ),
+            ("omega [Hz],E' [Pa],E'' [Pa]\n1,2,3".into(), "1: column 1 = \"omega [Hz]\": expected rad/s or 1/s"),
+            (
+                "f [Hz];E' [Pa];E'' [Pa]\n1,5;2;3\n2.5;2;3".into(),
+                "3: column 1 (f [Hz]) = \"2.5\": expected numbers with",
+            ),
+            ("1,2,3\n4,5,6".into(), "1: expected columns by their names with units"),
+            (
+                ",20,,40,\nf [Hz],E' [Pa],E'' [Pa],E' [Pa],E'' [Pa]\n1,2,3,4,5\n".into(),
+                "1: column 2 = \"20\": expected a unit of temperature",
+            ),
+            (
+                "f,E',E''\n1,20,3".into(),
+                "2: column 2 (E') = \"20\": expected the unit beside the name, as in E' [MPa]; or --unit 'E'=MPa': in \
+                Pa it",
+            ),
+            (
+                "# moduli in MPa\nf [Hz],E',E''\n1,2e6,3".into(),
+                "1: moduli in MPa: expected the unit beside the name, as in E'",
+            ),
+            ("f [Hz],|E*| [Pa],delta\n1,2,3".into(), "1: column 3 = \"delta\": expected the unit beside the name"),
+            (
+                "f [Hz],E' [Pa] 20 °C,E' [Pa] 30 °C,E'' [Pa] 20 °C,E'' [Pa] 40 °C\n1,2,3,4,5\n".into(),
+                "1: column 5 = \"E'' [Pa] 40 °C\": expected one column of its kind at 303.15 K",
+            ),
+            (
+                "T=20;\nf [Hz] E' [Pa] E'' [Pa]\n1 2 3\n2 3 4\n\nT=30;\nf [Hz] E' [Pa] E'' [Pa]\n1 2 3\n2 3 4\n".into(),
+                "1: T=20: expected a unit of temperature, as in 20 °C; or --unit 'T=°C'",
+            ),
+            (
+                "f,E',E''\n\n1,\"2,000.0\",\"3,000.0\"\n".into(),
+                "3: 1,\"2,000.0\",\"3,000.0\": expected a row of numbers",
+            ),
+            ("a\0".into(), "1: bytes that are zero: expected text in UTF-8, UTF-16 or Latin-1"),
+        ];
+        for (text, message) in cases {
+            assert!(refusal(&text).starts_with(message), "{text}\n{}\n{message}", refusal(&text));
+        }
+    }
+
+    #[test]
+    fn rows_of_several_temperatures_contradict_each_other() {
+        let lines = |text: &str| read(text).contradiction();
+        let head = "f [Hz],E' [MPa],E'' [MPa]\n";
+        assert_eq!(lines(&format!("{head}1,2,1\n2,2.1,1\n1,9,1\n")), Some([2, 4]));
+        assert_eq!(lines(&format!("{head}1,2,1\n2,9,1\n1,2.2,1\n")), None);
+    }
+
+    fn at(temperature: f64) -> MeasuredModuli {
+        let sample = Sample { at: 3.0, storage: 2.0, loss: 1.0 };
+        let point = MeasuredPoint { line: 7, sample, temperature: Some(temperature), shift: None, set: None };
+        MeasuredModuli {
+            points: vec![point],
+            test: Test::Oscillation,
+            in_hertz: true,
+            reduced: false,
+            notes: Vec::new(),
+        }
+    }
+
+    fn law(temperature: f64) -> Wlf {
+        Wlf { c1: 8.0, c2: 100.0, reference_temperature: 293.15, temperature }
+    }
+
+    /// log10 a_T = -8·10/110 ten kelvin above, 8·10/90 ten below: heat acts as slower motion.
+    #[test]
+    fn points_are_shifted_by_wlf() {
+        let omega = |temperature: f64| at(temperature).at_reference(law).unwrap()[0].at;
+        assert_eq!(omega(293.15), 3.0);
+        assert!((omega(303.15) / 3.0 / 10.0_f64.powf(-80.0 / 110.0) - 1.0).abs() < 1e-12);
+        assert!((omega(283.15) / 3.0 / 10.0_f64.powf(80.0 / 90.0) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn temperatures_at_and_near_the_pole_are_refused() {
+        for temperature in [193.15, 150.0, 194.0] {
+            let refusal = at(temperature).at_reference(law).unwrap_err().to_string();
+            let wanted = format!("7: a temperature of {temperature} K: expected more than TREF - C2 = 193.15");
+            assert!(refusal.starts_with(&wanted), "{refusal}");
+        }
+    }
+}

@@ -1,0 +1,484 @@
+//! A table of moduli in a file: which columns make its curves, and what its rows say.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use asperity::scene::Wlf;
+use asperity::tables::{Block, Line, NumberStyle, is_missing, words};
+
+use super::columns::{Column, Columns, Quantity};
+use super::measured::{MeasuredPoint, Reading};
+use super::moduli_error::ModuliError;
+use super::sample::{Sample, Test};
+use super::stated_temperature::{setting, temperatures_above};
+
+/// The size that a number in SI units may have in a scene.
+const POSITIVE: &str = "a number above 0 (from 1e-30 to 1e30 in SI units)";
+
+/// E' of any rubber is above it, Pa: without a unit, a modulus below it is in another one.
+const SOFTEST: f64 = 1e3;
+
+/// One curve of a table: its columns. A table has one, or one for each temperature.
+#[derive(Clone, Debug)]
+struct Curve {
+    /// Frequency or time; `None` where it is given on the command line.
+    at: Option<Column>,
+    modulus: Column,
+    loss: Option<Column>,
+    temperature: Option<f64>,
+}
+
+/// A table of moduli in a file.
+#[derive(Debug)]
+pub(super) struct Table<'a> {
+    block: Block<'a>,
+    /// The line of its names.
+    pub(super) line: usize,
+    curves: Vec<Curve>,
+    temperature: Option<Column>,
+    /// A temperature above it that has no unit, and its line.
+    bare_temperature: Option<(usize, String)>,
+    shift: Option<Column>,
+    set: Option<Column>,
+    /// A second column of frequencies, to compare.
+    other_frequency: Option<Column>,
+    /// tan δ beside E'', to compare.
+    tangent: Option<Column>,
+    columns: Columns,
+}
+
+impl<'a> Table<'a> {
+    /// The table in a block, with the header of the one before it where it has none of its own; `None` where its
+    /// columns are none of moduli.
+    pub(super) fn read(
+        block: &Block<'a>,
+        before: Option<&Self>,
+        reading: &Reading<'_>,
+    ) -> Result<Option<Self>, ModuliError> {
+        let found = Self::with_own_header(block, reading)?;
+        let alike = |table: &&Self| (table.block.separator, table.block.columns) == (block.separator, block.columns);
+        match before.filter(alike).filter(|_| found.is_none()) {
+            Some(before) => {
+                let header: Vec<Line<'a>> =
+                    before.block.above.iter().copied().filter(|(line, _)| *line >= before.line).collect();
+                Self::with_own_header(&block.below(&header), reading)
+            }
+            None => Ok(found),
+        }
+    }
+
+    fn with_own_header(block: &Block<'a>, reading: &Reading<'_>) -> Result<Option<Self>, ModuliError> {
+        use Quantity::{Loss, LossTangent, Set, SetTemperature, ShearLoss, ShiftFactor, Temperature};
+        let Some(columns) = Columns::read(block, reading.ignored, reading.units)? else { return Ok(None) };
+        let Some(mut chosen) = Chosen::of(&columns, reading)? else { return Ok(None) };
+        let other_frequency = chosen.take_other_frequency();
+        let curves = chosen.curves(block, &columns, reading)?;
+        let is_loss = |loss: &Column| matches!(loss.quantity, Loss | ShearLoss);
+        let tangent = columns.first(&[&[LossTangent]]).into_iter().next().filter(|_| chosen.losses.iter().any(is_loss));
+        let one = |quantities: &[&[Quantity]]| columns.first(quantities).into_iter().next();
+        let mut table = Self {
+            block: block.clone(),
+            line: columns.line,
+            curves,
+            temperature: one(&[&[Temperature], &[SetTemperature]]),
+            bare_temperature: None,
+            shift: one(&[&[ShiftFactor]]),
+            set: one(&[&[Set]]),
+            other_frequency,
+            tangent,
+            columns,
+        };
+        table.check_columns()?;
+        table.read_temperature_above(reading);
+        Ok(Some(table))
+    }
+
+    /// There is one column of temperatures, and columns in use have a unit or may be taken in SI units.
+    fn check_columns(&self) -> Result<(), ModuliError> {
+        if let Some(error) = twin(self.line, &self.columns.first(&[&[Quantity::Temperature]])) {
+            return Err(error);
+        }
+        let of_curve = |curve: &'_ Curve| [curve.at.clone(), Some(curve.modulus.clone()), curve.loss.clone()];
+        let used = self.curves.iter().flat_map(of_curve).flatten().chain(self.temperature.clone());
+        used.into_iter().try_for_each(|column| column.check_unit(&self.block, self.line))
+    }
+
+    /// The temperature of a table whose rows have none: in its heading lines, `Temperature: 20 °C`.
+    fn read_temperature_above(&mut self, reading: &Reading<'_>) {
+        if self.temperature.is_some() || self.curves.iter().any(|curve| curve.temperature.is_some()) {
+            return;
+        }
+        let mut lines = self.block.above.iter().rev();
+        match lines.find_map(|(line, text)| Some((*line, setting(text, reading.units)?))) {
+            Some((_, Ok(kelvin))) => self.curves.iter_mut().for_each(|curve| curve.temperature = Some(kelvin)),
+            Some((line, Err(text))) => self.bare_temperature = Some((line, text)),
+            None => (),
+        }
+    }
+
+    /// Of several tables each temperature must be known.
+    pub(super) fn check_temperature(&self) -> Result<(), ModuliError> {
+        let Some((line, text)) = &self.bare_temperature else { return Ok(()) };
+        let name = text.split(['=', ':']).next().unwrap_or_default().trim();
+        let expected = format!("a unit of temperature, as in 20 °C; or --unit '{name}=°C'");
+        Err(ModuliError::in_line(*line, text, expected))
+    }
+
+    pub(super) fn has(&self, name: &str, text: &str) -> bool {
+        let line = text.lines().nth(self.line.saturating_sub(1)).unwrap_or_default();
+        let line = line.trim_start_matches(['#', '%', '!', ' ']);
+        self.block.fields(line).is_some_and(|fields| fields.iter().any(|field| field.trim() == name.trim()))
+    }
+
+    pub(super) fn test(&self) -> Test {
+        let is_relaxation = self
+            .curves
+            .iter()
+            .any(|curve| matches!(curve.modulus.quantity, Quantity::Relaxation | Quantity::ShearRelaxation));
+        if is_relaxation { Test::Relaxation } else { Test::Oscillation }
+    }
+
+    pub(super) fn in_hertz(&self) -> bool {
+        self.curves[0].at.as_ref().is_none_or(Column::counts_cycles)
+    }
+
+    pub(super) fn is_reduced(&self) -> bool {
+        self.curves[0].at.as_ref().is_some_and(|column| column.reduced)
+    }
+
+    /// What was found and assumed.
+    pub(super) fn notes(&self, reading: &Reading<'_>, tables: usize) -> Vec<String> {
+        let curve = &self.curves[0];
+        let name = |column: &Column| format!("column {} ({})", column.index + 1, column.text);
+        let used = [curve.at.as_ref(), Some(&curve.modulus), curve.loss.as_ref(), self.temperature.as_ref()];
+        let read: Vec<String> = used.into_iter().flatten().map(name).collect();
+        let many = if tables > 1 { format!("{tables} tables, the first with ") } else { String::new() };
+        let temperatures = if self.curves.len() > 1 {
+            format!(", and so on for {} temperatures", self.curves.len())
+        } else {
+            String::new()
+        };
+        let mut notes = vec![format!("read {many}{}{temperatures}", read.join(", "))];
+        notes.extend(used.into_iter().flatten().filter_map(|column| {
+            Some(format!("{} names no unit: {} is assumed", name(column), column.assumed_unit()?))
+        }));
+        if let Some((line, text)) = &self.bare_temperature {
+            notes.push(format!("line {line} ({text}) names no unit of temperature and is left out"));
+        }
+        let shear = self.is_shear(&curve.modulus, reading);
+        if shear {
+            let nu = reading.poisson_ratio;
+            let text = format!("moduli of shear: E = 2(1 + ν) G, with ν = {nu} (--poisson-ratio)");
+            notes.push(text);
+        } else if !names_letter(&curve.modulus.text) {
+            let text = format!(
+                "{} does not say whether of tension or shear: E is assumed, --shear says G",
+                name(&curve.modulus)
+            );
+            notes.push(text);
+        }
+        if self.tangent.is_some() {
+            notes.push("both E'' and tan delta are given: E'' is used".into());
+        }
+        if self.is_reduced() {
+            notes.push("the frequencies are multiplied by a_T already: no row is shifted".into());
+        }
+        let left_out = &self.columns.left_out;
+        if !left_out.is_empty() {
+            let names: Vec<&str> = left_out.iter().take(4).map(String::as_str).collect();
+            let more = if left_out.len() > 4 { format!(" and {} more", left_out.len() - 4) } else { String::new() };
+            notes.push(format!("columns left out: {}{more}", names.join(", ")));
+        }
+        notes
+    }
+
+    fn is_shear(&self, modulus: &Column, reading: &Reading<'_>) -> bool {
+        use Quantity::{ShearComplex, ShearRelaxation, ShearStorage};
+        let named = matches!(modulus.quantity, ShearStorage | ShearComplex | ShearRelaxation);
+        named || (reading.shear && !names_letter(&modulus.text))
+    }
+
+    /// Adds the points of all rows; how many are left out because their loss is 0.
+    pub(super) fn add_points(
+        &self,
+        text: &str,
+        reading: &Reading<'_>,
+        points: &mut Vec<MeasuredPoint>,
+    ) -> Result<usize, ModuliError> {
+        let mut zeros = 0;
+        let mut row = Row { fields: Vec::new(), line: 0, style: NumberStyle::of(&self.block) };
+        for (line, content) in self.block.lines(text) {
+            row.line = line;
+            row.fields = self.block.separator.split(content).into_iter().map(|field| field.into_owned()).collect();
+            for curve in &self.curves {
+                match self.point(curve, &mut row, reading)? {
+                    Some(point) => points.push(point),
+                    None if row.is_empty(&curve.modulus) => (),
+                    None => zeros += 1,
+                }
+            }
+        }
+        Ok(zeros)
+    }
+
+    /// The point of a curve in a row; `None` where the curve has none there, or no loss.
+    fn point(&self, curve: &Curve, row: &mut Row, reading: &Reading<'_>) -> Result<Option<MeasuredPoint>, ModuliError> {
+        let has_many = self.curves.len() > 1;
+        if has_many && row.is_empty(&curve.modulus) && curve.loss.as_ref().is_none_or(|loss| row.is_empty(loss)) {
+            return Ok(None);
+        }
+        let at = match &curve.at {
+            Some(column) => row.positive(column)?,
+            None => reading.frequency.unwrap_or(TAU),
+        };
+        self.check_other_frequency(at, row)?;
+        let modulus = row.positive(&curve.modulus)?;
+        if modulus < SOFTEST && curve.modulus.assumed_unit().is_some() {
+            let expected = format!("{}: in Pa it is too soft for rubber", curve.modulus.with_unit("MPa"));
+            return Err(ModuliError::of(&curve.modulus, row.line, row.field(&curve.modulus), expected));
+        }
+        let Some((storage, loss)) = response(modulus, curve, row)? else { return Ok(None) };
+        self.check_tangent(storage, loss, curve, row)?;
+        let to_tension = if self.is_shear(&curve.modulus, reading) { 2.0 * (1.0 + reading.poisson_ratio) } else { 1.0 };
+        let sample = Sample { at, storage: to_tension * storage, loss: to_tension * loss };
+        let temperature = match (&self.temperature, curve.temperature) {
+            (Some(column), _) => Some(row.temperature(column)?),
+            (None, temperature) => temperature,
+        };
+        let shift = self.shift.as_ref().map(|column| row.positive(column)).transpose()?;
+        let set = self.set.as_ref().map(|column| row.number(column)).transpose()?.flatten();
+        Ok(Some(MeasuredPoint { line: row.line, sample, temperature, shift, set }))
+    }
+
+    /// A frequency in Hz and an angular one must be the same.
+    fn check_other_frequency(&self, at: f64, row: &mut Row) -> Result<(), ModuliError> {
+        let Some(column) = &self.other_frequency else { return Ok(()) };
+        /// Share by which rounded columns may differ.
+        const ROUNDING: f64 = 0.02;
+        match row.number(column)? {
+            Some(other) if (other / at - 1.0).abs() > ROUNDING => {
+                let expected =
+                    format!("the same as the other column of frequencies, {at:.4e} rad/s; --ignore leaves one out");
+                Err(ModuliError::of(column, row.line, &format!("{other:.4e} rad/s"), expected))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// tan δ must be E''/E': if not, a unit is wrong or columns are mixed up.
+    fn check_tangent(&self, storage: f64, loss: f64, curve: &Curve, row: &mut Row) -> Result<(), ModuliError> {
+        let Some(column) = self.tangent.as_ref().filter(|_| self.curves.len() == 1) else { return Ok(()) };
+        let Some(tangent) = row.number(column)?.filter(|tangent| *tangent > 0.0) else { return Ok(()) };
+        let ratio = loss / storage / tangent;
+        // Rows may be rounded to a few digits; wrong units differ by a thousand.
+        if (0.1..=10.0).contains(&ratio) {
+            return Ok(());
+        }
+        let names = (curve.loss.as_ref().map_or("", |loss| loss.text.as_str()), curve.modulus.text.as_str());
+        let expected = format!(
+            "{:.4}, which {} over {} are: are their units right? --ignore leaves a column out",
+            loss / storage,
+            names.0,
+            names.1
+        );
+        Err(ModuliError::of(column, row.line, &tangent.to_string(), expected))
+    }
+}
+
+/// Whether a heading says E or G.
+fn names_letter(text: &str) -> bool {
+    let words = words(text);
+    let marks = [
+        "e", "e'", "e''", "estar", "g", "g'", "g''", "gstar", "tensile", "young's", "shear", "estor", "eloss",
+        "erelax", "gstor", "gloss",
+    ];
+    words.iter().any(|word| marks.contains(&word.as_str()))
+}
+
+/// Storage and loss modulus of a row; `None` where the loss is 0.
+fn response(modulus: f64, curve: &Curve, row: &mut Row) -> Result<Option<(f64, f64)>, ModuliError> {
+    let Some(column) = &curve.loss else { return Ok(Some((modulus, 0.0))) };
+    if row.number(column)? == Some(0.0) {
+        return Ok(None);
+    }
+    let loss = row.positive(column)?;
+    let is_complex = matches!(curve.modulus.quantity, Quantity::Complex | Quantity::ShearComplex);
+    let angle = match column.quantity {
+        Quantity::Phase => loss,
+        Quantity::LossTangent => loss.atan(),
+        _ => return Ok(Some((modulus, loss))),
+    };
+    if angle >= FRAC_PI_2 {
+        return Err(ModuliError::of(column, row.line, &angle.to_degrees().to_string(), "a phase below 90°"));
+    }
+    Ok(Some(if is_complex {
+        (modulus * angle.cos(), modulus * angle.sin())
+    } else if column.quantity == Quantity::LossTangent {
+        (modulus, modulus * loss)
+    } else {
+        (modulus, modulus * angle.tan())
+    }))
+}
+
+/// The fields of a row.
+struct Row {
+    line: usize,
+    fields: Vec<String>,
+    style: NumberStyle,
+}
+
+impl Row {
+    fn field(&self, column: &Column) -> &str {
+        self.fields.get(column.index).map_or("", String::as_str)
+    }
+
+    fn is_empty(&self, column: &Column) -> bool {
+        let field = self.field(column);
+        field.is_empty() || is_missing(field)
+    }
+
+    /// The number in SI units, if the field is one.
+    fn number(&mut self, column: &Column) -> Result<Option<f64>, ModuliError> {
+        let field = self.fields.get(column.index).map_or("", String::as_str);
+        let written = self.style.read(field);
+        let written = written.map_err(|_| ModuliError::of(column, self.line, field, NumberStyle::EXPECTED))?;
+        Ok(written.map(|written| column.to_si(written)).filter(|value| value.is_finite()))
+    }
+
+    fn positive(&mut self, column: &Column) -> Result<f64, ModuliError> {
+        let value = self.number(column)?.filter(|value| (1e-30..=1e30).contains(value));
+        value.ok_or_else(|| ModuliError::of(column, self.line, self.field(column), POSITIVE))
+    }
+
+    fn temperature(&mut self, column: &Column) -> Result<f64, ModuliError> {
+        let value = self.number(column)?;
+        if !column.names_unit && value.is_some_and(|value| value < Wlf::COLDEST) {
+            let expected = format!("{}: in K it is too cold for rubber", column.with_unit("°C"));
+            return Err(ModuliError::of(column, self.line, self.field(column), expected));
+        }
+        let value = value.filter(|value| *value > 0.0);
+        value.ok_or_else(|| ModuliError::of(column, self.line, self.field(column), "a temperature above 0 K"))
+    }
+}
+
+/// The columns by what they are for: frequencies or times, moduli, losses.
+#[derive(Debug)]
+struct Chosen {
+    at: Vec<Column>,
+    moduli: Vec<Column>,
+    losses: Vec<Column>,
+}
+
+impl Chosen {
+    /// `None` where there are no moduli.
+    fn of(columns: &Columns, reading: &Reading<'_>) -> Result<Option<Self>, ModuliError> {
+        use Quantity::{
+            Complex, Frequency, Loss, LossTangent, Phase, Relaxation, ShearComplex, ShearLoss, ShearRelaxation,
+            ShearStorage, Storage, Time,
+        };
+        let (at, times) = (columns.first(&[&[Frequency]]), columns.first(&[&[Time]]));
+        let relaxed = columns.first(&[&[Relaxation], &[ShearRelaxation]]);
+        if at.is_empty() && !times.is_empty() && !relaxed.is_empty() {
+            return Ok(Some(Self { at: times, moduli: relaxed, losses: Vec::new() }));
+        }
+        let moduli = columns.first(&[&[Storage], &[ShearStorage], &[Complex], &[ShearComplex]]);
+        let kind = moduli.first().map(|column| column.quantity);
+        let losses = columns.first(match kind {
+            Some(Storage) => &[&[Loss], &[LossTangent], &[Phase]],
+            Some(ShearStorage) => &[&[ShearLoss], &[Loss], &[LossTangent], &[Phase]],
+            Some(_) => &[&[Phase], &[LossTangent]],
+            None => &[&[Loss], &[ShearLoss], &[LossTangent], &[Phase]],
+        });
+        let missing = |expected: &str| Err(ModuliError::in_line(columns.line, "", expected));
+        match (kind, losses.is_empty()) {
+            (None, true) => Ok(None),
+            (None, false) => missing("a column of the storage modulus: E' [MPa]"),
+            (Some(Complex | ShearComplex), true) => {
+                missing("a column of the phase beside |E*|: delta [°] or tan delta")
+            }
+            (Some(_), true) => missing("a column of the loss: E'' [MPa] or tan delta"),
+            _ if at.is_empty() && reading.frequency.is_none() => {
+                missing("a frequency column, f [Hz] or omega [rad/s]; or --frequency 10Hz for all rows")
+            }
+            _ => Ok(Some(Self { at, moduli, losses })),
+        }
+    }
+
+    /// A second column of frequencies beside one of moduli.
+    fn take_other_frequency(&mut self) -> Option<Column> {
+        let has_two = self.at.len() == 2 && self.moduli.len() == 1 && self.at[0].quantity == Quantity::Frequency;
+        if has_two { self.at.pop() } else { None }
+    }
+
+    /// One curve, or a pair of columns for each temperature.
+    fn curves(&self, block: &Block<'_>, columns: &Columns, reading: &Reading<'_>) -> Result<Vec<Curve>, ModuliError> {
+        let Self { at, moduli, losses } = self;
+        if let [modulus] = &moduli[..] {
+            return match twin(columns.line, at).or_else(|| twin(columns.line, losses)) {
+                Some(error) => Err(error),
+                None => Ok(vec![Curve {
+                    at: at.first().cloned(),
+                    modulus: modulus.clone(),
+                    loss: losses.first().cloned(),
+                    temperature: modulus.temperature,
+                }]),
+            };
+        }
+        let fits = |count: usize| count == moduli.len();
+        if !(losses.is_empty() || fits(losses.len())) || !(at.len() <= 1 || fits(at.len())) {
+            let given =
+                format!("{} columns of moduli, {} of losses, {} of frequencies", moduli.len(), losses.len(), at.len());
+            let expected = "a pair of moduli a temperature, and one frequency or one for each";
+            return Err(ModuliError::in_line(columns.line, given, expected));
+        }
+        let above = temperatures_above(block, columns.line, reading.units)?;
+        let pairs = Pairs { above: &above, line: columns.line };
+        let curve = |(i, modulus): (usize, &Column)| {
+            let temperature = pairs.temperature(modulus).ok_or_else(|| {
+                let expected = "its temperature, in its name (E' [MPa] 20 °C) or in the line above; or one column of a \
+                                kind: --ignore NAME";
+                ModuliError::of(modulus, columns.line, &modulus.text, expected)
+            })?;
+            let at = if at.len() == 1 { at.first().cloned() } else { pairs.partner(at, i, temperature)? };
+            let loss = pairs.partner(losses, i, temperature)?;
+            Ok(Curve { at, modulus: modulus.clone(), loss, temperature: Some(temperature) })
+        };
+        moduli.iter().enumerate().map(curve).collect()
+    }
+}
+
+/// Finds which columns belong together.
+struct Pairs<'c> {
+    /// The temperatures in the line above the names, K.
+    above: &'c [Option<f64>],
+    line: usize,
+}
+
+impl Pairs<'_> {
+    fn temperature(&self, column: &Column) -> Option<f64> {
+        column.temperature.or_else(|| self.above.get(column.index).copied().flatten())
+    }
+
+    /// The column for place `i`, where its temperature is that one or none is named; else the only one of that
+    /// temperature.
+    fn partner(&self, columns: &[Column], i: usize, temperature: f64) -> Result<Option<Column>, ModuliError> {
+        let Some(own) = columns.get(i) else { return Ok(None) };
+        if self.temperature(own).is_none_or(|other| other == temperature) {
+            return Ok(Some(own.clone()));
+        }
+        let mut alike = columns.iter().filter(|column| self.temperature(column) == Some(temperature));
+        match (alike.next(), alike.next()) {
+            (Some(found), None) => Ok(Some(found.clone())),
+            _ => {
+                let expected = format!("one column of its kind at {temperature:.2} K");
+                Err(ModuliError::of(own, self.line, &own.text, expected))
+            }
+        }
+    }
+}
+
+/// Two columns of one kind, where one is used, are one too many.
+fn twin(line: usize, columns: &[Column]) -> Option<ModuliError> {
+    let [first, second, ..] = columns else { return None };
+    let expected = format!("one column of a kind: {} is there already; ignore one by --ignore NAME", first.text);
+    Some(ModuliError::of(second, line, &second.text, expected))
+}

@@ -1,0 +1,374 @@
+//! How moduli of several temperatures become those of one: by known constants, by given factors, or by superposition.
+
+use std::f64::consts::LN_10;
+use std::path::Path;
+
+use asperity::tables::{Block, NumberStyle, decode};
+
+use super::columns::{Column, Columns, Quantity};
+use super::compound::{Compound, FitErrors};
+use super::error::FitError;
+use super::measured::{MeasuredModuli, MeasuredPoint};
+use super::moduli_error::ModuliError;
+use super::options::{FitOptions, WlfConstants};
+use super::sample::Sample;
+use super::shift::{Factor, Isotherm, Superposition, law_of, rms_with, superpose};
+use super::shift_error::ShiftError;
+use crate::decimals::{percent, plain, rounded, short};
+use crate::files;
+
+/// The rows of one temperature in a master curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShiftedCurve {
+    /// Their mean temperature, K.
+    pub temperature: f64,
+    /// How many there are.
+    pub rows: usize,
+    /// ln a_T.
+    pub ln_factor: f64,
+    /// The standard error of that; 0 where it was given.
+    pub ln_factor_error: f64,
+    /// Root mean square of the relative errors of the fit at them.
+    pub rms: f64,
+}
+
+/// What is done about temperatures.
+#[derive(Debug)]
+pub(super) enum Shift {
+    /// Nothing: there is one temperature, or none is known, or rows are shifted already.
+    None,
+    /// By constants that were given.
+    Known(WlfConstants, Vec<Isotherm>),
+    /// By factors that were given, and the constants that have them.
+    Given { factors: Vec<Factor>, isotherms: Vec<Isotherm>, law: Option<WlfConstants> },
+    /// By factors that were found.
+    Found { found: Superposition, isotherms: Vec<Isotherm> },
+}
+
+/// Temperatures that are nearer belong to one curve, K.
+const NEAR: f64 = 1.0;
+/// The widest curve, K.
+const WIDEST: f64 = 3.0;
+/// 20 °C, K.
+const ROOM: f64 = 293.15;
+
+impl Shift {
+    /// What the options and the table say.
+    pub(super) fn of(options: &FitOptions, measured: &MeasuredModuli) -> Result<Self, FitError> {
+        let in_data = |error: ShiftError| FitError::Shift { path: options.data.clone(), error };
+        let is_known = |point: &MeasuredPoint| point.temperature.is_some();
+        let all = measured.points.iter().all(is_known);
+        if measured.reduced || !measured.points.iter().any(is_known) {
+            return match options.shifts {
+                Some(_) if !measured.reduced => Err(in_data(ShiftError::NoTemperatures)),
+                _ => Ok(Self::None),
+            };
+        }
+        if !all {
+            return Err(in_data(ShiftError::Mixed));
+        }
+        let isotherms = isotherms(measured);
+        if let Some(wlf) = options.wlf {
+            return Ok(Self::Known(wlf, isotherms));
+        }
+        if let Some(path) = &options.shifts {
+            return given(path, options, isotherms);
+        }
+        if measured.points.iter().all(|point| point.shift.is_some()) {
+            let factors = factors_of(measured, &isotherms).map_err(in_data)?;
+            return Ok(Self::with_factors(factors, isotherms, options.reference));
+        }
+        let [first, .., last] = &isotherms[..] else { return Ok(Self::None) };
+        check(measured, &isotherms, (first.temperature, last.temperature)).map_err(in_data)?;
+        let found = superpose(&isotherms, measured.test, options.reference.unwrap_or(ROOM));
+        Ok(Self::Found { found, isotherms })
+    }
+
+    fn with_factors(factors: Vec<Factor>, isotherms: Vec<Isotherm>, reference: Option<f64>) -> Self {
+        let wanted = reference.unwrap_or(ROOM);
+        // The reference is where a_T is 1, or as wanted.
+        let key = |factor: &Factor| factor.ln.abs() + 1e-9 * (factor.temperature - wanted).abs();
+        let reference = (0..factors.len()).min_by(|&a, &b| key(&factors[a]).total_cmp(&key(&factors[b]))).unwrap_or(0);
+        let law = if factors.len() > 2 { law_of(&factors, reference) } else { None };
+        Self::Given { factors, isotherms, law }
+    }
+
+    /// The samples at the reference temperature.
+    pub(super) fn samples(&self, measured: &MeasuredModuli) -> Result<Vec<Sample>, ModuliError> {
+        match self {
+            Self::None => Ok(measured.samples()),
+            Self::Known(wlf, _) => measured.at_reference(|temperature| wlf.at(temperature)),
+            Self::Given { factors, isotherms, .. } => {
+                Ok(measured.shifted(|point| factor_of(point, factors, isotherms)))
+            }
+            Self::Found { found, isotherms } => match found.law.filter(|_| found.law_holds()) {
+                Some((law, _)) => measured.at_reference(|temperature| law.at(temperature)),
+                None => Ok(measured.shifted(|point| factor_of(point, &found.factors, isotherms))),
+            },
+        }
+    }
+
+    /// The temperature of the master curve, K.
+    pub(super) fn reference(&self) -> Option<f64> {
+        let nearest = |factors: &[Factor]| {
+            factors.iter().min_by(|a, b| a.ln.abs().total_cmp(&b.ln.abs())).map(|factor| factor.temperature)
+        };
+        match self {
+            Self::None => None,
+            Self::Known(wlf, _) => Some(wlf.reference_temperature),
+            Self::Given { factors, .. } => nearest(factors),
+            Self::Found { found, .. } => nearest(&found.factors),
+        }
+    }
+
+    /// The constants for a scene.
+    pub(super) fn constants(&self) -> Option<WlfConstants> {
+        let law = match self {
+            Self::None => None,
+            Self::Known(wlf, _) => return Some(*wlf),
+            Self::Given { law, .. } => *law,
+            Self::Found { found, .. } => found.law.map(|(law, _)| law),
+        };
+        // As many digits as such constants have.
+        law.map(|law| WlfConstants {
+            c1: rounded(law.c1, 5),
+            c2: rounded(law.c2, 5),
+            reference_temperature: rounded(law.reference_temperature, 6),
+        })
+    }
+
+    /// What the factors leave open.
+    pub(super) fn warnings(&self) -> Vec<String> {
+        let Self::Found { found, .. } = self else { return Vec::new() };
+        /// A factor that is less certain than this is hardly known.
+        const UNCERTAIN: f64 = 0.3;
+        let mut warnings: Vec<String> = found
+            .factors
+            .iter()
+            .filter(|factor| factor.error > UNCERTAIN)
+            .map(|factor| {
+                let share = (factor.error / LN_10 * 100.0).round() / 100.0;
+                format!(
+                    "log10 a_T at {:.2} K is known to ± {share} alone: its curve overlaps too little",
+                    factor.temperature
+                )
+            })
+            .collect();
+        match found.law {
+            None => warnings.push("fewer than three temperatures: no constants for other ones follow from them".into()),
+            Some((_, rms)) if !found.law_holds() => warnings.push(format!(
+                "no WLF constants have these shift factors: with the nearest {} are left of one curve, {} with the \
+                 factors, by which rows are shifted; do not use the constants far from the reference temperature",
+                percent(rms, 3),
+                percent(found.rms, 3)
+            )),
+            Some(_) => (),
+        }
+        warnings
+    }
+
+    /// What is to blame for what is left, other than scatter: temperatures that are not given, or known constants,
+    /// where with factors of their own the curves fit.
+    pub(super) fn blame(&self, measured: &MeasuredModuli) -> Option<String> {
+        if matches!(self, Self::None) && !measured.reduced {
+            let [first, second] = measured.contradiction()?;
+            return Some(format!(
+                "lines {first} and {second} have other moduli at the same place, as those of several temperatures \
+                 have, and no temperatures are given"
+            ));
+        }
+        let Self::Known(wlf, isotherms) = self else { return None };
+        let [first, .., last] = &isotherms[..] else { return None };
+        check(measured, isotherms, (first.temperature, last.temperature)).ok()?;
+        let with = rms_with(isotherms, measured.test, wlf);
+        let found = superpose(isotherms, measured.test, wlf.reference_temperature);
+        /// By so much factors of their own must be better.
+        const BETTER: f64 = 0.7;
+        if found.rms > BETTER * with {
+            return None;
+        }
+        let constants = found.law.map_or_else(String::new, |(law, _)| {
+            format!(
+                ": --wlf {},{},{}",
+                short(law.c1, 4),
+                short(law.c2, 4),
+                plain(rounded(law.reference_temperature, 6))
+            )
+        });
+        Some(format!(
+            "the WLF constants do not put the temperatures together: they leave {} of one curve, factors of their own \
+             {} (leave --wlf out){constants}",
+            percent(with, 3),
+            percent(found.rms, 3)
+        ))
+    }
+
+    /// The constants that follow from the data, and whether they shift the rows: else they are fitted to the factors that
+    /// do.
+    pub(super) fn found_law(&self) -> Option<(WlfConstants, bool)> {
+        let shifts = match self {
+            Self::None | Self::Known(..) => return None,
+            Self::Given { .. } => false,
+            Self::Found { found, .. } => found.law_holds(),
+        };
+        Some((self.constants()?, shifts))
+    }
+
+    /// Factors and residuals by temperature.
+    pub(super) fn curves(
+        &self,
+        measured: &MeasuredModuli,
+        samples: &[Sample],
+        compound: &Compound,
+    ) -> Vec<ShiftedCurve> {
+        let (isotherms, factors): (&[Isotherm], Vec<Factor>) = match self {
+            Self::None => return Vec::new(),
+            Self::Known(wlf, isotherms) => (isotherms, isotherms.iter().map(|isotherm| known(wlf, isotherm)).collect()),
+            Self::Given { factors, isotherms, .. } => (isotherms, factors.clone()),
+            Self::Found { found, isotherms } => (isotherms, found.factors.clone()),
+        };
+        let curve = |(i, (isotherm, factor)): (usize, (&Isotherm, &Factor))| {
+            let of_isotherm = measured.points.iter().zip(samples);
+            let own: Vec<Sample> = of_isotherm
+                .filter(|(point, _)| isotherm_of(point, isotherms) == i)
+                .map(|(_, sample)| *sample)
+                .collect();
+            ShiftedCurve {
+                temperature: isotherm.temperature,
+                rows: own.len(),
+                ln_factor: factor.ln,
+                ln_factor_error: factor.error,
+                rms: FitErrors::of(compound, &own, measured.test).both.rms,
+            }
+        };
+        isotherms.iter().zip(&factors).enumerate().map(curve).collect()
+    }
+}
+
+fn known(wlf: &WlfConstants, isotherm: &Isotherm) -> Factor {
+    let ln = wlf.at(isotherm.temperature).shift_factor().ln();
+    Factor { temperature: isotherm.temperature, ln, error: 0.0 }
+}
+
+/// The curves of the temperatures, from cold to hot: by the numbers of their measurements, or rows whose temperatures
+/// are near.
+fn isotherms(measured: &MeasuredModuli) -> Vec<Isotherm> {
+    let points = &measured.points;
+    let by_set = points.iter().all(|point| point.set.is_some());
+    let key = |point: &MeasuredPoint| if by_set { point.set.unwrap_or(0.0) } else { point.temperature.unwrap_or(0.0) };
+    let mut sorted: Vec<&MeasuredPoint> = points.iter().collect();
+    sorted.sort_by(|a, b| key(a).total_cmp(&key(b)));
+    let width = if by_set { 0.0 } else { NEAR };
+    let groups = sorted.chunk_by(|a, b| key(b) - key(a) <= width);
+    let mut isotherms: Vec<Isotherm> = groups
+        .map(|group| {
+            let sum: f64 = group.iter().filter_map(|point| point.temperature).sum();
+            let samples = group.iter().map(|point| point.sample).collect();
+            Isotherm { temperature: sum / group.len() as f64, samples }
+        })
+        .collect();
+    isotherms.sort_by(|a, b| a.temperature.total_cmp(&b.temperature));
+    isotherms
+}
+
+/// The curve nearest to the temperature of a point.
+fn isotherm_of(point: &MeasuredPoint, isotherms: &[Isotherm]) -> usize {
+    let distance = |i: &usize| (isotherms[*i].temperature - point.temperature.unwrap_or(0.0)).abs();
+    (0..isotherms.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
+}
+
+fn factor_of(point: &MeasuredPoint, factors: &[Factor], isotherms: &[Isotherm]) -> f64 {
+    factors.get(isotherm_of(point, isotherms)).map_or(1.0, |factor| factor.ln.exp())
+}
+
+/// Curves that can be laid over each other.
+fn check(measured: &MeasuredModuli, isotherms: &[Isotherm], ends: (f64, f64)) -> Result<(), ShiftError> {
+    for isotherm in isotherms {
+        let place = isotherm.samples[0].at;
+        if isotherm.samples.iter().all(|sample| (sample.at / place - 1.0).abs() < 1e-6) {
+            let what = if measured.in_hertz { "frequency" } else { "place" };
+            return Err(ShiftError::OnePlace { temperature: isotherm.temperature, what });
+        }
+    }
+    let widest = widest(measured, isotherms);
+    if widest > WIDEST { Err(ShiftError::Ramp { from: ends.0, to: ends.1 }) } else { Ok(()) }
+}
+
+/// The largest distance of a row's temperature from that of its curve, twice, K.
+fn widest(measured: &MeasuredModuli, isotherms: &[Isotherm]) -> f64 {
+    let distance = |point: &MeasuredPoint| {
+        let own = isotherm_of(point, isotherms);
+        2.0 * (isotherms[own].temperature - point.temperature.unwrap_or(0.0)).abs()
+    };
+    measured.points.iter().map(distance).fold(0.0, f64::max)
+}
+
+/// The factors in the rows of the table, one for each curve.
+fn factors_of(measured: &MeasuredModuli, isotherms: &[Isotherm]) -> Result<Vec<Factor>, ShiftError> {
+    let mut factors: Vec<Option<f64>> = vec![None; isotherms.len()];
+    for point in &measured.points {
+        let i = isotherm_of(point, isotherms);
+        let (temperature, here) = (isotherms[i].temperature, point.shift.unwrap_or(1.0));
+        match factors[i] {
+            Some(before) if (here / before - 1.0_f64).abs() > 0.01 => {
+                return Err(ShiftError::Factors { temperature, from: before, to: here });
+            }
+            Some(_) => (),
+            None => factors[i] = Some(here),
+        }
+    }
+    let factor = |(isotherm, factor): (&Isotherm, Option<f64>)| Factor {
+        temperature: isotherm.temperature,
+        ln: factor.unwrap_or(1.0).ln(),
+        error: 0.0,
+    };
+    Ok(isotherms.iter().zip(factors).map(factor).collect())
+}
+
+/// Reads factors from a table: columns temperature and a_T.
+fn given(path: &Path, options: &FitOptions, isotherms: Vec<Isotherm>) -> Result<Shift, FitError> {
+    let bytes = files::bytes(path)?;
+    let in_file = |error: ModuliError| FitError::Moduli { path: path.to_owned(), error };
+    let table = shift_table(&bytes, options).map_err(in_file)?;
+    let factor = |isotherm: &Isotherm| {
+        let distance = |(kelvin, _): &&(f64, f64)| (kelvin - isotherm.temperature).abs();
+        let nearest = table.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let found = nearest.filter(|row| distance(row) <= NEAR);
+        let missing = || ShiftError::NoFactor {
+            file: path.display().to_string(),
+            temperature: isotherm.temperature,
+            within: NEAR,
+        };
+        let ln = found.ok_or_else(missing)?.1.ln();
+        Ok(Factor { temperature: isotherm.temperature, ln, error: 0.0 })
+    };
+    let factors: Result<Vec<Factor>, ShiftError> = isotherms.iter().map(factor).collect();
+    let factors = factors.map_err(|error| FitError::Shift { path: options.data.clone(), error })?;
+    Ok(Shift::with_factors(factors, isotherms, options.reference))
+}
+
+/// Temperatures in K and their factors.
+fn shift_table(bytes: &[u8], options: &FitOptions) -> Result<Vec<(f64, f64)>, ModuliError> {
+    let text = decode(bytes).map_err(|error| ModuliError::in_line(1, error.to_string(), "a table of shift factors"))?;
+    const EXPECTED: &str = "columns temperature [°C] and a_T, or log a_T";
+    let blocks = Block::all(&text, false);
+    let block = blocks.iter().max_by_key(|block| block.rows);
+    let block = block.ok_or_else(|| ModuliError::in_line(1, "", EXPECTED))?;
+    let missing = || ModuliError::in_line(block.first, "", EXPECTED);
+    let columns = Columns::read(block, &[], &options.units)?.ok_or_else(missing)?;
+    let [temperature] = columns.all(&[Quantity::Temperature])[..] else { return Err(missing()) };
+    let [factor] = columns.all(&[Quantity::ShiftFactor])[..] else { return Err(missing()) };
+    let (mut rows, mut style) = (Vec::new(), NumberStyle::of(block));
+    for (line, row) in block.lines(&text) {
+        let fields = block.separator.split(row);
+        let mut value = |column: &Column| {
+            let field = fields.get(column.index).map_or("", |field| field);
+            let refuse = |expected: &str| ModuliError::in_column(line, column.index, &column.text, field, expected);
+            let written = style.read(field).map_err(|_| refuse(NumberStyle::EXPECTED))?;
+            let value = written.map(|written| column.to_si(written)).filter(|value| *value > 0.0 && value.is_finite());
+            value.ok_or_else(|| refuse("a number above 0 in SI units"))
+        };
+        rows.push((value(temperature)?, value(factor)?));
+    }
+    Ok(rows)
+}

@@ -1,0 +1,83 @@
+//! The friction in the summary of a scene, and where it falls over the speed.
+
+use std::ops::Range;
+
+use asperity::model::{Flash, FrictionLaw};
+use asperity::scene::{RateShear, Scene};
+
+use super::fine::MIDDLE;
+use super::words::{LEFT_OUT, number, or_left_out};
+use crate::labelled::{LabelledLine, labelled};
+
+pub(super) fn friction(scene: &Scene) -> Vec<LabelledLine> {
+    let Some(friction) = &scene.friction else { return vec![("Friction", LEFT_OUT.into())] };
+    let coulomb = format!("coulomb      {}", or_left_out(friction.coulomb, ""));
+    let shear = match friction.shear_strength {
+        Some(strength) => format!(
+            "shear        {} Pa: {} N a mass in contact",
+            number(strength),
+            number(scene.shear_force().unwrap_or(0.0))
+        ),
+        None => format!("shear_force  {}", or_left_out(friction.shear_force, " N a mass in contact")),
+    };
+    let rate_shear = scene.rate_shear().map_or_else(|| LEFT_OUT.into(), |law| rate_shear_text(&law));
+    let mut rows = vec![coulomb, shear, format!("rate_shear   {rate_shear}")];
+    rows.extend(FallingFriction::of(scene).map(|falling| falling.describe()));
+    labelled("Friction", rows)
+}
+
+/// Where friction falls over the speed, at which the masses of a layer may stick and slip one by one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FallingFriction {
+    /// The speed from which on it falls, m/s.
+    pub from: f64,
+    /// The speed up to which it falls, m/s; `None` where that is beyond those looked at.
+    pub to: Option<f64>,
+    /// The largest fall, as a share of friction a decade of speed.
+    pub steepest: f64,
+}
+
+impl FallingFriction {
+    /// Speeds are 10^(i/PER_DECADE) m/s.
+    const PER_DECADE: i32 = 10;
+    const EXPONENTS: Range<i32> = -6 * Self::PER_DECADE..2 * Self::PER_DECADE;
+    /// A smaller fall over a decade is damped away.
+    const LEAST: f64 = 0.01;
+
+    /// Of the masses of a scene under the middle one of the pressures of a summary; `None` where friction does not fall.
+    pub fn of(scene: &Scene) -> Option<Self> {
+        let law = FrictionLaw::new(scene);
+        let normal = scene.layer.element_area().map_or(0.0, |area| MIDDLE * area);
+        let per_decade = f64::from(Self::PER_DECADE);
+        let speed = |exponent: i32| 10.0_f64.powf(f64::from(exponent) / per_decade);
+        let friction = |exponent: i32| law.slip(normal, speed(exponent), Flash::held(0.0)).force();
+        let fall = |at: i32| per_decade * (1.0 - friction(at + 1) / friction(at));
+        let falls = Self::EXPONENTS.map(|at| (at, fall(at))).filter(|&(_, fall)| fall > Self::LEAST);
+        let falls: Vec<(i32, f64)> = falls.collect();
+        let steepest = falls.iter().map(|&(_, fall)| fall).fold(0.0, f64::max);
+        let (&(first, _), &(last, _)) = (falls.first()?, falls.last()?);
+        let to = (last + 1 != Self::EXPONENTS.end).then(|| speed(last + 1));
+        Some(Self { from: speed(first), to, steepest })
+    }
+
+    fn describe(&self) -> String {
+        let to = self.to.map_or_else(String::new, |to| format!(" to {to:.1e} m/s"));
+        format!(
+            "falls over the speed from {:.1e} m/s{to}, by up to {:.0} % a decade: masses may stick and slip one by one there, in \
+             many steps",
+            self.from,
+            100.0 * self.steepest
+        )
+    }
+}
+
+/// The law of the contacts, for a material at its temperature.
+fn rate_shear_text(rate_shear: &RateShear) -> String {
+    format!(
+        "{} N a mass in contact at {} m/s, sharpness {}, constant below {} m/s",
+        number(rate_shear.force.unwrap_or(0.0)),
+        number(rate_shear.reference_speed),
+        number(rate_shear.sharpness),
+        number(rate_shear.creep_speed())
+    )
+}

@@ -1,0 +1,43 @@
+//! Words and numbers of a summary.
+
+use asperity::scene::Value;
+use asperity::scene::{Parameter, Scene};
+
+use crate::decimals::{decimal, rounded};
+
+/// Stands for what the scene does not give.
+pub(super) const LEFT_OUT: &str = "left out";
+
+/// A number for reading: five digits, as of 293.15 K.
+pub(super) fn number(value: f64) -> String {
+    decimal(rounded(value, 5), 1e-3..1e6)
+}
+
+pub(super) fn or_left_out(value: Option<f64>, unit: &str) -> String {
+    value.map_or_else(|| LEFT_OUT.into(), |value| format!("{}{unit}", number(value)))
+}
+
+/// The word that the scene file has for `parameter`.
+pub(super) fn word(scene: &Scene, parameter: Parameter) -> String {
+    match scene.parameter(parameter) {
+        Value::Text(word) => word,
+        other => other.to_string(),
+    }
+}
+
+/// Lines that begin with a name each; the name of an earlier one in place of lines that are the same.
+pub(super) fn each_once(parts: impl IntoIterator<Item = (&'static str, Vec<String>)>) -> Vec<String> {
+    let mut said: Vec<(&'static str, Vec<String>)> = Vec::new();
+    let mut rows = Vec::new();
+    for (name, lines) in parts {
+        match said.iter().find(|(_, earlier)| *earlier == lines && lines != [LEFT_OUT]) {
+            Some((earlier, _)) if !lines.is_empty() => rows.push(format!("{name:<12}as {earlier}")),
+            _ => {
+                let heads = std::iter::once(name).chain(std::iter::repeat(""));
+                rows.extend(heads.zip(&lines).map(|(head, line)| format!("{head:<12}{line}")));
+                said.push((name, lines));
+            }
+        }
+    }
+    rows
+}
