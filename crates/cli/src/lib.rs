@@ -21,6 +21,7 @@ mod lock;
 mod material;
 mod measured_friction;
 mod npz;
+mod output;
 mod pack;
 mod patch;
 mod reference;

@@ -2,6 +2,7 @@
 
 pub mod calibration;
 pub mod contact;
+pub mod converge;
 pub mod csv;
 pub mod decimals;
 pub mod elements;

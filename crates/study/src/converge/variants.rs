@@ -6,39 +6,40 @@ use std::path::{Path, PathBuf};
 
 use asperity::scene::Scene;
 use asperity_formats::Instruments;
-use asperity_study::steady::{GridSize, SurfaceGrid};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::ConvergeError;
-use crate::files::{self, FileError};
-use asperity_study::settings::{self, Overridden, Setting};
+use super::error::ConvergeError;
+use crate::files::ReadError;
+use crate::settings::{self, Overridden, Setting};
+use crate::steady::{GridSize, SurfaceGrid};
 
 /// What a run differs in from the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Variant {
+pub struct Variant {
     /// How often the spacing is halved, at the same length.
-    pub(super) halvings: u32,
+    pub halvings: u32,
     /// Whether layer and self-affine surface are twice as long.
-    pub(super) doubled: bool,
+    pub doubled: bool,
     /// What is added to the seeds.
-    pub(super) seed_shift: u32,
+    pub seed_shift: u32,
     /// Whether the profile has waves down to half the wavelength at which those that it lacks begin in the scene.
-    pub(super) split: bool,
+    pub split: bool,
 }
 
 impl Variant {
-    pub(super) fn halved(halvings: u32) -> Self {
+    /// With the spacing halved so often.
+    pub fn halved(halvings: u32) -> Self {
         Self { halvings, ..Self::default() }
     }
 
     /// Whether nothing but the spacing differs.
-    pub(super) fn is_of_ladder(self) -> bool {
+    pub fn is_of_ladder(self) -> bool {
         !self.doubled && !self.split && self.seed_shift == 0
     }
 
     /// The one that its values are compared with: twice the spacing, or the same one.
-    pub(super) fn reference(self) -> Option<Self> {
+    pub fn reference(self) -> Option<Self> {
         if self.is_of_ladder() {
             Some(Self::halved(self.halvings.checked_sub(1)?))
         } else {
@@ -47,23 +48,26 @@ impl Variant {
     }
 
     /// The place in a table: halvings, then lengths, then the other split, then seeds.
-    pub(super) fn place(self) -> (bool, bool, bool, u32, u32) {
+    pub fn place(self) -> (bool, bool, bool, u32, u32) {
         (self.seed_shift > 0, self.split, self.doubled, self.halvings, self.seed_shift)
     }
 }
 
 /// What is halved, and a part of which is a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Parts {
+pub enum Parts {
     /// The masses of the layer.
     Masses,
     /// The points of a period of the surface along x, with so many rows of them in the scene itself.
-    Points { rows: u64 },
+    Points {
+        /// The rows.
+        rows: u64,
+    },
 }
 
 impl Parts {
     /// As the table's columns call them.
-    pub(super) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Masses => "masses",
             Self::Points { .. } => "points",
@@ -73,20 +77,20 @@ impl Parts {
 
 /// The layer or the period of the surface in a run, and its seed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Dimensions {
+pub struct Dimensions {
     /// Number of masses k, or of points along x.
-    pub(super) count: u64,
+    pub count: u64,
     /// Δx, m.
-    pub(super) spacing: f64,
+    pub spacing: f64,
     /// The seed of the surface, else that of the layer's roughness; `None`: neither has one.
-    pub(super) seed: Option<u64>,
+    pub seed: Option<u64>,
     /// The wavelength at which the profile ends and the waves that it lacks begin, m; `None` where it cannot move.
-    pub(super) split: Option<f64>,
+    pub split: Option<f64>,
 }
 
 impl Dimensions {
     /// Length kΔx, m.
-    pub(super) fn length(&self) -> f64 {
+    pub fn length(&self) -> f64 {
         self.count as f64 * self.spacing
     }
 }
@@ -139,20 +143,9 @@ pub(super) struct Template {
 }
 
 impl Template {
-    /// The scene at `path`, its parameters overridden by `set`, and what variants of it are made of; warnings
-    /// about the layer where that slides.
-    pub(super) fn read(
-        path: &Path,
-        set: &[Setting],
-        layer_slides: impl FnOnce(&Scene) -> bool,
-    ) -> Result<(Self, Scene), ConvergeError> {
-        let scene = files::load_without_run(path, set, layer_slides)?;
-        if scene.material.is_none() {
-            return Err(ConvergeError::DirectForm { path: path.to_owned() });
-        }
-        let bytes = files::read(path)?;
-        let overridden = settings::overridden(&String::from_utf8_lossy(&bytes), set).map_err(FileError::from)?;
-        Ok((Self::new(path, overridden)?, scene))
+    /// Of the `text` of the scene file at `path`, its keys set to other values.
+    pub(super) fn read(text: &str, path: &Path, set: &[Setting]) -> Result<Self, ConvergeError> {
+        Self::new(path, settings::overridden(text, set).map_err(ReadError::from)?)
     }
 
     fn new(path: &Path, overridden: Overridden) -> Result<Self, ConvergeError> {
@@ -220,7 +213,7 @@ impl Template {
     }
 
     /// The scene of a variant; with points in place of masses the layer has as many masses.
-    pub(super) fn scene(&self, variant: Variant) -> Result<Scene, FileError> {
+    pub(super) fn scene(&self, variant: Variant) -> Result<Scene, ReadError> {
         let mut scene = Scene::parse_with(&self.text_of(variant), &self.path, &Instruments)?;
         settings::set_in_named_files(&mut scene, &self.in_named_files)?;
         Ok(scene)

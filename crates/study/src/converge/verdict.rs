@@ -1,20 +1,23 @@
 //! What the runs leave open, and the coarsest spacing that will do.
 
-use asperity_study::sweep::SMALL_FRICTION;
+use asperity::element::CONVERGED;
+
+use crate::decimals::{decimal, rounded};
+use crate::sweep::SMALL_FRICTION;
 
 /// A value of each of the two quantities that are to converge, or a share of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Pair {
+pub struct Pair {
     /// Friction coefficient, 1.
-    pub(super) friction: f64,
+    pub friction: f64,
     /// Area in contact over the whole, 1.
-    pub(super) area: f64,
+    pub area: f64,
 }
 
 impl Pair {
     /// The change from `before` to this one, over this one. A friction coefficient that is small counts as
     /// [`SMALL_FRICTION`], as in the standard error of a run.
-    pub(super) fn change_from(&self, before: &Self) -> Self {
+    pub fn change_from(&self, before: &Self) -> Self {
         (*self - *before).over(self)
     }
 
@@ -31,12 +34,12 @@ impl Pair {
     }
 
     /// Whether both are within `error` of 0.
-    pub(super) fn is_within(&self, error: f64) -> bool {
+    pub fn is_within(&self, error: f64) -> bool {
         self.friction.abs() <= error && self.area.abs() <= error
     }
 
     /// Friction coefficient and area, each with its name.
-    pub(super) fn named(&self) -> [(&'static str, f64); 2] {
+    pub fn named(&self) -> [(&'static str, f64); 2] {
         [("friction", self.friction), ("area", self.area)]
     }
 }
@@ -51,29 +54,34 @@ impl std::ops::Sub for Pair {
 
 /// What the runs came to, those that did not become steady being `None`.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Study {
+pub struct Study {
     /// The scene, then with half the spacing, a quarter, …, all steady.
-    pub(super) ladder: Vec<Pair>,
+    pub ladder: Vec<Pair>,
     /// The finest of these with twice the length; `None` where there is no more of the surface.
-    pub(super) length: Option<Option<Pair>>,
+    pub length: Option<Option<Pair>>,
     /// The finest of these with the profile down to half the wavelength at which the waves that it lacks begin; `None`
     /// where that cannot move.
-    pub(super) split: Option<Option<Pair>>,
+    pub split: Option<Option<Pair>>,
     /// The finest of these with other seeds; `None` where the scene has no seed.
-    pub(super) seeds: Option<Vec<Option<Pair>>>,
+    pub seeds: Option<Vec<Option<Pair>>>,
 }
 
 /// Why area and friction may be off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Source {
+pub enum Source {
+    /// The spacing of the masses or of the points.
     Spacing,
+    /// The length of the layer or of the surface.
     Length,
+    /// Where the profile ends and the waves that it lacks begin.
     Split,
+    /// The seed.
     Chance,
 }
 
 impl Source {
-    pub(super) fn name(self) -> &'static str {
+    /// Its name.
+    pub fn name(self) -> &'static str {
         match self {
             Self::Spacing => "spacing",
             Self::Length => "length",
@@ -85,32 +93,36 @@ impl Source {
 
 /// What a source leaves open, as shares of friction and area; `None`: not known.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Open {
-    pub(super) source: Source,
-    pub(super) shares: Option<Pair>,
+pub struct Open {
+    /// The source.
+    pub source: Source,
+    /// The shares.
+    pub shares: Option<Pair>,
 }
 
 /// What is left open, and what will do.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Verdict {
-    pub(super) open: Vec<Open>,
+pub struct Verdict {
+    /// What each source leaves open.
+    pub open: Vec<Open>,
     /// How often the spacing of the scene is halved for friction to be within the error, and for area; `None`: more
     /// often than was tried.
-    pub(super) coarsest: [Option<usize>; 2],
+    pub coarsest: [Option<usize>; 2],
     error: f64,
 }
 
 /// The largest share that is left open.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct LargestOpen {
-    pub(super) source: Source,
+pub struct LargestOpen {
+    /// The source.
+    pub source: Source,
     /// The quantity and its share; `None`: not known.
-    pub(super) share: Option<(&'static str, f64)>,
+    pub share: Option<(&'static str, f64)>,
 }
 
 impl Verdict {
     /// On what each source may leave open, `error`.
-    pub(super) fn new(study: &Study, error: f64) -> Self {
+    pub fn new(study: &Study, error: f64) -> Self {
         let mut open = vec![Open { source: Source::Spacing, shares: last_change(&study.ladder) }];
         if let Some(length) = study.length {
             open.push(Open { source: Source::Length, shares: length_shares(study.ladder.last(), length) });
@@ -126,12 +138,12 @@ impl Verdict {
     }
 
     /// Whether all that is left open is known and within the error.
-    pub(super) fn is_converged(&self) -> bool {
+    pub fn is_converged(&self) -> bool {
         self.open.iter().all(|open| open.shares.is_some_and(|shares| shares.is_within(self.error)))
     }
 
     /// The source that leaves most open; one that is not known before all others.
-    pub(super) fn largest(&self) -> Option<LargestOpen> {
+    pub fn largest(&self) -> Option<LargestOpen> {
         let of = |open: &Open| {
             let share = open.shares.map(|shares| {
                 let [friction, area] = shares.named();
@@ -142,6 +154,27 @@ impl Verdict {
         let size = |largest: &LargestOpen| largest.share.map_or(f64::INFINITY, |(_, share)| share);
         self.open.iter().map(of).max_by(|a, b| size(a).total_cmp(&size(b)))
     }
+
+    /// The verdict in a sentence.
+    pub fn sentence(&self) -> String {
+        let start = if self.is_converged() { CONVERGED } else { "not converged" };
+        match self.largest() {
+            Some(LargestOpen { source, share: Some((quantity, share)) }) => {
+                let against = if share <= self.error { "within" } else { "more than" };
+                let (name, share, error) = (source.name(), percent(share), percent(self.error));
+                format!("{start}: {name} leaves most open, {share} of the {quantity}, {against} {error}")
+            }
+            Some(LargestOpen { source, share: None }) => {
+                format!("{start}: what {} leaves open is not known", source.name())
+            }
+            None => start.to_owned(),
+        }
+    }
+}
+
+/// A share in percent, in two digits.
+pub fn percent(share: f64) -> String {
+    format!("{} %", decimal(rounded(100.0 * share, 2), 1e-3..1e6))
 }
 
 fn last_change(ladder: &[Pair]) -> Option<Pair> {
@@ -270,5 +303,22 @@ mod tests {
         let [before, after] = pairs(&[(1e-4, 0.1), (-1e-4, 0.1)])[..] else { unreachable!() };
         let change = after.change_from(&before);
         assert!((change.friction + 0.02).abs() < 1e-12 && change.area == 0.0, "{change:?}");
+    }
+
+    #[test]
+    fn the_verdict_names_what_leaves_most_open() {
+        let pair = |friction: f64, area: f64| Pair { friction, area };
+        let ladder = vec![pair(0.5, 0.102), pair(0.5, 0.1)];
+        let study = Study { ladder, length: Some(Some(pair(0.5, 0.1))), split: None, seeds: None };
+        assert_eq!(
+            Verdict::new(&study, 0.05).sentence(),
+            "converged: spacing leaves most open, 2 % of the area, within 5 %"
+        );
+        assert_eq!(
+            Verdict::new(&study, 0.01).sentence(),
+            "not converged: spacing leaves most open, 2 % of the area, more than 1 %"
+        );
+        let study = Study { length: Some(None), ..study };
+        assert_eq!(Verdict::new(&study, 0.05).sentence(), "not converged: what length leaves open is not known");
     }
 }
