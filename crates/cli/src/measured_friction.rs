@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use asperity::element::{Load, OperatingPoint};
-use asperity_study::calibration::{Measured, Measurements, MeasurementsError};
+use asperity::tables::ContentError;
+use asperity_study::calibration::{Measured, Measurements};
 
 use super::figure::{Curve, Panel, PanelRow, SideBySide, Stroke};
 use super::files::{self, FileError};
@@ -14,8 +15,8 @@ use asperity_study::decimals::{as_given, rounded};
 pub enum MeasuredFrictionError {
     #[error(transparent)]
     File(#[from] FileError),
-    #[error("{}:{error}", .path.display())]
-    Table { path: PathBuf, error: MeasurementsError },
+    #[error("{}", .error.within(.path))]
+    Table { path: PathBuf, error: ContentError },
 }
 
 /// Reads a table; forces act on `area`, m².

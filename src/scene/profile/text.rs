@@ -5,13 +5,13 @@ use std::fmt::Write as _;
 
 use super::MeasuredSurface;
 use super::areal::Areal;
-use super::header::{Header, VOCABULARY, cut, note};
-use super::options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ReadingNote, ThirdColumn};
+use super::header::{Header, VOCABULARY, note};
+use super::options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ThirdColumn};
 use super::plain::PlainLine;
 use super::roles::{EXPECTED_COLUMNS, Roles};
-use crate::scene::error::ContentError;
-use crate::scene::values::ANY;
-use crate::tables::{Block, Heading, NumberStyle, Separator, is_missing, number};
+use crate::tables::{
+    ANY, Block, ContentError, Heading, NumberStyle, ReadingNote, Separator, behind_note, is_missing, number, shortened,
+};
 
 /// What a file holds.
 #[derive(Debug)]
@@ -47,7 +47,7 @@ pub(super) fn read(text: &str, options: &ProfileOptions) -> Result<Content, Cont
         reader.add_lines(&text[block.start..], block.first)?;
         reader.finish(&header)
     };
-    let is_unnamed = header.names.is_empty() && header.headings.is_empty();
+    let is_unnamed = header.table.names.is_empty() && header.table.headings.is_empty();
     let may_be_points =
         is_unnamed && block.columns == 3 && options.third_column.is_none() && options.columns.is_empty();
     match Roles::choose(block, &header, options) {
@@ -116,23 +116,23 @@ fn refuse_all(text: &str) -> ContentError {
 }
 
 fn refuse_count(count: usize, number: usize, line: &str, expected: &str) -> ContentError {
-    ContentError::value(Some(number), "columns", &format!("{count} in `{}`", cut(line)), expected)
+    ContentError::value(Some(number), "columns", &format!("{count} in `{}`", shortened(line)), expected)
 }
 
 fn refuse_field(field: &str, axis: &str, number: usize) -> ContentError {
-    let given = format!("\"{}\"", cut(field));
+    let given = format!("\"{}\"", shortened(field));
     let missing = if axis == "z" { ", or missing = \"fill\" where heights are missing" } else { "" };
     ContentError::value(Some(number), axis, &given, &format!("{ANY}{missing}"))
 }
 
 /// Whether the block is a matrix of heights: unnamed columns with two spacings.
 fn is_matrix(block: &Block<'_>, header: &Header<'_>, options: &ProfileOptions) -> bool {
-    options.columns.is_empty() && header.names.is_empty() && block.columns > 1 && options.spacing.len() == 2
+    options.columns.is_empty() && header.table.names.is_empty() && block.columns > 1 && options.spacing.len() == 2
 }
 
 /// A matrix of heights: a row is a line along x.
 fn matrix(text: &str, block: &Block<'_>, header: &Header<'_>, options: &ProfileOptions) -> Result<Areal, ContentError> {
-    let mut style = NumberStyle::of(block);
+    let mut style = block.style();
     let unit = options.z_unit.map(LengthUnit::unit).or(header.set[1]);
     let mut heights = Vec::with_capacity(block.rows * block.columns);
     for (line, row) in block.lines(text) {
@@ -173,7 +173,7 @@ impl PointsReader {
             columns: block.columns,
             last: block.last,
             separator: block.separator,
-            style: NumberStyle::of(block),
+            style: block.style(),
             missing: options.missing,
             spacing: options.spacing.first().copied().unwrap_or(0.0),
         }
@@ -215,11 +215,7 @@ impl PointsReader {
     /// The lines behind the points, which hold words and results.
     fn record_footer(&mut self, number: usize, rest: &str) {
         let lines = rest.lines().filter(|line| !line.trim().is_empty()).count();
-        let text = match lines {
-            1 => format!("line {number}, behind the points, is left out"),
-            _ => format!("{lines} lines from line {number} on, behind the points, are left out"),
-        };
-        self.raw.notes.push(ReadingNote { text, assumed: false });
+        self.raw.notes.push(behind_note(number, lines));
     }
 
     /// Adds the first line of `text` if it is plain and its numbers are possible, and returns its bytes.
@@ -293,7 +289,7 @@ impl PointsReader {
 
     /// The number in a field.
     fn value(&mut self, field: &str, line: usize) -> Result<Option<f64>, ContentError> {
-        let given = || format!("\"{}\"", cut(field));
+        let given = || format!("\"{}\"", shortened(field));
         self.style.read(field).map_err(|_| ContentError::value(Some(line), "number", &given(), NumberStyle::EXPECTED))
     }
 
@@ -304,7 +300,7 @@ impl PointsReader {
             return Areal::of_points(self.raw, &self.y).map(Content::Map);
         }
         self.raw.is_spaced = self.roles.x.is_none();
-        if header.names.is_empty() && self.roles.x.is_some() {
+        if header.table.names.is_empty() && self.roles.x.is_some() {
             let text = "no names: x is the first column, z the second".to_owned();
             self.raw.notes.push(ReadingNote { text, assumed: true });
         }
@@ -325,6 +321,6 @@ fn is_invalid(fields: &[std::borrow::Cow<'_, str>], (column, meaning): (usize, T
 }
 
 fn refuse_invalid(field: &str, number: usize) -> ContentError {
-    let given = format!("\"{}\"", cut(field));
+    let given = format!("\"{}\"", shortened(field));
     ContentError::value(Some(number), "third column", &given, "valid points alone, or missing = \"fill\"")
 }

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use asperity::tables::ContentError;
 use asperity_study::robustness::{Perturbation, ScaledQuantity};
 
 use super::convergence::{CommunicationRow, Timed, ToleranceRow};
@@ -13,7 +14,7 @@ use super::run::RunFigures;
 use super::trace::{Errors, OF_ALL_SCENES, QUANTITIES};
 use crate::files::FileError;
 use crate::result_file::CsvWriter;
-use asperity_study::csv::{CsvError, CsvFile};
+use asperity_study::csv::{self, CsvError};
 use asperity_study::decimals::real;
 
 /// The columns of errors and run times: errors over the largest value, processor time in s. Tables of other programs
@@ -190,21 +191,22 @@ pub(super) struct Peers {
 /// Reads the rows of the scene with one of these `names` whose times are those of whole processes. The file has the
 /// columns of [`MEASURED`], and perhaps [`TIMED`], [`SPREAD`] and [`TIMINGS`]; others are ignored.
 pub(super) fn read_peers(path: &Path, names: &[&str]) -> Result<Peers, CsvError> {
-    let file = CsvFile::read(path)?;
+    let file = csv::read(path)?;
+    let refuse = |error| CsvError::content(path, error);
     let mut columns = [0; MEASURED.len()];
     for (column, name) in columns.iter_mut().zip(MEASURED) {
-        *column = file.column(name)?;
+        *column = file.column(name).map_err(refuse)?;
     }
     let optional_columns = [TIMED, SPREAD, TIMINGS].map(|name| file.column(name).ok());
     let mut peers = Peers::default();
-    for record in file.records() {
-        let fields = columns.map(|column| record.fields[column].as_str());
-        let more = optional_columns.map(|column| column.map_or("", |column| record.fields[column].as_str()));
+    for record in &file.rows {
+        let fields = columns.map(|column| &*record.fields[column]);
+        let more = optional_columns.map(|column| column.map_or("", |column| &*record.fields[column]));
         if !peers.scenes.iter().any(|scene| scene == fields[0]) {
             peers.scenes.push(fields[0].to_owned());
         }
         if names.contains(&fields[0]) && more[0] != Timed::RunAlone.name() {
-            peers.rows.push(row(fields, more).map_err(|message| file.error(record, message))?);
+            peers.rows.push(row(record.line, fields, more).map_err(refuse)?);
         }
     }
     Ok(peers)
@@ -212,29 +214,34 @@ pub(super) fn read_peers(path: &Path, names: &[&str]) -> Result<Peers, CsvError>
 
 /// A row without a time is that of a run that did not come to its end.
 fn row(
-    [_, program, method, tolerance, x, z, lost, time, steps, events]: [&str; MEASURED.len()],
+    line: usize,
+    fields: [&str; MEASURED.len()],
     [_, spread, timings]: [&str; 3],
-) -> Result<ToleranceRow, String> {
-    let tolerance = number(tolerance)?.ok_or("expected a tolerance, found none")?;
-    let time = number(time)?;
+) -> Result<ToleranceRow, ContentError> {
+    let figure = |column: usize| number(line, MEASURED[column], fields[column]);
+    let tolerance = figure(3)?.ok_or_else(|| ContentError::value(Some(line), MEASURED[3], fields[3], "a tolerance"))?;
+    let time = figure(7)?;
+    let count = |number: Option<f64>| number.map(|count| count as u64);
     let figures = RunFigures {
-        errors: [number(x)?, number(z)?, number(lost)?, None, None],
+        errors: [figure(4)?, figure(5)?, figure(6)?, None, None],
         time,
-        spread: number(spread)?,
-        timings: number(timings)?.map(|count| count as u64),
-        steps: number(steps)?.map(|count| count as u64),
-        events: number(events)?.map(|count| count as u64),
+        spread: number(line, SPREAD, spread)?,
+        timings: count(number(line, TIMINGS, timings)?),
+        steps: count(figure(8)?),
+        events: count(figure(9)?),
         ..RunFigures::default()
     };
     let result = if time.is_some() { Ok(figures) } else { Err("no run time".into()) };
-    Ok(ToleranceRow { program: program.into(), method: method.into(), tolerance, timed: Timed::WholeProcess, result })
+    let [program, method] = [fields[1], fields[2]].map(str::to_owned);
+    Ok(ToleranceRow { program, method, tolerance, timed: Timed::WholeProcess, result })
 }
 
 /// A number; `None` where the field is empty or NaN.
-fn number(text: &str) -> Result<Option<f64>, String> {
+fn number(line: usize, column: &str, text: &str) -> Result<Option<f64>, ContentError> {
     if text.is_empty() {
         return Ok(None);
     }
-    let number: f64 = text.parse().map_err(|_| format!("expected a number, found {text:?}"))?;
+    let refuse = |_| ContentError::value(Some(line), column, &format!("{text:?}"), "a number");
+    let number: f64 = text.parse().map_err(refuse)?;
     Ok(Some(number).filter(|number| !number.is_nan()))
 }

@@ -23,7 +23,7 @@ mod theory_model;
 
 pub use error::CalibrationError;
 pub use fit::{Fitted, Tolerance, minimise, starts_by_theory};
-pub use measurements::{Measured, Measurements, MeasurementsError};
+pub use measurements::{Measured, Measurements};
 pub use memo::{Memo, NewOutcome};
 pub use model::{Done, FrictionModel, FrictionParts, Outcome, SceneAt, Task};
 pub use parameter::FreeParameter;
