@@ -7,7 +7,8 @@ use std::path::Path;
 use asperity::patch::{MotionError, PatchError, PatchRestoreError};
 use asperity::scene::{ParameterError, SceneError};
 use asperity::simulation::SimulationError;
-use asperity_cli::{CalibrateError, FileError, PackError};
+use asperity_cli::{FileError, PackError};
+use asperity_study::calibration::{CalibrationError, MeasuredFrictionError};
 use asperity_study::contact::ContactError;
 use asperity_study::files::ReadError;
 use asperity_study::fit::FitError;
@@ -154,10 +155,10 @@ impl Raise for FitError {
     }
 }
 
-impl Raise for CalibrateError {
+impl Raise for CalibrationError {
     fn raise(self) -> PyErr {
         match self {
-            Self::File(error) => error.raise(),
+            Self::Read(error) | Self::Measured(MeasuredFrictionError::Read(error)) => error.raise(),
             error => PyValueError::new_err(error.to_string()),
         }
     }

@@ -1,7 +1,6 @@
 //! The commands of the program, one module each, and what they share.
 //!
-//! [`execute`] is the program. What its commands compute is in `asperity-study`, but for
-//! calibrations ([`calibrate_scene`]) and FMUs ([`write_fmu`]).
+//! [`execute`] is the program. What its commands compute is in `asperity-study`, but for FMUs ([`write_fmu`]).
 
 mod calibrate;
 mod cli;
@@ -38,7 +37,6 @@ use std::error::Error;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-pub use calibrate::{CalibrateError, CalibratedParameter, Calibration, CalibrationOptions, calibrate_scene};
 use clap::Parser as _;
 use cli::{Arguments, Command};
 pub use files::FileError;

@@ -1,6 +1,7 @@
 //! What one computes with scenes.
 
 pub mod calibration;
+pub mod comparison;
 pub mod contact;
 pub mod converge;
 pub mod csv;

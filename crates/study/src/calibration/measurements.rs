@@ -1,10 +1,15 @@
 //! Tables of measured friction: columns by their names and units.
 
+use std::path::Path;
+
 use asperity::element::{Load, OperatingPoint};
 use asperity::tables::{
     ABOVE_ZERO, Choice, ContentError, Dimension, FINITE, Format, Others, ReadingNote, Table, UnitRule, Wanted, Words,
     decode,
 };
+
+use super::error::MeasuredFrictionError;
+use crate::files;
 
 /// A measured friction coefficient.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -133,6 +138,15 @@ impl Measurements {
             Measured { line, point, friction, sigma: deviation.as_ref().map(|_| sigma) }
         };
         Ok(Self { rows: rows.iter().zip(lines).map(row).collect(), notes })
+    }
+
+    /// Reads the table in the file at `path`, as [`Self::parse`] does.
+    ///
+    /// # Errors
+    /// Where the file cannot be read, or the table in it is refused.
+    pub fn read(path: &Path, area: f64) -> Result<Self, MeasuredFrictionError> {
+        let refused = |error| MeasuredFrictionError::Content { path: path.to_owned(), error };
+        Self::parse(&files::bytes(path)?, area).map_err(refused)
     }
 
     /// Whether the standard deviations were measured.

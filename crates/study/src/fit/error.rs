@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
+use asperity::tables::ContentError;
+
 use super::shift_error::ShiftError;
 use crate::files::ReadError;
-use asperity::tables::ContentError;
 
 /// The moduli cannot be read or put together.
 #[derive(Debug, thiserror::Error)]

@@ -1,5 +1,6 @@
 //! The file that moduli are in: a text, or a sheet of a workbook.
 
+use asperity::tables::ContentError;
 use asperity_formats::workbook;
 
 use super::error::FitError;

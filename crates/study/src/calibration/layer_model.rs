@@ -1,10 +1,11 @@
 //! Friction of the layer that slides until it is steady: the expensive model of scenes that cannot be solved for.
 
 use asperity::element::Load;
-use asperity_study::calibration::{CalibrationError, Done, FrictionModel, FrictionParts, SceneAt, Task};
 use rayon::prelude::*;
 
-use asperity_study::sweep::{StopBounds, steady_sliding};
+use super::error::{ModelError, NoSliding};
+use super::model::{Done, FrictionModel, FrictionParts, SceneAt, Task};
+use crate::sweep::{StopBounds, steady_sliding};
 
 /// The layer over the free parameters.
 pub(super) struct LayerModel<'a> {
@@ -24,7 +25,7 @@ impl std::fmt::Debug for LayerModel<'_> {
 }
 
 impl FrictionModel for LayerModel<'_> {
-    fn evaluate(&self, tasks: &[Task], done: &Done<'_>) -> Result<(), CalibrationError> {
+    fn evaluate(&self, tasks: &[Task], done: &Done<'_>) -> Result<(), ModelError> {
         tasks.par_iter().with_max_len(1).enumerate().try_for_each(|(index, task)| {
             let scene = (self.scene_at)(&task.parameters)?;
             let found = steady_sliding(&scene, &task.point, Load::Pressure { area: self.area }, self.bounds);
@@ -33,7 +34,7 @@ impl FrictionModel for LayerModel<'_> {
                 fine: sliding.fine(),
                 shear: sliding.friction() - sliding.hysteresis(),
             });
-            done(index, parts.map_err(|problem| problem.to_string()))
+            done(index, parts.map_err(NoSliding::new))
         })
     }
 
