@@ -7,8 +7,9 @@ use std::path::Path;
 use asperity::patch::{MotionError, PatchError, RestoreError};
 use asperity::scene::{ParameterError, SceneError};
 use asperity::simulation::SimulationError;
-use asperity_cli::{CalibrateError, ContactError, FileError, FitError, PackError, SweepError};
+use asperity_cli::{CalibrateError, ContactError, FileError, FitError, SweepError};
 use asperity_study::files::ReadError;
+use asperity_study::pack::PackError;
 use asperity_study::settings::OverrideError;
 use pyo3::exceptions::{PyFileNotFoundError, PyKeyError, PyOSError, PyValueError};
 use pyo3::prelude::*;
@@ -169,7 +170,7 @@ impl Raise for CalibrateError {
 impl Raise for PackError {
     fn raise(self) -> PyErr {
         match self {
-            Self::File(error) => error.raise(),
+            Self::Read(error) => error.raise(),
             error => PyValueError::new_err(error.to_string()),
         }
     }

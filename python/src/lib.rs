@@ -6,6 +6,7 @@ mod calibrate;
 mod contact;
 mod errors;
 mod fit;
+mod pack;
 mod patch;
 mod program;
 mod run;

@@ -15,7 +15,6 @@ mod elements;
 mod figure;
 mod files;
 mod fit;
-mod html;
 mod interrupt;
 mod lock;
 mod material;
@@ -46,7 +45,6 @@ pub use contact::{ContactError, ContactFields, ContactOptions, SolvedContact, so
 pub use elements::{ElementField, ElementFields};
 pub use files::FileError;
 pub use fit::{FitError, FitOptions, FittedModuli, fit_moduli};
-pub use pack::{PackError, write_fmu};
 pub use runner::{InputSample, Rows, Runner};
 pub use sweep::{
     Loads, MethodError, NeverSteady, SlidingOptions, StoredRow, SweepError, SweepMethod, SweepOptions, SweepPlan,

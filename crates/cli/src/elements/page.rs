@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::{Element, ElementHistory, Span, Touch};
 use crate::files::{self, FileError};
-use crate::html::fill;
+use asperity_study::html::fill;
 
 const TEMPLATE: &str = include_str!("animation.html");
 

@@ -27,7 +27,7 @@ const ROUNDING: f64 = 1e-6;
 
 /// An element or a patch cannot be compared with its layer.
 #[derive(Debug, thiserror::Error)]
-pub enum CheckError {
+pub(crate) enum CheckError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error("--check: {0}")]

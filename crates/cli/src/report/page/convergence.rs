@@ -9,11 +9,11 @@ use quick_xml::escape::escape;
 use super::{NOTHING, count, errors, grouped, head, method, number, per_cent, reason, seconds, short};
 use crate::cli::Report;
 use crate::figure::{Ladder, LadderPanel, Ladders, Rung, Stroke};
-use crate::html::{Cell, fill, table};
 use crate::report::convergence::{CommunicationRow, PATIENCE, PROGRAM, Timed, ToleranceRow};
 use crate::report::reference::{Comparison, Reference};
 use crate::report::run::{MasterInputs, RunFigures};
 use crate::report::trace::{Errors, QUANTITIES, WINDOWS};
+use asperity_study::html::{Cell, fill, table};
 
 const TOLERANCES: &str = include_str!("tolerances.html");
 /// The errors that a user may settle for.

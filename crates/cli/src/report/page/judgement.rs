@@ -7,8 +7,8 @@ use asperity_study::robustness::{KEPT, TIGHTER};
 use super::robustness::factors;
 use super::{NOTHING, grouped, head, number, short, three_digits};
 use crate::figure::{Ladder, LadderPanel, Ladders, Rung, Stroke};
-use crate::html::{Cell, fill, table};
 use crate::report::judgement::{Judgement, Ratios, Standing, median};
+use asperity_study::html::{Cell, fill, table};
 
 const TEMPLATE: &str = include_str!("judgement.html");
 /// A run's ratio, in the figure.

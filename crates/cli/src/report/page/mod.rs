@@ -13,7 +13,7 @@ use quick_xml::escape::escape;
 use super::machine::{Machine, build};
 use super::reference::Reference;
 use super::trace::Errors;
-use crate::html::{Cell, fill, table};
+use asperity_study::html::{Cell, fill, table};
 
 pub(super) use convergence::{communication, communication_picture, tolerance_picture, tolerances};
 pub(super) use judgement::{SceneJudgements, judgement_picture, judgements};

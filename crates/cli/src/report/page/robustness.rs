@@ -7,9 +7,9 @@ use asperity_study::robustness::{KEPT, NOTABLE, Perturbation, ScaledQuantity, TI
 use quick_xml::escape::escape;
 
 use super::{NOTHING, head, method, short};
-use crate::html::{Cell, fill, table};
 use crate::report::robustness::{BUDGET, COMMUNICATION_STEPS, MAX_COMMUNICATION_STEPS, Robustness, SHORT_STEPS, Trial};
 use crate::report::run::Counts;
+use asperity_study::html::{Cell, fill, table};
 
 const TEMPLATE: &str = include_str!("robustness.html");
 const PAIRS: &str = include_str!("robustness-pairs.html");

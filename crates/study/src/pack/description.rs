@@ -8,7 +8,7 @@ use asperity_fmi::{CAPABILITIES, Category, Experiment, FmuModel, Kind, Role, Var
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 
-use asperity_study::decimals::decimal;
+use crate::decimals::decimal;
 
 type Xml = Writer<Vec<u8>>;
 
@@ -239,7 +239,7 @@ mod tests {
     use super::*;
 
     /// The description of the default scene is kept in the repository, so that a change is seen. To accept an
-    /// intended one: `BLESS=1 cargo test --bin asperity golden`.
+    /// intended one: `BLESS=1 cargo test -p asperity-study golden`.
     #[test]
     fn the_default_scene_has_the_golden_description() {
         let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));

@@ -7,7 +7,7 @@ use quick_xml::escape::escape;
 
 use super::description;
 use crate::html::{self, Cell};
-use crate::terminal::LabelledLine;
+use crate::labelled::LabelledLine;
 
 const LAYER_PAGE: &str = include_str!("../../../../modelDescription/documentation/index.html");
 const PATCH_PAGE: &str = include_str!("../../../../modelDescription/documentation/patch.html");

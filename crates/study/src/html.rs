@@ -7,16 +7,17 @@ use quick_xml::events::BytesText;
 
 type Html = Writer<Vec<u8>>;
 
+/// A cell of a table.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Cell {
+pub struct Cell {
     /// What it says, as plain text.
-    pub(crate) text: String,
+    pub text: String,
     /// Its class in the style sheet; empty for none.
-    pub(crate) class: String,
+    pub class: String,
     /// The columns that it fills.
-    pub(crate) span: usize,
+    pub span: usize,
     /// What it says more of where it is pointed at; empty for nothing.
-    pub(crate) title: String,
+    pub title: String,
 }
 
 impl<T: Into<String>> From<T> for Cell {
@@ -26,12 +27,15 @@ impl<T: Into<String>> From<T> for Cell {
 }
 
 /// Fills a template in: `{{name}}` and the like stand for what they say.
-pub(crate) fn fill(template: &str, fields: &[(&str, String)]) -> String {
+pub fn fill(template: &str, fields: &[(&str, String)]) -> String {
     fields.iter().fold(template.to_owned(), |page, (field, text)| page.replace(&format!("{{{{{field}}}}}"), text))
 }
 
 /// A table with one line of names above its rows, if there are any.
-pub(crate) fn table(head: &[Cell], rows: &[Vec<Cell>]) -> io::Result<String> {
+///
+/// # Errors
+/// Where it cannot be written, which does not happen in memory.
+pub fn table(head: &[Cell], rows: &[Vec<Cell>]) -> io::Result<String> {
     let mut html = Writer::new_with_indent(Vec::new(), b' ', 1);
     html.create_element("table").write_inner_content(|html| {
         if !head.is_empty() {
