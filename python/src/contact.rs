@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use asperity_cli::{ContactOptions, SolvedContact, solve_contact};
+use asperity_study::contact::{ContactOptions, SolvedContact, solve_contact};
 use numpy::IntoPyArray as _;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -7,10 +7,12 @@ use std::path::Path;
 use asperity::patch::{MotionError, PatchError, RestoreError};
 use asperity::scene::{ParameterError, SceneError};
 use asperity::simulation::SimulationError;
-use asperity_cli::{CalibrateError, ContactError, FileError, FitError, SweepError};
+use asperity_cli::{CalibrateError, FileError, FitError};
+use asperity_study::contact::ContactError;
 use asperity_study::files::ReadError;
 use asperity_study::pack::PackError;
 use asperity_study::settings::OverrideError;
+use asperity_study::sweep::SweepError;
 use pyo3::exceptions::{PyFileNotFoundError, PyKeyError, PyOSError, PyValueError};
 use pyo3::prelude::*;
 
@@ -133,19 +135,13 @@ impl Raise for RestoreError {
 
 impl Raise for SweepError {
     fn raise(self) -> PyErr {
-        match self {
-            Self::File(error) => error.raise(),
-            error => scene_error(&error, None, None, ""),
-        }
+        scene_error(&self, None, None, "")
     }
 }
 
 impl Raise for ContactError {
     fn raise(self) -> PyErr {
-        match self {
-            Self::File(error) => error.raise(),
-            error => scene_error(&error, None, None, ""),
-        }
+        scene_error(&self, None, None, "")
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use asperity::element::{OperatingPoint, PointContact, Table};
-use asperity_cli::{Loads, SlidingOptions, SweepMethod, SweepOptions, SweepPlan, SweepTable};
+use asperity_study::sweep::{Loads, SlidingOptions, SweepError, SweepMethod, SweepOptions, SweepPlan, SweepTable};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -83,7 +83,7 @@ pub(crate) fn sweep(
             (table.text(), warnings)
         }))
     })?;
-    let found = found.map_err(|error: asperity_cli::SweepError| error.raise())?;
+    let found = found.map_err(|error: SweepError| error.raise())?;
     // It is only stopped where nobody waits.
     found.ok_or_else(|| PyValueError::new_err("stopped"))
 }

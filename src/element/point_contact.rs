@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use super::quantity::Quantity;
 use super::table::Table;
-use super::table_format::Quantity;
 use crate::outputs::{Dependencies, Output, Variable, variable};
 use crate::scene::{Extrapolation, Parameter, ParameterError, Problem, TableExtrapolation, Value};
 

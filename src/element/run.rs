@@ -9,7 +9,7 @@ use super::jenkins::{Jenkins, MotionRates, Recorder};
 use super::law::{Contact, Law, LawAtSpeed};
 use super::limits::ROUNDING;
 use super::point_contact::{OutputTerms, PointContact, element_output};
-use super::table_format::Quantity;
+use super::quantity::Quantity;
 use crate::math::{Expansion, not_finite};
 use crate::model::Mode;
 use crate::outputs::Variable;

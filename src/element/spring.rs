@@ -72,11 +72,14 @@ fn falls<T: Number>(before: T, after: T) -> bool {
 pub(crate) fn apply_jump<T: Number>(force: [T; 2], stiffness: T, law: &SpringLaw<T>) -> ([T; 2], f64) {
     let square = |g: [T; 2]| g[0] * g[0] + g[1] * g[1];
     let (k, limit) = (law.stiffness, law.limit);
+    // G²/K, twice the energy of the spring, before and after.
     let before = square(force).value() / (stiffness.value() + TINY);
     let one = T::constant(1.0);
+    // e stays where K falls, G where it grows.
     let share = k / (stiffness + T::constant(TINY));
     let kept = share.or(falls(stiffness, k), (share + one).times(0.5).or(is_level(stiffness, k), one));
     let force = force.map(|g| g * kept);
+    // |G| ≤ L.
     let size = square(force);
     let cut = limit / (size + T::constant(TINY)).sqrt();
     let cut = cut.or(size.value() > limit.value() * limit.value(), T::constant(1.0));
@@ -86,37 +89,104 @@ pub(crate) fn apply_jump<T: Number>(force: [T; 2], stiffness: T, law: &SpringLaw
     (force, if lost > 0.0 { lost } else { 0.0 })
 }
 
-/// Takes a spring with |G| ≤ L through a segment.
+/// The stiffnesses K with which a spring is elongated by its force, where a segment begins and where it ends.
+#[derive(Clone, Copy)]
+struct AppliedStiffness<T> {
+    begin: T,
+    end: T,
+    /// The mean of both contacts' stiffnesses.
+    middle: T,
+    falls: bool,
+}
+
+impl<T: Number> AppliedStiffness<T> {
+    /// That of the contact where it falls, the mean of both ends where it grows.
+    #[inline(always)]
+    fn new(begin: T, end: T) -> Self {
+        let (falls, level) = (falls(begin, end), is_level(begin, end));
+        let middle = (begin + end).times(0.5);
+        let growing = |k: T| (k + middle).times(0.5).or(level, middle);
+        Self { begin: begin.or(falls, growing(begin)), end: end.or(falls, growing(end)), middle, falls }
+    }
+}
+
+/// The radius L/K, up to which a spring may be elongated, over a segment: it changes straight.
+#[derive(Clone, Copy)]
+struct Radius<T> {
+    start: T,
+    growth: T,
+    end: T,
+}
+
+/// The part of a segment in which a spring slips, after a stick.
+#[derive(Clone, Copy)]
+struct Slip<T> {
+    /// The fraction of the displacement after which it begins.
+    begins: T,
+    /// e where the segment ends, m.
+    elongation: [T; 2],
+    /// How far the face slides along G, ∫ s dt, m.
+    distance: T,
+}
+
+/// Takes a spring with |G| ≤ L through a segment (docs/patch.md, "An element").
 #[inline(always)]
 pub(crate) fn advance<T: Number>(force: [T; 2], segment: &Segment<T>) -> Advanced<T> {
-    // The stiffness that applies at both ends: that of the contact where it falls, the mean of both where it grows.
     let (tiny, one) = (T::constant(TINY), T::constant(1.0));
     let (begin, end) = (segment.begin, segment.end);
-    let (falls, level) = (falls(begin.stiffness, end.stiffness), is_level(begin.stiffness, end.stiffness));
-    let middle = (begin.stiffness + end.stiffness).times(0.5);
-    let growing = |k: T| (k + middle).times(0.5).or(level, middle);
-    let (k_a, k_b) =
-        (begin.stiffness.or(falls, growing(begin.stiffness)), end.stiffness.or(falls, growing(end.stiffness)));
-    // The elongation at both ends if it sticks, the radii L/K.
+    let applied = AppliedStiffness::new(begin.stiffness, end.stiffness);
+    let (k_a, k_b) = (applied.begin, applied.end);
+    // e = G/K where the segment begins, and the radii L/K at both ends.
     let per = one / (k_a + tiny);
     let [dx, dy] = segment.displacement;
-    let (ex, ey) = (force[0] * per, force[1] * per);
-    let l0 = begin.limit * per;
-    let l1 = (end.limit / (k_b + tiny)).or(k_b.value() > 0.0, l0);
-    let growth = l1 - l0;
-    let (tx, ty) = (ex + dx, ey + dy);
-    // Exactly 1 where the stiffness stays: a spring that stands is left alone.
+    let e = [force[0] * per, force[1] * per];
+    let start = begin.limit * per;
+    let last = (end.limit / (k_b + tiny)).or(k_b.value() > 0.0, start);
+    let radius = Radius { start, growth: last - start, end: last };
+    // If it sticks dG/dt = K v + min(dK/dt, 0)/K G: e grows by Δ, and G ends at G K_b/K_a + K_b Δ. The ratio is exactly 1
+    // where the stiffness stays: a spring that stands is left alone.
     let share_kept = k_b / (k_a + tiny);
     let stuck = [force[0] * share_kept + k_b * dx, force[1] * share_kept + k_b * dy];
-    let slips = (tx * tx + ty * ty).value() > (l1 * l1).value();
+    let trial = [e[0] + dx, e[1] + dy];
+    // It slips if it would be elongated beyond the radius.
+    let slips = (trial[0] * trial[0] + trial[1] * trial[1]).value() > (last * last).value();
+    let slip = slip(e, segment, &radius);
+    let [x, y] = [slip.elongation[0].or(slips, trial[0]), slip.elongation[1].or(slips, trial[1])];
+    let force = [(k_b * x).or(slips, stuck[0]), (k_b * y).or(slips, stuck[1])];
 
-    // It sticks over a fraction t of the displacement and slips over the rest.
+    // ∫ L s dt by the mean of the limits where the slip begins and where it ends.
+    let limit = begin.limit + (end.limit - begin.limit) * slip.begins;
+    let by_slip = (limit + end.limit).times(0.5) * slip.distance;
+    let by_slip = by_slip.or(slips && by_slip.value() > 0.0, T::constant(0.0));
+    let square = |e: [T; 2]| (e[0] * e[0] + e[1] * e[1]).value();
+    Advanced { force, slips, slip: by_slip, release: released(&applied, segment, square(e), square([x, y])) }
+}
+
+/// ∫ ½ (|G|/K)² |dK| over a segment, J, from the squares of the applied elongations at its ends.
+#[inline(always)]
+fn released<T: Number>(applied: &AppliedStiffness<T>, segment: &Segment<T>, before: f64, after: f64) -> f64 {
+    let [k_0, k_1] = [segment.begin.stiffness.value(), segment.end.stiffness.value()];
+    let middle = applied.middle.value();
+    // Where K falls by the trapezoidal rule of e². Where it grows e is G over the mean K_m: K_m/K times e² at each end gives
+    // for a G that stays ½ G² (1/K_0 - 1/K_1), the integral. Finite where a stiffness begins at 0, times a force that does
+    // too.
+    let share = |k: f64| if applied.falls { 1.0 } else { (middle / (k + TINY)).min(f64::MAX) };
+    let (share_0, share_1) = (share(k_0), share(k_1));
+    0.25 * (k_1 - k_0).abs() * (before * share_0 + after * share_1)
+}
+
+/// A spring elongated by `e` (m) that sticks over a fraction of the displacement and slips over the rest.
+#[inline(always)]
+fn slip<T: Number>(e: [T; 2], segment: &Segment<T>, radius: &Radius<T>) -> Slip<T> {
+    let (tiny, one) = (T::constant(TINY), T::constant(1.0));
+    let [dx, dy] = segment.displacement;
     let square = dx * dx + dy * dy;
-    let t = fraction_of_stick([ex, ey], [dx, dy], l0, growth);
+    // |e| reaches the radius after the fraction t; from there on λ is the displacement over the mean radius.
+    let t = fraction_of_stick(e, [dx, dy], radius.start, radius.growth);
     let rest = one - t;
     let distance = square.sqrt() + tiny;
-    let radius = l0 + growth * t;
-    let mean = (radius + l1).times(0.5) + tiny;
+    let begins_at = radius.start + radius.growth * t;
+    let mean = (begins_at + radius.end).times(0.5) + tiny;
     let travel = distance * rest;
     let lambda = travel / mean;
     let decay = (-lambda.smaller(T::constant(LONG))).exp();
@@ -124,44 +194,39 @@ pub(crate) fn advance<T: Number>(force: [T; 2], segment: &Segment<T>) -> Advance
     // The direction of the displacement, turned as the velocity turns meanwhile.
     let share = t.times(0.5) + rest * lag(lambda, decay);
     // A displacement that is nothing beside the radius has no direction: G is cut where it points.
-    let least = STANDING * l1.value();
+    let least = STANDING * radius.end.value();
     let moves = square.value() > least * least;
     let per_distance = (one / distance).or(moves, T::constant(0.0));
     let [ux, uy] = turned([dx * per_distance, dy * per_distance], segment.half_turn * share);
-    // G turns towards it: tan(α/2) falls as e^-λ.
-    let (nx, ny) = (ex + dx * t, ey + dy * t);
+
+    // α, from that direction to G where the slip begins.
+    let (nx, ny) = (e[0] + dx * t, e[1] + dy * t);
     let size = one / (nx * nx + ny * ny + tiny).sqrt();
     let (nx, ny) = (nx * size, ny * size);
     let (cos, sin) = (nx * ux + ny * uy, ux * ny - uy * nx);
+    // tan(α/2) falls as e^-λ: with w = tan²(α/2), whole/2 = (1 + w e^-2λ)/(1 + w), and cos α and sin α at the end follow.
     let decay_2 = decay * decay;
     let whole = (one + cos) + (one - cos) * decay_2 + tiny;
     let per_whole = one / whole;
     let (cos_1, sin_1) = (((one + cos) - (one - cos) * decay_2) * per_whole, (sin * decay).times(2.0) * per_whole);
-    let slipped =
-        [(l1 * (cos_1 * ux - sin_1 * uy)).or(moves, l1 * nx), (l1 * (cos_1 * uy + sin_1 * ux)).or(moves, l1 * ny)];
-
-    // The energies lost.
-    let along = travel + mean * whole.times(0.5).ln() - (l1 - radius);
-    let limit = begin.limit + (end.limit - begin.limit) * t;
-    let by_slip = (limit + end.limit).times(0.5) * along;
-    let (x, y) = (slipped[0].or(slips, tx), slipped[1].or(slips, ty));
-    let (k_0, k_1, k_m) = (begin.stiffness.value(), end.stiffness.value(), middle.value());
-    let (before, after) = ((ex * ex + ey * ey).value(), (x * x + y * y).value());
-    // Finite where a stiffness begins at 0, times a force that does too.
-    let share = |k: f64| if falls { 1.0 } else { (k_m / (k + TINY)).min(f64::MAX) };
-    let (share_0, share_1) = (share(k_0), share(k_1));
-    let release = 0.25 * (k_1 - k_0).abs() * (before * share_0 + after * share_1);
-    let force = [(k_b * x).or(slips, stuck[0]), (k_b * y).or(slips, stuck[1])];
-    Advanced { force, slips, slip: by_slip.or(slips && by_slip.value() > 0.0, T::constant(0.0)), release }
+    let elongation = [
+        (radius.end * (cos_1 * ux - sin_1 * uy)).or(moves, radius.end * nx),
+        (radius.end * (cos_1 * uy + sin_1 * ux)).or(moves, radius.end * ny),
+    ];
+    // ∫ cos α over the displacement, mean (λ + ln((1 + w e^-2λ)/(1 + w))), less what the elongation grows by.
+    let along = travel + mean * whole.times(0.5).ln() - (radius.end - begins_at);
+    Slip { begins: t, elongation, distance: along }
 }
 
 /// The fraction of a displacement after which |e| reaches the radius, which grows straight from `radius` by `growth`.
 #[inline(always)]
 fn fraction_of_stick<T: Number>(e: [T; 2], d: [T; 2], radius: T, growth: T) -> T {
     let (tiny, zero, one) = (T::constant(TINY), T::constant(0.0), T::constant(1.0));
+    // |e + d t|² = (radius + growth t)²: a t² + 2 b t + c = 0, of which c ≤ 0.
     let a = d[0] * d[0] + d[1] * d[1] - growth * growth;
     let b = e[0] * d[0] + e[1] * d[1] - radius * growth;
     let c = (e[0] * e[0] + e[1] * e[1] - radius * radius).smaller(zero);
+    // The root at which |e| comes up to the radius, without cancellation whatever the sign of b.
     let root = (b * b - a * c).larger(zero).sqrt();
     let outwards = b.value() > 0.0;
     let fraction = (-c).or(outwards, root - b) / ((b + root).or(outwards, a) + tiny);
@@ -174,6 +239,7 @@ fn lag<T: Number>(lambda: T, decay: T) -> T {
     let one = T::constant(1.0);
     let long = lambda.larger(T::constant(SHORT));
     let decay = decay.smaller(T::constant(1.0 - 0.5 * SHORT));
+    // For short λ the first term of the series, λ/12.
     let exact = one / (one - decay) - one / long - T::constant(0.5);
     exact.or(lambda.value() > SHORT, lambda.times(1.0 / 12.0))
 }

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::grid::{Load, OperatingPoint, SweepGrid};
-use super::table_format::{Basis, Quantity, STEADY, TableError, TableRow, TableText};
+use super::quantity::Quantity;
+use super::table_format::{Basis, STEADY, TableError, TableRow, TableText};
 use crate::scene::read_text;
 
 /// A table, checked: every point of the grid has a row and was steady.

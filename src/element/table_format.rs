@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::grid::{Load, OperatingPoint, SweepGrid};
+use super::quantity::{Need, Quantity, column_name};
 use crate::scene::{SMALLEST, is_possible};
 use crate::tables;
 
@@ -17,120 +18,6 @@ pub const FORMAT: &str = "# asperity sweep = 1";
 pub const STEADY: &str = "steady";
 /// The columns before those of [`Quantity`]; `{load}` and `{unit}` stand for those of the table's [`Load`].
 const POINT_COLUMNS: [&str; 4] = ["speed [m/s]", "{load} [{unit}]", "temperature [K]", "status"];
-
-/// The values that a column may hold.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Range {
-    Any,
-    NonNegative,
-    Positive,
-}
-
-/// What an element makes of a column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Need {
-    Required,
-    Optional,
-    Ignored,
-}
-
-struct Column {
-    name: &'static str,
-    range: Range,
-    need: Need,
-}
-
-macro_rules! columns {
-    ($($(#[$doc:meta])* $quantity:ident: $name:literal, $range:ident, $need:ident;)*) => {
-        /// The columns of numbers of a table.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub enum Quantity {
-            $($(#[$doc])* $quantity,)*
-        }
-
-        const COLUMNS: [Column; Quantity::ALL.len()] =
-            [$(Column { name: $name, range: Range::$range, need: Need::$need },)*];
-
-        impl Quantity {
-            /// All of them, in their order in a file.
-            pub const ALL: [Self; [$(Self::$quantity),*].len()] = [$(Self::$quantity),*];
-        }
-    };
-}
-
-columns! {
-    /// Friction coefficient, 1.
-    Friction: "friction [1]", NonNegative, Required;
-    /// Standard error of the friction coefficient, 1.
-    FrictionStandardError: "friction_standard_error [1]", NonNegative, Ignored;
-    /// Part of the friction coefficient that is hysteresis, 1.
-    Hysteresis: "friction_hysteresis [1]", Any, Optional;
-    /// Part of the friction coefficient that is hysteresis of the waves that the profile lacks, 1; a part of the former.
-    FineHysteresis: "friction_fine [1]", Any, Ignored;
-    /// Part of the friction coefficient that is adhesion, 1.
-    Adhesion: "friction_adhesion [1]", Any, Ignored;
-    /// Mean load over the window, Pa or N.
-    MeanLoad: "mean_{load} [{unit}]", Positive, Ignored;
-    /// Masses in contact over all masses, 1.
-    ContactRatio: "contact_ratio [1]", NonNegative, Optional;
-    /// Area that touches with the roughness below the profile's over the nominal area, 1.
-    RealArea: "area_real [1]", NonNegative, Ignored;
-    /// Mean flash temperature of what is in contact, above the mean of the surface, K.
-    FlashMean: "flash_mean [K]", Any, Ignored;
-    /// Power lost in dampers, W.
-    DamperPower: "P_damper [W]", NonNegative, Optional;
-    /// Power lost in Maxwell elements, W.
-    MaxwellPower: "P_maxwell [W]", NonNegative, Optional;
-    /// Power lost in friction, W.
-    FrictionPower: "P_friction [W]", NonNegative, Optional;
-    /// Power lost in impacts, W.
-    ImpactPower: "P_impact [W]", NonNegative, Optional;
-    /// Mean separation of the carrier's rest line and the profile's mean line, m.
-    Separation: "separation [m]", Any, Required;
-    /// Tangential stiffness at the start of motion, N/m.
-    Stiffness: "tangential_stiffness [N/m]", Positive, Required;
-    /// Displacement w of the carrier, m.
-    Displacement: "w [m]", Any, Ignored;
-    /// Number of displacements w that were tried, 1.
-    Runs: "runs [1]", Positive, Ignored;
-    /// Simulated time of the last run, s.
-    Time: "time [s]", Positive, Ignored;
-}
-
-impl Quantity {
-    /// The powers lost, by channel.
-    pub const CHANNELS: [Self; 4] = [Self::DamperPower, Self::MaxwellPower, Self::FrictionPower, Self::ImpactPower];
-
-    fn column(self) -> &'static Column {
-        &COLUMNS[self as usize]
-    }
-
-    fn name(self, load: Load) -> String {
-        column_name(self.column().name, load)
-    }
-
-    fn expected(self) -> &'static str {
-        match self.column().range {
-            Range::Any => "a number",
-            Range::NonNegative => "a number, 0 or more",
-            Range::Positive => "a number above 0",
-        }
-    }
-
-    fn allows(self, value: f64) -> bool {
-        is_possible(value)
-            && match self.column().range {
-                Range::Any => true,
-                Range::NonNegative => value >= 0.0,
-                Range::Positive => value >= SMALLEST,
-            }
-    }
-}
-
-/// The name of a column in a table of such loads.
-fn column_name(template: &str, load: Load) -> String {
-    template.replace("{load}", load.name()).replace("{unit}", load.unit())
-}
 
 /// The names of all columns, in their order in a file.
 fn columns(load: Load) -> Vec<String> {

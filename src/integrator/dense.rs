@@ -9,18 +9,17 @@
 use std::ops::Range;
 
 use super::carrier_sums::{AxisSums, CarrierSums, LinkState, Placement};
+use super::dense_workspace::DenseWorkspace;
 use super::interpolation::{Interpolation, Velocities, parabola};
-use super::maxwell::{ElementWeights, by_rate};
+use super::maxwell::by_rate;
 use super::method::{RungeKutta, Stages, TimeSpan};
 use super::parabolas::Parabolas;
-use super::scheme::Scheme;
 use super::stage_values::StageValues;
 use super::tableau::{GAMMA, Weights};
 use super::tolerance::Tolerance;
-use crate::math::{BLOCK, Relaxation, dot, weighted_sum, with_widest_vectors};
+use crate::math::{BLOCK, dot, weighted_sum, with_widest_vectors};
 use crate::model::{
-    ByAxis, ByLink, Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State,
-    SurfacePoint,
+    ByAxis, Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint,
 };
 
 /// The interpolant of one step by the values at its stages.
@@ -157,7 +156,7 @@ impl<'a> DenseOutput<'a> {
     }
 
     /// `from` plus the weighted values of the stages plus `shift`, of the masses that are meant.
-    fn combine(
+    pub(super) fn combine(
         &self,
         out: &mut [f64],
         weights: &Weights,
@@ -203,7 +202,7 @@ impl<'a> DenseOutput<'a> {
             let here = match state.mode[i] {
                 Mode::Stick => 0.0,
                 Mode::Free => {
-                    let (f_x, f_z) = (forces.on_mass_x[i] / self.model.mass, forces.on_mass_z[i] / self.model.mass);
+                    let ByAxis { x: f_x, z: f_z } = forces.on_mass(i).map(|force| force / self.model.mass);
                     missed(f_x, a_x, v_x, inertial.x).max(missed(f_z, a_z, v_z, inertial.z))
                 }
                 mode => {
@@ -373,19 +372,20 @@ impl<'a> DenseOutput<'a> {
         let carrier = self.carrier_at(theta, workspace);
         let here = self.mass_at(i, &carrier, workspace);
         let to_carrier = LinkState { velocity: here.links.velocity - carrier.now.rates(), ..here.links };
-        let mut force_x = -self.link_force(LinkKind::Horizontal, i, &to_carrier, workspace);
-        let mut force_z = -self.link_force(LinkKind::Vertical, i, &to_carrier, workspace);
+        let mut force = ByAxis {
+            x: -self.link_force(LinkKind::Horizontal, i, &to_carrier, workspace),
+            z: -self.link_force(LinkKind::Vertical, i, &to_carrier, workspace),
+        };
         for (j, link, sign) in [(i.wrapping_sub(1), i.wrapping_sub(1), -1.0), (i + 1, i, 1.0)] {
             if j >= self.model.masses() {
                 continue;
             }
             let between = LinkState::between(&here.links, &self.mass_at(j, &carrier, workspace).links, sign);
-            force_x += sign * self.link_force(LinkKind::LateralX, link, &between, workspace);
-            force_z += sign * self.link_force(LinkKind::LateralZ, link, &between, workspace);
+            force.x += sign * self.link_force(LinkKind::LateralX, link, &between, workspace);
+            force.z += sign * self.link_force(LinkKind::LateralZ, link, &between, workspace);
         }
-        let of_end = carrier.now.on_end(i, self.model.masses());
-        (force_x, force_z) = (force_x + of_end.x, force_z + of_end.z);
-        ContactForces::new(self.model, (force_x, force_z), here.links.velocity.x, &here.surface)
+        let force = force + carrier.now.on_end(i, self.model.masses());
+        ContactForces::new(self.model, force, here.links.velocity.x, &here.surface)
     }
 
     /// The forces along x and z of the lateral links between mass `i` and the next at the fraction `theta`, N.
@@ -461,115 +461,4 @@ fn inertial_fraction(model: &Model, beta: f64) -> ByAxis<f64> {
     };
     let inertia = model.mass / beta;
     ByAxis::from_fn(|axis| inertia / (inertia + weight(axis.link()) + 2.0 * weight(axis.lateral())))
-}
-
-/// Workspace of [`DenseOutput`]: the weights of the stages at one fraction of a step.
-#[derive(Clone, Debug)]
-pub struct DenseWorkspace {
-    /// The scheme and the length of the step and its fraction for which the weights are set; `None` where they are not.
-    at: Option<(Scheme, f64, f64)>,
-    /// Of the stages' values in a value.
-    values: Weights,
-    /// Of the stages' rates in a value's change since the start, s.
-    integral: Weights,
-    /// By relaxation time.
-    elements: Vec<ElementWeights>,
-    /// By relaxation time: the exact solution over the whole step.
-    whole: Vec<Relaxation>,
-    /// By kind of link: of the stages' elongation rates in the force of all Maxwell elements, N s/m.
-    of_rate: ByLink<Weights>,
-    /// Of the masses that are meant: their accelerations in the defect, x and v_x in sums.
-    of_masses: [Vec<f64>; 2],
-}
-
-impl DenseWorkspace {
-    /// Workspace for steps of `model`.
-    pub fn new(model: &Model) -> Self {
-        Self {
-            at: None,
-            values: Weights::default(),
-            integral: Weights::default(),
-            elements: vec![ElementWeights::default(); model.relaxation_times.len()],
-            whole: vec![Relaxation::default(); model.relaxation_times.len()],
-            of_rate: ByLink::default(),
-            of_masses: [vec![0.0; model.masses()], vec![0.0; model.masses()]],
-        }
-    }
-
-    /// Workspace for single masses alone, not for [`DenseOutput::defect`] nor for sums over the layer.
-    pub fn for_single_masses(model: &Model) -> Self {
-        Self { of_masses: [Vec::new(), Vec::new()], ..Self::new(model) }
-    }
-
-    /// Forgets the weights: the model has changed.
-    pub fn invalidate(&mut self) {
-        self.at = None;
-    }
-
-    /// The weights of the elements of one row at the fraction for which the weights are set.
-    pub(super) fn element_weights(&self, row: &MaxwellRow) -> &ElementWeights {
-        &self.elements[row.time_index]
-    }
-
-    /// Sets the weights at the fraction `theta` of `step`, unless they are there already.
-    fn set_weights(&mut self, step: &DenseOutput<'_>, theta: f64) {
-        let at = (step.method.scheme, step.span.length, theta);
-        if self.at == Some(at) {
-            return;
-        }
-        let (h, interpolation) = (step.span.length, step.interpolation());
-        self.values = interpolation.values(theta);
-        self.integral = interpolation.integral(theta).map(|weight| h * weight);
-        match interpolation.velocities() {
-            Velocities::Polynomial => self.set_relaxing_elements(step, theta),
-            Velocities::BrokenLine => self.set_linear_elements(step),
-        }
-        self.of_rate = ByLink::default();
-        for row in &step.model.rows {
-            let rates = self.elements[row.time_index].rates;
-            for (weight, rate) in self.of_rate[row.kind].iter_mut().zip(rates) {
-                *weight += row.stiffness * rate;
-            }
-        }
-        self.at = Some(at);
-    }
-
-    /// Lets the elements follow the interpolated rate exactly, less the linear share of the difference at the step's
-    /// own end.
-    fn set_relaxing_elements(&mut self, step: &DenseOutput<'_>, theta: f64) {
-        let h = step.span.length;
-        let is_other_step = self.at.is_none_or(|(scheme, length, _)| (scheme, length) != (step.method.scheme, h));
-        let relaxations = self.elements.iter_mut().zip(&mut self.whole).zip(&step.model.relaxation_times);
-        for ((elements, whole), tau) in relaxations {
-            if is_other_step {
-                *whole = Relaxation::new(h / tau, 1.0);
-            }
-            let here = if theta == 1.0 { *whole } else { Relaxation::new(h / tau, theta) };
-            let driven = std::array::from_fn(|power| h * (here.driven[power] - theta * whole.driven[power]));
-            elements.ends = [here.decay - theta * whole.decay, theta];
-            elements.rates = step.interpolation().combined(&driven);
-        }
-    }
-
-    /// Puts the elements on the broken lines through their elongations at the start, at the first implicit stage and at
-    /// the end.
-    fn set_linear_elements(&mut self, step: &DenseOutput<'_>) {
-        let [of_start, of_first, of_end, ..] = self.values;
-        for (time_index, elements) in self.elements.iter_mut().enumerate() {
-            *elements = step.method.maxwell.weights_between(time_index, 1, [of_start, of_first, of_end]);
-        }
-    }
-
-    /// Computes the accelerations of the interpolant along x and z (m/s²) at the fraction `theta` of `step`, with the
-    /// carrier there.
-    fn set_accelerations(&mut self, step: &DenseOutput<'_>, theta: f64, carrier: &CarrierPoint) {
-        let slope = step.interpolation().slope(theta).map(|weight| weight / step.span.length);
-        let missing = |of_carrier: f64, rate: fn(&CarrierPoint) -> f64| {
-            of_carrier - slope.iter().zip(step.carriers()).map(|(weight, at)| weight * rate(at)).sum::<f64>()
-        };
-        let [x, z] = self.of_masses.each_mut().map(|values| &mut values[..step.masses.len()]);
-        let missing_x = missing(carrier.x.acceleration, |at| at.x.speed);
-        step.combine(x, &slope, None, |stage| &stage.velocity_x, missing_x);
-        step.combine(z, &slope, None, |stage| &stage.velocity_z, missing(carrier.z.acceleration, |at| at.z.speed));
-    }
 }

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::dense::{DenseOutput, DenseWorkspace};
+use super::dense::DenseOutput;
+use super::dense_workspace::DenseWorkspace;
 use crate::model::{Forces, Model, State};
 
 /// The step of a layer that its integrator has attempted last.

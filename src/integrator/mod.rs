@@ -8,6 +8,7 @@
 
 mod carrier_sums;
 mod dense;
+mod dense_workspace;
 mod energy;
 mod error;
 mod heat;
@@ -26,7 +27,8 @@ mod sums;
 mod tableau;
 mod tolerance;
 
-pub use dense::{DenseOutput, DenseWorkspace};
+pub use dense::DenseOutput;
+pub use dense_workspace::DenseWorkspace;
 pub use error::ErrorEstimate;
 pub use interpolation::Interpolation;
 pub use layer_step::{InterpolatedLayer, LayerStep, Overlay};

@@ -9,7 +9,7 @@
 use nalgebra::Vector2;
 
 use super::heat::Heat;
-use super::stage::{SlippingMass, StagePoint, StageSolver};
+use super::stage::{SlipVariation, SlippingMass, StagePoint, StageSolver};
 use super::stage_values::StageValues;
 use crate::model::{Axis, Body, ByAxis, Flash, Forces, Input, LinkKind, LinkMotion, Mode, Model, State, TangentsOf};
 
@@ -52,10 +52,15 @@ pub(super) struct Sensitivity {
     heat_fluxes: Vec<Vec<f64>>,
     /// The variation of what is known of the flash temperatures at the stage, K; likewise.
     known_flash: Vec<f64>,
+    links: LinkVariation,
+}
+
+/// The variation of the forces of the links, and workspace for that of their motion.
+#[derive(Clone, Debug)]
+struct LinkVariation {
     forces: Forces,
-    /// The known part of the motion of the links at a stage, with the unknown velocities not varied; positions relative
-    /// to the carrier, and no elements.
-    known: Variation,
+    /// Positions relative to the carrier, and velocities where they are not those of the state; no elements.
+    motion: Variation,
 }
 
 impl Variation {
@@ -96,8 +101,7 @@ impl Sensitivity {
             stages: vec![Variation::new(model); stages],
             heat_fluxes: vec![vec![0.0; heated]; stages],
             known_flash: vec![0.0; heated],
-            forces: Forces::new(model),
-            known: Variation { maxwell: Vec::new(), ..Variation::new(model) },
+            links: LinkVariation::new(model),
         }
     }
 
@@ -141,6 +145,7 @@ impl Sensitivity {
 
     /// Writes the contribution of the earlier stages, with these weights, in a step of length `h` to `end`.
     fn collect_history(&mut self, h: f64, weights: &[f64]) {
+        // The starred values of [1], varied: δy* = δy_0 + h Σ_{j<i} a_ij δẏ_j.
         for (end, start) in self.end.parts_mut().into_iter().zip(self.start.parts()) {
             end.copy_from_slice(start);
         }
@@ -149,6 +154,7 @@ impl Sensitivity {
                 add(sum, h * weight, term);
             }
         }
+        // Alike of the bodies, whose displacements and speeds are states, too.
         self.end.bodies = self.start.bodies;
         for (stage, weight) in self.stages.iter().zip(weights) {
             for axis in Axis::ALL {
@@ -175,45 +181,54 @@ impl Sensitivity {
                 (self.start.z[i], self.start.v_x[i], self.start.v_z[i]) = (mass.z, mass.v_x, mass.v_z);
             }
         }
-        self.evaluate_forces(model, &carrier);
-        // The rates of the masses, and the heat that they make.
+        self.links.evaluate(model, &self.start, &carrier);
+        // All of δϑ is known at the start: the sum of its parts.
         for i in 0..self.known_flash.len() {
             self.known_flash[i] = self.start.flash.iter().skip(i).step_by(model.masses()).sum();
         }
+        self.set_mass_rates(model, state, forces, accelerations);
+        for i in 0..self.known_flash.len() {
+            let flash = Flash::held(state.flash(i));
+            self.heat_fluxes[0][i] = self.heat_flux(model, state, forces, i, flash, &self.start);
+        }
+        // δ of M U̇ = ΣF_i plus what acts from outside, the equation of motion behind [21].
+        for axis in Axis::ALL {
+            let Some(body) = &model.bodies[axis] else { continue };
+            let motion = self.start.bodies[axis];
+            let acceleration = (self.links.forces.on_carrier(axis) + self.on_body(body, axis, s, motion)) / body.mass;
+            self.stages[0].bodies[axis] = [motion[1], acceleration];
+        }
+        // δȧ_j = δė - δa_j/τ_j of the Maxwell elements.
+        for row in &model.rows {
+            let start = self.start.maxwell[row.range.clone()].iter().zip(&self.links.forces.rate[row.kind]);
+            for (rate, (a, elongation_rate)) in self.stages[0].maxwell[row.range.clone()].iter_mut().zip(start) {
+                *rate = elongation_rate - a / row.relaxation_time;
+            }
+        }
+    }
+
+    /// Computes the rates of the masses at the start of a step from the variations of the state and of the forces there.
+    fn set_mass_rates(&mut self, model: &Model, state: &State, forces: &Forces, accelerations: &[f64]) {
         for i in 0..model.masses() {
-            let on_mass = (self.forces.on_mass_x[i], self.forces.on_mass_z[i]);
+            let on_mass = self.links.forces.on_mass(i);
             let rates = &mut self.stages[0];
             let (x, v_x) = (self.start.x[i], self.start.v_x[i]);
             (rates.x[i], rates.z[i]) = (v_x, self.start.v_z[i]);
             rates.v_x[i] = match state.mode[i] {
-                Mode::Free => on_mass.0 / model.mass,
+                // m δẍ = δf_x.
+                Mode::Free => on_mass.x / model.mass,
                 Mode::Stick => 0.0,
+                // m q² δẍ by all that [6] has in it.
                 Mode::Forward | Mode::Backward => {
                     let flash = Flash::held(state.flash(i));
                     let (slip, friction) = SlippingMass::from_state(model, state, forces, i, accelerations[i], flash);
-                    let forces = (forces.on_mass_x[i], forces.on_mass_z[i]);
+                    let by = SlipVariation { x, velocity: v_x, forces: on_mass };
                     let of_flash = self.known_flash.get(i).map_or(0.0, |known| friction.by_flash * known);
-                    slip.variation(model, (&friction, of_flash), (x, v_x), on_mass, forces) / (model.mass * slip.q2())
+                    slip.variation(model, forces.on_mass(i), &by, &friction, of_flash) / (model.mass * slip.q2())
                 }
             };
-            rates.v_z[i] = on_mass.1 / model.mass;
-        }
-        for i in 0..self.known_flash.len() {
-            self.heat_fluxes[0][i] = self.heat_flux(model, state, forces, i, Flash::held(state.flash(i)));
-        }
-        // Of the bodies.
-        for axis in Axis::ALL {
-            let Some(body) = &model.bodies[axis] else { continue };
-            let motion = self.start.bodies[axis];
-            let acceleration = (self.forces.on_carrier(axis) + self.on_body(body, axis, s, motion)) / body.mass;
-            self.stages[0].bodies[axis] = [motion[1], acceleration];
-        }
-        // Of the Maxwell elements.
-        for row in &model.rows {
-            let start = self.start.maxwell[row.range.clone()].iter().zip(&self.forces.rate[row.kind]);
-            for (rate, (a, elongation_rate)) in self.stages[0].maxwell[row.range.clone()].iter_mut().zip(start) {
-                *rate = elongation_rate - a / row.relaxation_time;
-            }
+            // Of contacts it is not used: their ż follows from ẋ.
+            rates.v_z[i] = on_mass.z / model.mass;
         }
     }
 
@@ -224,25 +239,9 @@ impl Sensitivity {
 
     /// The derivatives at the start of the next step, `s` seconds after the start of the motion.
     pub(super) fn tangents(&mut self, model: &Model, s: f64) -> TangentsOf {
-        self.evaluate_forces(model, &self.carrier(model, s, &self.start.bodies));
-        TangentsOf { force: ByAxis::from_fn(|axis| self.forces.on_carrier(axis)), body: self.start.bodies }
-    }
-
-    /// Computes the variation of the forces of the links for that of the state in `start`.
-    fn evaluate_forces(&mut self, model: &Model, carrier: &CarrierVariation) {
-        let start = &self.start;
-        for i in 0..model.masses() {
-            self.known.x[i] = start.x[i] - carrier.x[0];
-            self.known.z[i] = start.z[i] - carrier.z[0];
-        }
-        let motion = LinkMotion { velocity: ByAxis { x: &start.v_x, z: &start.v_z }, ..self.known.links(carrier) };
-        for kind in LinkKind::ALL {
-            self.forces.spring_and_damper(kind, &model.links[kind], &motion);
-        }
-        for row in &model.rows {
-            add(&mut self.forces.link[row.kind], row.stiffness, &start.maxwell[row.range.clone()]);
-        }
-        self.forces.sum_on_masses();
+        let carrier = self.carrier(model, s, &self.start.bodies);
+        self.links.evaluate(model, &self.start, &carrier);
+        TangentsOf { force: ByAxis::from_fn(|axis| self.links.forces.on_carrier(axis)), body: self.start.bodies }
     }
 
     /// Accepts the last attempted step, which ended with stage `last`.
@@ -251,32 +250,38 @@ impl Sensitivity {
         self.stages.swap(0, last);
         self.heat_fluxes.swap(0, last);
     }
+
     /// Solves stage `i` of a step of length `h` (s) for the tangent: into `end` and the rates of the stage. The
     /// `solver` has solved the stage itself, which lies `s` seconds after the start of the motion and has these
     /// `rates`, and has factored its matrix there; `weights` are those of the earlier stages.
     pub(super) fn solve_stage(&mut self, model: &Model, solver: &mut StageSolver, stage: &Solved<'_>) {
         let &Solved { i, s, h, weights, rates, point, heat } = stage;
+        // The starred values, and δϑ as far as the stages before determine it, [26].
         self.collect_history(h, &weights[..i]);
         heat.vary(i, &self.start.flash, &self.heat_fluxes[..i], &mut self.known_flash);
-        // The known part of a body's motion: its speed, unknown, is not varied.
+        // δf at δv = 0 of [16]; the known part of a body's motion is that without its speed, an unknown.
         let known = self.end.bodies.map(|[displacement, _]| [displacement, 0.0]);
-        self.known_forces(model, solver, point.beta, &self.carrier(model, s, &known));
+        let carrier = self.carrier(model, s, &known);
+        self.links.evaluate_known(model, solver, point.beta, &self.end, &carrier);
         for i in 0..model.masses() {
             solver.system.right[i] = self.right_side(model, solver, i, point.beta, rates.acceleration_x[i]);
         }
+        // The border [22]: [21] varied, its unknown δU not.
         for axis in Axis::ALL {
             if let Some(body) = &model.bodies[axis] {
                 let history = self.end.bodies[axis];
                 let outside = self.on_body(body, axis, s, [history[0], 0.0]) + body.mass / point.beta * history[1];
-                solver.set_border_right(axis, &self.forces, outside);
+                solver.set_border_right(axis, &self.links.forces, outside);
             }
         }
+        // J of the stage's own solution serves: from δv all else follows, as in the stage itself.
         let found = solver.solve_bordered();
         for axis in Axis::ALL {
             self.set_body(axis, found[axis as usize], point.beta, i);
         }
         self.set_masses(model, solver, point.beta, i);
         self.set_elements(model, point.beta, &self.carrier(model, s, &self.end.bodies), i);
+        // The heat of this stage enters δϑ of those behind it, and of the end.
         if !self.known_flash.is_empty() {
             self.set_heat(model, solver, s, i);
             if heat.ends_with(i) {
@@ -288,80 +293,60 @@ impl Sensitivity {
 
     /// Computes the variations of the heat fluxes at stage `stage` from those of the state.
     fn set_heat(&mut self, model: &Model, solver: &StageSolver, s: f64, stage: usize) {
-        // The forces are evaluated in the variation at the start.
-        std::mem::swap(&mut self.start, &mut self.end);
-        self.evaluate_forces(model, &self.carrier(model, s, &self.start.bodies));
+        // δf at the solution; the forces were those of the known part.
+        let carrier = self.carrier(model, s, &self.end.bodies);
+        self.links.evaluate(model, &self.end, &carrier);
         for i in 0..model.masses() {
             let flash = solver.flash.of_mass(i);
-            self.heat_fluxes[stage][i] = self.heat_flux(model, &solver.state, &solver.forces, i, flash);
+            self.heat_fluxes[stage][i] = self.heat_flux(model, &solver.state, &solver.forces, i, flash, &self.end);
         }
-        std::mem::swap(&mut self.start, &mut self.end);
     }
 
-    /// The variation of the heat flux F_T v_t/A of mass `i`, W/m², for those of the state in the place of the start's and of
-    /// the links' forces: δF_T = ∂T/∂F_N δF_N + ∂T/∂v_t δv_t + ∂T/∂ϑ δϑ.
-    fn heat_flux(&self, model: &Model, state: &State, forces: &Forces, i: usize, flash: Flash) -> f64 {
+    /// The variation of the heat flux F_T v_t/A of mass `i`, W/m², for the variation `of` the state and those of the
+    /// links' forces: δF_T = ∂T/∂F_N δF_N + ∂T/∂v_t δv_t + ∂T/∂ϑ δϑ.
+    fn heat_flux(&self, model: &Model, state: &State, forces: &Forces, i: usize, flash: Flash, of: &Variation) -> f64 {
         let mode = state.mode[i];
         if !mode.slips() {
             return 0.0;
         }
         let (slip, friction) = SlippingMass::from_state(model, state, forces, i, 0.0, flash);
-        let of_forces = [&forces.on_mass_x, &forces.on_mass_z].map(|on_mass| on_mass[i]);
-        let varied = [&self.forces.on_mass_x, &self.forces.on_mass_z].map(|on_mass| on_mass[i]);
-        let [normal, speed] =
-            slip.contact_variation(model.mass, (self.start.x[i], self.start.v_x[i]), varied, of_forces);
-        let change = friction.by_normal * normal
-            + friction.by_speed * mode.direction() * speed
+        // δF_N and δv_t by the motion along the profile and by δf.
+        let by = SlipVariation { x: of.x[i], velocity: of.v_x[i], forces: self.links.forces.on_mass(i) };
+        let contact = slip.contact_variation(model.mass, forces.on_mass(i), &by);
+        let change = friction.by_normal * contact.normal
+            + friction.by_speed * mode.direction() * contact.speed
             + friction.by_flash * self.known_flash[i];
+        // δQ = (v_t δT + T δv_t)/A, with v_t in the direction of slip.
         let v_t = mode.direction() * slip.speed();
-        (change * v_t + friction.force() * mode.direction() * speed) / model.element_area
+        (change * v_t + friction.force() * mode.direction() * contact.speed) / model.element_area
     }
 
     /// Takes the variation of a body at stage `stage` from its speed `found`.
     fn set_body(&mut self, axis: Axis, found: f64, beta: f64, stage: usize) {
+        // [1]: δU̇ = (δU - δU*)/β, and the displacement is its starred value plus β δU.
         let [displacement, rate] = &mut self.end.bodies[axis];
         self.stages[stage].bodies[axis] = [found, (found - *rate) / beta];
         (*displacement, *rate) = (*displacement + beta * found, found);
     }
 
-    /// The variation of the forces for the known part of the motion.
-    fn known_forces(&mut self, model: &Model, solver: &StageSolver, beta: f64, carrier: &CarrierVariation) {
-        let known = &mut self.known;
-        for i in 0..model.masses() {
-            let (z, v_z) = match Constrained::new(&solver.state, i, self.end.x[i], 0.0) {
-                Some(mass) => (mass.z, mass.v_z),
-                None => (self.end.z[i], 0.0),
-            };
-            known.x[i] = self.end.x[i] - carrier.x[0];
-            known.z[i] = z - carrier.z[0];
-            known.v_z[i] = v_z;
-        }
-        let motion = known.links(carrier);
-        for kind in LinkKind::ALL {
-            self.forces.spring_and_damper(kind, &solver.laws[kind], &motion);
-        }
-        for row in &model.rows {
-            let weight = row.stiffness * row.relaxation_time / (row.relaxation_time + beta);
-            add(&mut self.forces.link[row.kind], weight, &self.end.maxwell[row.range.clone()]);
-        }
-        self.forces.sum_on_masses();
-    }
-
     /// The right side of the linear system for mass `i`, whose ẍ is `acceleration`.
     fn right_side(&self, model: &Model, solver: &StageSolver, i: usize, beta: f64, acceleration: f64) -> Vector2<f64> {
         let inertia = model.mass / beta;
-        let on_mass = (self.forces.on_mass_x[i], self.forces.on_mass_z[i]);
+        let on_mass = self.links.forces.on_mass(i);
         let (v_x, v_z) = (self.end.v_x[i], self.end.v_z[i]);
         match solver.state.mode[i] {
-            Mode::Free => Vector2::new(on_mass.0 + inertia * v_x, on_mass.1 + inertia * v_z),
+            // The first line of [16].
+            Mode::Free => Vector2::new(on_mass.x + inertia * v_x, on_mass.z + inertia * v_z),
+            // δẋ = 0.
             Mode::Stick => Vector2::zeros(),
+            // The second line: -δR with δẋ = 0, in which ẍ is varied by δẋ* alone.
             Mode::Forward | Mode::Backward => {
                 let flash = solver.flash.of_mass(i);
                 let (slip, friction) =
                     SlippingMass::from_state(model, &solver.state, &solver.forces, i, acceleration, flash);
-                let forces = (solver.forces.on_mass_x[i], solver.forces.on_mass_z[i]);
+                let by = SlipVariation { x: self.end.x[i], velocity: 0.0, forces: on_mass };
                 let of_flash = self.known_flash.get(i).map_or(0.0, |known| friction.by_flash * known);
-                let varied = slip.variation(model, (&friction, of_flash), (self.end.x[i], 0.0), on_mass, forces);
+                let varied = slip.variation(model, solver.forces.on_mass(i), &by, &friction, of_flash);
                 Vector2::new(varied + inertia * slip.q2() * v_x, 0.0)
             }
         }
@@ -372,17 +357,20 @@ impl Sensitivity {
         let (end, rates) = (&mut self.end, &mut self.stages[stage]);
         for i in 0..model.masses() {
             let found = solver.system.right[i];
-            let history = (end.v_x[i], end.v_z[i]);
+            // [1]: δe = δe* + β δv.
+            let history = ByAxis { x: end.v_x[i], z: end.v_z[i] };
             end.x[i] += beta * found.x;
             (end.v_x[i], end.v_z[i]) = (found.x, found.y);
+            // In contact δz = s δx and δż = s δẋ + κẋ δx instead.
             match Constrained::new(&solver.state, i, end.x[i], found.x) {
                 Some(mass) => (end.z[i], end.v_x[i], end.v_z[i]) = (mass.z, mass.v_x, mass.v_z),
                 None => end.z[i] += beta * found.y,
             }
+            // [1]: δv̇ = (δv - δv*)/β. A sticking mass has δẋ = 0 whatever its history.
             (rates.x[i], rates.z[i]) = (end.v_x[i], end.v_z[i]);
             let sticks = solver.state.mode[i] == Mode::Stick;
-            rates.v_x[i] = if sticks { 0.0 } else { (end.v_x[i] - history.0) / beta };
-            rates.v_z[i] = (end.v_z[i] - history.1) / beta;
+            rates.v_x[i] = if sticks { 0.0 } else { (end.v_x[i] - history.x) / beta };
+            rates.v_z[i] = (end.v_z[i] - history.z) / beta;
         }
     }
 
@@ -391,11 +379,12 @@ impl Sensitivity {
         let (end, rates) = (&mut self.end, &mut self.stages[stage]);
         let motion = end.links(carrier);
         for kind in LinkKind::ALL {
-            motion.elongation_rates(kind, &mut self.forces.rate[kind]);
+            motion.elongation_rates(kind, &mut self.links.forces.rate[kind]);
         }
         for row in &model.rows {
+            // δa_i = g (δa* + β δė_i) with g = 1/(1 + β/τ), section 8; its rate is (δa_i - δa*)/β.
             let g = row.relaxation_time / (row.relaxation_time + beta);
-            let elongation_rates = &self.forces.rate[row.kind];
+            let elongation_rates = &self.links.forces.rate[row.kind];
             let a = end.maxwell[row.range.clone()].iter_mut().zip(&mut rates.maxwell[row.range.clone()]);
             for ((a, rate), elongation_rate) in a.zip(elongation_rates) {
                 let found = g * (*a + beta * elongation_rate);
@@ -403,6 +392,63 @@ impl Sensitivity {
                 *a = found;
             }
         }
+    }
+}
+
+impl LinkVariation {
+    fn new(model: &Model) -> Self {
+        Self { forces: Forces::new(model), motion: Variation { maxwell: Vec::new(), ..Variation::new(model) } }
+    }
+
+    /// Computes the variation of the forces for those of the state, `of`, and of the carrier.
+    fn evaluate(&mut self, model: &Model, of: &Variation, carrier: &CarrierVariation) {
+        // δe = δξ - δu and δζ - δw of the links to the carrier.
+        for i in 0..model.masses() {
+            self.motion.x[i] = of.x[i] - carrier.x[0];
+            self.motion.z[i] = of.z[i] - carrier.z[0];
+        }
+        let motion = LinkMotion { velocity: ByAxis { x: &of.v_x, z: &of.v_z }, ..self.motion.links(carrier) };
+        // δF = c δe + d δė + Σ_j c_j δa_j.
+        for kind in LinkKind::ALL {
+            self.forces.spring_and_damper(kind, &model.links[kind], &motion);
+        }
+        for row in &model.rows {
+            add(&mut self.forces.link[row.kind], row.stiffness, &of.maxwell[row.range.clone()]);
+        }
+        self.forces.sum_on_masses();
+    }
+
+    /// Computes the variation of the forces at a stage for the known part of the motion: δe* and δa* are in `history`, and
+    /// the unknown velocities are not varied.
+    fn evaluate_known(
+        &mut self,
+        model: &Model,
+        solver: &StageSolver,
+        beta: f64,
+        history: &Variation,
+        carrier: &CarrierVariation,
+    ) {
+        let known = &mut self.motion;
+        for i in 0..model.masses() {
+            // Of a contact δz = s δx* and δż = κẋ δx* are known already.
+            let (z, v_z) = match Constrained::new(&solver.state, i, history.x[i], 0.0) {
+                Some(mass) => (mass.z, mass.v_z),
+                None => (history.z[i], 0.0),
+            };
+            known.x[i] = history.x[i] - carrier.x[0];
+            known.z[i] = z - carrier.z[0];
+            known.v_z[i] = v_z;
+        }
+        // [4] with D in place of d, and δH = Σ_j c_j g δa*_j.
+        let motion = known.links(carrier);
+        for kind in LinkKind::ALL {
+            self.forces.spring_and_damper(kind, &solver.laws[kind], &motion);
+        }
+        for row in &model.rows {
+            let weight = row.stiffness * row.relaxation_time / (row.relaxation_time + beta);
+            add(&mut self.forces.link[row.kind], weight, &history.maxwell[row.range.clone()]);
+        }
+        self.forces.sum_on_masses();
     }
 }
 

@@ -121,14 +121,14 @@ impl StageValues {
         let v = state.velocity_x[i];
         self.velocity_x[i] = v;
         self.velocity_z[i] = state.velocity_z[i];
-        let (f_x, f_z) = (forces.on_mass_x[i], forces.on_mass_z[i]);
+        let on_mass = forces.on_mass(i);
         let mode = state.mode[i];
         if mode == Mode::Free {
-            self.acceleration_x[i] = f_x / model.mass;
-            self.acceleration_z[i] = f_z / model.mass;
+            self.acceleration_x[i] = on_mass.x / model.mass;
+            self.acceleration_z[i] = on_mass.z / model.mass;
         } else {
             let surface = &state.surface[i];
-            let contact = ContactForces::new(model, (f_x, f_z), v, surface);
+            let contact = ContactForces::new(model, on_mass, v, surface);
             self.acceleration_x[i] = contact.acceleration(model, mode, v, surface, state.flash(i));
             self.set_contact(model, i, mode, v, surface, &contact);
             if let Some(flux) = self.heat_flux.get_mut(i) {

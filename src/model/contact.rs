@@ -1,6 +1,6 @@
 //! The forces in a contact: the normal force and the tangential one, and the acceleration that they leave.
 
-use super::{Flash, Forces, Mode, Model, SlipFriction, SurfacePoint};
+use super::{ByAxis, Flash, Forces, Mode, Model, SlipFriction, SurfacePoint};
 
 /// The forces in one contact, from (6)-(9).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,17 +16,18 @@ pub struct ContactForces {
 }
 
 impl ContactForces {
-    /// The contact forces that follow from the links' force on the mass (f_x, f_z), N, its velocity ẋ, m/s, and the
+    /// The contact forces that follow from the links' force on the mass, f_x and f_z, N, its velocity ẋ, m/s, and the
     /// surface under it.
     #[inline]
-    pub fn new(model: &Model, forces: (f64, f64), velocity_x: f64, surface: &SurfacePoint) -> Self {
+    pub fn new(model: &Model, forces: ByAxis<f64>, velocity_x: f64, surface: &SurfacePoint) -> Self {
         let contact = Self::without_limit(model.mass, forces, velocity_x, surface);
         Self { limit: model.friction.limit(contact.normal), ..contact }
     }
 
     /// The contact forces without T(0) on a mass of `mass`, kg.
     #[inline(always)]
-    pub fn without_limit(mass: f64, (f_x, f_z): (f64, f64), velocity_x: f64, surface: &SurfacePoint) -> Self {
+    pub fn without_limit(mass: f64, forces: ByAxis<f64>, velocity_x: f64, surface: &SurfacePoint) -> Self {
+        let ByAxis { x: f_x, z: f_z } = forces;
         let s = surface.slope;
         let q = (1.0 + s * s).sqrt();
         // From (6)-(9): the normal force needs no acceleration.
@@ -75,6 +76,6 @@ impl Forces {
     /// The contact forces on mass `i`, which is in contact with `surface` and has the velocity ẋ.
     #[inline]
     pub fn contact(&self, model: &Model, i: usize, velocity_x: f64, surface: &SurfacePoint) -> ContactForces {
-        ContactForces::new(model, (self.on_mass_x[i], self.on_mass_z[i]), velocity_x, surface)
+        ContactForces::new(model, self.on_mass(i), velocity_x, surface)
     }
 }

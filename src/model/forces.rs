@@ -132,6 +132,12 @@ impl Forces {
         ByLink::from_fn(|kind| vec![0.0; if model.has_link[kind] { kind.count(model.masses()) } else { 0 }])
     }
 
+    /// f_x and f_z on mass `i`, N.
+    #[inline(always)]
+    pub fn on_mass(&self, i: usize) -> ByAxis<f64> {
+        ByAxis { x: self.on_mass_x[i], z: self.on_mass_z[i] }
+    }
+
     /// Evaluates the forces in `state` with the carrier's rates.
     pub fn evaluate(&mut self, model: &Model, state: &State, carrier: &CarrierPoint) {
         let motion = LinkMotion::new(state, carrier);

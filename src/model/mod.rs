@@ -10,8 +10,10 @@ mod fine_friction;
 mod flash;
 mod forces;
 mod friction;
+mod friction_power;
 mod reduction;
 mod scales;
+mod slip_curve;
 mod state;
 mod tangents;
 
@@ -22,8 +24,10 @@ pub use energy::{BoundaryPowers, ChannelEnergies, Powers, elastic_energy, kineti
 pub use fine_friction::{ContactQuantity, FineContact, FineFriction, PressedContact};
 pub use flash::{Flash, FlashKernel, FlashTerm, HeatParts, SURFACE_TERMS, SpeedShift, surface_kernel};
 pub use forces::{Forces, LinkLaw, LinkMotion, MaxwellRow};
-pub use friction::{FrictionLaw, FrictionPower, FrictionShares, LinearFriction, RateShearLaw, SlipCurve, SlipFriction};
+pub use friction::{FrictionLaw, FrictionShares, LinearFriction, SlipFriction};
+pub use friction_power::FrictionPower;
 pub use reduction::{Reduction, Replaced, Replacement};
+pub use slip_curve::{RateShearLaw, SlipCurve};
 pub use state::{Mode, State};
 pub use tangents::{Tangents, TangentsOf};
 

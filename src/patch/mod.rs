@@ -15,6 +15,9 @@
 //! | `segments` | an element whose pressure changes much in a substep |
 //! | `lanes` | elements of a block, side by side |
 //! | `heat` | elements that slip warms |
+//! | `face_motion` | motion of the face through a step |
+//! | `step_sums` | what the blocks of a step add up to |
+//! | `block_contacts` | elements of a block at an instant, with their law |
 //! | `block` | a step of a block of elements |
 //! | `worker_pool` | a step of all blocks, by several threads |
 //! | `definition` | a patch: face, table, parameters |
@@ -26,17 +29,20 @@
 //! | `variables` | output variables |
 
 mod block;
+mod block_contacts;
 mod definition;
 mod derivatives;
 mod element_sums;
 mod face;
 mod face_layout;
+mod face_motion;
 mod heat;
 mod lanes;
 mod motion;
 mod run;
 mod segments;
 mod state;
+mod step_sums;
 mod variables;
 mod worker_pool;
 

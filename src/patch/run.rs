@@ -2,14 +2,16 @@
 
 use std::sync::Arc;
 
-use super::block::{BeyondTable, Block, FaceMotion, Sums, TooWarm};
+use super::block::ElementBlock;
 use super::definition::Patch;
 use super::face::Face;
+use super::face_motion::FaceMotion;
 use super::heat::{ElementHeat, StepHeat};
 use super::motion::{PoseMotion, Substeps, TreadMotion};
 use super::state::{
     MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError, Springs, Totals, check_duration, max_substeps,
 };
+use super::step_sums::{BeyondTable, StepSums, TooWarm};
 use super::worker_pool::{WorkerPool, threads};
 use crate::element::ResampledLaw;
 use crate::math::Dual;
@@ -241,7 +243,7 @@ impl PatchRun {
 
     /// Takes the springs of all elements through a step, block by block, to those in `next`; returns the sums and, where
     /// they are asked for, the tangents.
-    fn advance_springs(&mut self, step: &FaceMotion<'_, f64>) -> (Sums<f64>, Option<[[f64; 6]; 6]>) {
+    fn advance_springs(&mut self, step: &FaceMotion<'_, f64>) -> (StepSums<f64>, Option<[[f64; 6]; 6]>) {
         let Self { law, springs, next, workers, .. } = self;
         match workers {
             Workers::Plain(pool) => {
@@ -253,7 +255,7 @@ impl PatchRun {
             }
             Workers::Tangent(pool) => {
                 let step = step.with_tangents();
-                let advance = |block: &mut Block<_>, law: &mut _, sums: &mut _| block.advance(&step, law, sums);
+                let advance = |block: &mut ElementBlock<_>, law: &mut _, sums: &mut _| block.advance(&step, law, sums);
                 let sums = pool.work(&step, law, (springs, next), advance);
                 (sums.values(), Some(sums.wrench.map(|load| load.slopes)))
             }
@@ -280,7 +282,12 @@ impl PatchRun {
 
     /// Refuses a temperature (K) or an element beyond the table, or warns of the first; `time_at` is the time (s) after
     /// a fraction of the step.
-    fn check_table(&mut self, kelvin: f64, sums: &Sums<f64>, time_at: impl Fn(f64) -> f64) -> Result<(), MotionError> {
+    fn check_table(
+        &mut self,
+        kelvin: f64,
+        sums: &StepSums<f64>,
+        time_at: impl Fn(f64) -> f64,
+    ) -> Result<(), MotionError> {
         if self.patch.held_temperature(kelvin).is_some_and(|held| held != kelvin) {
             let error = |_: &Patch| MotionError::TemperatureBeyondTable { time: time_at(0.0), kelvin };
             self.refuse_or_warn(Excess::Temperature, error)?;
@@ -368,10 +375,10 @@ fn set_temperature(patch: &Patch, law: &mut ResampledLaw, kelvin: f64) {
 
 /// A step of a block, to be done with the widest vectors of the processor; numbers are the same with all.
 struct Advance<'a, 'b> {
-    block: &'a mut Block<f64>,
+    block: &'a mut ElementBlock<f64>,
     step: &'a FaceMotion<'b, f64>,
     law: &'a mut ResampledLaw,
-    sums: &'a mut Sums<f64>,
+    sums: &'a mut StepSums<f64>,
 }
 
 impl pulp::NullaryFnOnce for Advance<'_, '_> {

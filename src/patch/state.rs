@@ -4,10 +4,11 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use super::block::{Block, ElementMode, Sums};
+use super::block::{ElementBlock, ElementMode};
 use super::definition::Patch;
 use super::heat::ElementHeat;
 use super::motion::PoseMotion;
+use super::step_sums::StepSums;
 use crate::math::{Number, not_finite};
 use crate::scene::{SMALLEST, is_possible};
 
@@ -217,11 +218,11 @@ impl Springs {
     }
 
     /// Sets the springs of a block; its first element is the one at `start` here. Those that are not here are relaxed.
-    pub(super) fn load<T: Number>(&self, block: &mut Block<T>, start: isize, count: usize) {
+    pub(super) fn load<T: Number>(&self, block: &mut ElementBlock<T>, start: isize, count: usize) {
         for (lane, i) in indices(0..self.x.len(), start, count) {
-            block.force[0][lane] = T::constant(self.x[i]);
-            block.force[1][lane] = T::constant(self.y[i]);
-            block.stiffness[lane] = T::constant(self.stiffness[i]);
+            block.springs.force[0][lane] = T::constant(self.x[i]);
+            block.springs.force[1][lane] = T::constant(self.y[i]);
+            block.springs.stiffness[lane] = T::constant(self.stiffness[i]);
             if let Some(heat) = self.heat.get(i) {
                 block.heat.load(lane, heat);
             }
@@ -264,11 +265,11 @@ impl<'a> SpringsMut<'a> {
     }
 
     /// Takes the springs of a block over; its first element has the index `start`. Those that are not here are lost.
-    pub(super) fn store<T: Number>(&mut self, block: &Block<T>, start: isize, count: usize) {
+    pub(super) fn store<T: Number>(&mut self, block: &ElementBlock<T>, start: isize, count: usize) {
         for (lane, i) in indices(self.first..self.first + self.x.len(), start, count) {
-            self.x[i] = block.force[0][lane].value();
-            self.y[i] = block.force[1][lane].value();
-            self.stiffness[i] = block.stiffness[lane].value();
+            self.x[i] = block.springs.force[0][lane].value();
+            self.y[i] = block.springs.force[1][lane].value();
+            self.stiffness[i] = block.springs.stiffness[lane].value();
             self.mode[i] = block.mode[lane];
             if let Some(heat) = self.heat.get_mut(i) {
                 *heat = block.heat.element(lane);
@@ -357,7 +358,7 @@ pub(super) fn check_duration(duration: f64, time: f64) -> Result<(), MotionError
 
 impl Totals {
     /// Takes the loads at the end of a step and its losses over.
-    pub(super) fn add<T: Number>(&mut self, sums: &Sums<T>, duration: f64) {
+    pub(super) fn add<T: Number>(&mut self, sums: &StepSums<T>, duration: f64) {
         self.wrench = sums.wrench.map(T::value);
         self.transport_force = sums.transport.value();
         self.slip_energy += sums.slip;

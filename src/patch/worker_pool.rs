@@ -8,9 +8,11 @@ use std::num::NonZero;
 use std::sync::Mutex;
 use std::thread;
 
-use super::block::{Block, ElementRange, FaceMotion, Sums};
+use super::block::ElementBlock;
+use super::face_motion::{ElementRange, FaceMotion};
 use super::lanes::BLOCK;
 use super::state::{Springs, SpringsMut};
+use super::step_sums::StepSums;
 use crate::element::ResampledLaw;
 use crate::math::Number;
 
@@ -24,15 +26,15 @@ const WORTH_A_THREAD: f64 = 16384.0;
 /// The workers of a patch, and the sums of their batches.
 #[derive(Clone, Debug)]
 pub(super) struct WorkerPool<T> {
-    block: Box<Block<T>>,
+    block: Box<ElementBlock<T>>,
     workers: Vec<Worker<T>>,
-    sums: Vec<Sums<T>>,
+    sums: Vec<StepSums<T>>,
 }
 
 /// A worker. It has a law of its own, since intervals of a law are computed when they are first needed.
 #[derive(Clone, Debug)]
 struct Worker<T> {
-    block: Box<Block<T>>,
+    block: Box<ElementBlock<T>>,
     law: ResampledLaw,
 }
 
@@ -41,7 +43,7 @@ struct Batch<'a, T> {
     start: usize,
     count: usize,
     next: SpringsMut<'a>,
-    sums: &'a mut Sums<T>,
+    sums: &'a mut StepSums<T>,
 }
 
 /// How many threads do steps of so many elements times substeps.
@@ -61,11 +63,11 @@ impl<T: Number + Send + Sync> WorkerPool<T> {
     // Not inlined, here and below: a step without derivatives then does without the stack of one with them.
     #[inline(never)]
     pub(super) fn with_threads(threads: usize, law: &ResampledLaw) -> Self {
-        let worker = || Worker { block: Box::new(Block::new()), law: law.clone() };
+        let worker = || Worker { block: Box::new(ElementBlock::new()), law: law.clone() };
         Self {
-            block: Box::new(Block::new()),
+            block: Box::new(ElementBlock::new()),
             workers: (1..threads).map(|_| worker()).collect(),
-            sums: vec![Sums::zero(); MAX_BATCHES],
+            sums: vec![StepSums::zero(); MAX_BATCHES],
         }
     }
 
@@ -76,8 +78,8 @@ impl<T: Number + Send + Sync> WorkerPool<T> {
         step: &FaceMotion<'_, T>,
         law: &mut ResampledLaw,
         (springs, next): (&Springs, &mut Springs),
-        work: impl Fn(&mut Block<T>, &mut ResampledLaw, &mut Sums<T>) + Sync,
-    ) -> Sums<T> {
+        work: impl Fn(&mut ElementBlock<T>, &mut ResampledLaw, &mut StepSums<T>) + Sync,
+    ) -> StepSums<T> {
         let Self { block, workers, sums } = self;
         let range = step.elements();
         // Divide the blocks into batches of equal size.
@@ -87,7 +89,7 @@ impl<T: Number + Send + Sync> WorkerPool<T> {
         let queue = Mutex::new(batches_of(sums, next.all(), range.first + range.shift, range.count, size));
         // Every worker takes the next batch until none is left.
         let take = || queue.lock().ok().and_then(|mut queue| queue.next());
-        let serve = |block: &mut Block<T>, law: &mut ResampledLaw| {
+        let serve = |block: &mut ElementBlock<T>, law: &mut ResampledLaw| {
             while let Some(mut batch) = take() {
                 batch.serve(range, springs, block, |block, sums| work(block, law, sums));
             }
@@ -111,7 +113,7 @@ impl<T: Number + Send + Sync> WorkerPool<T> {
         }
         // Add the batches up in their order, whoever did them.
         drop(queue);
-        sums.iter().fold(Sums::zero(), |mut all, batch| {
+        sums.iter().fold(StepSums::zero(), |mut all, batch| {
             all.add(batch);
             all
         })
@@ -120,7 +122,7 @@ impl<T: Number + Send + Sync> WorkerPool<T> {
 
 /// The batches of `count` elements, `size` of them each; the first element is at `first` in `next`.
 fn batches_of<'a, T: Number>(
-    sums: &'a mut [Sums<T>],
+    sums: &'a mut [StepSums<T>],
     mut next: SpringsMut<'a>,
     first: isize,
     count: usize,
@@ -139,10 +141,10 @@ impl<T: Number> Batch<'_, T> {
         &mut self,
         range: ElementRange,
         springs: &Springs,
-        block: &mut Block<T>,
-        mut work: impl FnMut(&mut Block<T>, &mut Sums<T>),
+        block: &mut ElementBlock<T>,
+        mut work: impl FnMut(&mut ElementBlock<T>, &mut StepSums<T>),
     ) {
-        *self.sums = Sums::zero();
+        *self.sums = StepSums::zero();
         for start in (self.start..self.start + self.count).step_by(BLOCK) {
             let size = BLOCK.min(self.start + self.count - start);
             let index = range.first + start as isize;

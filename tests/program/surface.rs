@@ -266,7 +266,6 @@ fn files_of_instruments_are_read_or_refused() {
         ("footer.csv", &[], 0.15e-3, 1.362e-4),
         ("single.txt", &["--spacing", "0.05mm"], 0.15e-3, 0.1362),
         ("straight.crg", &[], 0.03, 1.362e-3),
-        ("road.erd", &["--columns", "RElev."], 0.15, 1.362e-3),
         ("gwy-matrix.txt", &[], 0.15e-3, 1.362e-4),
         ("ascii.sdf", &[], 0.15e-3, 1.361971e-4),
     ];
@@ -277,7 +276,7 @@ fn files_of_instruments_are_read_or_refused() {
         near(&found["peak_to_valley"], height, 1e-3);
     }
     let refused = [
-        ("road.erd", "columns = 2 channels: expected one of LElev., RElev."),
+        ("road.erd", "a file of ERD, which is not read: expected x and z as text"),
         ("single.txt", "spacing = not given: expected the distance of the points in m"),
         ("tiny-x.csv", "points = steps along x down to"),
     ];

@@ -10,9 +10,9 @@ use super::cli::Compare;
 use super::figure::{Figure as _, Stroke};
 use super::files::{FileError, check_outputs, name_of, named, print_beside};
 use super::measured_friction::{self, CurveGrid, MeasuredFrictionError, ModelCurves, describe, off};
-use super::sweep::{SweepTable, TableFileError};
 use super::terminal::{labelled, lines, note, warn};
 use asperity_study::decimals::rounded;
+use asperity_study::sweep::{SweepTable, SweepTableError};
 
 /// `asperity compare` failed.
 #[derive(Debug, thiserror::Error)]
@@ -20,7 +20,7 @@ pub(crate) enum CompareError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]
-    Table(#[from] TableFileError),
+    Table(#[from] SweepTableError),
     #[error(transparent)]
     Measured(#[from] MeasuredFrictionError),
     #[error("{}: a table over forces: expected one over pressures, as `asperity sweep --pressures` makes", .0.display())]

@@ -1,7 +1,6 @@
 //! The commands of the program, one module each, and what they share.
 //!
-//! [`execute`] is the program. What its commands compute is there without command line, files and messages too: runs
-//! along an excitation ([`Runner`]), sweeps ([`SweepPlan`]), contacts ([`solve_contact`]), Prony series ([`fit_moduli`]),
+//! [`execute`] is the program. What its commands compute is in `asperity-study`, but for Prony series ([`fit_moduli`]),
 //! calibrations ([`calibrate_scene`]) and FMUs ([`write_fmu`]).
 
 mod calibrate;
@@ -27,7 +26,6 @@ mod report;
 mod result_file;
 mod resumable_table;
 mod run_summary;
-mod runner;
 mod simulate;
 mod surface;
 mod sweep;
@@ -41,15 +39,8 @@ pub use calibrate::{CalibrateError, CalibratedParameter, Calibration, Calibratio
 use clap::Parser as _;
 pub use cli::WlfConstants;
 use cli::{Arguments, Command};
-pub use contact::{ContactError, ContactFields, ContactOptions, SolvedContact, solve_contact};
-pub use elements::{ElementField, ElementFields};
 pub use files::FileError;
 pub use fit::{FitError, FitOptions, FittedModuli, fit_moduli};
-pub use runner::{InputSample, Rows, Runner};
-pub use sweep::{
-    Loads, MethodError, NeverSteady, SlidingOptions, StoredRow, SweepError, SweepMethod, SweepOptions, SweepPlan,
-    SweepTable, TableFileError,
-};
 
 /// Exit status of a command that did what was asked for.
 const SUCCESS: u8 = 0;

@@ -7,8 +7,7 @@ use asperity_study::calibration::{Measured, Measurements, MeasurementsError};
 
 use super::figure::{Curve, Panel, PanelRow, SideBySide, Stroke};
 use super::files::{self, FileError};
-use super::sweep::as_given;
-use asperity_study::decimals::rounded;
+use asperity_study::decimals::{as_given, rounded};
 
 /// A table of measured friction cannot be used.
 #[derive(Debug, thiserror::Error)]

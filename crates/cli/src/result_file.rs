@@ -9,7 +9,7 @@ use asperity_study::csv::{Field, Head, line};
 
 use super::draft::Draft;
 use super::files::FileError;
-use super::runner::InputSample;
+use asperity_study::runner::InputSample;
 
 /// Writes a CSV file line by line.
 #[derive(Debug)]

@@ -14,8 +14,8 @@ use super::files::{FileError, check_outputs, ends_in, load, named, print_beside}
 use super::interrupt::fail;
 use super::result_file::ResultWriter;
 use super::run_summary::RunSummary;
-use super::runner::{InputSample, Rows, Runner};
 use super::terminal::{LabelledLine, bar, is_quiet, is_verbose, lines, note, warn};
+use asperity_study::runner::{InputSample, Rows, Runner};
 
 /// `asperity simulate` failed.
 #[derive(Debug, thiserror::Error)]

@@ -48,9 +48,28 @@ pub fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }
 
+/// A quantity that was given, in all its digits, with a prefix of its unit: `0.2 MPa`.
+pub fn as_given(value: f64, unit: &str) -> String {
+    let (prefix, factor) = match value {
+        value if value >= 1e5 => ("M", 1e6),
+        value if value >= 1e3 => ("k", 1e3),
+        value if value >= 0.1 => ("", 1.0),
+        value if value >= 1e-4 => ("m", 1e-3),
+        _ => ("µ", 1e-6),
+    };
+    let number = format!("{:.6}", value / factor);
+    format!("{} {prefix}{unit}", number.trim_end_matches('0').trim_end_matches('.'))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn loads_have_a_prefix_of_their_unit() {
+        let names = [2e5, 4e4, 20.0, 0.05].map(|value| as_given(value, "Pa"));
+        assert_eq!(names, ["0.2 MPa", "40 kPa", "20 Pa", "50 mPa"]);
+    }
 
     #[test]
     fn numbers_far_from_one_have_an_exponent_and_few_digits_if_asked_for() {

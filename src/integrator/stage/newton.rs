@@ -1,20 +1,22 @@
-//! Newton's equations of a stage: residuals, Jacobian, and the correction for rate-dependent friction.
+//! Newton's equations of a stage: residuals, Jacobian, and the correction for rate-dependent friction (docs/theory.md,
+//! sections 3 and 4).
 
 use std::hint::select_unpredictable;
 use std::ops::Range;
 
 use nalgebra::{Matrix2, Vector2};
 
+use super::slipping_mass::{ContactJacobian, SlipMotion, SlippingMass};
 use super::{MassHistory, StageSolver};
 use crate::math::with_widest_vectors;
-use crate::model::{Axis, ByLink};
 use crate::model::{
-    ContactForces, Flash, Forces, LinearFriction, LinkLaw, Mode, Model, SlipFriction, State, SurfacePoint,
+    Axis, ByAxis, ByLink, ContactForces, Forces, LinearFriction, LinkLaw, Mode, Model, SlipFriction, State,
 };
 
 impl StageSolver {
     /// Factors the Jacobian at the solution, for the tangents of the stage.
     pub(in crate::integrator) fn factor_at_solution(&mut self, model: &Model, beta: f64) {
+        // Without slip the factors of the step are those at every velocity.
         if !self.slips.is_empty() {
             self.assemble_slips(model, beta);
             self.system.factor();
@@ -31,6 +33,7 @@ impl StageSolver {
             #[inline(always)]
             || largest_of(right),
         );
+        // A force that is left over makes β/m of it in velocity, as in [5].
         let of_masses = largest * beta / model.mass;
         self.border.as_ref().map_or(of_masses, |border| of_masses.max(border.largest_residual(beta)))
     }
@@ -38,10 +41,12 @@ impl StageSolver {
     /// Writes the negative residuals of the equations of motion at the present velocities to the right sides.
     pub(super) fn set_residuals(&mut self, model: &Model, beta: f64) {
         let Self { state, history, forces, system, .. } = self;
+        // [5] of the free masses, and [6] of the slipping ones as if friction did not depend on the speed ...
         with_widest_vectors(
             #[inline(always)]
             || set_linear_residuals(&mut system.right, model, state, history, forces, beta),
         );
+        // ... which is replaced where it does, or is not linear in F_N; and [21] of bodies.
         if !model.friction.is_linear() {
             self.slip_residuals(model, beta);
         }
@@ -58,8 +63,9 @@ impl StageSolver {
             _ => stage.slipping_mass_under(model.friction.linear(), i),
         };
         match axis {
-            Axis::X => (slip.share_x, ContactJacobian { height: beta, rate: 1.0 }),
-            Axis::Z => (slip.share_z, slip.climb(beta)),
+            // Along x the elongation follows ẋ itself, along z as [7] says.
+            Axis::X => (slip.shares().x, ContactJacobian { height: beta, rate: 1.0 }),
+            Axis::Z => (slip.shares().z, slip.climb(beta)),
         }
     }
 
@@ -69,16 +75,20 @@ impl StageSolver {
         let stage = Evaluated { model, state, history, forces, laws, weights, beta };
         let per_beta = 1.0 / beta;
         for (&i, slip) in self.slips.iter().zip(&mut self.friction) {
+            // T at F_N and v_t of the last velocities; where it heats the contact, at the ϑ that it makes itself.
             let normal = if model.friction.is_linear_in_normal() { 0.0 } else { stage.normal(i) };
             slip.friction = model.friction.slip(normal, stage.slip_speed(i), flash.of_mass(i));
             flash.set_guess(i, slip.friction.flash);
-            let motion = (state.velocity_x[i], (state.velocity_x[i] - history.velocity_x[i]) * per_beta);
+            // -R of [6] with the tangent of T(0) at F_N, which has its value there, ...
+            let velocity = state.velocity_x[i];
+            let motion = SlipMotion { velocity, acceleration: (velocity - history.velocity_x[i]) * per_beta };
             let (sigma, surface) = (state.mode[i].direction(), &state.surface[i]);
             let mass = SlippingMass::under(slip.friction.tangent(), sigma, surface, motion);
             let right = &mut self.system.right[i].x;
-            *right = -mass.residual(model.mass, (forces.on_mass_x[i], forces.on_mass_z[i]));
+            *right = -mass.residual(model.mass, forces.on_mass(i));
+            // ... less σ q B(v), the excess of section 4.
             if model.friction.depends_on_speed() {
-                *right -= mass.sigma * mass.q * slip.friction.excess;
+                *right -= mass.speed_by_velocity() * slip.friction.excess;
             }
         }
     }
@@ -87,12 +97,14 @@ impl StageSolver {
     /// masses.
     pub(super) fn assemble_constant_rows(&mut self, model: &Model, beta: f64) {
         let k = self.state.mode.len();
+        // Free masses and sticking ones between the slips, the latter as if they were free ...
         let mut from = 0;
         for run in 0..=self.slip_runs.len() {
             let (to, next) = self.slip_runs.get(run).map_or((k, k), |slips| (slips.start, slips.end));
             self.assemble_free_rows(model, beta, from..to);
             from = next;
         }
+        // ... and then with the identity twice: their velocities stay.
         for n in 0..self.sticks.len() {
             self.hold(self.sticks[n]);
         }
@@ -106,17 +118,21 @@ impl StageSolver {
         let k = self.state.mode.len();
         let inertia = model.mass / beta;
         let [vertical, horizontal, lateral_x, lateral_z] = self.weights.0;
+        // [5]: m/β + W_h + n W_lx along x, m/β + W_v + n W_lz along z, with n neighbours; x and z are not coupled.
         let diagonal = |neighbours: f64| {
-            let weights = (horizontal + neighbours * lateral_x, vertical + neighbours * lateral_z);
-            Matrix2::new(inertia + weights.0, 0.0, 0.0, inertia + weights.1)
+            let (x, z) = (horizontal + neighbours * lateral_x, vertical + neighbours * lateral_z);
+            Matrix2::new(inertia + x, 0.0, 0.0, inertia + z)
         };
         let system = &mut self.system;
+        // A free mass takes forces up as they are, and acts on its neighbours by the lateral links along each axis.
         self.rows[masses.clone()].fill(RowShares { x_by_x: 1.0, x_by_z: 0.0, z_by_z: 1.0 });
         self.columns[masses.clone()].fill(NeighbourWeights { x: lateral_x, z_by_x: 0.0, z: lateral_z });
+        // Two neighbours each, but for the ends of the layer.
         system.diagonal[masses.clone()].fill(diagonal(2.0));
         for end in [0, k - 1].into_iter().filter(|end| masses.contains(end)) {
             system.diagonal[end] = diagonal(neighbours(end, k));
         }
+        // Beside the diagonal -∂f/∂v of a neighbour; `couple_slips` sets those beside slips.
         let beside = Matrix2::new(-lateral_x, 0.0, 0.0, -lateral_z);
         system.upper[masses.clone()].fill(beside);
         system.lower[masses].fill(beside);
@@ -125,9 +141,11 @@ impl StageSolver {
     /// Makes the equations of mass `i`, in contact, those of a mass that keeps its velocity.
     fn hold(&mut self, i: usize) {
         let system = &mut self.system;
+        // No force enters its rows, and it makes none on its neighbours: δẋ = δż = 0.
         (self.rows[i], self.columns[i]) = (RowShares::default(), NeighbourWeights::default());
         (system.lower[i], system.diagonal[i], system.upper[i]) =
             (Matrix2::zeros(), Matrix2::identity(), Matrix2::zeros());
+        // Nor do the neighbours' equations have its unknowns.
         if i > 0 {
             system.upper[i - 1] = Matrix2::zeros();
         }
@@ -140,6 +158,7 @@ impl StageSolver {
     pub(super) fn assemble_slips(&mut self, model: &Model, beta: f64) {
         let Self { rows, columns, state, history, forces, laws, weights, slip_runs, system, .. } = self;
         let stage = Evaluated { model, state, history, forces, laws, weights, beta };
+        // [8] of all slips with the law's own μ and A τ_0, where F_N has no part in these.
         if model.friction.is_linear_in_normal() {
             with_widest_vectors(
                 #[inline(always)]
@@ -154,13 +173,15 @@ impl StageSolver {
         if !model.friction.is_linear() {
             for (&i, slip) in self.slips.iter().zip(&mut self.friction) {
                 let mass = stage.slipping_mass(i, &slip.friction);
+                // [8] with the tangent of T(0) at F_N.
                 if !model.friction.is_linear_in_normal() {
                     (system.diagonal[i], rows[i], columns[i]) = stage.assembled(i, &mass);
                 }
+                // G of [10] is the derivative so far; [9] comes to it.
                 let diagonal = &mut system.diagonal[i].m11;
                 slip.derivative_without = *diagonal;
                 if model.friction.depends_on_speed() {
-                    *diagonal += mass.rate_variation(&slip.friction, 1.0, mass.s * beta * mass.kappa);
+                    *diagonal += mass.rate_derivative(&slip.friction, beta);
                 }
             }
         }
@@ -170,6 +191,7 @@ impl StageSolver {
     /// Sets the blocks between slipping masses and their neighbours.
     fn couple_slips(&mut self) {
         let Self { rows, columns, slip_runs, system, .. } = self;
+        // Each run of slips with the mass before and the one behind it.
         let last = rows.len() - 1;
         with_widest_vectors(
             #[inline(always)]
@@ -233,15 +255,16 @@ impl Evaluated<'_> {
     /// F_N on mass `i`, N.
     #[inline]
     fn normal(&self, i: usize) -> f64 {
-        let forces = (self.forces.on_mass_x[i], self.forces.on_mass_z[i]);
-        ContactForces::without_limit(self.model.mass, forces, self.state.velocity_x[i], &self.state.surface[i]).normal
+        let (velocity, surface) = (self.state.velocity_x[i], &self.state.surface[i]);
+        ContactForces::without_limit(self.model.mass, self.forces.on_mass(i), velocity, surface).normal
     }
 
     /// The equation of mass `i`, which slips under this law of friction.
     #[inline(always)]
     fn slipping_mass_under(&self, law: LinearFriction, i: usize) -> SlippingMass {
         let (sigma, surface) = (self.state.mode[i].direction(), &self.state.surface[i]);
-        SlippingMass::under(law, sigma, surface, (self.state.velocity_x[i], self.acceleration(i)))
+        let motion = SlipMotion { velocity: self.state.velocity_x[i], acceleration: self.acceleration(i) };
+        SlippingMass::under(law, sigma, surface, motion)
     }
 
     /// ẍ of mass `i`, (ẋ - ẋ*)/β, m/s².
@@ -255,13 +278,16 @@ impl Evaluated<'_> {
     fn assembled(&self, i: usize, slip: &SlippingMass) -> (Matrix2<f64>, RowShares, NeighbourWeights) {
         let [_, horizontal, lateral_x, _] = self.weights.0;
         let (neighbours, climb) = (neighbours(i, self.state.mode.len()), slip.climb(self.beta));
+        // [7]: a link along z weighs w = c βs + D (s + βκẋ), as the mass climbs, one along x W = βc + D.
         let [vertical, .., lateral_z] = self.laws.0.map(|law| climb.force(&law));
-        let weights = (horizontal + neighbours * lateral_x, vertical + neighbours * lateral_z);
-        let forces = (self.forces.on_mass_x[i], self.forces.on_mass_z[i]);
-        let derivative = slip.derivative(self.model, self.beta, forces, weights);
+        let weights = ByAxis { x: horizontal + neighbours * lateral_x, z: vertical + neighbours * lateral_z };
+        let derivative = slip.derivative(self.model, self.beta, self.forces.on_mass(i), weights);
+        // The equation along the profile is the first row, δż = 0 the second: ż follows from ẋ. Its height moves with ẋ,
+        // so the lateral z links to its neighbours follow its first unknown.
+        let ByAxis { x, z } = slip.shares();
         (
             Matrix2::new(derivative, 0.0, 0.0, 1.0),
-            RowShares { x_by_x: slip.share_x, x_by_z: slip.share_z, z_by_z: 0.0 },
+            RowShares { x_by_x: x, x_by_z: z, z_by_z: 0.0 },
             NeighbourWeights { x: lateral_x, z_by_x: lateral_z, z: 0.0 },
         )
     }
@@ -272,6 +298,7 @@ impl Evaluated<'_> {
 fn couple(upper: &mut [Matrix2<f64>], lower: &mut [Matrix2<f64>], rows: &[RowShares], columns: &[NeighbourWeights]) {
     let pairs = rows.iter().zip(&rows[1..]).zip(columns.iter().zip(&columns[1..]));
     for ((upper, lower), ((row, next_row), (column, next_column))) in upper.iter_mut().zip(lower).zip(pairs) {
+        // The row of a mass by the unknowns of the next, and the other way round.
         *upper = row.coupling(next_column);
         *lower = next_row.coupling(column);
     }
@@ -305,9 +332,13 @@ fn set_linear_residuals(
     let (law, mass) = (model.friction.linear(), model.mass);
     for i in 0..k {
         let (gained_x, gained_z) = (v_x[i] - star_x[i], v_z[i] - star_z[i]);
+        // -R of [6] with ẍ = (ẋ - ẋ*)/β of [1]; 0 of a mass that sticks, whose second equation is void like a slip's.
         let sigma = mode[i].direction();
-        let slip = SlippingMass::under(law, sigma, &surface[i], (v_x[i], gained_x * per_beta));
-        let of_slip = select_unpredictable(sigma != 0.0, -slip.residual(mass, (f_x[i], f_z[i])), 0.0);
+        let motion = SlipMotion { velocity: v_x[i], acceleration: gained_x * per_beta };
+        let slip = SlippingMass::under(law, sigma, &surface[i], motion);
+        let forces = ByAxis { x: f_x[i], z: f_z[i] };
+        let of_slip = select_unpredictable(sigma != 0.0, -slip.residual(mass, forces), 0.0);
+        // r of [5].
         let (free_x, free_z) = (f_x[i] - inertia * gained_x, f_z[i] - inertia * gained_z);
         let is_free = mode[i] == Mode::Free;
         right[i] =
@@ -337,178 +368,6 @@ pub(super) fn largest_of(values: &[Vector2<f64>]) -> f64 {
 /// Masses taken together, so that the operations on one do not wait for those on the one before.
 const LANES: usize = 4;
 
-/// How the height of a slipping mass on the profile follows its ẋ.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct ContactJacobian {
-    /// ∂e_z/∂ẋ = βs.
-    pub(super) height: f64,
-    /// ∂ż/∂ẋ = s + βκẋ.
-    pub(super) rate: f64,
-}
-
-impl ContactJacobian {
-    /// -∂F/∂ẋ of a link along z by this `law` to the mass.
-    #[inline(always)]
-    pub(super) fn force(self, law: &LinkLaw) -> f64 {
-        law.force(self.height, self.rate)
-    }
-}
-
-/// The equation of motion of a slipping mass, (6)-(9), at given velocity and acceleration: its residual and
-/// derivatives.
-#[derive(Clone, Copy, Debug, Default)]
-pub(in crate::integrator) struct SlippingMass {
-    s: f64,
-    kappa: f64,
-    third: f64,
-    velocity: f64,
-    acceleration: f64,
-    sigma: f64,
-    /// σμ; with a real area σ ∂T/∂F_N.
-    sigma_mu: f64,
-    /// σ (A τ_0 + A τ_f(v_c)); with a real area what σ ∂T/∂F_N F_N leaves of it.
-    sigma_shear: f64,
-    /// 1 - σμs, the factor of f_x.
-    share_x: f64,
-    /// s + σμ, the factor of f_z.
-    share_z: f64,
-    q: f64,
-    q2: f64,
-}
-
-impl SlippingMass {
-    /// A mass that slips in the direction `sigma` over `surface` with ẋ and ẍ (`motion`), under this law of friction.
-    #[inline(always)]
-    fn under(law: LinearFriction, sigma: f64, surface: &SurfacePoint, (velocity, acceleration): (f64, f64)) -> Self {
-        let LinearFriction { coulomb, shear, .. } = law;
-        let s = surface.slope;
-        let q2 = 1.0 + s * s;
-        let sigma_mu = sigma * coulomb;
-        Self {
-            s,
-            kappa: surface.curvature,
-            third: surface.third,
-            velocity,
-            acceleration,
-            sigma,
-            sigma_mu,
-            sigma_shear: sigma * shear,
-            share_x: 1.0 - sigma_mu * s,
-            share_z: s + sigma_mu,
-            q: q2.sqrt(),
-            q2,
-        }
-    }
-
-    /// Mass `i` of `state`, which slips, with ẍ = `acceleration` under the `forces` of the links, and its friction.
-    ///
-    /// A law that is not linear is taken along its tangent at F_N: the value and the derivatives there are the law's.
-    #[inline(always)]
-    pub(in crate::integrator) fn from_state(
-        model: &Model,
-        state: &State,
-        forces: &Forces,
-        i: usize,
-        acceleration: f64,
-        flash: Flash,
-    ) -> (Self, SlipFriction) {
-        let (v, surface, sigma) = (state.velocity_x[i], &state.surface[i], state.mode[i].direction());
-        let contact = ContactForces::without_limit(model.mass, (forces.on_mass_x[i], forces.on_mass_z[i]), v, surface);
-        let normal = if model.friction.is_linear_in_normal() { 0.0 } else { contact.normal };
-        let friction = model.friction.slip(normal, sigma * (contact.q * v), flash);
-        (Self::under(friction.tangent(), sigma, surface, (v, acceleration)), friction)
-    }
-
-    /// m q² ẍ + m s κ ẋ² - f_x - s f_z + F_T q with F_T = σ (μ F_N + A τ_0), from (6)-(9), where A τ_0 stands for the
-    /// shear force at rest (for the rate-dependent part see [`StageFriction`]):
-    ///
-    ///   m q² ẍ + m κ ẋ² (s + σμ) - (1 - σμs) f_x - (s + σμ) f_z + σ A τ_0 q = 0
-    #[inline(always)]
-    fn residual(&self, mass: f64, (f_x, f_z): (f64, f64)) -> f64 {
-        let centripetal = self.kappa * self.velocity * self.velocity * self.share_z;
-        mass * (self.q2 * self.acceleration + centripetal) - self.share_x * f_x - self.share_z * f_z
-            + self.sigma_shear * self.q
-    }
-
-    /// The derivative of the residual by the stage's ẋ; those of f_x and f_z are minus the weights.
-    #[inline(always)]
-    fn derivative(&self, model: &Model, beta: f64, (f_x, f_z): (f64, f64), (weight_x, weight_z): (f64, f64)) -> f64 {
-        let Self { s, kappa, velocity: v, share_z, .. } = *self;
-        // ∂x/∂ẋ = β, so ∂s/∂ẋ = βκ and ∂κ/∂ẋ = βz'''.
-        let ds = beta * kappa;
-        let inertia = self.q2 / beta
-            + 2.0 * s * ds * self.acceleration
-            + v * (beta * self.third * v * share_z + 2.0 * kappa * share_z + kappa * v * ds);
-        model.mass * inertia
-            + self.share_x * weight_x
-            + share_z * weight_z
-            + ds * (self.sigma_mu * f_x - f_z)
-            + self.sigma_shear * s * ds / self.q
-    }
-
-    /// m q² δẍ for the variations δx and δẋ (`x`, `v_x`) and those of the links' forces on the mass (`varied`), which
-    /// are (f_x, f_z) themselves: from
-    ///
-    ///   m q² ẍ = (1 - σμs) f_x + (s + σμ) f_z - m κ ẋ² (s + σμ) - σ A τ_0 q - σ q B(σ q ẋ),
-    ///
-    /// with B the rate-dependent friction in excess of that at rest. This is the residual's derivative again, by
-    /// direction and with ẍ as the unknown. Friction itself changes by `of_flash` (N) with the known part of ϑ.
-    pub(in crate::integrator) fn variation(
-        &self,
-        model: &Model,
-        (friction, of_flash): (&SlipFriction, f64),
-        (x, v_x): (f64, f64),
-        varied: (f64, f64),
-        (f_x, f_z): (f64, f64),
-    ) -> f64 {
-        let Self { s, kappa, velocity: v, share_x, share_z, .. } = *self;
-        let (ds, dkappa) = (kappa * x, self.third * x);
-        let centripetal = dkappa * v * v * share_z + 2.0 * kappa * v * v_x * share_z + kappa * v * v * ds;
-        let of_rate = if model.friction.depends_on_speed() { self.rate_variation(friction, v_x, s * ds) } else { 0.0 };
-        share_x * varied.0 + share_z * varied.1 + ds * (f_z - self.sigma_mu * f_x)
-            - model.mass * (centripetal + 2.0 * s * ds * self.acceleration)
-            - self.sigma_shear * s * ds / self.q
-            - of_rate
-            - self.sigma * self.q * of_flash
-    }
-
-    /// δF_N (N) and δv_t (m/s) for the variations δx and δẋ and those of the links' forces (`varied`), which are (f_x, f_z)
-    /// themselves, from F_N = (m κ ẋ² - f_z + s f_x)/q and v_t = q ẋ.
-    pub(in crate::integrator) fn contact_variation(
-        &self,
-        mass: f64,
-        (x, v_x): (f64, f64),
-        [varied_x, varied_z]: [f64; 2],
-        [f_x, f_z]: [f64; 2],
-    ) -> [f64; 2] {
-        let Self { s, kappa, third, velocity: v, q, .. } = *self;
-        let (ds, dq) = (kappa * x, s * kappa * x / q);
-        let normal = (mass * kappa * v * v - f_z + s * f_x) / q;
-        let centripetal = mass * (third * x * v * v + 2.0 * kappa * v * v_x);
-        [(centripetal - varied_z + s * varied_x + ds * f_x - normal * dq) / q, q * v_x + dq * v]
-    }
-
-    /// v_t = q ẋ, m/s.
-    pub(in crate::integrator) fn speed(&self) -> f64 {
-        self.q * self.velocity
-    }
-
-    /// δ[σ q B(σ q ẋ)] for δẋ and s δs, with B the excess of the `friction` over that at rest.
-    fn rate_variation(&self, friction: &SlipFriction, v_x: f64, s_ds: f64) -> f64 {
-        self.sigma * friction.excess * s_ds / self.q + friction.by_speed * (self.q2 * v_x + self.velocity * s_ds)
-    }
-
-    /// q² = 1 + s².
-    pub(in crate::integrator) fn q2(&self) -> f64 {
-        self.q2
-    }
-
-    #[inline(always)]
-    fn climb(&self, beta: f64) -> ContactJacobian {
-        ContactJacobian { height: beta * self.s, rate: self.s + beta * self.kappa * self.velocity }
-    }
-}
-
 /// The factors with which the forces f_x, f_z on a mass enter its two equations.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct RowShares {
@@ -535,6 +394,7 @@ impl RowShares {
     /// The block beside the diagonal: the derivative of this row by the neighbour's unknowns.
     #[inline(always)]
     fn coupling(&self, column: &NeighbourWeights) -> Matrix2<f64> {
+        // How this row takes up forces, times how they follow the neighbour's unknowns; no link couples f_x to ż.
         Matrix2::new(
             -(self.x_by_x * column.x + self.x_by_z * column.z_by_x),
             -(self.x_by_z * column.z),
@@ -565,10 +425,13 @@ impl StageSolver {
             let StageFriction { friction, derivative_without } = slip;
             let mass = stage.slipping_mass(i, friction);
             let right = &mut self.system.right[i].x;
-            let per_velocity = mass.sigma * mass.q;
-            let (speed, by) = (mass.sigma * mass.speed(), per_velocity * *right);
-            let steepness = 1.0 + (mass.q2 * friction.by_speed / derivative_without).max(0.0);
-            let (law, weight) = (&model.friction, derivative_without / mass.q2);
+            // v and δv = σ q δẋ of section 4, in the direction of slip.
+            let per_velocity = mass.speed_by_velocity();
+            let (speed, by) = (mass.slip_speed(), per_velocity * *right);
+            // 1 + q² B'/G, by which a correction counts in the convergence test.
+            let steepness = 1.0 + (mass.q2() * friction.by_speed / derivative_without).max(0.0);
+            // v' of [10], with G/q² as the weight; back to δẋ.
+            let (law, weight) = (&model.friction, derivative_without / mass.q2());
             let corrected = law.along_curve(friction.normal, flash.of_mass(i), (speed, by), weight);
             *right = (corrected - speed) / per_velocity;
             largest = largest.max(steepness * right.abs());

@@ -4,7 +4,7 @@ use asperity::element::Load;
 use asperity_study::calibration::{CalibrationError, Done, FrictionModel, FrictionParts, SceneAt, Task};
 use rayon::prelude::*;
 
-use crate::sweep::{StopBounds, steady_sliding};
+use asperity_study::sweep::{StopBounds, steady_sliding};
 
 /// The layer over the free parameters.
 pub(super) struct LayerModel<'a> {

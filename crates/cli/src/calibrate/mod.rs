@@ -24,11 +24,11 @@ use super::files::{
 };
 use super::interrupt::Farewell;
 use super::measured_friction::{self, CurveGrid, MeasuredFrictionError, ModelCurves};
-use super::sweep::{Method, MethodError, NeverSteady, SlidingOptions, relevant, table_fingerprint};
 use super::terminal::{self, note, warn};
 use super::{NOT_REACHED, SUCCESS};
 use asperity_study::decimals::{real, rounded};
 use asperity_study::settings::{self, OverrideError, Setting};
+use asperity_study::sweep::{Method, MethodError, NeverSteady, SlidingOptions, fingerprint, relevant};
 use kept::KeptPoints;
 use layer_model::LayerModel;
 
@@ -224,7 +224,7 @@ impl<'a> FreeScene<'a> {
 
     fn fingerprint(&self) -> Result<String, CalibrateError> {
         let settings = self.method.settings(|| format!("{:?}", self.options.sliding.bounds()));
-        Ok(table_fingerprint(&relevant(self.scene.clone()), &format!("calibrate {settings}"))?)
+        Ok(fingerprint(&relevant(self.scene.clone()), &format!("calibrate {settings}"))?)
     }
 }
 

@@ -11,16 +11,16 @@ use asperity_study::calibration::FreeParameter;
 use clap::{ArgGroup, Args, Parser, Subcommand};
 
 use super::files::default_output;
-use super::sweep::SweepMethod;
 use super::sweep::values::{Shard, Values};
 use asperity_study::csv::Head;
 use asperity_study::settings::Setting;
+use asperity_study::sweep::SweepMethod;
 pub use values::WlfConstants;
 pub(crate) use values::{Condition, PlotAxis, tenth};
 use values::{
     Frequencies, Tolerances, animation, arrays, column_unit, count, fit_error, free_parameter, frequency,
     key_and_value, length, moment, picture, picture_or_table, poisson_ratio, powers, pressure, seconds, seeds, share,
-    speed, table_or_arrays, temperature, wavelengths,
+    speed, sweep_method, table_or_arrays, temperature, wavelengths,
 };
 
 /// Simulates rubber on a rough surface and packs the simulation as an FMU.
@@ -365,7 +365,7 @@ pub(crate) struct Report {
 
 #[derive(Debug, Args)]
 pub(crate) struct Surface {
-    /// The profile: text with columns x and z; an areal file, X3P, SDF, SUR, PLU, OpenCRG, ERD or text of Gwyddion; or
+    /// The profile: text with columns x and z; an areal file, X3P, SDF, SUR, OpenCRG or text of Gwyddion; or
     /// a scene, whose surface is analysed.
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
@@ -530,7 +530,7 @@ pub(crate) struct Sweep {
 pub(crate) struct Sliding {
     /// How steady sliding is found: by solving for it, or by letting the layer slide until it is. Default: steady where the
     /// foundation is "half_space" or "layer" and the surface periodic and not flat; else layer.
-    #[arg(long, value_name = "METHOD", value_enum)]
+    #[arg(long, value_name = "METHOD", value_parser = sweep_method())]
     pub(crate) method: Option<SweepMethod>,
     /// Points of a period along x, with --method steady; of a map with those along y in proportion. Default: the surface's
     /// own, or of a profile 8 to its shortest wave where they are uneven or fewer.
@@ -648,7 +648,7 @@ pub(crate) struct Converge {
     #[arg(long, value_name = "N", value_parser = seeds)]
     pub(crate) seeds: Option<u32>,
     /// How steady sliding is found, as in a sweep. Default: as a sweep's.
-    #[arg(long, value_name = "METHOD", value_enum)]
+    #[arg(long, value_name = "METHOD", value_parser = sweep_method())]
     pub(crate) method: Option<SweepMethod>,
     /// Points of a period along x to begin with, with --method steady. Default: as of a sweep.
     #[arg(long, value_name = "N", value_parser = count)]

@@ -8,7 +8,8 @@ use std::path::PathBuf;
 use asperity::scene::Wlf;
 use asperity::tables::{Dimension, Unit, quantity};
 use asperity_study::calibration::FreeParameter;
-use clap::builder::{PathBufValueParser, StringValueParser, TypedValueParser};
+use asperity_study::sweep::SweepMethod;
+use clap::builder::{PathBufValueParser, PossibleValue, PossibleValuesParser, StringValueParser, TypedValueParser};
 
 use crate::files::{ends_in, is_standard_output};
 
@@ -29,6 +30,16 @@ pub(super) fn free_parameter(text: &str) -> Result<FreeParameter, String> {
     parted.filter(|parameter| !parameter.key.is_empty()).ok_or_else(|| {
         "expected KEY=LOW..HIGH in SI units, LOW below HIGH, such as friction.rate_shear.strength=1e5..2e7".into()
     })
+}
+
+/// How steady sliding is found.
+pub(super) fn sweep_method() -> impl TypedValueParser<Value = SweepMethod> {
+    let methods = [
+        PossibleValue::new("steady").help("Solves for steady sliding over one period of the surface"),
+        PossibleValue::new("layer").help("Lets the layer slide until its means are steady"),
+    ];
+    PossibleValuesParser::new(methods)
+        .map(|word| if word == "steady" { SweepMethod::Steady } else { SweepMethod::Layer })
 }
 
 /// Which rows `--where` chooses.

@@ -3,9 +3,9 @@
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
+use asperity_study::contact::ContactFields;
 use zip::result::ZipResult;
 
-use super::ContactFields;
 use crate::npz::{self, Array, Values};
 
 /// A table with a line for each point.

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use asperity_study::contact::ContactFields;
 use asperity_study::steady::SurfaceGrid;
 
-use super::ContactFields;
 use crate::figure::{Colours, Curve, FieldMap, Figure as _, LinearPanel, LinearStack, Marks, Stroke, SurfaceMaps};
 use crate::files::FileError;
 use asperity_study::decimals::rounded;

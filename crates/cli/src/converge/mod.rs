@@ -22,13 +22,12 @@ use super::draft::TablePlace;
 use super::figure::Figure as _;
 use super::files::{FileError, check_outputs, default_output, picture_beside, print_beside};
 use super::interrupt::Farewell;
-use super::sweep::{
-    Method, MethodError, NeverSteady, SlidingOptions, StopBounds, SweepMethod, relevant, steady_sliding,
-    table_fingerprint,
-};
 use super::terminal::{self, warn};
 use super::{NOT_REACHED, SUCCESS};
 use asperity_study::steady::persson::{Roughness, Theory};
+use asperity_study::sweep::{
+    Method, MethodError, NeverSteady, SlidingOptions, StopBounds, SweepMethod, fingerprint, relevant, steady_sliding,
+};
 use plan::{Next, Plan};
 use table::{Measured, RunRow, StudyHeader, Table};
 use variants::{Parts, Template, Variant};
@@ -151,7 +150,7 @@ fn header(
     let Converge { at: SteadyState { pressure, speed }, error, distance, .. } = *command;
     let of_method_alone = method.settings(|| format!("{distance:?}"));
     let settings = format!("converge {pressure:?} {speed:?} {error:?} {of_method_alone}");
-    let fingerprint = table_fingerprint(&relevant(scene.clone()), &settings)?;
+    let fingerprint = fingerprint(&relevant(scene.clone()), &settings)?;
     Ok(StudyHeader { scene: scene.name.clone(), fingerprint, method: of_method, parts, pressure, speed, error })
 }
 

@@ -1,6 +1,6 @@
 //! What the runs leave open, and the coarsest spacing that will do.
 
-use crate::sweep::SMALL_FRICTION;
+use asperity_study::sweep::SMALL_FRICTION;
 
 /// A value of each of the two quantities that are to converge, or a share of it.
 #[derive(Clone, Copy, Debug, PartialEq)]

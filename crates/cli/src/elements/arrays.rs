@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 
 use asperity::outputs::OutputType;
 
-use super::{ElementField, ElementHistory, Instant};
+use asperity_study::elements::ElementField;
+
+use super::{ElementHistory, Instant};
 use crate::files::{self, FileError};
 use crate::npz::{Array, Values, npz};
 
@@ -34,19 +36,17 @@ impl ElementHistory {
             Array::line("profile_z", self.surface.z()),
         ];
         let area = self.area.map(|area| Array::single("area", area));
-        let fields = self.fields.fields().iter().map(|field| field.array(self.rest.len()));
+        let fields = self.fields.fields().iter().map(|field| array(field, self.rest.len()));
         let archive = npz(lines.into_iter().chain(area).chain(fields));
         let archive = archive.map_err(|source| ArraysError::Archive { path: path.to_owned(), source })?;
         Ok(files::write(path, archive)?)
     }
 }
 
-impl ElementField {
-    fn array(&self, masses: usize) -> Array<'_> {
-        let values = match self.kind {
-            OutputType::Real => Values::Reals(Cow::Borrowed(&self.values)),
-            OutputType::Integer => Values::Integers(self.values.iter().map(|&value| value as i8).collect()),
-        };
-        Array { name: &self.name, shape: vec![self.values.len() / masses, masses], values }
-    }
+fn array(field: &ElementField, masses: usize) -> Array<'_> {
+    let values = match field.kind {
+        OutputType::Real => Values::Reals(Cow::Borrowed(&field.values)),
+        OutputType::Integer => Values::Integers(field.values.iter().map(|&value| value as i8).collect()),
+    };
+    Array { name: &field.name, shape: vec![field.values.len() / masses, masses], values }
 }

@@ -1,14 +1,13 @@
 //! The masses of a layer over the rows of a run: collected for arrays, for pictures of an instant and for animations.
 
 mod arrays;
-mod fields;
 mod page;
 
 use asperity::outputs::{Output, Snapshot};
 use asperity::scene::{Scene, Surface};
 
 pub(crate) use arrays::ArraysError;
-pub use fields::{ElementField, ElementFields};
+use asperity_study::elements::ElementFields;
 
 /// What the masses did, row by row.
 #[derive(Debug)]

@@ -6,7 +6,7 @@ use asperity_study::robustness::{RunFailure, at_tolerance, exact};
 use super::reference::{Comparison, Reference};
 use super::run::{CompletedRun, MasterInputs, Progress, RunFigures, UNLIMITED, drive, estimated, follow, weight};
 use super::trace::{Errors, Trace};
-use crate::runner::Rows;
+use asperity_study::runner::Rows;
 
 /// The name of this program beside those of its peers.
 pub(super) const PROGRAM: &str = "asperity";

@@ -6,7 +6,7 @@ use asperity_study::robustness::{Budget, DISPLACEMENT, RunFailure, at_tolerance,
 use super::run::{CompletedRun, Counts, Progress, RunFigures, UNLIMITED, follow, weight, with_durations};
 use super::trace::{Errors, OF_ALL_SCENES, QUANTITIES, Trace, WINDOWS};
 use crate::cli::tenth;
-use crate::runner::Rows;
+use asperity_study::runner::Rows;
 
 /// A run at a tenth of the tolerance may take so many times the steps, far more than any method needs: where they are
 /// used up, rounding has taken over.

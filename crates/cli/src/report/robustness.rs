@@ -14,8 +14,8 @@ use rayon::prelude::*;
 use super::reference::Reference;
 use super::run::{CompletedRun, Counts, Estimate, MasterInputs, drive, estimated, follow};
 use super::trace::Errors;
-use crate::runner::Rows;
 use crate::terminal::bar;
+use asperity_study::runner::Rows;
 
 /// A run is over budget where it takes so many times the steps of the scene as it is, ...
 pub(super) const BUDGET: u64 = 20;

@@ -11,8 +11,8 @@ use cpu_time::ThreadTime;
 use indicatif::ProgressBar;
 
 use super::trace::{Errors, Trace};
-use crate::runner::{InputSample, Rows, Runner};
 use crate::terminal::{bar, warn};
+use asperity_study::runner::{InputSample, Rows, Runner};
 
 /// No limit but the scene's own.
 pub(super) const UNLIMITED: Budget = Budget(u64::MAX);

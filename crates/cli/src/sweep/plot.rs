@@ -5,9 +5,10 @@ use std::path::Path;
 use asperity::element::{OperatingPoint, Quantity, TableRow};
 use asperity::scene::Wlf;
 
-use super::table_file::SweepTable;
 use crate::figure::{Curve, Figure as _, Panel, PanelRow, SideBySide, Stroke};
 use crate::files::FileError;
+use asperity_study::decimals::as_given;
+use asperity_study::sweep::SweepTable;
 
 /// Draws friction over speed at `path`: a panel for each temperature, a colour for each load; with one load, one panel
 /// and a colour for each temperature.
@@ -169,30 +170,11 @@ impl<X: Fn(&OperatingPoint) -> f64> Points<X> {
     }
 }
 
-/// A quantity that was given, in all its digits, with a prefix of its unit: `0.2 MPa`.
-pub(crate) fn as_given(value: f64, unit: &str) -> String {
-    let (prefix, factor) = match value {
-        value if value >= 1e5 => ("M", 1e6),
-        value if value >= 1e3 => ("k", 1e3),
-        value if value >= 0.1 => ("", 1.0),
-        value if value >= 1e-4 => ("m", 1e-3),
-        _ => ("µ", 1e-6),
-    };
-    let number = format!("{:.6}", value / factor);
-    format!("{} {prefix}{unit}", number.trim_end_matches('0').trim_end_matches('.'))
-}
-
 #[cfg(test)]
 mod tests {
     use asperity::element::{Basis, Load, STEADY, SweepGrid, TableHeader};
 
     use super::*;
-
-    #[test]
-    fn loads_have_a_prefix_of_their_unit() {
-        let names = [2e5, 4e4, 20.0, 0.05].map(|value| as_given(value, "Pa"));
-        assert_eq!(names, ["0.2 MPa", "40 kPa", "20 Pa", "50 mPa"]);
-    }
 
     /// Friction 1 + v, of which `adhesion`, at two speeds and temperatures, the last point not steady.
     fn table(adhesion: f64, convergence: Option<&str>) -> SweepTable {
@@ -214,7 +196,7 @@ mod tests {
             grid,
             low_end: None,
         };
-        SweepTable::of_rows(header, rows)
+        SweepTable::new(header, rows)
     }
 
     fn drawn(table: &SweepTable) -> SideBySide {

@@ -3,11 +3,10 @@
 
 use asperity::element::Quantity;
 
-use super::plot::as_given;
-use super::table_file::{StoredRow, SweepTable};
 use crate::figure;
 use crate::terminal::{LabelledLine, labelled};
-use asperity_study::decimals::rounded;
+use asperity_study::decimals::{as_given, rounded};
+use asperity_study::sweep::{StoredRow, SweepTable};
 
 /// Most speeds and most loads that are printed: a terminal's worth.
 const MOST: (usize, usize) = (60, 7);

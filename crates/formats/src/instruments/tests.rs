@@ -1,5 +1,4 @@
 use super::*;
-use asperity::scene::LengthUnit;
 
 fn options() -> ProfileOptions {
     ProfileOptions::default()
@@ -87,25 +86,10 @@ fn sur_of_digital_surf() {
     assert!(refusal(&bytes, &last()).starts_with("z[1] = missing"));
     bytes[212..214].copy_from_slice(b"V\0");
     assert!(refusal(&bytes, &options()).starts_with("unit of z = \"V\": expected a unit of length"));
-    assert!(refusal(b"DSCOMPRESSED", &options()).starts_with("a compressed SUR file of Digital Surf: expected"));
-}
-
-#[test]
-fn plu_of_sensofar() {
-    let mut bytes = vec![0; 500];
-    let mut put = |at: usize, part: &[u8]| bytes[at..at + part.len()].copy_from_slice(part);
-    put(0, b"Thu Oct 11 07:59:01 2007");
-    put(388, &3_u32.to_le_bytes());
-    put(392, &2_u32.to_le_bytes());
-    put(404, &2_f32.to_le_bytes());
-    put(408, &1_f32.to_le_bytes());
-    put(428, &3_u32.to_le_bytes());
-    bytes.extend([3_u32, 2].iter().flat_map(|size| size.to_le_bytes()));
-    bytes.extend([1_f32, 2.0, 4.0, 5.0, 1_000_001.0, 6.0].iter().flat_map(|height| height.to_le_bytes()));
-    near(&points(&bytes, &options()), &MIDDLE);
-    assert!(refusal(&bytes, &last()).starts_with("z[1] = missing"));
-    bytes[428] = 1;
-    assert!(refusal(&bytes, &options()).starts_with("a PLU file with a measurement of type 1: expected"));
+    assert!(
+        refusal(b"DSCOMPRESSED", &options())
+            .starts_with("a file of Digital Surf, compressed, which is not read: expected")
+    );
 }
 
 #[test]
@@ -158,29 +142,15 @@ fn open_crg_as_text_and_binary() {
 }
 
 #[test]
-fn road_profiles_of_erd_files() {
-    let text = "ERDFILEV2.00\n2,3,-1,1,5,0.5,-1\nTITLE a road\nSHORTNAMLElev.  RElev.\nUNITSNAMmm      in\nXUNITS  ft\nEND\n\
-                1 2\n3 4\n5 6\n";
-    let chosen = |columns: &[&str]| ProfileOptions {
-        columns: columns.iter().map(|name| (*name).to_owned()).collect(),
-        ..options()
-    };
-    near(&points(text.as_bytes(), &chosen(&["LElev."])), &[(0.0, 1e-3), (0.1524, 3e-3), (0.3048, 5e-3)]);
-    near(&points(text.as_bytes(), &chosen(&["x", "relev"])), &[(0.0, 0.0508), (0.1524, 0.1016), (0.3048, 0.1524)]);
-    assert!(refusal(text.as_bytes(), &options()).starts_with("columns = 2 channels: expected one of LElev., RElev."));
-    let given = ProfileOptions { z_unit: Some(LengthUnit::Metre), ..chosen(&["2"]) };
-    assert!(read(text.as_bytes(), &given).is_some_and(|raw| raw.is_ok()));
-}
-
-#[test]
 fn other_files_are_refused_by_their_names() {
-    for (bytes, name) in [
-        (&b"GWYP\x01\0"[..], "a native Gwyddion file (gwy)"),
-        (b"\x01\x00Directory", "an OPD file of Veeco or Wyko"),
-        (b"\x89PNG\r\n", "a PNG picture"),
-        (b"\x89HDF\r\n\x1a\n", "an HDF5 file"),
+    for (bytes, kind) in [
+        (&b"GWYP\x01\0"[..], "Gwyddion"),
+        (b"ERDFILEV2.00\n2,3,-1,1,5,0.5,-1\nEND\n1 2\n3 4\n", "ERD"),
+        (b"\x89PNG\r\n", "PNG"),
+        (b"\x89HDF\r\n\x1a\n", "HDF5"),
     ] {
-        assert!(refusal(bytes, &options()).starts_with(&format!("{name}: expected a file that is read: export")));
+        let expected = format!("a file of {kind}, which is not read: expected x and z as text or CSV");
+        assert!(refusal(bytes, &options()).starts_with(&expected));
     }
     assert!(read(b"BMW road\nx,z\n0,1\n1,2\n", &options()).is_none());
     assert!(read(b"0 1\n1 2\n", &options()).is_none());

@@ -4,7 +4,7 @@ use asperity::outputs::Variable;
 use asperity::scene::{Initial, OutputGroup, Parameter, Path, Scene, Value};
 use asperity::simulation::{Motion, Simulation, Start};
 
-use crate::runner::InputSample;
+use asperity_study::runner::InputSample;
 
 /// Displacements of the motion to and fro, over the length over which the element sticks.
 const LEGS: [f64; 3] = [10.0, -20.0, 20.0];

@@ -16,11 +16,11 @@ use crate::cli::Pack;
 use crate::figure::{Curve, Figure as _, Ladder, LadderPanel, Ladders, LinearPanel, LinearStack, Rung, Stroke};
 use crate::files::FileError;
 use crate::result_file::{CsvWriter, ResultWriter};
-use crate::runner::InputSample;
-use crate::sweep::{Method, StopBounds, Swept, SweptPoint};
 use crate::terminal::{self, LabelledLine, labelled};
 use asperity_study::csv::Head;
 use asperity_study::decimals::real;
+use asperity_study::runner::InputSample;
+use asperity_study::sweep::{Method, StopBounds, Swept, SweptPoint};
 
 /// What is compared in steady sliding.
 const COMPARED: [&str; 3] = ["F_x", "F_z", "P_diss"];

@@ -13,7 +13,7 @@ use asperity::patch::MotionError;
 use asperity::scene::{CarrierBodies, ParameterError, Scene};
 
 use crate::files::{self, FileError};
-use crate::sweep::{SweepError, separation_at_rest};
+use asperity_study::sweep::{SweepError, separation_at_rest};
 
 pub(super) use element::check as check_element;
 pub(super) use patch::check as check_patch;

@@ -15,9 +15,9 @@ use crate::figure::{Ladder, LadderPanel, Ladders, Rung, Stroke};
 use crate::files::FileError;
 use crate::pack::check::{ERROR, SLIDING_DISTANCE};
 use crate::result_file::CsvWriter;
-use crate::sweep::StopBounds;
 use crate::terminal;
 use asperity_study::decimals::real;
+use asperity_study::sweep::StopBounds;
 
 /// What is compared of an element: along and across the plane.
 const COMPARED: [(&str, usize); 2] = [("force.x", 0), ("force.z", 2)];

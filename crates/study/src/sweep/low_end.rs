@@ -2,7 +2,7 @@
 
 use asperity::element::{LowEnd, Table};
 
-use asperity_study::decimals::rounded;
+use crate::decimals::rounded;
 
 /// How far the law reaches below the least load at the least and at the largest speed, the farthest of all
 /// temperatures, and how much of a load may lie there.

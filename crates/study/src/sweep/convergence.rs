@@ -1,30 +1,12 @@
 //! What a study of convergence says of a sweep's scene, for the header of the table.
 
-use std::path::{Path, PathBuf};
-
 use asperity::tables;
 
-use super::SweepError;
-use crate::files::{default_output, read};
-
-/// The table of the study named, or of the one that `asperity converge` has written for the scene; `None` without one.
-pub(super) fn file(named: Option<&PathBuf>, scene_file: &Path) -> Option<PathBuf> {
-    let usual = default_output(scene_file, "converge.csv");
-    named.cloned().or(Some(usual).filter(|usual| usual.exists()))
-}
-
-/// The verdict of the study at `path` on `scene`.
-pub(super) fn found(path: Option<&Path>, scene: &str) -> Result<Option<String>, SweepError> {
-    let Some(path) = path else { return Ok(None) };
-    let text = String::from_utf8_lossy(&read(path)?).into_owned();
-    match verdict(&text, scene) {
-        Ok(verdict) => Ok(Some(verdict)),
-        Err(problem) => Err(SweepError::NotAStudy { path: path.to_owned(), problem }),
-    }
-}
-
-/// The verdict and the point that it was found at, from the header of a study's table.
-fn verdict(text: &str, scene: &str) -> Result<String, String> {
+/// The verdict on `scene` and the point that it was found at, from the header of a study's table.
+///
+/// # Errors
+/// What is wrong with the text.
+pub fn verdict(text: &str, scene: &str) -> Result<String, String> {
     let value = |key: &str| {
         let found = tables::comments(text).find_map(|(_, comment)| {
             let (name, value) = comment.split_once('=')?;

@@ -82,7 +82,7 @@ impl Rows {
 }
 
 /// The start with the carrier at `u` (m), moving as the first phase of the excitation begins.
-pub(crate) fn start(scene: &Scene, u: f64) -> Start {
+pub fn start(scene: &Scene, u: f64) -> Start {
     let first = scene.excitation.first();
     Start {
         u_rate: first.map_or(0.0, |phase| phase.u.at(0.0).speed),

@@ -4,13 +4,13 @@ use std::sync::{Mutex, PoisonError};
 
 use asperity::element::{Load, OperatingPoint, Quantity, STEADY, TableHeader, TableRow};
 use asperity::scene::Scene;
-use asperity_study::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 
-use super::SweepError;
+use super::error::SweepError;
+use crate::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 
 /// The solver of the points of a sweep, on all threads.
 #[derive(Debug)]
-pub(crate) struct SolvedPoints {
+pub struct SolvedPoints {
     surface: SurfaceGrid,
     /// The rubber at each temperature.
     rubbers: Vec<(Option<f64>, SlidingRubber)>,
@@ -115,6 +115,6 @@ impl SolvedPoints {
 }
 
 /// [`STEADY`], or why the values cannot be relied on.
-pub(crate) fn status(slide: &SteadySlide) -> String {
+pub fn status(slide: &SteadySlide) -> String {
     slide.problem().map_or_else(|| STEADY.to_owned(), |problem| problem.to_string())
 }

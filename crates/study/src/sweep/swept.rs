@@ -2,32 +2,39 @@
 
 use asperity::element::{Load, OperatingPoint, Table};
 use asperity::scene::Scene;
-use asperity_study::steady::SteadySlide;
 
-use super::point::{SteadySliding, StopBounds};
+use super::error::SweepError;
+use super::method::{Method, SlidingOptions};
+use super::point::{SteadySliding, StopBounds, steady_sliding, steady_sliding_at};
+use super::scenes::relevant;
 use super::solved::SolvedPoints;
-use super::{Method, SlidingOptions, SweepError, relevant, steady_sliding, steady_sliding_at};
+use crate::steady::SteadySlide;
 
 /// What a table was swept with.
 #[derive(Debug)]
-pub(crate) enum Swept {
+pub enum Swept {
     /// The layer slid.
     Layer,
-    /// Steady sliding was solved for; with the separation at w = 0, m.
-    Solved { points: Box<SolvedPoints>, rest_separation: f64 },
+    /// Steady sliding was solved for.
+    Solved {
+        /// The solver of points.
+        points: Box<SolvedPoints>,
+        /// The separation at w = 0, m.
+        rest_separation: f64,
+    },
 }
 
 /// Steady sliding at a point.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SweptPoint {
+pub struct SweptPoint {
     /// Displacement of the carrier, m.
-    pub(crate) w: f64,
+    pub w: f64,
     /// Mean F_z, N.
-    pub(crate) force_z: f64,
+    pub force_z: f64,
     /// Mean force against the motion, N.
-    pub(crate) drag: f64,
+    pub drag: f64,
     /// Power lost, W.
-    pub(crate) power: f64,
+    pub power: f64,
 }
 
 /// The pressure is found to where the separation is known to this part of the rms height, ...
@@ -38,7 +45,10 @@ const LARGEST_CHANGE: f64 = 4.0;
 
 impl Swept {
     /// That of the `table` of a `scene`, for points at `temperatures` (K).
-    pub(crate) fn of_table(scene: &Scene, table: &Table, temperatures: &[f64]) -> Result<Self, SweepError> {
+    ///
+    /// # Errors
+    /// Where the scene does not go with the method of the table.
+    pub fn of_table(scene: &Scene, table: &Table, temperatures: &[f64]) -> Result<Self, SweepError> {
         let Some(asked) = SlidingOptions::of_table(table.basis.method.as_deref()) else { return Ok(Self::Layer) };
         let (Method::Steady(surface), _) = asked.choose(scene)? else { return Ok(Self::Layer) };
         let points = Box::new(SolvedPoints::new(&relevant(scene.clone()), temperatures, surface)?);
@@ -46,15 +56,18 @@ impl Swept {
     }
 
     /// What is compared with, in a word.
-    pub(crate) fn name(&self) -> &'static str {
+    pub fn name(&self) -> &'static str {
         match self {
             Self::Layer => "layer",
             Self::Solved { .. } => "solution",
         }
     }
 
-    /// Steady sliding at a point, a layer known to `bounds`; or the status of the point.
-    pub(crate) fn sliding(
+    /// Steady sliding at a point, a layer known to `bounds`.
+    ///
+    /// # Errors
+    /// The status of the point, where there is none.
+    pub fn sliding(
         &self,
         scene: &Scene,
         point: &OperatingPoint,
@@ -70,7 +83,10 @@ impl Swept {
     }
 
     /// Steady sliding with the carrier held at `w` (m), where the load is near that of the point.
-    pub(crate) fn sliding_at(
+    ///
+    /// # Errors
+    /// As for [`sliding`](Self::sliding).
+    pub fn sliding_at(
         &self,
         scene: &Scene,
         point: &OperatingPoint,

@@ -1,13 +1,13 @@
 //! How steady sliding is found: by solving for it, or by letting the layer slide until it is steady.
 
 use asperity::scene::{FoundationKind, HeightMap, Scene};
-use asperity_study::steady::{GridSize, SurfaceGrid};
 
-use super::NeverSteady;
+use super::never_steady::{NeverSteady, check_can_be_steady};
 use super::point::StopBounds;
+use crate::steady::{GridSize, SurfaceGrid};
 
 /// A method that is asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SweepMethod {
     /// Solves for steady sliding over one period of the surface.
     Steady,
@@ -17,7 +17,7 @@ pub enum SweepMethod {
 
 /// The method of a sweep.
 #[derive(Clone, Debug)]
-pub(crate) enum Method {
+pub enum Method {
     /// Steady sliding is solved for on this surface.
     Steady(SurfaceGrid),
     /// The layer slides.
@@ -65,7 +65,7 @@ const LAYER_ERROR: f64 = 5e-3;
 
 impl SlidingOptions {
     /// When the layer's runs end.
-    pub(crate) fn bounds(&self) -> StopBounds {
+    pub fn bounds(&self) -> StopBounds {
         StopBounds { error: self.error.unwrap_or(LAYER_ERROR), distance: self.distance }
     }
 
@@ -77,12 +77,15 @@ impl SlidingOptions {
     }
 
     /// Whether steady sliding of `scene` is solved for, without the layer.
-    pub(crate) fn solves(self, scene: &Scene) -> bool {
+    pub fn solves(self, scene: &Scene) -> bool {
         self.method.map_or_else(|| why_layer(scene).is_none(), |method| method == SweepMethod::Steady)
     }
 
     /// The method of a sweep of `scene`, and what the table's header says of it.
-    pub(crate) fn choose(self, scene: &Scene) -> Result<(Method, String), MethodError> {
+    ///
+    /// # Errors
+    /// Where the scene or another option does not go with the method that is asked for.
+    pub fn choose(self, scene: &Scene) -> Result<(Method, String), MethodError> {
         let reason = (self.method == Some(SweepMethod::Layer)).then_some("as asked for").or_else(|| why_layer(scene));
         match (self.method, reason) {
             (Some(SweepMethod::Steady), _) | (None, None) => self.steady(scene),
@@ -165,7 +168,7 @@ fn why_layer(scene: &Scene) -> Option<&'static str> {
 
 impl Method {
     /// What of the settings of a sweep its points depend on.
-    pub(crate) fn settings(&self, of_layer: impl FnOnce() -> String) -> String {
+    pub fn settings(&self, of_layer: impl FnOnce() -> String) -> String {
         match self {
             // A scene knows the profile, not the map that it is a line of.
             Self::Steady(surface) if surface.size.ny > 1 => format!("steady map {:?}", surface),
@@ -175,10 +178,13 @@ impl Method {
     }
 
     /// Refuses a scene that could never be steady.
-    pub(crate) fn check(&self, scene: &Scene) -> Result<(), NeverSteady> {
+    ///
+    /// # Errors
+    /// Where no slide of the layer could become steady.
+    pub fn check(&self, scene: &Scene) -> Result<(), NeverSteady> {
         match self {
             Self::Steady(_) => Ok(()),
-            Self::Layer => super::check_can_be_steady(scene),
+            Self::Layer => check_can_be_steady(scene),
         }
     }
 }

@@ -5,10 +5,13 @@ use asperity::scene::{FineRoughness, Scene};
 use asperity::simulation::Interrupt;
 use rayon::prelude::*;
 
+use super::error::SweepError;
+use super::load_search::separation_at_rest;
 use super::method::{Method, SlidingOptions};
 use super::point::{self, StopBounds};
+use super::scenes::{relevant, scene_at};
 use super::solved::SolvedPoints;
-use super::{SweepError, relevant, scene_at, separation_at_rest, table_file};
+use super::table;
 
 /// Mean loads to sweep over, rising.
 #[derive(Clone, Debug, PartialEq)]
@@ -162,5 +165,5 @@ fn fingerprint(scene: &Scene, bounds: StopBounds, load: Load, method: &Method) -
     let scene = scene.with_temperature(0.0);
     let StopBounds { error, distance } = bounds;
     let settings = method.settings(|| format!("{error:?} {distance:?}"));
-    table_file::fingerprint(&scene, &format!("{} {settings}", load.name()))
+    table::fingerprint(&scene, &format!("{} {settings}", load.name()))
 }

@@ -16,12 +16,13 @@
 //!
 //! [`Simulation::relax_dashpots`]: asperity::simulation::Simulation::relax_dashpots
 
-use asperity::element::{OperatingPoint, Quantity, STEADY, TableHeader, TableRow};
+use asperity::element::{Load, OperatingPoint, Quantity, STEADY, TableHeader, TableRow};
 use asperity::model::{LinkKind, Model};
 use asperity::scene::{CarrierBodies, CarrierBody, CarrierInitial, Scene};
 use asperity::simulation::{Interrupt, SimulationError};
 
 use super::load_search::LoadSearch;
+use super::scenes::{relevant, scene_at};
 use super::slide::{BlockMeans, Blocks, Slide, tangential_stiffness};
 use super::window::{MIN_WINDOW, Window, window};
 
@@ -42,36 +43,36 @@ pub(super) const MIN_BLOCKS: f64 = RAMP + CALM + MIN_WINDOW as f64;
 /// A window of so many blocks whose load has a trend is abandoned: the dashpots are not yet at rest.
 const ABANDONED: usize = 6;
 /// The relative error of a friction coefficient smaller than this is taken relative to this.
-pub(crate) const SMALL: f64 = 1e-2;
+pub const SMALL_FRICTION: f64 = 1e-2;
 /// Longest distance in blocks where none is given.
 const BLOCKS: f64 = 100.0;
 
 /// When a point ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct StopBounds {
+pub struct StopBounds {
     /// Standard error of the friction coefficient over its mean.
-    pub(crate) error: f64,
-    /// Longest distance, m; `None`: [`BLOCKS`] blocks.
-    pub(crate) distance: Option<f64>,
+    pub error: f64,
+    /// Longest distance, m; `None`: 100 blocks.
+    pub distance: Option<f64>,
 }
 
 /// What a layer does in steady sliding.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct SteadySliding {
+pub struct SteadySliding {
     /// Displacement of the carrier, m.
-    pub(crate) w: f64,
+    pub w: f64,
     /// Mean F_z, N.
-    pub(crate) force_z: f64,
+    pub force_z: f64,
     /// Friction coefficient and its parts, 1.
     friction: FrictionParts,
     /// Standard error of the friction coefficient, 1.
-    pub(crate) friction_error: f64,
+    pub friction_error: f64,
     /// Masses in contact over all masses, 1.
-    pub(crate) contact_ratio: f64,
+    pub contact_ratio: f64,
     /// Area that touches with the waves that the profile lacks over the layer's, 1; `None` without them.
     real_area: Option<f64>,
     /// Standard error of the contact ratio, 1.
-    pub(crate) contact_error: f64,
+    pub contact_error: f64,
     /// Power lost in dampers, Maxwell elements, friction and impacts, W; `None` for a channel that the scene cannot
     /// have.
     channels: [Option<f64>; 4],
@@ -83,27 +84,27 @@ pub(crate) struct SteadySliding {
 
 impl SteadySliding {
     /// Friction coefficient, 1.
-    pub(crate) fn friction(&self) -> f64 {
+    pub fn friction(&self) -> f64 {
         self.friction.whole
     }
 
     /// The part of the friction coefficient that is hysteresis, 1.
-    pub(crate) fn hysteresis(&self) -> f64 {
+    pub fn hysteresis(&self) -> f64 {
         self.friction.hysteresis
     }
 
     /// The part of that by the waves that the profile lacks, 1.
-    pub(crate) fn fine(&self) -> f64 {
+    pub fn fine(&self) -> f64 {
         self.friction.fine.unwrap_or(0.0)
     }
 
     /// Mean force against the motion, N.
-    pub(crate) fn drag(&self) -> f64 {
+    pub fn drag(&self) -> f64 {
         self.friction.whole * self.force_z
     }
 
     /// Power lost, W.
-    pub(crate) fn power(&self) -> f64 {
+    pub fn power(&self) -> f64 {
         self.channels.iter().flatten().sum()
     }
 }
@@ -235,6 +236,39 @@ pub(super) fn sliding_at(scene: &Scene, speed: f64, w: f64, load: f64, bounds: S
     let mut load = LoadSearch::estimated(load, scene, &Model::new(scene));
     load.w = w;
     search((scene, speed), bounds, load, Held::Given, None)
+}
+
+/// Steady sliding at one point, known to `bounds`.
+///
+/// # Errors
+/// The status of the point, where the layer does not become steady.
+pub fn steady_sliding(
+    scene: &Scene,
+    point: &OperatingPoint,
+    load: Load,
+    bounds: StopBounds,
+) -> Result<SteadySliding, String> {
+    let scene = scene_at(&relevant(scene.clone()), point);
+    steady(sliding(&scene, point.speed, load.force(point.load), bounds, None))
+}
+
+/// Steady sliding at one point with the carrier held at `w` (m), where the load is near that of the point.
+pub(super) fn steady_sliding_at(
+    scene: &Scene,
+    point: &OperatingPoint,
+    w: f64,
+    load: Load,
+    bounds: StopBounds,
+) -> Result<SteadySliding, String> {
+    let scene = scene_at(&relevant(scene.clone()), point);
+    steady(sliding_at(&scene, point.speed, w, load.force(point.load), bounds))
+}
+
+fn steady(result: PointResult) -> Result<SteadySliding, String> {
+    match result.sliding {
+        Some(sliding) if result.status == STEADY => Ok(sliding),
+        _ => Err(result.status),
+    }
 }
 
 fn search(
@@ -421,7 +455,7 @@ impl<'a> Search<'a> {
         let of = |value: fn(&BlockMeans) -> f64| Window::new(&used.iter().map(value).collect::<Vec<_>>());
         let (friction, load) = (of(|means| means.drag / means.load), of(|means| means.load));
         let contact = of(|means| means.contact);
-        let steady = friction.is_steady(self.error * friction.mean.abs().max(SMALL))
+        let steady = friction.is_steady(self.error * friction.mean.abs().max(SMALL_FRICTION))
             && load.is_steady(LOAD_ERROR * self.load.target);
         let drifts = load.has_trend(LOAD_ERROR * self.load.target);
         Average { means: BlockMeans::mean(used), friction, load, contact, steady, drifts }
@@ -449,7 +483,7 @@ impl<'a> Search<'a> {
         let deviation = self.deviation(&average.means);
         let distance = self.distance_before + self.slide.distance();
         if !average.steady {
-            let error = average.friction.error / average.friction.mean.abs().max(SMALL);
+            let error = average.friction.error / average.friction.mean.abs().max(SMALL_FRICTION);
             format!(
                 "not steady after {distance:.4} m: standard error of the friction coefficient {:.2} % of it",
                 100.0 * error

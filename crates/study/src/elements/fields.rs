@@ -67,10 +67,10 @@ impl ElementFields {
     }
 }
 
-#[cfg(test)]
+#[doc(hidden)]
 impl ElementFields {
     /// As after so many rows, all values 0.
-    pub(super) fn fill(&mut self, rows: usize) {
+    pub fn fill(&mut self, rows: usize) {
         let masses = self.variables.len() / self.fields.len();
         self.fields.iter_mut().for_each(|field| field.values = vec![0.0; masses * rows]);
     }

@@ -8,66 +8,38 @@
 //! Where each element has a temperature of its own, the law is kept at several temperatures, planes, and is linear
 //! between two of them: p, μp and κ at an approach. Cells of a plane are computed when they are first met.
 
+mod planes;
+mod speed_grid;
+#[cfg(test)]
+mod tests;
+
+pub use speed_grid::{SpeedCell, SpeedRange};
+
 use super::backing::{SeriesBacking, SeriesIntervals};
 use super::law::{Law, LawAtSpeed};
-use super::law_points::{Intervals, LawPoints};
+use super::law_points::{ElementLaw, Intervals, LawPoints};
 use super::limits::TableLimits;
+use super::quantity::Quantity;
 use super::table::Table;
-use super::table_format::Quantity;
 use crate::math::Number;
 use crate::scene::Backing;
+use planes::Planes;
+use speed_grid::SpeedGrid;
 
-/// Width of a cell, in ln v, at most, and cells between two speeds of a table, at least.
+/// Width of a cell, in ln v, at most.
 ///
 /// So p, μ p and κ are met to 1e-9 where the table is smooth, and to 1e-6 of their largest values elsewhere:
 /// slopes along the pressure have a corner where they leave 0.
 const MAX_WIDTH: f64 = 0.006;
-const MIN_CELLS: f64 = 8.0;
 /// Where there are several planes, between which the law is met to 1e-3, ten times that: each plane takes memory, and
 /// time when it is met.
 const MAX_WIDTH_OF_PLANES: f64 = 0.06;
-
-/// Distance of planes, K, at most; closer where the table bends with the temperature so that p and μp would err by more
-/// than their tolerance at the table's points; and how many there are at most.
-const MAX_DISTANCE: f64 = 2.0;
-const PLANE_TOLERANCE: f64 = 1e-3;
-const MAX_PLANES: f64 = 400.0;
-
-/// Most bins in which the place of a speed among those of the table is looked up.
-const MAX_BINS: f64 = 1e5;
 
 /// Speeds of a cell at which the law is taken.
 const SAMPLES: usize = 3;
 
 /// Approaches that are compared at once.
 const WIDTH: usize = 4;
-
-/// The law of an element, of numbers or of numbers with their derivatives.
-#[derive(Clone, Copy, Debug)]
-pub struct ElementLaw<T> {
-    /// p, Pa.
-    pub pressure: T,
-    /// Friction coefficient, 1.
-    pub friction: T,
-    /// Tangential stiffness per area, N/m³.
-    pub stiffness: T,
-}
-
-impl<T: Number> ElementLaw<T> {
-    /// p, μp and κ a fraction of the way to those of another.
-    #[inline(always)]
-    fn towards(&self, other: &Self, fraction: T) -> Self {
-        let straight = |from: T, to: T| from + (to - from) * fraction;
-        let pressure = straight(self.pressure, other.pressure);
-        let limit = straight(self.pressure * self.friction, other.pressure * other.friction);
-        let bears = pressure.value() > 0.0;
-        Self {
-            pressure,
-            friction: (limit / pressure.or(bears, T::constant(1.0))).or(bears, self.friction),
-            stiffness: straight(self.stiffness, other.stiffness),
-        }
-    }
-}
 
 /// Where a speed and a temperature lie in the law.
 #[derive(Clone, Copy, Debug)]
@@ -106,107 +78,6 @@ impl IntervalStarts {
     const NONE: Self = Self { start: [f64::INFINITY; WIDTH], growth: [0.0; WIDTH] };
 }
 
-/// The cell in which a speed lies; the fraction of it is a straight function of ln v.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct SpeedCell {
-    index: usize,
-    /// ln v where the cell begins.
-    start: f64,
-    /// Cells per unit of ln v.
-    density: f64,
-}
-
-impl SpeedCell {
-    #[inline(always)]
-    fn fraction<T: Number>(&self, log_speed: T) -> T {
-        (log_speed - T::constant(self.start)).times(self.density)
-    }
-}
-
-/// Between two speeds of the table, as logarithms.
-#[derive(Clone, Copy, Debug)]
-struct SpeedSpan {
-    start: f64,
-    end: f64,
-    /// Cells per unit.
-    density: f64,
-    /// The width of a cell.
-    width: f64,
-    /// The index of its first cell.
-    first: usize,
-    /// How many cells it has.
-    count: usize,
-}
-
-impl SpeedSpan {
-    /// The spans of a table, with cells of this width at most; a table of one speed has one without width.
-    fn new(speeds: &[f64], max_width: f64) -> Vec<Self> {
-        let mut first = 0;
-        let mut span = |start: f64, end: f64| {
-            let count = ((end - start) / max_width).ceil().max(MIN_CELLS);
-            let width = (end - start) / count;
-            let density = if width > 0.0 { 1.0 / width } else { 0.0 };
-            let count = count as usize;
-            first += count;
-            Self { start, end, density, width, first: first - count, count }
-        };
-        match speeds {
-            [one] => vec![span(*one, *one)],
-            _ => speeds.windows(2).map(|pair| span(pair[0], pair[1])).collect(),
-        }
-    }
-}
-
-/// The speeds of a table.
-#[derive(Clone, Copy, Debug)]
-pub struct SpeedRange {
-    /// The least, m/s.
-    least: f64,
-    /// The largest, m/s.
-    largest: f64,
-    /// ln v of the least.
-    first: f64,
-    /// ln v of the largest.
-    last: f64,
-}
-
-impl SpeedRange {
-    /// ln v of a speed (m/s), limited to those of the table.
-    #[inline(always)]
-    pub fn logarithm<T: Number>(&self, speed: T) -> T {
-        let speed = speed.larger(T::constant(self.least)).smaller(T::constant(self.largest));
-        // Rounding may lead out again.
-        speed.ln().larger(T::constant(self.first)).smaller(T::constant(self.last))
-    }
-}
-
-/// Temperatures at which a law is kept, evenly from the first of its table to the last.
-#[derive(Clone, Copy, Debug)]
-struct Planes {
-    /// The least, K.
-    first: f64,
-    /// From one to the next, K.
-    distance: f64,
-    count: usize,
-    /// Cells of a plane.
-    cells: usize,
-}
-
-impl Planes {
-    /// Those of a table of several temperatures, with so many cells each.
-    fn new(table: &Table, law: &Law, cells: usize) -> Option<Self> {
-        let [first, .., last] = *table.grid.temperatures.as_slice() else { return None };
-        // A straight line over a parabola is off by its second derivative times the distance² over 8.
-        let distance = (8.0 * PLANE_TOLERANCE / law.bend_over_temperature()).sqrt().min(MAX_DISTANCE);
-        let steps = ((last - first) / distance).ceil().clamp(1.0, MAX_PLANES - 1.0);
-        Some(Self { first, distance: (last - first) / steps, count: steps as usize + 1, cells })
-    }
-
-    fn temperature(&self, plane: usize) -> f64 {
-        self.first + self.distance * plane as f64
-    }
-}
-
 /// The precomputed law of a table at one temperature, or at all that elements of their own temperatures may have.
 #[derive(Clone, Debug)]
 pub struct ResampledLaw {
@@ -220,12 +91,8 @@ pub struct ResampledLaw {
     area: f64,
     /// ln p at the pressures, p in Pa.
     log_pressures: Vec<f64>,
-    /// The speeds of the table, as logarithms.
-    speeds: Vec<f64>,
-    spans: Vec<SpeedSpan>,
-    /// Even bins of ln v: the last speed of the table at or below where each begins; seldom more than one lies in it.
-    bins: Vec<u32>,
-    bin_density: f64,
+    /// The speeds of the table and the cells between them, in one plane.
+    speeds: SpeedGrid,
     /// By cell those of all pressures but the first.
     interval_starts: Vec<IntervalStarts>,
     /// By cell and pressure.
@@ -257,15 +124,13 @@ impl ResampledLaw {
         let mut law = Law::new(table, temperature);
         let curve = LawAtSpeed::new(&law, 0.0);
         let shift = (table.load.area() / area).ln();
-        let speeds = law.log_speeds().to_vec();
-        let (bins, bin_density) = bins(&speeds);
         let width = if has_planes { MAX_WIDTH_OF_PLANES } else { MAX_WIDTH };
-        let (spans, pressures) = (SpeedSpan::new(&speeds, width), table.grid.loads.len());
-        let cells_of_plane: usize = spans.iter().map(|span| span.count).sum();
+        let (speeds, pressures) = (SpeedGrid::new(law.log_speeds().to_vec(), width), table.grid.loads.len());
+        let cells_of_plane = speeds.cells();
         let planes = if has_planes { Planes::new(table, &law, cells_of_plane) } else { None };
         let cells = cells_of_plane * planes.map_or(1, |planes| planes.count);
         let earliest_touch = match planes {
-            Some(planes) => earliest_touch(&mut law, &planes),
+            Some(planes) => planes.earliest_touch(&mut law),
             None => law.earliest_touch(),
         };
         let log_pressures: Vec<f64> = curve.points()[0].iter().map(|y| y + shift).collect();
@@ -274,10 +139,7 @@ impl ResampledLaw {
             area,
             backing: backing.map(|backing| SeriesBacking::new(backing, &log_pressures)),
             log_pressures,
-            spans,
             speeds,
-            bins,
-            bin_density,
             interval_starts: vec![IntervalStarts::NONE; cells * starts_of(pressures)],
             coefficients: vec![[[0.0; 12]; SAMPLES]; cells * pressures],
             shares: vec![[[0.0; 8]; SAMPLES]; cells * pressures],
@@ -292,9 +154,9 @@ impl ResampledLaw {
 
     /// Memory in bytes that the law of `table` takes, of elements that are warmer or not.
     pub fn memory(table: &Table, is_warm: bool) -> usize {
-        let speeds: Vec<f64> = table.grid.speeds.iter().map(|speed| speed.ln()).collect();
+        let speeds = table.grid.speeds.iter().map(|speed| speed.ln()).collect();
         let width = if is_warm { MAX_WIDTH_OF_PLANES } else { MAX_WIDTH };
-        let cells: usize = SpeedSpan::new(&speeds, width).iter().map(|span| span.count).sum();
+        let cells = SpeedGrid::new(speeds, width).cells();
         let planes = if is_warm { Planes::new(table, &Law::new(table, 0.0), cells) } else { None };
         let cells = cells * planes.map_or(1, |planes| planes.count);
         let pressures = table.grid.loads.len();
@@ -357,14 +219,13 @@ impl ResampledLaw {
     /// The speeds of the table.
     #[inline(always)]
     pub fn range(&self) -> SpeedRange {
-        let (least, largest) = self.law.speed_range;
-        SpeedRange { least, largest, first: self.speeds[0], last: self.speeds[self.speeds.len() - 1] }
+        self.speeds.range(self.law.speed_range)
     }
 
     /// The cell of a [logarithm of a speed](SpeedRange::logarithm), computed if it was not yet.
     #[inline(always)]
     pub fn speed_cell(&mut self, log_speed: f64) -> SpeedCell {
-        let cell = self.find_cell(log_speed);
+        let cell = self.speeds.cell(log_speed);
         self.compute_once(&cell);
         cell
     }
@@ -378,7 +239,7 @@ impl ResampledLaw {
         // Beyond the temperatures of the table the law is that of its end.
         let from_first = from_first.larger(T::constant(0.0)).smaller(T::constant((count - 1) as f64));
         let plane = (from_first.value() as u32 as usize).min(count - 2);
-        let mut below = self.find_cell(log_speed);
+        let mut below = self.speeds.cell(log_speed);
         below.index += plane * cells;
         let above = SpeedCell { index: below.index + cells, ..below };
         self.compute_once(&below);
@@ -394,19 +255,6 @@ impl ResampledLaw {
             Some(([cell, next], fraction)) => LawPlace { log_speed, cell, next: Some((next, fraction)) },
             None => LawPlace { log_speed, cell: self.speed_cell(log_speed.value()), next: None },
         }
-    }
-
-    /// The cell of a logarithm of a speed, in the first plane.
-    #[inline(always)]
-    fn find_cell(&self, log_speed: f64) -> SpeedCell {
-        let bin = ((log_speed - self.speeds[0]) * self.bin_density) as u32 as usize;
-        let mut below = self.bins[bin.min(self.bins.len() - 1)] as usize;
-        while log_speed >= self.spans[below].end && below + 1 < self.spans.len() {
-            below += 1;
-        }
-        let SpeedSpan { start, density, width, first, count, .. } = self.spans[below];
-        let i = (((log_speed - start) * density) as u32 as usize).min(count - 1);
-        SpeedCell { index: first + i, start: start + i as f64 * width, density }
     }
 
     #[inline(always)]
@@ -606,34 +454,12 @@ impl ResampledLaw {
     }
 }
 
-/// Up to this approach (m) there is no contact at any speed and any plane's temperature.
-fn earliest_touch(law: &mut Law, planes: &Planes) -> f64 {
-    let touch = |plane: usize| {
-        law.set_temperature(planes.temperature(plane));
-        law.earliest_touch()
-    };
-    (0..planes.count).map(touch).fold(f64::INFINITY, f64::min)
-}
-
 /// The polynomials that are 1 at one of 0, 1/2 and 1, and 0 at the others, by power.
 const LAGRANGE: [[f64; SAMPLES]; SAMPLES] = [[1.0, -3.0, 2.0], [0.0, 4.0, -4.0], [0.0, -1.0, 2.0]];
 
 /// How many [`IntervalStarts`] hold those of all pressures but the first.
 const fn starts_of(pressures: usize) -> usize {
     (pressures - 1).div_ceil(WIDTH)
-}
-
-/// Bins over the logarithms of the speeds, none wider than the narrowest step, and how many there are per unit.
-fn bins(speeds: &[f64]) -> (Vec<u32>, f64) {
-    let range = speeds[speeds.len() - 1] - speeds[0];
-    if range <= 0.0 {
-        return (vec![0], 0.0);
-    }
-    let narrowest = speeds.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
-    let count = (range / narrowest).ceil().min(MAX_BINS);
-    let start = |bin: usize| speeds[0] + range * bin as f64 / count;
-    let below = |bin: usize| speeds.partition_point(|&speed| speed <= start(bin)).clamp(1, speeds.len() - 1) - 1;
-    ((0..count as usize).map(|bin| below(bin) as u32).collect(), count / range)
 }
 
 /// The coefficients of the cubic that follows point `i` of a column over `x`, from there; after the last point its
@@ -647,104 +473,4 @@ fn cubic_over(x: &[f64], column: Option<[&[f64]; 2]>, i: usize) -> [f64; 4] {
     let secant = (values[i + 1] - values[i]) / h;
     let quadratic = (3.0 * secant - 2.0 * slopes[i] - slopes[i + 1]) / h;
     [values[i], slopes[i], quadratic, (slopes[i] + slopes[i + 1] - 2.0 * secant) / (h * h)]
-}
-
-#[cfg(test)]
-#[allow(clippy::unwrap_used)]
-mod tests {
-    use std::path::Path;
-
-    use super::*;
-
-    fn table(name: &str) -> Table {
-        Table::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch").join(name)).unwrap()
-    }
-
-    /// Where more of its speeds lie together than there are bins for.
-    #[test]
-    fn close_speeds_of_a_table_are_told_apart() {
-        let mut text = "# asperity sweep = 1\n# scene = close\n# nominal_area = 1 m2\n# rest_separation = 0 m\n\
-                        speed [m/s],pressure [Pa],temperature [K],status,friction [1],separation [m],\
-                        tangential_stiffness [N/m]\n"
-            .to_owned();
-        let speeds = [1e-3, 1.000_001e-3, 1.000_002e-3, 10.0];
-        for (j, speed) in speeds.iter().enumerate() {
-            for (pressure, separation) in [(1e5, 2e-5), (2e5, 1e-5)] {
-                let friction = 0.5 + 0.1 * j as f64;
-                text += &format!("{speed},{pressure},,steady,{friction},{separation},1e9\n");
-            }
-        }
-        let path = std::env::temp_dir().join(format!("asperity-close-{}.csv", std::process::id()));
-        std::fs::write(&path, text).unwrap();
-        let table = Table::load(&path).unwrap();
-        std::fs::remove_file(&path).unwrap();
-        let mut law = ResampledLaw::new(&table, 1.0, 0.0, None);
-        for (j, speed) in speeds.iter().enumerate() {
-            let log_speed = law.range().logarithm(*speed);
-            let cell = law.speed_cell(log_speed);
-            let friction = law.at(&cell, log_speed, -1.5e-5).friction;
-            assert!((friction - 0.5 - 0.1 * j as f64).abs() < 1e-6, "{speed}: {friction}");
-        }
-    }
-
-    /// p and μp of elements of any temperature, within 1e-3 of those of the table at that temperature.
-    #[test]
-    fn between_planes_it_is_the_law_of_the_table() {
-        let table = table("block.table.csv");
-        let area = table.load.area();
-        let mut found = ResampledLaw::of_warm_elements(&table, area, 284.0, None);
-        for rise in [-5.0, 0.0, 3.7, 9.9, 14.2, 30.0] {
-            let law = Law::new(&table, (284.0_f64 + rise).clamp(283.15, 303.15));
-            for step in 0..150 {
-                let speed = (1e-4_f64.ln() + 0.1 * f64::from(step)).exp();
-                let curve = LawAtSpeed::new(&law, speed);
-                let place = found.place(speed, rise);
-                for i in 1..40 {
-                    let approach = curve.touch + (curve.closest() - curve.touch) * f64::from(i) / 36.0;
-                    let exact = curve.at(approach);
-                    let point = found.at_place(&place, approach);
-                    let (normal, limit) = (point.pressure * area, point.pressure * point.friction * area);
-                    // Below the least pressure in shares of that.
-                    let scale = |value: f64| 1e-3 * value.max(table.load.force(table.grid.loads[0]));
-                    assert!((normal - exact.normal.value).abs() < scale(exact.normal.value), "{rise} {speed} {i}");
-                    assert!((limit - exact.limit.value).abs() < scale(exact.limit.value), "{rise} {speed} {i}");
-                }
-            }
-        }
-    }
-
-    /// p, μ and κ at speeds and approaches all over the table and beyond, at temperatures between its own.
-    #[test]
-    fn it_is_the_law_of_the_table() {
-        for (name, temperatures) in [("block.table.csv", [285.0, 299.0]), ("winkler.table.csv", [0.0, 0.0])] {
-            let table = table(name);
-            let area = table.load.area();
-            let mut found = ResampledLaw::new(&table, area, temperatures[0], None);
-            for temperature in temperatures {
-                found.set_temperature(temperature);
-                let law = Law::new(&table, temperature);
-                for step in 0..1500 {
-                    let speed = (1e-5_f64.ln() + 0.0137 * f64::from(step)).exp();
-                    let curve = LawAtSpeed::new(&law, speed);
-                    let (from, to) = (curve.touch, curve.closest());
-                    let end = curve.at(to);
-                    for i in -2..40 {
-                        let approach = from + (to - from) * f64::from(i) / 36.0;
-                        let exact = curve.at(approach);
-                        let log_speed = found.range().logarithm(speed);
-                        let cell = found.speed_cell(log_speed);
-                        let point = found.at(&cell, log_speed, approach);
-                        // As shares of the largest values of the table.
-                        let largest = found.largest_pressure() * area;
-                        let close = |value: f64, expected: f64, scale: f64| {
-                            assert!((value - expected).abs() <= 1e-6 * scale, "{value} {expected}");
-                        };
-                        close(point.pressure * area, exact.normal.value, largest);
-                        close(point.pressure * point.friction * area, exact.limit.value, largest);
-                        close(point.stiffness * area, exact.stiffness.value, end.stiffness.value);
-                    }
-                }
-            }
-        }
-    }
 }

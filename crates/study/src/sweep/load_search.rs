@@ -146,7 +146,7 @@ impl WinklerFoundation {
 }
 
 /// Heights of the profile at evenly spaced positions over the whole of it, m.
-pub(super) fn heights(scene: &Scene, model: &Model) -> Vec<f64> {
+fn heights(scene: &Scene, model: &Model) -> Vec<f64> {
     let (first, last) = ends(scene);
     let count = 4 * scene.surface.x().len();
     let position = |i: usize| first + (last - first) * (i as f64 + 0.5) / count as f64;
@@ -154,9 +154,10 @@ pub(super) fn heights(scene: &Scene, model: &Model) -> Vec<f64> {
 }
 
 /// Separation of the carrier's rest line and the profile's mean line at w = 0, m.
-pub(super) fn rest_separation(model: &Model, heights: &[f64]) -> f64 {
+pub fn separation_at_rest(scene: &Scene) -> f64 {
+    let model = Model::new(scene);
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    mean(&model.rest_z) - mean(heights)
+    mean(&model.rest_z) - mean(&heights(scene, &model))
 }
 
 /// First and last position of the profile, m.

@@ -1,0 +1,89 @@
+//! Where the rubber touches in steady sliding, and how hard.
+
+use asperity::scene::Scene;
+
+use crate::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
+use crate::sweep::{Method, MethodError, SlidingOptions, SweepMethod, solved_status};
+
+/// The contact of a scene cannot be solved for.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what they are")]
+pub enum ContactError {
+    #[error(transparent)]
+    Method(#[from] MethodError),
+    #[error("the scene has no material or layer.width, so its contact has no pressure")]
+    NoMaterial,
+}
+
+/// What stands at every point of a surface, row by row along x, and where.
+#[derive(Clone, Debug)]
+pub struct ContactFields {
+    /// Places of the columns along x, m.
+    pub x: Vec<f64>,
+    /// Places of the rows along y, m; one of a profile.
+    pub y: Vec<f64>,
+    /// Heights about their mean, m.
+    pub heights: Vec<f64>,
+    /// Pressures, Pa.
+    pub pressures: Vec<f64>,
+    /// Gaps between rubber and surface, m.
+    pub gaps: Vec<f64>,
+}
+
+/// Steady sliding that was solved for.
+#[derive(Clone, Debug)]
+pub struct SolvedContact {
+    /// The surface, on the points of the solver.
+    pub surface: SurfaceGrid,
+    /// What the solver found.
+    pub slide: SteadySlide,
+    /// What stands at every point.
+    pub fields: ContactFields,
+    /// [`STEADY`], or why the values cannot be relied on.
+    pub status: String,
+}
+
+/// One state of steady sliding, and on how many points it is solved for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactOptions {
+    /// Mean pressure, Pa.
+    pub pressure: f64,
+    /// Sliding speed, m/s.
+    pub speed: f64,
+    /// Points of a period along x; `None`: as [`SlidingOptions::points`].
+    pub points: Option<u32>,
+}
+
+/// Solves for steady sliding of a scene.
+///
+/// # Errors
+/// Where the scene cannot be solved for.
+pub fn solve_contact(scene: &Scene, options: &ContactOptions) -> Result<SolvedContact, ContactError> {
+    let sliding =
+        SlidingOptions { method: Some(SweepMethod::Steady), points: options.points, ..SlidingOptions::default() };
+    // What is asked for is chosen or refused.
+    let (Method::Steady(surface), _) = sliding.choose(scene)? else { return Err(ContactError::NoMaterial) };
+    let rubber = SlidingRubber::new(scene).ok_or(ContactError::NoMaterial)?;
+    let mut solver = SteadySolver::new(surface);
+    let slide = solver.slide(&rubber, options.speed, options.pressure);
+    let surface = solver.surface().clone();
+    let (fields, status) = (ContactFields::new(&surface, &slide), solved_status(&slide));
+    Ok(SolvedContact { surface, slide, fields, status })
+}
+
+impl ContactFields {
+    fn new(surface: &SurfaceGrid, slide: &SteadySlide) -> Self {
+        let mut pressures = vec![0.0; surface.size.points()];
+        for (&point, &pressure) in slide.contact.points.iter().zip(&slide.contact.pressures) {
+            pressures[point as usize] = pressure;
+        }
+        let places = |length: f64, count: usize| (0..count).map(|i| length * (i as f64 / count as f64)).collect();
+        Self {
+            x: places(surface.length, surface.size.nx),
+            y: places(surface.width, surface.size.ny),
+            heights: surface.heights.clone(),
+            pressures,
+            gaps: slide.contact.gaps.clone(),
+        }
+    }
+}

@@ -1,0 +1,29 @@
+//! Why a scene is not swept.
+
+use asperity::scene::ParameterError;
+
+use super::method::MethodError;
+use super::never_steady::NeverSteady;
+
+/// The scene does not go with what is asked of a sweep.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what they are")]
+pub enum SweepError {
+    #[error("the scene has [carrier.x]; expected none, since a sweep prescribes the speed")]
+    BodyAlongX,
+    #[error("cannot be written as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+    #[error(
+        "--pressures: the scene is in the direct form, which has no width and so no area: give --forces, F_z of the whole \
+         layer in N"
+    )]
+    NoArea,
+    #[error("--temperatures: the scene has no material.wlf, so nothing in it depends on the temperature")]
+    NoWlf,
+    #[error("--temperatures: {0}")]
+    Temperature(ParameterError),
+    #[error(transparent)]
+    NeverSteady(#[from] NeverSteady),
+    #[error(transparent)]
+    Method(#[from] MethodError),
+}

@@ -1,0 +1,196 @@
+//! The elements of a block at an instant: where they are, how they move, and what the contact law makes of it.
+
+use super::face::{Face, TreadColumn};
+use super::face_motion::FaceMotion;
+use super::lanes::{BLOCK, Lanes, lanes_of};
+use super::motion::BodyKinematics;
+use super::segments::{Endpoint, size};
+use crate::element::{LawPoints, ResampledLaw, SpeedCell, SpringLaw};
+use crate::math::Number;
+
+/// The elements of a block at an instant: where they are, how they move, and the contact law there.
+#[derive(Clone, Debug)]
+pub(super) struct BlockContacts<T> {
+    /// How many elements there are.
+    pub(super) count: usize,
+    /// Positions in the body's axes, m.
+    pub(super) place: [Lanes<f64>; 3],
+    /// Of a tread: the direction of the arc in x and z.
+    pub(super) direction: [Lanes<f64>; 2],
+    /// Of a tread: where on the arc the middle of an element is, m.
+    pub(super) arc: Lanes<f64>,
+    /// Areas, m².
+    pub(super) area: Lanes<f64>,
+    /// From the pose's point, in the ground's axes, m.
+    pub(super) arm: [Lanes<T>; 3],
+    /// Of a tread: the direction of the arc in the ground's axes.
+    pub(super) along: [Lanes<T>; 3],
+    /// How far the elements are below the plane z = 0, m.
+    pub(super) approach: Lanes<T>,
+    /// Along the plane, m/s.
+    pub(super) velocity: [Lanes<T>; 2],
+    /// ln v, v in m/s, limited to the speeds of the table.
+    pub(super) log_speed: Lanes<T>,
+    /// How much warmer than the temperature given the law is, K.
+    pub(super) rise: Lanes<T>,
+    /// Whether no element can be in contact: then the pressure, the limit and the stiffness are 0.
+    pub(super) is_free: bool,
+    /// Pressure, Pa.
+    pub(super) pressure: Lanes<T>,
+    /// Limit of the friction force, N.
+    pub(super) limit: Lanes<T>,
+    /// Tangential stiffness, N/m.
+    pub(super) stiffness: Lanes<T>,
+}
+
+impl<T: Number> BlockContacts<T> {
+    pub(super) fn new() -> Self {
+        let zero = [T::constant(0.0); BLOCK];
+        Self {
+            count: 0,
+            place: [[0.0; BLOCK]; 3],
+            direction: [[0.0; BLOCK]; 2],
+            arc: [0.0; BLOCK],
+            area: [0.0; BLOCK],
+            arm: [zero; 3],
+            along: [zero; 3],
+            approach: zero,
+            velocity: [zero; 2],
+            log_speed: zero,
+            rise: zero,
+            is_free: true,
+            pressure: zero,
+            limit: zero,
+            stiffness: zero,
+        }
+    }
+
+    /// Places the elements from `start` on when `entered` cells of a tread have entered since the start of the step.
+    #[inline(always)]
+    pub(super) fn set_positions(&mut self, step: &FaceMotion<'_, T>, start: usize, count: usize, entered: f64) {
+        match step.face {
+            Face::Points(points) => {
+                let range = start..start + count;
+                let [x, y, z] = &mut self.place;
+                x[..count].copy_from_slice(&points.x[range.clone()]);
+                y[..count].copy_from_slice(&points.y[range.clone()]);
+                z[..count].copy_from_slice(&points.z[range.clone()]);
+                self.area[..count].copy_from_slice(&points.area[range]);
+                self.area[count..].fill(0.0);
+            }
+            Face::Tread(tread) => {
+                let (rows, first) = (tread.rows.len(), tread.columns_of(step.tread).0);
+                let mut column = TreadColumn::default();
+                self.area[count..].fill(0.0);
+                for i in 0..count {
+                    let row = (start + i) % rows;
+                    if i == 0 || row == 0 {
+                        column = tread.column(first + ((start + i) / rows) as f64, entered);
+                    }
+                    let TreadColumn { arc, place: [x, z], direction, share } = column;
+                    (self.place[0][i], self.place[1][i], self.place[2][i]) = (x, tread.rows[row], z);
+                    (self.direction[0][i], self.direction[1][i]) = (direction[0], direction[1]);
+                    (self.arc[i], self.area[i]) = (arc, tread.area * share);
+                }
+            }
+        }
+    }
+
+    /// Finds how the elements move with the body; a tread runs through the face at `tread_speed` (m/s).
+    #[inline(always)]
+    pub(super) fn set_motion(&mut self, now: &BodyKinematics<T>, tread_speed: Option<f64>) {
+        for i in 0..BLOCK {
+            let arm = now.turned([self.place[0][i], self.place[1][i], self.place[2][i]]);
+            let velocity = now.velocity(arm);
+            self.approach[i] = -(now.height + arm[2]);
+            (self.arm[0][i], self.arm[1][i], self.arm[2][i]) = (arm[0], arm[1], arm[2]);
+            (self.velocity[0][i], self.velocity[1][i]) = (velocity[0], velocity[1]);
+        }
+        let Some(speed) = tread_speed else { return };
+        for i in 0..BLOCK {
+            let along = now.turned([self.direction[0][i], 0.0, self.direction[1][i]]);
+            (self.along[0][i], self.along[1][i], self.along[2][i]) = (along[0], along[1], along[2]);
+            self.velocity[0][i] = self.velocity[0][i] - along[0].times(speed);
+            self.velocity[1][i] = self.velocity[1][i] - along[1].times(speed);
+        }
+    }
+
+    /// Whether no element can be in contact.
+    #[inline(always)]
+    pub(super) fn is_clear(&self, law: &ResampledLaw) -> bool {
+        let touch = law.earliest_touch();
+        self.approach.iter().fold(f64::NEG_INFINITY, |most, a| if a.value() > most { a.value() } else { most }) <= touch
+    }
+
+    /// Looks the law up, in whole vectors. The lanes behind the last element have no area; those behind the last vector
+    /// keep the 0 that `reset` gave them.
+    #[inline(always)]
+    pub(super) fn look_up(&mut self, law: &mut ResampledLaw) {
+        let range = law.range();
+        for i in 0..lanes_of(self.count) {
+            self.log_speed[i] = range.logarithm(size([self.velocity[0][i], self.velocity[1][i]]));
+        }
+        if law.has_planes() {
+            return self.look_up_between_planes(law);
+        }
+        let mut cells = [SpeedCell::default(); BLOCK];
+        for i in 0..lanes_of(self.count) {
+            cells[i] = law.speed_cell(self.log_speed[i].value());
+        }
+        self.look_up_in(law, &cells);
+    }
+
+    /// Looks the law up in these cells.
+    #[inline(always)]
+    fn look_up_in(&mut self, law: &ResampledLaw, cells: &[SpeedCell; BLOCK]) {
+        let lanes = lanes_of(self.count);
+        let LawPoints { log_pressure, factor, friction, stiffness } =
+            law.points(lanes, cells, &self.log_speed, &self.approach);
+        for i in 0..lanes {
+            let pressure = log_pressure[i].exp() * factor[i];
+            self.pressure[i] = pressure;
+            self.limit[i] = (pressure * friction[i]).times(self.area[i]);
+            self.stiffness[i] = stiffness[i].times(self.area[i]);
+        }
+    }
+
+    /// Looks the law up where every element has its temperature: straight between the planes below and above it.
+    #[inline(always)]
+    fn look_up_between_planes(&mut self, law: &mut ResampledLaw) {
+        let (mut below, mut above) = ([SpeedCell::default(); BLOCK], [SpeedCell::default(); BLOCK]);
+        let mut fraction = [T::constant(0.0); BLOCK];
+        for i in 0..lanes_of(self.count) {
+            if let Some((cells, way)) = law.cells_between_planes(self.log_speed[i].value(), self.rise[i]) {
+                (below[i], above[i], fraction[i]) = (cells[0], cells[1], way);
+            }
+        }
+        self.look_up_in(law, &above);
+        let (pressure, limit, stiffness) = (self.pressure, self.limit, self.stiffness);
+        self.look_up_in(law, &below);
+        for i in 0..lanes_of(self.count) {
+            self.pressure[i] = self.pressure[i] + (pressure[i] - self.pressure[i]) * fraction[i];
+            self.limit[i] = self.limit[i] + (limit[i] - self.limit[i]) * fraction[i];
+            self.stiffness[i] = self.stiffness[i] + (stiffness[i] - self.stiffness[i]) * fraction[i];
+        }
+    }
+
+    /// No element is in contact.
+    pub(super) fn clear(&mut self) {
+        let zero = [T::constant(0.0); BLOCK];
+        (self.pressure, self.limit, self.stiffness) = (zero, zero, zero);
+    }
+
+    #[inline(always)]
+    pub(super) fn law(&self, i: usize) -> SpringLaw<T> {
+        SpringLaw { stiffness: self.stiffness[i], limit: self.limit[i] }
+    }
+
+    pub(super) fn endpoint(&self, i: usize) -> Endpoint<T> {
+        Endpoint {
+            approach: self.approach[i],
+            velocity: [self.velocity[0][i], self.velocity[1][i]],
+            area: self.area[i],
+            rise: self.rise[i],
+        }
+    }
+}
