@@ -1,6 +1,7 @@
 //! What one computes with scenes.
 
 pub mod calibration;
+pub mod check;
 pub mod contact;
 pub mod csv;
 pub mod decimals;
@@ -10,6 +11,7 @@ pub mod html;
 pub mod labelled;
 pub mod pack;
 pub mod patch;
+pub mod progress;
 pub mod robustness;
 pub mod runner;
 pub mod settings;

@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 
 use asperity::element::{PointContact, Table, TableError};
 use asperity_fmi::Definition;
+use asperity_study::check::CheckError;
 use asperity_study::pack::{self, Fmu, Library, LibraryFile, not_converged};
 use asperity_study::summary::missing_backing;
 
 use super::cli::Pack;
 use super::files::{self, FileError, check_outputs, print, write};
 use super::terminal::{LabelledLine, labelled, lines, warn};
-use check::CheckError;
 
 /// `asperity pack` failed.
 #[derive(Debug, thiserror::Error)]
@@ -22,8 +22,11 @@ pub(crate) enum PackError {
     File(#[from] FileError),
     #[error(transparent)]
     Table(#[from] TableError),
-    #[error(transparent)]
-    Check(#[from] CheckError),
+    #[error("{}{source}", dashes(.source.option()))]
+    Check {
+        #[from]
+        source: CheckError,
+    },
     #[error("{}{source}{}", dashes(.source.option()), way_to_build(.source))]
     Pack {
         #[from]

@@ -1,21 +1,17 @@
 //! The patch beside one of twice as many elements along and across, in the poses and along the motions of the check;
 //! with a tread also rolling, where cells enter and leave.
 
-use std::path::Path;
-
-use asperity::patch::{MotionError, Patch, PatchOutput, PatchVariable};
+use asperity::patch::{Patch, PatchOutput, PatchVariable};
 use asperity::scene::{NotDoubled, PatchGroup};
-use indicatif::ProgressBar;
 
-use super::elements::{Drag, write_rows};
+use super::check::PatchCheck;
+use super::elements::{Drag, table};
 use super::tilt::TiltedFace;
-use super::wrench::{COMPONENTS, Wrench, WrenchSeries, text};
-use super::{CheckSetting, extent};
-use crate::files::FileError;
-use crate::pack::check::SLIDING_DISTANCE;
-use crate::pack::check::drag::ToAndFro;
-use crate::terminal;
-use asperity_study::decimals::real;
+use super::wrench::{COMPONENTS, Wrench, WrenchSeries, extent, text};
+use crate::check::error::CheckError;
+use crate::check::measure::SLIDING_DISTANCE;
+use crate::decimals::real;
+use crate::progress::{Counter, Watch};
 
 /// The outputs of [`COMPONENTS`].
 const OUTPUTS: [PatchOutput; COMPONENTS.len()] = [
@@ -33,11 +29,12 @@ const ROLLING_ROWS: u32 = 200;
 const PASSAGES: f64 = 2.0;
 
 /// The finer patch and the patch.
-pub(super) struct Doubled {
+#[derive(Debug)]
+pub struct Doubled {
     /// Elements of the finer one along and across.
     grid: (usize, usize),
     /// In steady sliding, by speed.
-    pub(super) steady: WrenchSeries,
+    pub steady: WrenchSeries,
     to_and_fro: WrenchSeries,
     /// Without a tread, empty.
     rolling: WrenchSeries,
@@ -45,21 +42,23 @@ pub(super) struct Doubled {
 
 impl Doubled {
     /// Drags both; says why there is no finer patch.
-    pub(super) fn run(setting: &CheckSetting<'_>) -> Result<Result<Self, NotDoubled>, MotionError> {
-        let finer = match setting.patch.doubled() {
+    ///
+    /// # Errors
+    /// Where a patch cannot be moved, or `watch` stops it.
+    pub fn run(check: &PatchCheck, watch: &Watch<'_>) -> Result<Result<Self, NotDoubled>, CheckError> {
+        let finer = match check.patch.doubled() {
             Ok(finer) => finer,
             Err(reason) => return Ok(Err(reason)),
         };
         let rolling = if finer.has_tread() { ROLLING_ROWS as usize } else { 0 };
-        let bar = terminal::bar(2 * (setting.faces.len() + setting.motion.steps().count() + rolling) as u64);
-        bar.set_message("of the patch with nx, ny doubled");
+        let steps = 2 * (check.faces.len() + check.motion.steps().count() + rolling);
+        let counter = Counter::new(watch, "of the patch with nx, ny doubled", steps);
         let grid = finer.grid().unwrap_or_default();
-        let fine = WrenchCourse::run(setting, &finer, &bar)?;
-        let coarse = WrenchCourse::run(setting, setting.patch, &bar)?;
-        bar.finish_and_clear();
+        let fine = WrenchCourse::run(check, &finer, &counter)?;
+        let coarse = WrenchCourse::run(check, &check.patch, &counter)?;
         let pair = |fine: Vec<Wrench>, coarse| {
             let sizes = fine.clone();
-            WrenchSeries::new(fine, coarse, &sizes, setting.lever)
+            WrenchSeries::new(fine, coarse, &sizes, check.lever)
         };
         Ok(Ok(Self {
             grid,
@@ -70,26 +69,26 @@ impl Doubled {
     }
 
     /// By how much the wrench changes.
-    pub(super) fn summary(&self, setting: &CheckSetting<'_>) -> Vec<String> {
+    pub fn summary(&self, check: &PatchCheck) -> Vec<String> {
         let (nx, ny) = self.grid;
         let shares = self.steady.shares();
         let line = |(face, share): (&TiltedFace, Wrench)| format!("at {} m/s: {}", real(face.speed), text(share));
         let mut texts = vec![format!("the whole patch beside one of {nx} by {ny} elements, over its largest values")];
-        texts.extend(setting.faces.iter().zip(shares).map(line));
-        if setting.motion.length > 0.0 {
+        texts.extend(check.faces.iter().zip(shares).map(line));
+        if check.motion.length > 0.0 {
             texts.extend(extent("to and fro", &self.to_and_fro));
         }
         if !self.rolling.reference.is_empty() {
-            let speed = setting.middle().speed;
+            let speed = check.middle().speed;
             let rolling = format!("rolling at {} m/s, slipping at {} m/s", real(ROLLING * speed), real(speed));
             texts.extend(extent(&rolling, &self.rolling));
         }
         texts
     }
 
-    pub(super) fn write(&self, folder: &Path, motion: ToAndFro) -> Result<(), FileError> {
-        write_rows(&folder.join("loop-doubled.csv"), motion, &self.to_and_fro.reference)?;
-        write_rows(&folder.join("loop-patch.csv"), motion, &self.to_and_fro.other)
+    /// The tables of the finer patch and of the patch along the motion to and fro.
+    pub fn tables(&self, check: &PatchCheck) -> [String; 2] {
+        [&self.to_and_fro.reference, &self.to_and_fro.other].map(|rows| table(check.motion, rows))
     }
 }
 
@@ -104,26 +103,26 @@ struct WrenchCourse {
 }
 
 impl WrenchCourse {
-    fn run(setting: &CheckSetting<'_>, patch: &Patch, bar: &ProgressBar) -> Result<Self, MotionError> {
+    fn run(check: &PatchCheck, patch: &Patch, counter: &Counter<'_>) -> Result<Self, CheckError> {
         let patch = patch.with_groups(vec![PatchGroup::Forces]);
         let slide = |face: &TiltedFace| {
             let step = (SLIDING_DISTANCE / face.speed, face.speed);
-            let rows = rows(&patch, Drag::new(&patch, face, face.speed)?, std::iter::once(step), bar)?;
+            let rows = rows(&patch, Drag::new(&patch, face, face.speed)?, std::iter::once(step), counter)?;
             Ok(rows[rows.len() - 1])
         };
-        let steady = setting.faces.iter().map(slide).collect::<Result<_, MotionError>>()?;
-        let face = setting.middle();
-        let to_and_fro = rows(&patch, Drag::new(&patch, face, 0.0)?, setting.motion.steps(), bar)?;
-        let rolling = if patch.has_tread() { roll(&patch, face, length(setting.patch), bar)? } else { Vec::new() };
+        let steady = check.faces.iter().map(slide).collect::<Result<_, CheckError>>()?;
+        let face = check.middle();
+        let to_and_fro = rows(&patch, Drag::new(&patch, face, 0.0)?, check.motion.steps(), counter)?;
+        let rolling = if patch.has_tread() { roll(&patch, face, length(&check.patch), counter)? } else { Vec::new() };
         Ok(Self { steady, to_and_fro, rolling })
     }
 }
 
 /// The wrench as a tread rolls through a contact of some `length` (m) and slips at the speed of a face.
-fn roll(patch: &Patch, face: &TiltedFace, length: f64, bar: &ProgressBar) -> Result<Vec<Wrench>, MotionError> {
+fn roll(patch: &Patch, face: &TiltedFace, length: f64, counter: &Counter<'_>) -> Result<Vec<Wrench>, CheckError> {
     let (speed, tread) = ((1.0 + ROLLING) * face.speed, ROLLING * face.speed);
     let duration = PASSAGES * length / tread / f64::from(ROLLING_ROWS);
-    rows(patch, Drag::rolling(patch, face, speed, tread)?, (0..ROLLING_ROWS).map(|_| (duration, speed)), bar)
+    rows(patch, Drag::rolling(patch, face, speed, tread)?, (0..ROLLING_ROWS).map(|_| (duration, speed)), counter)
 }
 
 /// The wrench at the start and after each step.
@@ -131,14 +130,14 @@ fn rows(
     patch: &Patch,
     mut drag: Drag,
     steps: impl Iterator<Item = (f64, f64)>,
-    bar: &ProgressBar,
-) -> Result<Vec<Wrench>, MotionError> {
+    counter: &Counter<'_>,
+) -> Result<Vec<Wrench>, CheckError> {
     let variables = chosen(patch);
     let mut rows = vec![values(&mut drag, &variables)];
     for step in steps {
         drag.advance(step)?;
         rows.push(values(&mut drag, &variables));
-        bar.inc(1);
+        counter.step()?;
     }
     Ok(rows)
 }

@@ -1,15 +1,16 @@
 //! Wrenches of a dragged face, and the differences of two series of them.
 
-use asperity_study::decimals::{decimal, rounded};
+use crate::check::measure;
+use crate::decimals::{decimal, rounded};
 
 /// What is compared, and its unit; without force.y, which is 0 along x.
-pub(super) const COMPONENTS: [(&str, &str); 5] =
+pub const COMPONENTS: [(&str, &str); 5] =
     [("force.x", "N"), ("force.z", "N"), ("moment.x", "N m"), ("moment.y", "N m"), ("moment.z", "N m")];
 /// Share of force.z and of its longest arm below which a component is nothing but rounding.
 const NOTHING: f64 = 1e-9;
 
 /// The values of [`COMPONENTS`].
-pub(super) type Wrench = [f64; COMPONENTS.len()];
+pub type Wrench = [f64; COMPONENTS.len()];
 
 /// The wrench of forces (N) at their arms (m), and the sums of their magnitudes: moments may cancel.
 pub(super) fn wrench(forces: impl IntoIterator<Item = ([f64; 3], [f64; 3])>) -> (Wrench, Wrench) {
@@ -24,10 +25,11 @@ pub(super) fn wrench(forces: impl IntoIterator<Item = ([f64; 3], [f64; 3])>) -> 
 
 /// Two series of wrenches, row by row.
 #[derive(Clone, Debug, Default)]
-pub(super) struct WrenchSeries {
+pub struct WrenchSeries {
     /// What the other is measured by.
-    pub(super) reference: Vec<Wrench>,
-    pub(super) other: Vec<Wrench>,
+    pub reference: Vec<Wrench>,
+    /// What is measured.
+    pub other: Vec<Wrench>,
     /// What differences are shares of.
     scale: Wrench,
 }
@@ -41,7 +43,7 @@ impl WrenchSeries {
     }
 
     /// Magnitudes of the differences as shares.
-    pub(super) fn shares(&self) -> Vec<Wrench> {
+    pub fn shares(&self) -> Vec<Wrench> {
         let share = |(a, b): (&Wrench, &Wrench)| std::array::from_fn(|i| (a[i] - b[i]).abs() / self.scale[i]);
         self.reference.iter().zip(&self.other).map(share).collect()
     }
@@ -49,7 +51,7 @@ impl WrenchSeries {
     /// The largest of them, and their root mean squares.
     pub(super) fn extent(&self) -> (Wrench, Wrench) {
         let shares = self.shares();
-        let over = |i: usize| crate::pack::check::extent(shares.iter().map(|share| share[i]));
+        let over = |i: usize| measure::extent(shares.iter().map(|share| share[i]));
         (std::array::from_fn(|i| over(i).0), std::array::from_fn(|i| over(i).1))
     }
 }
@@ -60,6 +62,12 @@ pub(super) fn text(shares: Wrench) -> String {
         format!("{name} {} %", decimal(rounded(100.0 * share, 2), 1e-3..1e5))
     };
     COMPONENTS.iter().zip(shares).map(one).collect::<Vec<_>>().join(", ")
+}
+
+/// The largest and the root mean square differences along a motion.
+pub(super) fn extent(motion: &str, pair: &WrenchSeries) -> [String; 2] {
+    let (largest, root) = pair.extent();
+    [format!("{motion}, at most: {}", text(largest)), format!("  in root mean square: {}", text(root))]
 }
 
 #[cfg(test)]

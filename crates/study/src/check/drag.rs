@@ -4,7 +4,8 @@ use asperity::outputs::Variable;
 use asperity::scene::{Initial, OutputGroup, Parameter, Path, Scene, Value};
 use asperity::simulation::{Motion, Simulation, Start};
 
-use asperity_study::runner::InputSample;
+use super::error::NotCompared;
+use crate::runner::InputSample;
 
 /// Displacements of the motion to and fro, over the length over which the element sticks.
 const LEGS: [f64; 3] = [10.0, -20.0, 20.0];
@@ -13,7 +14,7 @@ const ROWS: u32 = 200;
 
 /// A motion to and fro along x from rest, at constant height.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct ToAndFro {
+pub(crate) struct ToAndFro {
     /// The speed, m/s.
     pub(super) speed: f64,
     /// The length over which the element sticks, m.
@@ -55,9 +56,9 @@ impl ToAndFro {
         temperature: Option<f64>,
         w: f64,
         variables: &[Variable],
-    ) -> Result<Vec<[f64; N]>, String> {
+    ) -> Result<Vec<[f64; N]>, NotCompared> {
         let start = Start { w, ..Start::default() };
-        let mut layer = Simulation::new(&relaxed(scene, temperature)?, &start).map_err(|error| error.to_string())?;
+        let mut layer = Simulation::new(&relaxed(scene, temperature)?, &start)?;
         let values = |layer: &mut Simulation| {
             let mut values = [0.0; N];
             layer.evaluate(variables, &mut values);
@@ -67,7 +68,7 @@ impl ToAndFro {
         for (duration, rate) in self.steps() {
             let u = Path { rate, ..Path::default() };
             let motion = Motion { duration, u, w: Path::default(), ..Motion::default() };
-            layer.advance(&motion).map_err(|error| error.to_string())?;
+            layer.advance(&motion)?;
             rows.push(values(&mut layer));
         }
         Ok(rows)
@@ -75,13 +76,12 @@ impl ToAndFro {
 }
 
 /// The scene relaxed at the start and with the outputs that are compared.
-fn relaxed(scene: &Scene, temperature: Option<f64>) -> Result<Scene, String> {
+fn relaxed(scene: &Scene, temperature: Option<f64>) -> Result<Scene, NotCompared> {
     let outputs = vec![OutputGroup::Forces, OutputGroup::Dissipation];
     let mut scene = Scene { outputs, excitation: Vec::new(), ..scene.clone() };
     scene.layer.initial = Initial::Relaxed;
     if let Some(kelvin) = temperature {
-        let parameter = Parameter::Temperature;
-        scene.set_parameter(parameter, Value::Real(kelvin)).map_err(|error| error.to_string())?;
+        scene.set_parameter(Parameter::Temperature, Value::Real(kelvin))?;
     }
     Ok(scene)
 }

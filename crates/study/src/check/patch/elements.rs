@@ -1,21 +1,19 @@
 //! The elements of a tilted face as a patch of their own, and along the motion to and fro beside their layers.
 
-use std::path::Path;
-
 use asperity::outputs::{Output, Variable, variable};
 use asperity::patch::{MotionError, Patch, PatchMotion, PatchOutput, PatchRun, PatchStart, PatchVariable};
 use asperity::scene::PatchGroup;
 use rayon::prelude::*;
 
+use super::check::{PatchCheck, point};
 use super::tilt::{TiltedElement, TiltedFace};
-use super::wrench::{COMPONENTS, Wrench, WrenchSeries, wrench};
-use super::{CheckSetting, point};
-use crate::figure::{Curve, Figure as _, LinearPanel, LinearStack, Stroke};
-use crate::files::FileError;
-use crate::pack::check::drag::ToAndFro;
-use crate::result_file::CsvWriter;
-use crate::terminal;
-use asperity_study::decimals::real;
+use super::wrench::{COMPONENTS, Wrench, WrenchSeries, extent, wrench};
+use crate::check::drag::ToAndFro;
+use crate::check::error::{CheckError, NotCompared};
+use crate::csv::text;
+use crate::decimals::real;
+use crate::progress::{Counter, Stopped, Watch};
+use crate::sweep::Swept;
 
 /// What is taken of a layer.
 const LAYER: [Output; 2] = [Output::ForceX, Output::ForceZ];
@@ -93,79 +91,82 @@ impl<'a> Elements<'a> {
 }
 
 /// The elements and their layers along the motion to and fro.
-pub(super) struct Dragged {
+#[derive(Debug)]
+pub struct Dragged {
     motion: ToAndFro,
     /// Layers, elements.
     pair: WrenchSeries,
 }
 
 impl Dragged {
-    /// Drags both; the status where a layer cannot be dragged.
-    pub(super) fn run(setting: &CheckSetting<'_>) -> Result<Result<Self, String>, MotionError> {
-        let (face, motion) = (setting.middle(), setting.motion);
-        if motion.length <= 0.0 {
-            return Ok(Err("no contact, or no friction".into()));
+    /// Drags both; says why they are not compared where a layer cannot be dragged.
+    ///
+    /// # Errors
+    /// Where the patch cannot be moved, or `watch` stops it.
+    pub fn run(check: &PatchCheck, watch: &Watch<'_>) -> Result<Result<Self, NotCompared>, CheckError> {
+        let (face, motion) = (check.middle(), check.motion);
+        if matches!(check.swept, Swept::Solved { .. }) {
+            return Ok(Err(NotCompared::AnotherModel));
         }
-        let mut elements = Elements::new(setting.patch, face, 0.0)?;
+        if motion.length <= 0.0 {
+            return Ok(Err(NotCompared::NothingSticks));
+        }
+        let mut elements = Elements::new(&check.patch, face, 0.0)?;
         let sum = |forces: Vec<[f64; 3]>| wrench(face.tilted_elements.iter().map(|tilted| tilted.arm).zip(forces)).0;
         let mut other = vec![sum(elements.forces())];
         for step in motion.steps() {
             elements.advance(step)?;
             other.push(sum(elements.forces()));
         }
-        let layers = layers(setting, face);
-        Ok(layers.map(|layers| {
-            let (reference, sizes): (Vec<_>, Vec<_>) = layers.into_iter().unzip();
-            Self { motion, pair: WrenchSeries::new(reference, other, &sizes, setting.lever) }
-        }))
-    }
-
-    pub(super) fn pair(&self) -> &WrenchSeries {
-        &self.pair
-    }
-
-    /// Writes both as files and draws them.
-    pub(super) fn write(&self, folder: &Path) -> Result<(), FileError> {
-        write_rows(&folder.join("loop-layers.csv"), self.motion, &self.pair.reference)?;
-        write_rows(&folder.join("loop-elements.csv"), self.motion, &self.pair.other)?;
-        self.plot().write(&folder.join("loop.svg"))
-    }
-
-    fn plot(&self) -> LinearStack {
-        let carriers = self.motion.carriers(0.0);
-        let curve = |look: usize, name: &str, stroke: Stroke, rows: &[Wrench], i: usize| Curve {
-            name: name.to_owned(),
-            look,
-            stroke,
-            points: carriers.iter().zip(rows).map(|(carrier, row)| (carrier.time, row[i])).collect(),
+        let layers = match layers(check, face, watch) {
+            Ok(layers) => layers,
+            Err(NotDragged::Layer(why)) => return Ok(Err(why)),
+            Err(NotDragged::Stopped(stopped)) => return Err(stopped.into()),
         };
-        let panel = |(i, &(quantity, unit)): (usize, &(&'static str, &'static str))| {
-            let layers = curve(0, "layers", Stroke::Line, &self.pair.reference, i);
-            let elements = curve(1, "elements", Stroke::Dashed, &self.pair.other, i);
-            LinearPanel { quantity, unit, curves: vec![layers, elements] }
-        };
-        LinearStack { x: ("time", "s"), panels: COMPONENTS.iter().enumerate().map(panel).collect() }
+        let (reference, sizes): (Vec<_>, Vec<_>) = layers.into_iter().unzip();
+        Ok(Ok(Self { motion, pair: WrenchSeries::new(reference, other, &sizes, check.lever) }))
+    }
+
+    /// Layers and elements, row by row, at these times, s.
+    pub fn rows(&self) -> (Vec<f64>, &WrenchSeries) {
+        (self.motion.carriers(0.0).iter().map(|carrier| carrier.time).collect(), &self.pair)
+    }
+
+    /// The tables of the layers and of the elements.
+    pub fn tables(&self) -> [String; 2] {
+        [&self.pair.reference, &self.pair.other].map(|rows| table(self.motion, rows))
+    }
+
+    /// The largest and the root mean square differences.
+    pub fn summary(&self) -> [String; 2] {
+        extent(&self.motion.describe(), &self.pair)
     }
 }
 
+/// Why the layers were not dragged.
+enum NotDragged {
+    Layer(NotCompared),
+    Stopped(Stopped),
+}
+
 /// The wrench of the layers and the sums of magnitudes, row by row.
-fn layers(setting: &CheckSetting<'_>, face: &TiltedFace) -> Result<Vec<(Wrench, Wrench)>, String> {
+fn layers(check: &PatchCheck, face: &TiltedFace, watch: &Watch<'_>) -> Result<Vec<(Wrench, Wrench)>, NotDragged> {
     let variables: Vec<Variable> = LAYER.into_iter().filter_map(variable).collect();
-    let (table, temperature) = (setting.patch.table(), point(setting.patch, face.speed).temperature);
-    let bar = terminal::bar(face.tilted_elements.len() as u64);
-    bar.set_message("of the layers to and fro");
+    let (table, temperature) = (check.patch.table(), point(&check.patch, face.speed).temperature);
+    let counter = Counter::new(watch, "of the layers to and fro", face.tilted_elements.len());
     let drag = |tilted: &TiltedElement| {
         let w = tilted.separation - table.rest_separation;
-        let rows = setting.motion.layer::<{ LAYER.len() }>(setting.scene, temperature, w, &variables);
-        bar.inc(1);
-        rows.map_err(|status| format!("the layer of element {}: {status}", tilted.element.index + 1))
+        let rows = check.motion.layer::<{ LAYER.len() }>(&check.scene, temperature, w, &variables);
+        counter.step().map_err(NotDragged::Stopped)?;
+        rows.map_err(|source| {
+            let number = tilted.element.index + 1;
+            NotDragged::Layer(NotCompared::LayerOf { number, source: Box::new(source) })
+        })
     };
-    let rows: Result<Vec<_>, String> = face.tilted_elements.par_iter().with_max_len(1).map(drag).collect();
-    bar.finish_and_clear();
-    let rows = rows?;
+    let rows: Vec<_> = face.tilted_elements.par_iter().with_max_len(1).map(drag).collect::<Result<_, NotDragged>>()?;
     let sum = |row: usize| {
         let force = |(tilted, rows): (&TiltedElement, &Vec<[f64; 2]>)| {
-            let ([along, up], share) = (rows[row], tilted.element.area / setting.patch.nominal_area());
+            let ([along, up], share) = (rows[row], tilted.element.area / check.patch.nominal_area());
             (tilted.arm, [share * along, 0.0, share * up])
         };
         wrench(face.tilted_elements.iter().zip(&rows).map(force))
@@ -173,12 +174,13 @@ fn layers(setting: &CheckSetting<'_>, face: &TiltedFace) -> Result<Vec<(Wrench, 
     Ok((0..rows.first().map_or(0, Vec::len)).map(sum).collect())
 }
 
-/// Writes a series along the motion to and fro.
-pub(super) fn write_rows(path: &Path, motion: ToAndFro, rows: &[Wrench]) -> Result<(), FileError> {
+/// The table of a series along the motion to and fro.
+pub(super) fn table(motion: ToAndFro, rows: &[Wrench]) -> String {
     let names = ["time", "x"].into_iter().chain(COMPONENTS.iter().map(|(name, _)| *name));
-    let mut writer = CsvWriter::create(path, names)?;
-    for (carrier, row) in motion.carriers(0.0).iter().zip(rows) {
-        writer.write([carrier.time, carrier.u].iter().chain(row).map(|&value| real(value)))?;
-    }
-    writer.finish()
+    let carriers = motion.carriers(0.0);
+    let fields = carriers
+        .iter()
+        .zip(rows)
+        .map(|(carrier, row)| [carrier.time, carrier.u].iter().chain(row).map(|&value| real(value)).collect());
+    text(names, fields)
 }
