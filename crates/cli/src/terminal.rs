@@ -90,15 +90,16 @@ impl Bars {
         }
     }
 
-    fn show(&self, Progress { of, share }: Progress<'_>) {
+    fn show(&self, Progress { part, doing, share }: Progress<'_>) {
         let mut current = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if current.as_ref().is_none_or(|(part, _)| part != of) {
+        if current.as_ref().is_none_or(|(shown, _)| shown != part) {
             Self::finish(current.take());
-            let bar = bar(Self::POSITIONS as u64);
-            bar.set_message(of.to_owned());
-            *current = Some((of.to_owned(), bar));
+            *current = Some((part.to_owned(), bar(Self::POSITIONS as u64)));
         }
         if let Some((_, bar)) = &*current {
+            if bar.message() != doing {
+                bar.set_message(doing.to_owned());
+            }
             bar.set_position((Self::POSITIONS * share) as u64);
         }
     }

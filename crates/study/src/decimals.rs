@@ -61,6 +61,13 @@ pub fn as_given(value: f64, unit: &str) -> String {
     format!("{} {prefix}{unit}", number.trim_end_matches('0').trim_end_matches('.'))
 }
 
+/// A tenth of a number, rounded in decimal: 1e-11 for 1e-10.
+pub fn tenth(number: f64) -> f64 {
+    let written = format!("{number:e}");
+    let parts = written.split_once('e').and_then(|(digits, power)| Some((digits, power.parse::<i32>().ok()?)));
+    parts.and_then(|(digits, power)| format!("{digits}e{}", power - 1).parse().ok()).unwrap_or(number / 10.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

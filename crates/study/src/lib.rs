@@ -12,6 +12,7 @@ pub mod labelled;
 pub mod pack;
 pub mod patch;
 pub mod progress;
+pub mod report;
 pub mod robustness;
 pub mod runner;
 pub mod settings;

@@ -6,9 +6,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// How far a part of a computation is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress<'a> {
-    /// What is done, in words; empty where there is nothing to tell it from.
-    pub of: &'a str,
-    /// The share of it that is done.
+    /// The part; each is counted anew.
+    pub part: &'a str,
+    /// What is being done, in words; empty where there is nothing to tell it from.
+    pub doing: &'a str,
+    /// The share of the part that is done.
     pub share: f64,
 }
 
@@ -36,7 +38,7 @@ impl<'a> Counter<'a> {
     /// One more step is done.
     pub(crate) fn step(&self) -> Result<(), Stopped> {
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
-        match (self.watch)(Progress { of: self.of, share: done as f64 / self.steps as f64 }) {
+        match (self.watch)(Progress { part: self.of, doing: self.of, share: done as f64 / self.steps as f64 }) {
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(Stopped),
         }

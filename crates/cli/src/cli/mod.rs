@@ -16,7 +16,7 @@ use asperity_study::csv::Head;
 use asperity_study::settings::Setting;
 use asperity_study::sweep::SweepMethod;
 pub use values::WlfConstants;
-pub(crate) use values::{Condition, PlotAxis, tenth};
+pub(crate) use values::{Condition, PlotAxis};
 use values::{
     Frequencies, Tolerances, animation, arrays, column_unit, count, fit_error, free_parameter, frequency,
     key_and_value, length, moment, picture, picture_or_table, poisson_ratio, powers, pressure, seconds, seeds, share,

@@ -22,28 +22,20 @@ pub(crate) enum PackError {
     File(#[from] FileError),
     #[error(transparent)]
     Table(#[from] TableError),
-    #[error("{}{source}", dashes(.source.option()))]
-    Check {
-        #[from]
-        source: CheckError,
-    },
-    #[error("{}{source}{}", dashes(.source.option()), way_to_build(.source))]
+    #[error(transparent)]
+    Check(#[from] CheckError),
+    #[error("{source}{}", way_to_build(.source))]
     Pack {
         #[from]
         source: pack::PackError,
     },
 }
 
-/// What stands before the name of an option.
-fn dashes(option: Option<&str>) -> &'static str {
-    if option.is_some() { "--" } else { "" }
-}
-
 fn way_to_build(error: &pack::PackError) -> &'static str {
     match error {
         pack::PackError::NoLibrary { .. } => {
-            ": build it with `cargo rustc --release --lib --no-default-features --crate-type cdylib` and name it with \
-             --library, or use build-fmu.sh, which does both"
+            ": build it with `cargo build --release -p asperity-fmu` and name it with --library, or use build-fmu.sh, which \
+             does both"
         }
         _ => "",
     }

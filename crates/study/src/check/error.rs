@@ -12,29 +12,22 @@ use crate::sweep::{NeverSteady, SweepError};
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say what they are")]
 pub enum CheckError {
-    #[error("check: {0}")]
+    #[error("`check`: {0}")]
     Swept(#[from] SweepError),
-    #[error("check: the table was swept of {table:?}, the scene is {scene:?}: expected the scene that was swept")]
+    #[error("`check`: the table was swept of {table:?}, the scene is {scene:?}: expected the scene that was swept")]
     OtherScene { table: String, scene: String },
-    #[error("check: {what} is {found} in the scene, {swept} in the table: expected the scene that was swept")]
+    #[error("`check`: {what} is {found} in the scene, {swept} in the table: expected the scene that was swept")]
     OtherLayer { what: &'static str, found: String, swept: String },
     #[error(transparent)]
     Parameter(#[from] ParameterError),
     #[error(
-        "check: no element of the tilted face stands at a separation of the table: its places are too large to tell them"
+        "`check`: no element of the tilted face stands at a separation of the table: its places are too large to tell them"
     )]
     NoElements,
-    #[error("check: the patch cannot be dragged: {0}")]
+    #[error("`check`: the patch cannot be dragged: {0}")]
     Motion(#[from] MotionError),
     #[error(transparent)]
     Stopped(#[from] Stopped),
-}
-
-impl CheckError {
-    /// The option that the message begins with.
-    pub fn option(&self) -> Option<&'static str> {
-        (!matches!(self, Self::Parameter(_) | Self::Stopped(_))).then_some("check")
-    }
 }
 
 /// A point, or a motion, cannot be compared.

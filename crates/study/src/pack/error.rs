@@ -15,7 +15,7 @@ pub enum PackError {
     Read(#[from] ReadError),
     #[error("no shared library at {}", .path.display())]
     NoLibrary { path: PathBuf },
-    #[error("library: two of {platform}: {} and {}", .first.display(), .second.display())]
+    #[error("`library`: two of {platform}: {} and {}", .first.display(), .second.display())]
     SamePlatform { platform: &'static str, first: PathBuf, second: PathBuf },
     #[error("the scene reads {}, which is not below the scene's folder: an FMU carries only what is", .path.display())]
     Outside { path: PathBuf },
@@ -23,11 +23,4 @@ pub enum PackError {
     Document { document: &'static str, source: io::Error },
     #[error("cannot pack: {0}")]
     Zip(#[from] ZipError),
-}
-
-impl PackError {
-    /// The option that the message begins with.
-    pub fn option(&self) -> Option<&'static str> {
-        matches!(self, Self::SamePlatform { .. }).then_some("library")
-    }
 }

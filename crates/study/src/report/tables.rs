@@ -2,19 +2,18 @@
 
 use std::path::Path;
 
-use asperity_study::robustness::{Perturbation, ScaledQuantity};
+use crate::robustness::{Perturbation, ScaledQuantity};
 
-use super::convergence::{CommunicationRow, Timed, ToleranceRow};
+use super::communication::CommunicationRow;
+use super::figures::RunFigures;
 use super::judgement::Judgement;
 use super::machine::{Machine, build};
 use super::reference::Reference;
 use super::robustness::Robustness;
-use super::run::RunFigures;
+use super::tolerances::{NoFigures, Timed, ToleranceRow};
 use super::trace::{Errors, OF_ALL_SCENES, QUANTITIES};
-use crate::files::FileError;
-use crate::result_file::CsvWriter;
-use asperity_study::csv::{CsvError, CsvFile};
-use asperity_study::decimals::real;
+use crate::csv::{CsvError, CsvFile, text};
+use crate::decimals::real;
 
 /// The columns of errors and run times: errors over the largest value, processor time in s. Tables of other programs
 /// have these columns.
@@ -49,13 +48,8 @@ const JUDGEMENTS: &str = "scene,stiffness,mass,relaxation_times,speed,carrier_ma
 const ROBUSTNESS: &str = "scene,stiffness,mass,relaxation_times,speed,carrier_mass,drive,load,communication_step,status,reason,error,\
     moved_start_changes,energy_residual,steps,times_the_steps,rejected,events,newton_iterations";
 
-/// Writes errors and run times, the reference first.
-pub(super) fn write_errors(
-    path: &Path,
-    scene: &str,
-    reference: &Reference,
-    rows: &[ToleranceRow],
-) -> Result<(), FileError> {
+/// The table of errors and run times, the reference first.
+pub fn errors_table(scene: &str, reference: &Reference, rows: &[ToleranceRow]) -> String {
     let own = ToleranceRow::from_reference(reference);
     let machine = Machine::here();
     let records = std::iter::once(&own).chain(rows).map(|row| {
@@ -69,12 +63,12 @@ pub(super) fn write_errors(
         fields.extend([figures.rejected, figures.iterations].map(count));
         fields.extend([figures.residual, figures.estimate.map(|estimate| estimate.error)].map(optional));
         fields.push(below(reference, &figures.errors));
-        fields.push(row.result.as_ref().err().cloned().unwrap_or_default());
+        fields.push(row.result.as_ref().err().map(ToString::to_string).unwrap_or_default());
         fields.extend(measured_on(row.timed, &machine));
         fields.extend_from_slice(&errors[OF_ALL_SCENES..]);
         fields
     });
-    write(path, MEASURED.into_iter().chain(ADDED.split(',')), records)
+    text(MEASURED.into_iter().chain(ADDED.split(',')), records)
 }
 
 /// The columns on machine and build; those of a file of other programs are in that file.
@@ -85,12 +79,8 @@ fn measured_on(timed: Timed, machine: &Machine) -> [String; 4] {
     }
 }
 
-pub(super) fn write_communication(
-    path: &Path,
-    scene: &str,
-    reference: &Reference,
-    rows: &[CommunicationRow],
-) -> Result<(), FileError> {
+/// The table of errors and communication steps.
+pub fn communication_table(scene: &str, reference: &Reference, rows: &[CommunicationRow]) -> String {
     let records = rows.iter().map(|row| {
         let (figures, mean_square) = row.result.clone().unwrap_or_default();
         let mut fields = vec![scene.to_owned(), row.given.name().to_owned(), optional(row.step)];
@@ -99,15 +89,15 @@ pub(super) fn write_communication(
         fields.push(optional(figures.time));
         fields.extend([figures.steps, figures.events].map(count));
         fields.push(below(reference, &figures.errors));
-        fields.push(row.result.as_ref().err().cloned().unwrap_or_default());
+        fields.push(row.result.as_ref().err().map(ToString::to_string).unwrap_or_default());
         kinds.iter().for_each(|errors| fields.extend_from_slice(&errors[OF_ALL_SCENES..]));
         fields
     });
-    write(path, COMMUNICATION.split(','), records)
+    text(COMMUNICATION.split(','), records)
 }
 
-/// Writes the perturbed runs: the factors of what is scaled, and the outcome.
-pub(super) fn write_robustness(path: &Path, scene: &str, robustness: &Robustness) -> Result<(), FileError> {
+/// The table of the perturbed runs: the factors of what is scaled, and the outcome.
+pub fn robustness_table(scene: &str, robustness: &Robustness) -> String {
     let records = robustness.trials().map(|(perturbation, trial)| {
         let mut fields = vec![scene.to_owned()];
         fields.extend(factors(*perturbation));
@@ -122,14 +112,11 @@ pub(super) fn write_robustness(path: &Path, scene: &str, robustness: &Robustness
         fields.extend([0, 1, 2].map(|i| count(rest.map(|rest| rest[i]))));
         fields
     });
-    write(path, ROBUSTNESS.split(','), records)
+    text(ROBUSTNESS.split(','), records)
 }
 
-/// Writes errors over tolerances and estimates over errors of some scenes, each with its name.
-pub(super) fn write_judgements<'a>(
-    path: &Path,
-    scenes: impl IntoIterator<Item = (&'a str, &'a [Judgement])>,
-) -> Result<(), FileError> {
+/// The table of errors over tolerances and estimates over errors of some scenes, each with its name.
+pub fn judgements_table<'a>(scenes: impl IntoIterator<Item = (&'a str, &'a [Judgement])>) -> String {
     let runs = scenes.into_iter().flat_map(|(scene, runs)| runs.iter().map(move |run| (scene, run)));
     let records = runs.map(|(scene, run)| {
         let mut fields = vec![scene.to_owned()];
@@ -140,7 +127,7 @@ pub(super) fn write_judgements<'a>(
         fields.extend([run.warning(), run.standing.name()].map(str::to_owned));
         fields
     });
-    write(path, JUDGEMENTS.split(','), records)
+    text(JUDGEMENTS.split(','), records)
 }
 
 /// The factors of everything that may be scaled.
@@ -152,16 +139,6 @@ fn factors(perturbation: Perturbation) -> [String; 8] {
 fn short(ratio: f64) -> f64 {
     const DIGITS: f64 = 1e4;
     (ratio * DIGITS).round() / DIGITS
-}
-
-fn write<'a>(
-    path: &Path,
-    head: impl IntoIterator<Item = &'a str>,
-    mut records: impl Iterator<Item = Vec<String>>,
-) -> Result<(), FileError> {
-    let mut file = CsvWriter::create(path, head)?;
-    records.try_for_each(|record| file.write(record))?;
-    file.finish()
 }
 
 fn optional(value: Option<f64>) -> String {
@@ -181,15 +158,19 @@ fn below(reference: &Reference, errors: &Errors) -> String {
 
 /// Runs of whole processes, measured elsewhere: other programs, and this one beside them.
 #[derive(Debug, Default)]
-pub(super) struct Peers {
-    pub(super) rows: Vec<ToleranceRow>,
+pub struct Peers {
+    /// The rows of the scene.
+    pub rows: Vec<ToleranceRow>,
     /// All scenes of the file, each once.
-    pub(super) scenes: Vec<String>,
+    pub scenes: Vec<String>,
 }
 
 /// Reads the rows of the scene with one of these `names` whose times are those of whole processes. The file has the
 /// columns of [`MEASURED`], and perhaps [`TIMED`], [`SPREAD`] and [`TIMINGS`]; others are ignored.
-pub(super) fn read_peers(path: &Path, names: &[&str]) -> Result<Peers, CsvError> {
+///
+/// # Errors
+/// Where the file cannot be read, a column is missing, or a field is no number.
+pub fn read_peers(path: &Path, names: &[&str]) -> Result<Peers, CsvError> {
     let file = CsvFile::read(path)?;
     let mut columns = [0; MEASURED.len()];
     for (column, name) in columns.iter_mut().zip(MEASURED) {
@@ -226,7 +207,7 @@ fn row(
         events: number(events)?.map(|count| count as u64),
         ..RunFigures::default()
     };
-    let result = if time.is_some() { Ok(figures) } else { Err("no run time".into()) };
+    let result = if time.is_some() { Ok(figures) } else { Err(NoFigures::NoTime) };
     Ok(ToleranceRow { program: program.into(), method: method.into(), tolerance, timed: Timed::WholeProcess, result })
 }
 

@@ -3,22 +3,25 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use asperity::scene::Scene;
-use asperity_study::robustness::{
+use crate::robustness::{
     Accuracy, Budget, DISPLACEMENT, Difference, Perturbation, RunFailure, ScaledQuantity, TIGHTER, Verdict,
     at_tolerance, exact,
 };
+use asperity::scene::Scene;
 use cpu_time::ThreadTime;
 use rayon::prelude::*;
 
+use super::figures::{CompletedRun, Counts, Estimate};
+use super::master::{MasterInputs, drive};
 use super::reference::Reference;
-use super::run::{CompletedRun, Counts, Estimate, MasterInputs, drive, estimated, follow};
+use super::run::follow;
+use super::scenes::estimated;
 use super::trace::Errors;
-use crate::terminal::bar;
-use asperity_study::runner::Rows;
+use crate::progress::{Counter, Stopped, Watch};
+use crate::runner::Rows;
 
 /// A run is over budget where it takes so many times the steps of the scene as it is, ...
-pub(super) const BUDGET: u64 = 20;
+pub const BUDGET: u64 = 20;
 /// ... but not with fewer steps than this.
 const CHEAP: u64 = 1000;
 /// The tight runs of what is scaled by itself may take so many times what those of the pairs may.
@@ -28,23 +31,23 @@ const MAX_OF_THEM: f64 = 0.8;
 /// What a run over budget would have taken is not known; likely so many times its budget.
 const BEYOND: f64 = 2.0;
 /// Communication steps of the whole run at the factor 1.
-pub(super) const COMMUNICATION_STEPS: f64 = 1000.0;
+pub const COMMUNICATION_STEPS: f64 = 1000.0;
 /// A run that would take more of them is shortened: ...
-pub(super) const MAX_COMMUNICATION_STEPS: f64 = 20_000.0;
+pub const MAX_COMMUNICATION_STEPS: f64 = 20_000.0;
 /// ... in steps of the factor 1 up to its middle, then so many short ones.
-pub(super) const SHORT_STEPS: u32 = 2000;
+pub const SHORT_STEPS: u32 = 2000;
 
 /// All perturbed runs of a scene.
 #[derive(Debug)]
-pub(super) struct Robustness {
+pub struct Robustness {
     /// What the scene has of what is scaled.
-    pub(super) quantities: Vec<ScaledQuantity>,
+    pub quantities: Vec<ScaledQuantity>,
     /// Powers of ten each way.
-    pub(super) powers: i32,
+    pub powers: i32,
     /// Every so many of them in pairs.
-    pub(super) stride: i32,
+    pub stride: i32,
     /// The relative tolerance of the runs.
-    pub(super) tolerance: f64,
+    pub tolerance: f64,
     /// The most steps of a run.
     budget: u64,
     /// The largest power of the communication step that makes a difference: one step for each phase.
@@ -52,8 +55,9 @@ pub(super) struct Robustness {
     trials: BTreeMap<Perturbation, Trial>,
 }
 
+/// One perturbed run.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Trial {
+pub struct Trial {
     outcome: TrialOutcome,
     /// Processor time, its tight runs included, s.
     cost: f64,
@@ -68,36 +72,45 @@ enum TrialOutcome {
 
 /// A perturbed run that came to its end.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct EndedTrial {
-    pub(super) counts: Counts,
+pub struct EndedTrial {
+    /// What it took.
+    pub counts: Counts,
     /// Each takes a step at least.
     communication_steps: u64,
-    pub(super) accuracy: Accuracy,
+    /// How accurate it is.
+    pub accuracy: Accuracy,
     /// Each over the largest value of its quantity, against the tight run, if there is one.
-    pub(super) errors: Option<Errors>,
+    pub errors: Option<Errors>,
     /// What the run says of its own error.
-    pub(super) estimate: Estimate,
+    pub estimate: Estimate,
 }
 
 impl Trial {
     const NOT_TRIED: Self = Self { outcome: TrialOutcome::NotTried, cost: 0.0 };
 
     /// `None` where it did not come to its end.
-    pub(super) fn ended(&self) -> Option<&EndedTrial> {
+    pub fn ended(&self) -> Option<&EndedTrial> {
         match &self.outcome {
             TrialOutcome::Ended(ended) => Some(ended),
             _ => None,
         }
     }
 
-    pub(super) fn counts(&self) -> Option<&Counts> {
+    /// What it took; `None` where it did not come to its end.
+    pub fn counts(&self) -> Option<&Counts> {
         self.ended().map(|ended| &ended.counts)
     }
 }
 
 impl Robustness {
     /// Runs the scene of `reference` scaled by so many powers of ten each way; the pairs may take about `seconds`.
-    pub(super) fn run(reference: &Reference, powers: u32, points: u32, seconds: f64) -> Self {
+    pub(super) fn run(
+        reference: &Reference,
+        powers: u32,
+        points: u32,
+        seconds: f64,
+        watch: &Watch<'_>,
+    ) -> Result<Self, Stopped> {
         let scene = &reference.scene;
         let unlimited = PerturbedRunner { scene, points, budget: scene.solver.max_steps(), patience: PATIENCE };
         let unperturbed = unlimited.run(Perturbation::default());
@@ -114,25 +127,28 @@ impl Robustness {
         };
         let runner = PerturbedRunner { budget, ..unlimited };
         let singles = all.missing(all.quantities.iter().flat_map(|&quantity| all.line(quantity)));
-        all.run_all(runner, singles, f64::INFINITY, "robustness, one by one");
-        all.run_pairs(PerturbedRunner { patience: 1, ..runner }, seconds);
-        all
+        all.run_all(runner, singles, f64::INFINITY, "robustness, one by one", watch)?;
+        all.run_pairs(PerturbedRunner { patience: 1, ..runner }, seconds, watch)?;
+        Ok(all)
     }
 
     /// The run with this perturbation; `NOT_TRIED` where it was not planned.
-    pub(super) fn trial(&self, perturbation: Perturbation) -> &Trial {
+    pub fn trial(&self, perturbation: Perturbation) -> &Trial {
         self.trials.get(&self.same(perturbation)).unwrap_or(&Trial::NOT_TRIED)
     }
 
-    pub(super) fn unperturbed(&self) -> &Trial {
+    /// The run of the scene as it is.
+    pub fn unperturbed(&self) -> &Trial {
         self.trial(Perturbation::default())
     }
 
-    pub(super) fn trials(&self) -> impl Iterator<Item = (&Perturbation, &Trial)> {
+    /// All runs.
+    pub fn trials(&self) -> impl Iterator<Item = (&Perturbation, &Trial)> {
         self.trials.iter()
     }
 
-    pub(super) fn verdict(&self, trial: &Trial) -> Verdict {
+    /// What became of a run.
+    pub fn verdict(&self, trial: &Trial) -> Verdict {
         match &trial.outcome {
             TrialOutcome::Ended(ended) => ended.accuracy.verdict(self.tolerance),
             TrialOutcome::Failed(failure) => failure.into(),
@@ -142,14 +158,14 @@ impl Robustness {
 
     /// The steps of a run, rejected ones included, over those of the scene as it is and one for each communication
     /// step.
-    pub(super) fn times_the_steps(&self, trial: &Trial) -> Option<f64> {
+    pub fn times_the_steps(&self, trial: &Trial) -> Option<f64> {
         let ended = trial.ended()?;
         let due = self.unperturbed().counts()?.work() + ended.communication_steps;
         Some(ended.counts.work() as f64 / due as f64)
     }
 
     /// The outcome of a run in words.
-    pub(super) fn reason(&self, trial: &Trial) -> String {
+    pub fn reason(&self, trial: &Trial) -> String {
         match &trial.outcome {
             TrialOutcome::Ended(ended) => match &ended.accuracy {
                 Accuracy::Error(error) => self.error(error),
@@ -174,7 +190,7 @@ impl Robustness {
     }
 
     /// The powers of ten, every so many.
-    pub(super) fn powers(&self, stride: i32) -> impl Iterator<Item = i32> + use<> {
+    pub fn powers(&self, stride: i32) -> impl Iterator<Item = i32> + use<> {
         let most = self.powers / stride;
         (-most..=most).map(move |step| step * stride)
     }
@@ -215,7 +231,7 @@ impl Robustness {
     }
 
     /// Runs the pairs, the cheap ones first, at as many powers as there is time for.
-    fn run_pairs(&mut self, runner: PerturbedRunner<'_>, seconds: f64) {
+    fn run_pairs(&mut self, runner: PerturbedRunner<'_>, seconds: f64, watch: &Watch<'_>) -> Result<(), Stopped> {
         let time = seconds * rayon::current_num_threads() as f64;
         let strides: Vec<i32> = (1..=self.powers).filter(|stride| self.powers % stride == 0).collect();
         let fits = |stride: i32| {
@@ -227,7 +243,7 @@ impl Robustness {
             spent.filter(|&spent| spent <= time).count() as f64 >= MAX_OF_THEM * pairs.len() as f64
         };
         self.stride = strides.iter().copied().find(|&stride| fits(stride)).unwrap_or(self.powers);
-        self.run_all(runner, self.cheap_first(self.stride), time, "robustness, in pairs");
+        self.run_all(runner, self.cheap_first(self.stride), time, "robustness, in pairs", watch)
     }
 
     /// All pairs, those first that are likely to be cheap.
@@ -238,22 +254,27 @@ impl Robustness {
     }
 
     /// Does the runs until they have taken `time` (s).
-    fn run_all(&mut self, runner: PerturbedRunner<'_>, runs: Vec<Perturbation>, time: f64, message: &'static str) {
-        let bar = bar(runs.len() as u64);
-        bar.set_message(message);
+    fn run_all(
+        &mut self,
+        runner: PerturbedRunner<'_>,
+        runs: Vec<Perturbation>,
+        time: f64,
+        part: &str,
+        watch: &Watch<'_>,
+    ) -> Result<(), Stopped> {
+        let counter = Counter::new(watch, part, runs.len());
         // Of all threads together, ns.
         let spent = AtomicU64::new(0);
         let run = |perturbation: Perturbation| {
             let in_time = 1e-9 * (spent.load(Ordering::Relaxed) as f64) < time;
             let trial = if in_time { runner.run(perturbation) } else { Trial::NOT_TRIED };
             spent.fetch_add((1e9 * trial.cost) as u64, Ordering::Relaxed);
-            bar.inc(1);
-            (perturbation, trial)
+            counter.step().map(|()| (perturbation, trial))
         };
         // In their order: the first are to be run before time is up.
-        let trials: Vec<(Perturbation, Trial)> = runs.into_iter().par_bridge().map(run).collect();
-        bar.finish_and_clear();
+        let trials: Vec<(Perturbation, Trial)> = runs.into_iter().par_bridge().map(run).collect::<Result<_, _>>()?;
         self.trials.extend(trials);
+        Ok(())
     }
 
     /// What a run is likely to take, s: what the quantities do one by one, together.

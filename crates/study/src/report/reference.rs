@@ -1,12 +1,15 @@
 //! The run that all others are compared with, its own error, and whether runs can be compared row by row at all.
 
+use crate::robustness::{Budget, DISPLACEMENT, RunFailure, at_tolerance, divergence, exact};
 use asperity::scene::Scene;
-use asperity_study::robustness::{Budget, DISPLACEMENT, RunFailure, at_tolerance, divergence, exact};
 
-use super::run::{CompletedRun, Counts, Progress, RunFigures, UNLIMITED, follow, weight, with_durations};
+use super::figures::{CompletedRun, Counts, RunFigures};
+use super::run::{UNLIMITED, follow};
+use super::scenes::with_durations;
 use super::trace::{Errors, OF_ALL_SCENES, QUANTITIES, Trace, WINDOWS};
-use crate::cli::tenth;
-use asperity_study::runner::Rows;
+use super::weighed::{WeighedRuns, weight};
+use crate::decimals::tenth;
+use crate::runner::Rows;
 
 /// A run at a tenth of the tolerance may take so many times the steps, far more than any method needs: where they are
 /// used up, rounding has taken over.
@@ -14,30 +17,39 @@ const WORK: u64 = 10;
 /// Rows of a phase from which means are taken.
 const SAMPLES: u32 = 50 * WINDOWS;
 
+/// The run that all others are compared with.
 #[derive(Debug)]
-pub(super) struct Reference {
-    pub(super) tolerance: f64,
+pub struct Reference {
+    /// Its relative tolerance.
+    pub tolerance: f64,
     /// The relative tolerance of the run that gives its error; `None` where no other run came to its end.
-    pub(super) check: Option<f64>,
-    pub(super) measured: CompletedRun,
+    pub check: Option<f64>,
+    /// The run.
+    pub measured: CompletedRun,
     /// Its own error; errors below it are not significant.
-    pub(super) own: Errors,
-    pub(super) sensitivity: StartSensitivity,
-    pub(super) comparison: Comparison,
+    pub own: Errors,
+    /// What a moved start changes.
+    pub sensitivity: StartSensitivity,
+    /// How runs are compared.
+    pub comparison: Comparison,
     /// The scene with its motion fixed: phases that a force ends take the time that they took once.
-    pub(super) scene: Scene,
+    pub scene: Scene,
+    /// Of phases that ended before their force was reached.
+    pub warnings: Vec<String>,
 }
 
 /// What a start moved by [`DISPLACEMENT`] changes, row by row.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct StartSensitivity {
-    pub(super) differences: Errors,
+pub struct StartSensitivity {
+    /// What it changes, each over the largest value.
+    pub differences: Errors,
     /// The difference above which the runs have diverged.
-    pub(super) limit: f64,
+    pub limit: f64,
 }
 
+/// How runs are compared with the reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Comparison {
+pub enum Comparison {
     /// Row by row.
     Pointwise(Rows),
     /// By means over windows, and the energy lost row by row.
@@ -52,17 +64,19 @@ impl StartSensitivity {
 
 impl Comparison {
     /// The rows that a run needs for it.
-    pub(super) fn rows(self) -> Rows {
+    pub fn rows(self) -> Rows {
         match self {
             Self::Pointwise(rows) | Self::Means(rows) => rows,
         }
     }
 
-    pub(super) fn is_of_means(self) -> bool {
+    /// Whether single rows cannot be compared.
+    pub fn is_of_means(self) -> bool {
         matches!(self, Self::Means(_))
     }
 
-    pub(super) fn errors(self, trace: &Trace, reference: &Trace) -> Errors {
+    /// The errors of a run.
+    pub fn errors(self, trace: &Trace, reference: &Trace) -> Errors {
         match self {
             Self::Pointwise(_) => trace.largest(reference),
             Self::Means(_) => trace.means(reference),
@@ -74,10 +88,15 @@ impl Reference {
     /// Finds the reference for a ladder of tolerances, from loose to tight: by the method "event" at a tenth of the
     /// tightest, its error by a run at a tenth of that. Where such a run gives up, the tightest of the ladder that do
     /// not.
-    pub(super) fn find(scene: &Scene, ladder: &[f64], points: u32, progress: &Progress) -> Result<Self, RunFailure> {
+    pub(super) fn find(
+        scene: &Scene,
+        ladder: &[f64],
+        points: u32,
+        progress: &WeighedRuns<'_>,
+    ) -> Result<Self, RunFailure> {
         let rows = Rows::PerPhase(points);
         let (rung, base) = ReferenceSearch { scene: &exact(scene), rows, progress }.tightest(ladder)?;
-        let scene = with_durations(scene, &base.durations);
+        let (scene, warnings) = (with_durations(scene, &base.durations), base.warnings.clone());
         let search = ReferenceSearch { scene: &exact(&scene), rows, progress };
         let (run, check) = match search.tighter(ladder[rung], &base.counts) {
             None => ((ladder[rung], base), search.looser(&ladder[..rung])),
@@ -94,7 +113,7 @@ impl Reference {
         let unknown = [Some(f64::INFINITY); QUANTITIES.len()];
         let own = check.as_ref().map_or(unknown, |(_, check)| comparison.errors(&check.trace, &measured.trace));
         let check = check.map(|(tolerance, _)| tolerance);
-        let found = Self { tolerance, check, measured, own, sensitivity, comparison, scene: scene.clone() };
+        let found = Self { tolerance, check, measured, own, sensitivity, comparison, scene: scene.clone(), warnings };
         if found.sensitivity.diverged() { search.by_means(found) } else { Ok(found) }
     }
 
@@ -104,17 +123,17 @@ impl Reference {
     }
 
     /// The figures of the reference itself; its errors are its own.
-    pub(super) fn figures(&self) -> RunFigures {
+    pub fn figures(&self) -> RunFigures {
         self.measured.figures(self.own)
     }
 
     /// How many of the [`QUANTITIES`] are shown: u and w where the carrier is a body.
-    pub(super) fn shown(&self) -> usize {
+    pub fn shown(&self) -> usize {
         if self.scene.carrier.any() { QUANTITIES.len() } else { OF_ALL_SCENES }
     }
 
     /// Which errors are below the reference's own.
-    pub(super) fn below(&self, errors: &Errors) -> [bool; QUANTITIES.len()] {
+    pub fn below(&self, errors: &Errors) -> [bool; QUANTITIES.len()] {
         std::array::from_fn(|i| errors[i].zip(self.own[i]).is_some_and(|(error, own)| error < own))
     }
 }
@@ -122,7 +141,7 @@ impl Reference {
 struct ReferenceSearch<'a> {
     scene: &'a Scene,
     rows: Rows,
-    progress: &'a Progress,
+    progress: &'a WeighedRuns<'a>,
 }
 
 impl ReferenceSearch<'_> {

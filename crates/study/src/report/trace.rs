@@ -1,25 +1,25 @@
 //! What runs are compared by: the forces on the carrier, the energy lost and the motion of a carrier that is a body,
 //! row by row.
 
-use asperity_study::robustness::{ForceHistory, larger};
+use crate::robustness::{ForceHistory, larger};
 
 /// The quantities whose errors are shown, by the names of their variables.
-pub(super) const QUANTITIES: [&str; COUNT] = ["F_x", "F_z", "E_diss", "u", "w"];
+pub const QUANTITIES: [&str; COUNT] = ["F_x", "F_z", "E_diss", "u", "w"];
 
 const COUNT: usize = 5;
 
 /// How many of them every scene may have: the others are those of a carrier that is a body.
-pub(super) const OF_ALL_SCENES: usize = 3;
+pub const OF_ALL_SCENES: usize = 3;
 
 /// The errors of F_x, F_z and E_diss, and of u and w of bodies, over the largest value of each, of u and w from the
 /// start; `None` for a quantity that a scene does not have.
-pub(super) type Errors = [Option<f64>; COUNT];
+pub type Errors = [Option<f64>; COUNT];
 
 /// The values of the [`QUANTITIES`] in a row.
-pub(super) type TraceRow = [f64; COUNT];
+pub type TraceRow = [f64; COUNT];
 
 /// Windows of a phase over which means are taken.
-pub(super) const WINDOWS: u32 = 20;
+pub const WINDOWS: u32 = 20;
 
 /// A force that stays below this share of the other one is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -27,7 +27,7 @@ const ROUNDING: f64 = 1e-12;
 /// F_x, F_z (N), E_diss (J) and the distances of bodies from their start (m) at the rows of a run: the start, and even
 /// intervals of each phase.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Trace {
+pub struct Trace {
     times: Vec<f64>,
     rows: Vec<TraceRow>,
     /// The number of intervals of each phase that took time.
@@ -35,28 +35,30 @@ pub(super) struct Trace {
 }
 
 impl Trace {
-    pub(super) fn push(&mut self, time: f64, row: TraceRow) {
+    /// Adds a row at a time, s.
+    pub fn push(&mut self, time: f64, row: TraceRow) {
         self.times.push(time);
         self.rows.push(row);
     }
 
     /// The phase under way ends with the last row; a phase without rows took no time.
-    pub(super) fn end_phase(&mut self) {
+    pub fn end_phase(&mut self) {
         let count = self.rows.len() - 1 - self.intervals.iter().sum::<usize>();
         self.intervals.extend((count > 0).then_some(count));
     }
 
     /// Time of the last row, s.
-    pub(super) fn end(&self) -> f64 {
+    pub fn end(&self) -> f64 {
         self.times.last().copied().unwrap_or_default()
     }
 
-    pub(super) fn forces(&self) -> ForceHistory {
+    /// The forces alone.
+    pub fn forces(&self) -> ForceHistory {
         ForceHistory { times: self.times.clone(), rows: self.rows.iter().map(|row| [row[0], row[1]]).collect() }
     }
 
     /// Every `step`th row, a divisor of every phase's intervals.
-    pub(super) fn every(&self, step: usize) -> Self {
+    pub fn every(&self, step: usize) -> Self {
         Self {
             times: self.times.iter().copied().step_by(step).collect(),
             rows: self.rows.iter().copied().step_by(step).collect(),
@@ -65,12 +67,12 @@ impl Trace {
     }
 
     /// The largest difference from `reference`, which has the same rows.
-    pub(super) fn largest(&self, reference: &Self) -> Errors {
+    pub fn largest(&self, reference: &Self) -> Errors {
         self.errors(reference, |differences| differences.fold(0.0, larger))
     }
 
     /// The root of the mean square of the differences.
-    pub(super) fn mean_square(&self, reference: &Self) -> Errors {
+    pub fn mean_square(&self, reference: &Self) -> Errors {
         let count = self.rows.len() as f64;
         self.errors(reference, |differences| (differences.map(|d| d * d).sum::<f64>() / count).sqrt())
     }
@@ -86,7 +88,7 @@ impl Trace {
 
     /// The largest difference of the forces' means over windows of a phase, over the largest mean; of the energy lost,
     /// whose rows are sums already, as it is. `reference` may have other rows.
-    pub(super) fn means(&self, reference: &Self) -> Errors {
+    pub fn means(&self, reference: &Self) -> Errors {
         let (own, wanted) = (self.window_means(), reference.window_means());
         let scales = reference.scales();
         std::array::from_fn(|i| {

@@ -1,11 +1,11 @@
 //! Runs held against what they promise: errors over the tolerance asked for, and their own estimates over the errors.
 
-use asperity_study::robustness::{KEPT, Perturbation, TIGHTER};
+use crate::robustness::{KEPT, Perturbation, TIGHTER};
 
-use super::convergence::{Timed, ToleranceRow};
+use super::figures::Estimate;
 use super::reference::Reference;
 use super::robustness::Robustness;
-use super::run::Estimate;
+use super::tolerances::{Timed, ToleranceRow};
 use super::trace::Errors;
 
 /// The reference's own error may be so many tolerances: errors of [`KEPT`] are far enough above it.
@@ -13,21 +13,27 @@ const MAX_FLOOR: f64 = 0.3 * KEPT;
 
 /// A run with its error, the larger of those of F_x and F_z, each over its largest value.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Judgement {
+pub struct Judgement {
     /// What was scaled; `None` for the scene as it is.
-    pub(super) perturbation: Option<Perturbation>,
-    pub(super) method: String,
-    pub(super) tolerance: f64,
-    pub(super) error: f64,
-    pub(super) estimate: Estimate,
+    pub perturbation: Option<Perturbation>,
+    /// The method, as in `solver.method`.
+    pub method: String,
+    /// The relative tolerance.
+    pub tolerance: f64,
+    /// Its error, over the largest value.
+    pub error: f64,
+    /// What it says of its own error.
+    pub estimate: Estimate,
     /// The error below which the reference knows nothing.
-    pub(super) floor: f64,
-    pub(super) standing: Standing,
+    pub floor: f64,
+    /// Whether it counts.
+    pub standing: Standing,
 }
 
 /// Whether a run counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Standing {
+pub enum Standing {
+    /// It does.
     Counts,
     /// Two runs as accurate as one likes part: there is no error.
     Sensitive,
@@ -37,7 +43,7 @@ pub(super) enum Standing {
 
 impl Standing {
     /// The word for it in tables.
-    pub(super) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Counts => "",
             Self::Sensitive => "sensitive",
@@ -85,20 +91,22 @@ impl Judgement {
     }
 
     /// What the run warns of, as tables have it.
-    pub(super) fn warning(&self) -> &'static str {
+    pub fn warning(&self) -> &'static str {
         if self.estimate.warned { "does not converge" } else { "" }
     }
 
-    pub(super) fn counts(&self) -> bool {
+    /// Whether it counts.
+    pub fn counts(&self) -> bool {
         self.standing == Standing::Counts
     }
 
-    pub(super) fn error_over_tolerance(&self) -> f64 {
+    /// The error over the tolerance asked for.
+    pub fn error_over_tolerance(&self) -> f64 {
         self.error / self.tolerance
     }
 
     /// Nothing is known of either below the floor.
-    pub(super) fn estimate_over_error(&self) -> f64 {
+    pub fn estimate_over_error(&self) -> f64 {
         let [estimate, error] = [self.estimate.error, self.error].map(|error| error.max(self.floor));
         if estimate == error { 1.0 } else { estimate / error }
     }
@@ -111,24 +119,25 @@ fn force_error(errors: &Errors) -> Option<f64> {
 
 /// A ratio of many runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Ratios<'a> {
-    pub(super) median: f64,
+pub struct Ratios<'a> {
+    /// The middle one.
+    pub median: f64,
     /// The share of the runs that keep within ten times.
-    pub(super) within: f64,
+    pub within: f64,
     /// The farthest from what is asked for.
-    pub(super) worst: f64,
+    pub worst: f64,
     /// Whose that is.
-    pub(super) of: &'a Judgement,
+    pub of: &'a Judgement,
 }
 
 impl<'a> Ratios<'a> {
     /// Errors over tolerances, asked to be at most ten; `None` where no run counts.
-    pub(super) fn from_errors(runs: &[&'a Judgement]) -> Option<Self> {
+    pub fn from_errors(runs: &[&'a Judgement]) -> Option<Self> {
         Self::new(runs, Judgement::error_over_tolerance, |ratio| ratio)
     }
 
     /// Estimates over errors, asked to be a tenth to ten; `None` where no run counts.
-    pub(super) fn from_estimates(runs: &[&'a Judgement]) -> Option<Self> {
+    pub fn from_estimates(runs: &[&'a Judgement]) -> Option<Self> {
         Self::new(runs, Judgement::estimate_over_error, |ratio| ratio.max(1.0 / ratio))
     }
 
@@ -145,7 +154,7 @@ impl<'a> Ratios<'a> {
 
 /// The middle one of values in order, of an even number of them the geometric mean of the two in the middle; there is
 /// one at least.
-pub(super) fn median(ordered: &[f64]) -> f64 {
+pub fn median(ordered: &[f64]) -> f64 {
     let n = ordered.len();
     (ordered[(n - 1) / 2] * ordered[n / 2]).sqrt()
 }

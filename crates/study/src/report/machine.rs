@@ -6,18 +6,18 @@ use std::thread::available_parallelism;
 
 /// What run times depend on.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Machine {
+pub struct Machine {
     /// The model of the processor.
-    pub(super) cpu: String,
+    pub cpu: String,
     /// How many cores this program may use; a timed run uses one.
-    pub(super) cores: usize,
+    pub cores: usize,
     /// The operating system with its kernel.
-    pub(super) system: String,
+    pub system: String,
 }
 
 impl Machine {
     /// The machine that this program runs on; where it does not say what it is, its architecture and system.
-    pub(super) fn here() -> Self {
+    pub fn here() -> Self {
         let cpu = value("/proc/cpuinfo", "model name", ':').unwrap_or_else(|| ARCH.into());
         let system = value("/etc/os-release", "PRETTY_NAME", '=').unwrap_or_else(|| OS.into());
         let kernel = fs::read_to_string("/proc/sys/kernel/osrelease").unwrap_or_default();
@@ -26,14 +26,14 @@ impl Machine {
     }
 
     /// In words.
-    pub(super) fn in_words(&self) -> String {
+    pub fn in_words(&self) -> String {
         let cores = if self.cores == 1 { "1 core".into() } else { format!("{} cores", self.cores) };
         format!("{}, {cores}, {}", self.cpu, self.system)
     }
 }
 
 /// The program with its version and kind of build.
-pub(super) fn build() -> String {
+pub fn build() -> String {
     let kind = if cfg!(debug_assertions) { "development" } else { "release" };
     format!("asperity {}, {kind} build", env!("CARGO_PKG_VERSION"))
 }
