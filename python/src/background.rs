@@ -1,12 +1,13 @@
 //! Work without the interpreter's lock, which Ctrl-C ends.
 
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-use asperity::simulation::Interrupt;
+use asperity_study::progress::Stop;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
@@ -27,10 +28,10 @@ impl Task {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Stops a run once nobody waits.
-    pub(crate) fn interrupt(&self) -> Interrupt {
+    /// Stops the work once nobody waits.
+    pub(crate) fn stop(&self) -> Stop {
         let task = self.clone();
-        Interrupt::new(move || task.is_stopped())
+        Stop::new(move || if task.is_stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     }
 
     /// Tells the fraction that is done, 0 to 1.

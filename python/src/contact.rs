@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use asperity::element::PointStatus;
 use asperity_study::contact::{ContactOptions, SolvedContact, solve_contact};
 use numpy::IntoPyArray as _;
 use pyo3::prelude::*;
@@ -22,7 +23,7 @@ pub(crate) fn contact<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let (scene, options) = (Arc::clone(&scene.scene), ContactOptions { pressure, speed, points });
     let solved = in_background(py, None, move |_| solve_contact(&scene, &options))?;
-    let SolvedContact { slide, fields, status, .. } = solved.map_err(|error| error.raise())?;
+    let SolvedContact { slide, fields, problem, .. } = solved.map_err(|error| error.raise())?;
     let found = PyDict::new(py);
     let (friction, separation) = (slide.friction(), slide.contact.separation);
     for (name, value) in [
@@ -37,7 +38,7 @@ pub(crate) fn contact<'py>(
     ] {
         found.set_item(name, value)?;
     }
-    found.set_item("status", status)?;
+    found.set_item("status", PointStatus::new(problem).text())?;
     for (name, values) in [
         ("x", fields.x),
         ("y", fields.y),

@@ -1,5 +1,6 @@
 //! A run of a scene along its excitation.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use asperity::outputs::{OutputType, Variable, variables};
@@ -85,14 +86,15 @@ fn run(scene: &SceneData, asked: Asked, task: &Task) -> Result<Recorded, Simulat
     let mut values = vec![0.0; variables.len()];
     let duration = scene.duration();
 
-    let mut runner = Runner::new(scene, Rows::PerPhase(asked.points), 0.0)?.with_rows_at(asked.times);
-    runner.simulation().set_interrupt(Some(task.interrupt()));
+    let runner = Runner::new(scene, Rows::PerPhase(asked.points), 0.0)?;
+    let mut runner = runner.with_rows_at(asked.times).stopped_by(&task.stop());
     runner.run(&scene.excitation, |carrier: InputSample, snapshot| {
         snapshot.evaluate(&variables, &mut values);
         let row = std::iter::once(carrier.time).chain(inputs.iter().map(|&input| carrier.input(input)));
         columns.iter_mut().zip(row.chain(values.iter().copied())).for_each(|(column, value)| column.values.push(value));
         elements.iter_mut().for_each(|elements| elements.add(snapshot));
         task.report(if duration > 0.0 { carrier.time / duration } else { 1.0 });
+        ControlFlow::Continue(())
     })?;
     let mut warnings = runner.take_warnings();
     warnings.extend(runner.simulation().inaccuracy().map(|inaccuracy| inaccuracy.to_string()));

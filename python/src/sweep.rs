@@ -1,6 +1,7 @@
 //! Friction over speed, load and temperature.
 
 use std::ffi::OsString;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -33,23 +34,17 @@ pub(crate) fn sliding(
     Ok(SlidingOptions { method, points, error, distance })
 }
 
-/// Nobody waits for the table any more.
-struct Stopped;
-
-/// All points of a sweep.
-fn find(plan: &SweepPlan, task: &Task) -> Result<SweepTable, Stopped> {
+/// All points of a sweep; `None` where nobody waits for them any more.
+fn find(plan: &SweepPlan, task: &Task) -> Option<SweepTable> {
     let points: Vec<OperatingPoint> = plan.header().grid.points().collect();
     let (rows, done) = (Mutex::new(Vec::new()), AtomicUsize::new(0));
-    plan.find(&points, Some(&task.interrupt()), |row| {
-        if task.is_stopped() {
-            return Err(Stopped);
-        }
+    let _: ControlFlow<()> = plan.find(&points, &task.stop(), |row| {
         rows.lock().unwrap_or_else(PoisonError::into_inner).push(row);
         task.report((1 + done.fetch_add(1, Ordering::Relaxed)) as f64 / points.len() as f64);
-        Ok(())
-    })?;
+        ControlFlow::Continue(())
+    });
     let rows = rows.into_inner().unwrap_or_else(PoisonError::into_inner);
-    Ok(SweepTable::new(plan.header().clone(), rows))
+    (!task.is_stopped()).then(|| SweepTable::new(plan.header().clone(), rows))
 }
 
 /// The text of the table of a sweep, and the warnings.
@@ -77,7 +72,7 @@ pub(crate) fn sweep(
     let scene = Arc::clone(&scene.scene);
     let found = in_background(py, progress, move |task| {
         let plan = SweepPlan::new((*scene).clone(), &options, None)?;
-        Ok(find(&plan, task).ok().map(|table| {
+        Ok(find(&plan, task).map(|table| {
             let few = plan.few_points(table.rows.iter().map(|stored| &stored.row));
             let warnings = plan.warning().map(str::to_owned).into_iter().chain(few).collect();
             (table.text(), warnings)

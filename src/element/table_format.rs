@@ -8,14 +8,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::grid::{Load, OperatingPoint, SweepGrid};
+use super::point_status::PointStatus;
 use super::quantity::{Need, Quantity, column_name};
 use crate::scene::{SMALLEST, is_possible};
 use crate::tables;
 
 /// The first line of a table; its number grows when readers have to know of a change.
 pub const FORMAT: &str = "# asperity sweep = 1";
-/// The status of a point whose values can be relied on.
-pub const STEADY: &str = "steady";
 /// The columns before those of [`Quantity`]; `{load}` and `{unit}` stand for those of the table's [`Load`].
 const POINT_COLUMNS: [&str; 4] = ["speed [m/s]", "{load} [{unit}]", "temperature [K]", "status"];
 
@@ -108,14 +107,14 @@ impl TableHeader {
 pub struct TableRow {
     /// The point.
     pub point: OperatingPoint,
-    /// [`STEADY`], or what is wrong.
-    pub status: String,
+    /// Whether its values can be relied on.
+    pub status: PointStatus,
     values: [Option<f64>; Quantity::ALL.len()],
 }
 
 impl TableRow {
     /// A row without values.
-    pub fn new(point: OperatingPoint, status: String) -> Self {
+    pub fn new(point: OperatingPoint, status: PointStatus) -> Self {
         Self { point, status, values: [None; Quantity::ALL.len()] }
     }
 
@@ -131,14 +130,15 @@ impl TableRow {
 
     /// Whether the values can be relied on.
     pub fn is_steady(&self) -> bool {
-        self.status == STEADY
+        self.status == PointStatus::Steady
     }
 
     /// The row's line, its end included.
     pub fn line(&self) -> String {
         let text = |value: &Option<f64>| value.map(number).unwrap_or_default();
         let point = [Some(self.point.speed), Some(self.point.load), self.point.temperature];
-        let fields = point.iter().map(text).chain([tables::quoted(&self.status)]).chain(self.values.iter().map(text));
+        let fields =
+            point.iter().map(text).chain([tables::quoted(self.status.text())]).chain(self.values.iter().map(text));
         fields.collect::<Vec<_>>().join(",") + "\n"
     }
 }
@@ -257,7 +257,7 @@ impl TableText {
         let index = grid.index(&self.point(row, load)?);
         let index = index.ok_or_else(|| self.error_in(row, "a point that the header does not have".into()))?;
         let fields = &self.lines[row].fields;
-        let is_steady = fields[self.column(POINT_COLUMNS[3])?] == STEADY;
+        let is_steady = PointStatus::read(&fields[self.column(POINT_COLUMNS[3])?]) == PointStatus::Steady;
         for quantity in Quantity::ALL {
             let column = self.column(&quantity.name(load))?;
             let allowed = match fields[column].as_str() {
@@ -357,7 +357,7 @@ impl TableText {
         let columns = Quantity::ALL.map(|quantity| self.column(&quantity.name(load)).ok());
         let row = |(line, point): (&TableLine, OperatingPoint)| TableRow {
             point,
-            status: line.fields[status].clone(),
+            status: PointStatus::read(&line.fields[status]),
             values: columns.map(|column| line.fields[column?].parse().ok()),
         };
         Ok(self.lines.iter().zip(points).map(row).collect())
@@ -463,7 +463,7 @@ mod tests {
             let rest_separation = -1.5e-5;
             let mut header = TableHeader { scene, fingerprint, load, rest_separation, basis, grid, low_end: None };
             let row = |(i, point): (usize, OperatingPoint)| {
-                let mut row = TableRow::new(point, if i == 0 { STEADY } else { "not steady, \"by far\"" }.into());
+                let mut row = TableRow::new(point, PointStatus::new((i > 0).then_some("not steady, \"by far\"")));
                 let values = Quantity::ALL.iter().zip(1..).filter(|(_, number)| number % 3 != 0);
                 values.for_each(|(&quantity, number)| row.set(quantity, Some(f64::from(number) / 7.0)));
                 row

@@ -3,6 +3,8 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use crate::tables::{Dimension, quantity};
 
 /// The largest size of a number in SI units that a scene, a carrier or a master may give: m, s, N/m or any other.
@@ -99,6 +101,27 @@ impl fmt::Display for NumberRange {
 impl fmt::Display for WholeRange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "a whole number from {} to {}", self.low, self.high)
+    }
+}
+
+/// A parameter's value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Value {
+    /// A Real of FMI.
+    Real(f64),
+    /// An Integer of FMI.
+    Integer(i32),
+    /// A String of FMI.
+    Text(String),
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Real(number) => write!(f, "{number:?}"),
+            Self::Integer(number) => write!(f, "{number}"),
+            Self::Text(word) => write!(f, "{word:?}"),
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::element::{Load, OperatingPoint, Quantity};
+use asperity::element::{Load, OperatingPoint, PointStatus, Quantity};
 use asperity_study::calibration::{Measured, chi_square_per_degree};
 use asperity_study::steady::SlideProblem;
 
@@ -149,7 +149,8 @@ impl<'a> SweptFriction<'a> {
 
     fn on_grid(&self, point: &OperatingPoint) -> Option<f64> {
         let found = self.table.rows.iter().find(|stored| stored.row.point == *point)?;
-        let has_friction = found.row.is_steady() || found.row.status == SlideProblem::FullContact.to_string();
+        let has_friction =
+            found.row.is_steady() || found.row.status == PointStatus::new(Some(SlideProblem::FullContact));
         found.row.value(Quantity::Friction).filter(|_| has_friction)
     }
 }

@@ -1,7 +1,5 @@
-//! What is left to do where the program is stopped: by Ctrl-C, by a signal to end, or from where nothing else can end
-//! it.
+//! What is left to do where the program is stopped, by Ctrl-C or by a signal to end.
 
-use std::fmt::Display;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process;
@@ -36,20 +34,10 @@ fn stopped() {
     if let Some(farewell) = &unfinished.farewell {
         note(&farewell());
     }
-    end(&unfinished, STOPPED)
-}
-
-/// Ends the program with an error from where it cannot be passed on.
-pub(crate) fn fail(error: &dyn Display) -> ! {
-    note(&error.to_string());
-    end(&unfinished(), 1)
-}
-
-fn end(unfinished: &Unfinished, status: i32) -> ! {
     for path in &unfinished.leftovers {
         drop(if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) });
     }
-    process::exit(status)
+    process::exit(STOPPED)
 }
 
 /// A file or a folder that is of no use once the program has been stopped, and removed then.

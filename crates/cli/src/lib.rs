@@ -14,6 +14,7 @@ mod elements;
 mod figure;
 mod files;
 mod fit;
+mod flags;
 mod interrupt;
 mod lock;
 mod material;
@@ -58,7 +59,7 @@ pub fn execute(words: impl IntoIterator<Item = OsString>, library: Option<PathBu
     match run(Arguments::parse_from(words), library) {
         Ok(status) => status,
         Err(error) => {
-            eprintln!("asperity: {error}");
+            eprintln!("asperity: {}", flags::with_flags(error));
             FAILURE
         }
     }

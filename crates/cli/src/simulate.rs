@@ -1,5 +1,6 @@
 //! `asperity simulate`: runs a scene along its excitation, writes a result file and draws what is asked for.
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use asperity::outputs::{Snapshot, Variable, variables};
@@ -11,7 +12,6 @@ use super::cli::Simulate;
 use super::elements::{ArraysError, ElementHistory, Span};
 use super::figure::{Figure as _, LayerPicture, TimeHistory, write_film};
 use super::files::{FileError, check_outputs, ends_in, load, named, print_beside};
-use super::interrupt::fail;
 use super::result_file::ResultWriter;
 use super::run_summary::RunSummary;
 use super::terminal::{LabelledLine, bar, is_quiet, is_verbose, lines, note, warn};
@@ -45,7 +45,7 @@ pub(crate) fn simulate(command: &Simulate, path: &Path) -> Result<(), SimulateEr
     }
     let mut recorder = Recorder::new(&scene, command, &output)?;
     let result = run(&scene, command, &mut recorder);
-    if let Err(error @ SimulateError::Start(_)) = result {
+    if let Err(error @ (SimulateError::Start(_) | SimulateError::File(_))) = result {
         return Err(error);
     }
     let (history, elements) = recorder.finish()?;
@@ -109,7 +109,13 @@ fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<Vec
     let rows = Rows::PerPhase(command.points);
     let runner = Runner::new(recorder.shown(scene), rows, 0.0).map_err(SimulateError::Start)?;
     let mut runner = runner.with_rows_at(command.contact.iter().map(|&(time, _)| time).collect());
-    let result = runner.run(&scene.excitation, |carrier, snapshot| recorder.row(carrier, snapshot));
+    let mut written = Ok(());
+    let result = runner.run(&scene.excitation, |carrier, snapshot| {
+        written = recorder.row(carrier, snapshot);
+        if written.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    });
+    // Without the rows the rest of the run, which may take hours, is of no use.
+    written?;
     runner.take_warnings().iter().for_each(|warning| warn(warning));
     print_method_switches(&runner.take_method_switches());
     if let Some(inaccuracy) = runner.simulation().inaccuracy() {
@@ -185,12 +191,9 @@ impl Recorder {
         self.history.as_ref().map_or(scene, TimeHistory::scene)
     }
 
-    fn row(&mut self, carrier: InputSample, snapshot: &Snapshot<'_>) {
+    fn row(&mut self, carrier: InputSample, snapshot: &Snapshot<'_>) -> Result<(), FileError> {
         snapshot.evaluate(&self.variables, &mut self.values);
-        if let Err(error) = self.writer.write(carrier, &self.values) {
-            // An observer cannot stop the run, which may take hours.
-            fail(&error);
-        }
+        self.writer.write(carrier, &self.values)?;
         if let Some(history) = &mut self.history {
             history.add(carrier.time, snapshot);
         }
@@ -203,6 +206,7 @@ impl Recorder {
             self.progress.set_position((PROGRESS_LENGTH * self.time / self.duration) as u64);
             self.progress.set_message(format!("t = {:.4e} s", self.time));
         }
+        Ok(())
     }
 
     fn finish(self) -> Result<(Option<TimeHistory>, Option<ElementHistory>), FileError> {

@@ -2,8 +2,8 @@
 
 use asperity::scene::Scene;
 
-use crate::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
-use crate::sweep::{Method, MethodError, SlidingOptions, SweepMethod, solved_status};
+use crate::steady::{SlideProblem, SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
+use crate::sweep::{Method, MethodError, SlidingOptions, SweepMethod};
 
 /// The contact of a scene cannot be solved for.
 #[derive(Debug, thiserror::Error)]
@@ -39,8 +39,8 @@ pub struct SolvedContact {
     pub slide: SteadySlide,
     /// What stands at every point.
     pub fields: ContactFields,
-    /// [`STEADY`], or why the values cannot be relied on.
-    pub status: String,
+    /// Why not all of the values can be relied on; `None` where they can.
+    pub problem: Option<SlideProblem>,
 }
 
 /// One state of steady sliding, and on how many points it is solved for.
@@ -67,8 +67,8 @@ pub fn solve_contact(scene: &Scene, options: &ContactOptions) -> Result<SolvedCo
     let mut solver = SteadySolver::new(surface);
     let slide = solver.slide(&rubber, options.speed, options.pressure);
     let surface = solver.surface().clone();
-    let (fields, status) = (ContactFields::new(&surface, &slide), solved_status(&slide));
-    Ok(SolvedContact { surface, slide, fields, status })
+    let (fields, problem) = (ContactFields::new(&surface, &slide), slide.problem());
+    Ok(SolvedContact { surface, slide, fields, problem })
 }
 
 impl ContactFields {

@@ -1,8 +1,12 @@
 //! Runs a scene along its excitation, phase by phase, with rows at even intervals of each phase.
 
+use std::ops::ControlFlow;
+
 use asperity::outputs::Snapshot;
 use asperity::scene::{Force, Input, Phase, Scene};
 use asperity::simulation::{MethodSwitch, Motion, Simulation, SimulationError, Start};
+
+use crate::progress::Stop;
 
 /// Time and inputs at a row: displacements of the carrier or of a body's drive, forces on a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -109,6 +113,7 @@ pub struct Runner {
     area: Option<f64>,
     /// Of phases that ended before their force was reached.
     warnings: Vec<String>,
+    stop: Stop,
 }
 
 impl Runner {
@@ -123,6 +128,8 @@ impl Runner {
             InputSample { time: start.time, u: start.u, w: start.w, load: start.load, pull: start.pull, temperature };
         let mut simulation = Simulation::new(scene, &start)?;
         simulation.record_method_switches(true);
+        let stop = Stop::default();
+        simulation.set_interrupt(Some(stop.interrupt()));
         Ok(Self {
             simulation,
             carrier,
@@ -131,12 +138,20 @@ impl Runner {
             phases: 0,
             area: scene.layer.area(),
             warnings: Vec::new(),
+            stop,
         })
     }
 
     /// The run with rows at `times` (s) too.
     pub fn with_rows_at(self, times: Vec<f64>) -> Self {
         Self { also_at: times, ..self }
+    }
+
+    /// The run, which `stop` ends between two steps.
+    pub fn stopped_by(mut self, stop: &Stop) -> Self {
+        self.stop = stop.clone();
+        self.simulation.set_interrupt(Some(stop.interrupt()));
+        self
     }
 
     /// The simulation as it stands.
@@ -158,13 +173,17 @@ impl Runner {
     /// durations of the phases, s: a phase that a force ends may be shorter than its nominal duration.
     ///
     /// # Errors
-    /// As for [`Simulation::advance`]; the simulation then stands at the start of the phase that failed.
+    /// As for [`Simulation::advance`], and [`SimulationError::Interrupted`] where `observe` breaks off; the simulation then
+    /// stands at the start of the phase that failed.
     pub fn run(
         &mut self,
         phases: &[Phase],
-        mut observe: impl FnMut(InputSample, &Snapshot<'_>),
+        mut observe: impl FnMut(InputSample, &Snapshot<'_>) -> ControlFlow<()>,
     ) -> Result<Vec<f64>, SimulationError> {
-        self.observe_now(&mut observe);
+        let stop = self.stop.clone();
+        self.observe_now(|carrier, snapshot| {
+            let _ = stop.heed(observe(carrier, snapshot));
+        });
         phases.iter().map(|phase| self.run_phase(phase, &mut observe)).collect()
     }
 
@@ -180,7 +199,7 @@ impl Runner {
     pub fn run_phase(
         &mut self,
         phase: &Phase,
-        mut observe: impl FnMut(InputSample, &Snapshot<'_>),
+        mut observe: impl FnMut(InputSample, &Snapshot<'_>) -> ControlFlow<()>,
     ) -> Result<f64, SimulationError> {
         let motion = phase.motion(self.area);
         let force = phase.end_force(self.area);
@@ -196,7 +215,13 @@ impl Runner {
         let rows = if phase.is_row { Rows::PerPhase(1) } else { self.rows };
         let times = self.times(rows, duration);
         let start = self.carrier;
-        let observe = |s: f64, snapshot: &Snapshot<'_>| observe(start.after(&motion, s), snapshot);
+        let stop = &self.stop;
+        let observe = |s: f64, snapshot: &Snapshot<'_>| {
+            // There may be other rows within the step.
+            if stop.go_on().is_continue() {
+                let _ = stop.heed(observe(start.after(&motion, s), snapshot));
+            }
+        };
         self.simulation.advance_observed(&Motion { duration, ..motion }, None, &times, observe)?;
         self.carrier = InputSample { time: self.simulation.time(), ..start.after(&motion, duration) };
         Ok(duration)

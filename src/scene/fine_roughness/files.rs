@@ -175,13 +175,13 @@ mod tests {
     use super::*;
 
     /// The points, and how many notes say what is assumed; else the line and the message.
-    type Found = Result<(Vec<[f64; 2]>, usize), (Option<usize>, String)>;
+    type PointsRead = Result<(Vec<[f64; 2]>, usize), (Option<usize>, String)>;
 
-    fn spectrum(text: &str) -> Found {
+    fn spectrum(text: &str) -> PointsRead {
         read_with(text, Convention::Persson)
     }
 
-    fn read_with(text: &str, convention: Convention) -> Found {
+    fn read_with(text: &str, convention: Convention) -> PointsRead {
         let found = read_spectrum(text.as_bytes(), convention);
         let found = found.map_err(|error| (error.line, error.problem.about(&error.key)));
         found.map(|(spectrum, notes)| (spectrum.points().to_vec(), notes.iter().filter(|note| note.assumed).count()))

@@ -16,19 +16,23 @@ pub(super) fn cut(text: &str) -> String {
 
 /// What a column of a profile may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Axis {
+pub(super) enum ColumnAxis {
     X,
     Y,
     Z,
 }
 
-const fn axis(axis: Axis, key_words: &'static [&'static str], other_words: &'static [&'static str]) -> Words<Axis> {
+const fn axis(
+    axis: ColumnAxis,
+    key_words: &'static [&'static str],
+    other_words: &'static [&'static str],
+) -> Words<ColumnAxis> {
     Words::new(axis, Dimension::Length, key_words, other_words)
 }
 
-pub(super) const VOCABULARY: [Words<Axis>; 3] = [
+pub(super) const VOCABULARY: [Words<ColumnAxis>; 3] = [
     axis(
-        Axis::X,
+        ColumnAxis::X,
         &[
             "x", "distance", "position", "pos", "lateral", "length", "chainage", "station", "abscissa", "place", "weg",
             "strecke", "abstand", "länge", "laenge", "location", "dist", "xpos", "mileage",
@@ -57,7 +61,7 @@ pub(super) const VOCABULARY: [Words<Axis>; 3] = [
         ],
     ),
     axis(
-        Axis::Z,
+        ColumnAxis::Z,
         &[
             "z",
             "z2",
@@ -113,7 +117,7 @@ pub(super) const VOCABULARY: [Words<Axis>; 3] = [
         ],
     ),
     axis(
-        Axis::Y,
+        ColumnAxis::Y,
         &["y", "y1", "y2", "y3", "y4"],
         &["axis", "coordinate", "coord", "position", "pos", "value", "values", "achse"],
     ),
@@ -125,7 +129,7 @@ pub(super) struct Header<'a> {
     pub(super) names: Vec<Cow<'a, str>>,
     pub(super) line: Option<usize>,
     /// What the columns are, as far as their names say.
-    pub(super) headings: Vec<Option<Heading<Axis>>>,
+    pub(super) headings: Vec<Option<Heading<ColumnAxis>>>,
     /// The units of x and z that lines such as `X-Unit: mm` set.
     pub(super) set: [Option<Unit>; 2],
     /// A line that speaks of a unit, though it is none of names.
@@ -158,7 +162,7 @@ impl<'a> Header<'a> {
     }
 
     /// Which columns are called so.
-    pub(super) fn named(&self, axis: Axis) -> Vec<usize> {
+    pub(super) fn named(&self, axis: ColumnAxis) -> Vec<usize> {
         let is_it = |i: &usize| self.headings[*i].as_ref().is_some_and(|heading| heading.quantity == axis);
         (0..self.headings.len()).filter(is_it).collect()
     }
@@ -238,12 +242,16 @@ pub(super) fn note(what: &str, unit: Option<Unit>) -> ReadingNote {
 }
 
 /// Columns that have units but no names: x and z.
-fn unnamed(units: &[Cow<'_, str>]) -> Vec<Option<Heading<Axis>>> {
-    let heading = |(axis, unit): (Axis, &Cow<'_, str>)| {
-        let name = if axis == Axis::X { "x" } else { "z" };
+fn unnamed(units: &[Cow<'_, str>]) -> Vec<Option<Heading<ColumnAxis>>> {
+    let heading = |(axis, unit): (ColumnAxis, &Cow<'_, str>)| {
+        let name = if axis == ColumnAxis::X { "x" } else { "z" };
         Heading::with_unit(name, unit, &VOCABULARY)
     };
-    if units.len() == 2 { [Axis::X, Axis::Z].into_iter().zip(units).map(heading).collect() } else { Vec::new() }
+    if units.len() == 2 {
+        [ColumnAxis::X, ColumnAxis::Z].into_iter().zip(units).map(heading).collect()
+    } else {
+        Vec::new()
+    }
 }
 
 /// Of a line such as `X-Unit: mm` or `unit;um`: the axes, 0 for x and 1 for z, and their unit.

@@ -1,6 +1,6 @@
 //! Which columns of a profile are x and z: by what is chosen, by their names, or the only two there are.
 
-use super::header::{Axis, Header, cut};
+use super::header::{ColumnAxis, Header, cut};
 use super::options::{ProfileOptions, ThirdColumn};
 use crate::scene::error::ContentError;
 use crate::tables::{Block, words};
@@ -59,7 +59,7 @@ impl Roles {
         options: &ProfileOptions,
         mark: Option<(usize, ThirdColumn)>,
     ) -> Result<Self, ContentError> {
-        let [x, y, z] = [Axis::X, Axis::Y, Axis::Z].map(|axis| header.named(axis));
+        let [x, y, z] = [ColumnAxis::X, ColumnAxis::Y, ColumnAxis::Z].map(|axis| header.named(axis));
         if block.columns == 1 {
             return Ok(Self { x: None, y: None, z: 0, mark });
         }

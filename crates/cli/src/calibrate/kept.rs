@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::element::{OperatingPoint, STEADY};
+use asperity::element::{OperatingPoint, PointStatus};
 use asperity::tables;
 use asperity_study::calibration::{FreeParameter, FrictionParts, Outcome, Task};
 
@@ -50,9 +50,9 @@ fn line(task: &Task, outcome: &Outcome) -> String {
     let values = task.parameters.iter().copied().map(real);
     let OperatingPoint { speed, load, temperature } = task.point;
     let point = [real(speed), real(load), temperature.map(real).unwrap_or_default()];
-    let status = outcome.as_ref().err().map_or(STEADY, String::as_str);
+    let status = PointStatus::new(outcome.as_ref().err());
     let parts = outcome.as_ref().map_or([None; 3], |parts| [parts.profile, parts.fine, parts.shear].map(Some));
-    let fields = values.chain(point).chain([tables::quoted(status)]);
+    let fields = values.chain(point).chain([tables::quoted(status.text())]);
     let parts = parts.map(|part| part.map(real).unwrap_or_default());
     fields.chain(parts).collect::<Vec<_>>().join(",") + "\n"
 }
@@ -82,13 +82,13 @@ fn point(line: &str, parameters: usize) -> Option<(Task, Outcome)> {
     let values: Option<Vec<f64>> = (0..parameters).map(number).collect();
     let temperature = if fields[parameters + 2].is_empty() { None } else { Some(number(parameters + 2)?) };
     let point = OperatingPoint { speed: number(parameters)?, load: number(parameters + 1)?, temperature };
-    let outcome = match fields[parameters + 3].as_str() {
-        STEADY => Ok(FrictionParts {
+    let outcome = match PointStatus::read(&fields[parameters + 3]) {
+        PointStatus::Steady => Ok(FrictionParts {
             profile: number(parameters + 4)?,
             fine: number(parameters + 5)?,
             shear: number(parameters + 6)?,
         }),
-        why => Err(why.to_owned()),
+        PointStatus::Problem(why) => Err(why),
     };
     Some((Task { parameters: values?, point }, outcome))
 }

@@ -33,7 +33,7 @@ impl FrictionModel for LayerModel<'_> {
                 fine: sliding.fine(),
                 shear: sliding.friction() - sliding.hysteresis(),
             });
-            done(index, parts)
+            done(index, parts.map_err(|problem| problem.to_string()))
         })
     }
 

@@ -5,7 +5,6 @@ mod picture;
 
 use std::path::PathBuf;
 
-use asperity::element::STEADY;
 use asperity::scene::Scene;
 use asperity_study::contact::{ContactError, ContactFields, ContactOptions, SolvedContact, solve_contact};
 use asperity_study::steady::SteadySlide;
@@ -34,7 +33,7 @@ pub(crate) fn contact(command: &Contact) -> Result<(), ContactCommandError> {
     check_outputs(&outputs, scene.sources(&command.scene))?;
     let SteadyState { pressure, speed } = command.at;
     let solved = solve_contact(&scene, &ContactOptions { pressure, speed, points: command.points })?;
-    let SolvedContact { surface, slide, fields, status } = &solved;
+    let SolvedContact { surface, slide, fields, problem } = &solved;
     picture::write(surface, fields, slide.area, &command.output)?;
     if let Some(path) = &command.data {
         let bytes = if ends_in(path, "npz") {
@@ -44,9 +43,7 @@ pub(crate) fn contact(command: &Contact) -> Result<(), ContactCommandError> {
         };
         files::write(path, bytes)?;
     }
-    if status != STEADY {
-        warn(status);
-    }
+    problem.iter().for_each(|problem| warn(&problem.to_string()));
     Ok(print_beside(&outputs, &summary(&scene, command, slide, fields))?)
 }
 

@@ -249,7 +249,8 @@ impl Work<'_> {
         let area = scene.layer.area().ok_or("the layer has no width")?;
         let point = OperatingPoint { speed, load: pressure, temperature: None };
         let bounds = StopBounds { error: RUN_ERROR * error, distance };
-        let sliding = steady_sliding(scene, &point, Load::Pressure { area }, bounds)?;
+        let sliding =
+            steady_sliding(scene, &point, Load::Pressure { area }, bounds).map_err(|problem| problem.to_string())?;
         Ok(Measured {
             mean: Pair { friction: sliding.friction(), area: sliding.contact_ratio },
             error: Pair { friction: sliding.friction_error, area: sliding.contact_error },

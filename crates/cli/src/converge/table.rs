@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::element::STEADY;
+use asperity::element::PointStatus;
 use asperity::tables;
 
 use super::ConvergeError;
@@ -79,7 +79,7 @@ impl RunRow {
     /// The row's line, its end included; `change` is that of the values from another run to this one.
     fn line(&self, change: Option<Pair>) -> String {
         let Dimensions { count, spacing, seed, split: longest } = self.dimensions;
-        let status = self.outcome.as_ref().err().map_or(STEADY, String::as_str);
+        let status = PointStatus::new(self.outcome.as_ref().err());
         let measured = self.outcome.as_ref().ok();
         let text = |value: Option<f64>| value.map(real).unwrap_or_default();
         let of = |value: fn(&Pair) -> f64| {
@@ -100,7 +100,7 @@ impl RunRow {
             real(self.dimensions.length()),
             seed.map(|seed| seed.to_string()).unwrap_or_default(),
             text(longest),
-            tables::quoted(status),
+            tables::quoted(status.text()),
             text(self.fit_rms),
         ];
         let [friction, area] = [of(|pair| pair.friction), of(|pair| pair.area)];
@@ -124,9 +124,9 @@ impl RunRow {
         let optional = |i: usize| if text(i).is_empty() { Some(None) } else { Some(Some(number(i)?)) };
         let seed = if text(7).is_empty() { None } else { Some(whole(7)?) };
         let pair = |friction: usize, area: usize| Some(Pair { friction: number(friction)?, area: number(area)? });
-        let outcome = match text(9) {
-            STEADY => Ok(Measured { mean: pair(11, 15)?, error: pair(12, 16)?, hysteresis: number(14)? }),
-            status => Err(status.to_owned()),
+        let outcome = match PointStatus::read(text(9)) {
+            PointStatus::Steady => Ok(Measured { mean: pair(11, 15)?, error: pair(12, 16)?, hysteresis: number(14)? }),
+            PointStatus::Problem(problem) => Err(problem),
         };
         Some(Self {
             variant: Variant {

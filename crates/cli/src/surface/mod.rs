@@ -5,7 +5,7 @@ mod periodic;
 
 use std::path::{Path, PathBuf};
 
-use asperity::scene::{self, Band, PowerLaw, RoughnessSpectrum, Spectrum};
+use asperity::scene::{self, Band, PowerLaw, RoughnessSpectrum, Spectrum, SplitError};
 use asperity_formats::Instruments;
 use serde::Serialize;
 
@@ -28,7 +28,7 @@ pub(crate) enum SurfaceError {
     #[error("--spectrum: expected --split, or a map, whose isotropic spectrum is written")]
     NoSpectrum,
     #[error("--split {split:?}: expected {expected}")]
-    Split { split: f64, expected: String },
+    Split { split: f64, expected: SplitError },
     #[error("cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
 }

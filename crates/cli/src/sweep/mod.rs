@@ -5,10 +5,12 @@ mod printed;
 mod table_file;
 pub(super) mod values;
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use asperity::element::OperatingPoint;
 use asperity::scene::{Scene, Wlf};
+use asperity_study::progress::Stop;
 use asperity_study::sweep::{Loads, SlidingOptions, SweepError, SweepOptions, SweepPlan, SweepTable, verdict};
 
 use super::cli::{Sliding, Sweep};
@@ -16,6 +18,7 @@ use super::draft::TablePlace;
 use super::files::{
     FileError, check_outputs, default_output, load_without_run, named, picture_beside, print_beside, read, write,
 };
+use super::flags::with_flags;
 use super::interrupt::Farewell;
 use super::terminal::{self, lines, warn};
 use table_file::{TableFile, TableFileError};
@@ -72,7 +75,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
     };
     let convergence = study_verdict(study.as_deref(), &scene.name)?;
     let plan = SweepPlan::new(scene, &options(command, speeds)?, convergence)?;
-    plan.warning().iter().for_each(|warning| warn(warning));
+    plan.warning().iter().for_each(|warning| warn(&with_flags(warning)));
     let place = TablePlace::new(&output)?;
     let file = TableFile::open(&place.path, plan.header(), command.force)?;
     run(command, &plan, &file, &output)?;
@@ -80,7 +83,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
         SweepTable { header: plan.header().clone(), ..SweepTable::read(&place.path).map_err(TableFileError::from)? };
     table.sort();
     let few = plan.few_points(table.rows.iter().map(|stored| &stored.row));
-    few.iter().for_each(|warning| warn(warning));
+    few.iter().for_each(|warning| warn(&with_flags(warning)));
     table.find_low_end(&output);
     write(&place.path, table.text())?;
     drop(file);
@@ -136,13 +139,15 @@ fn run(command: &Sweep, plan: &SweepPlan, file: &TableFile, output: &Path) -> Re
         done.finish_and_clear();
         format!("{points} of {all} points are done")
     });
-    let work = plan.find(&left, None, |row| {
-        file.add(&row)?;
+    let work = plan.find(&left, &Stop::default(), |row| {
+        if let Err(error) = file.add(&row) {
+            return ControlFlow::Break(error);
+        }
         bar.inc(1);
-        Ok(())
+        ControlFlow::Continue(())
     });
     bar.finish_and_clear();
-    work
+    work.break_value().map_or(Ok(()), Err)
 }
 
 impl Sliding {

@@ -172,7 +172,7 @@ impl<X: Fn(&OperatingPoint) -> f64> Points<X> {
 
 #[cfg(test)]
 mod tests {
-    use asperity::element::{Basis, Load, STEADY, SweepGrid, TableHeader};
+    use asperity::element::{Basis, Load, PointStatus, SweepGrid, TableHeader};
 
     use super::*;
 
@@ -180,7 +180,7 @@ mod tests {
     fn table(adhesion: f64, convergence: Option<&str>) -> SweepTable {
         let grid = SweepGrid { speeds: vec![0.1, 1.0], loads: vec![1e5], temperatures: vec![293.15, 313.15] };
         let row = |(i, point): (usize, OperatingPoint)| {
-            let mut row = TableRow::new(point, if i == 3 { "stick-slip".into() } else { STEADY.into() });
+            let mut row = TableRow::new(point, PointStatus::new((i == 3).then_some("stick-slip")));
             row.set(Quantity::Friction, Some(1.0 + point.speed));
             row.set(Quantity::Hysteresis, Some(1.0 + point.speed - adhesion));
             row.set(Quantity::Adhesion, Some(adhesion));

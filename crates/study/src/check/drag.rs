@@ -81,7 +81,7 @@ fn relaxed(scene: &Scene, temperature: Option<f64>) -> Result<Scene, NotCompared
     let mut scene = Scene { outputs, excitation: Vec::new(), ..scene.clone() };
     scene.layer.initial = Initial::Relaxed;
     if let Some(kelvin) = temperature {
-        scene.set_parameter(Parameter::Temperature, Value::Real(kelvin))?;
+        scene.set_parameter(Parameter::TEMPERATURE, Value::Real(kelvin))?;
     }
     Ok(scene)
 }

@@ -62,7 +62,7 @@ impl<'a> ElementCheck<'a> {
         let Self { contact, scene, swept, .. } = self;
         let found = swept.sliding(scene, point, contact.table().load, StopBounds { error: ERROR, distance: None });
         let element = found.as_ref().ok().map(|found| element_sliding(contact, point, found.w));
-        let not_steady = |status: String| NotCompared::Swept { of: swept.name(), status };
+        let not_steady = |status| NotCompared::Swept { of: swept.name(), status };
         PointCheck { point: *point, swept: found.map_err(not_steady), element }
     }
 
@@ -85,7 +85,7 @@ impl<'a> ElementCheck<'a> {
         Method::Layer.check(&self.scene)?;
         let bounds = StopBounds { error: ERROR, distance: None };
         let layer = Swept::Layer.sliding(&self.scene, point, self.contact.table().load, bounds);
-        let not_steady = |status: String| NotCompared::Swept { of: Swept::Layer.name(), status };
+        let not_steady = |status| NotCompared::Swept { of: Swept::Layer.name(), status };
         layer.map(|layer| layer.w).map_err(not_steady)
     }
 }

@@ -14,7 +14,7 @@ pub(super) fn element_at(
 ) -> Result<Element, NotCompared> {
     let mut contact = contact.clone();
     if let (Some(kelvin), true) = (point.temperature, contact.table().grid.temperatures.len() > 1) {
-        contact.set_parameter(Parameter::Temperature, Value::Real(kelvin))?;
+        contact.set_parameter(Parameter::TEMPERATURE, Value::Real(kelvin))?;
     }
     Ok(Element::new(&contact, start)?)
 }

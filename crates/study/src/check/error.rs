@@ -6,7 +6,7 @@ use asperity::scene::ParameterError;
 use asperity::simulation::SimulationError;
 
 use crate::progress::Stopped;
-use crate::sweep::{NeverSteady, SweepError};
+use crate::sweep::{NeverSteady, NotSteady, SweepError};
 
 /// An element or a patch cannot be compared with what was swept.
 #[derive(Debug, thiserror::Error)]
@@ -36,7 +36,7 @@ pub enum CheckError {
 pub enum NotCompared {
     /// What was swept, a layer or a solution, is not steady there.
     #[error("{of} {status}")]
-    Swept { of: &'static str, status: String },
+    Swept { of: &'static str, status: NotSteady },
     #[error(transparent)]
     Parameter(#[from] ParameterError),
     #[error(transparent)]

@@ -1,5 +1,7 @@
 //! One run of a scene for a report, driven as a master drives the FMU.
 
+use std::ops::ControlFlow;
+
 use asperity::scene::{Input, Scene};
 use asperity::simulation::{Motion, Simulation, SimulationError};
 use asperity_fmi::{CommunicationStep, InputOutOfRange, Inputs, layer_motion, layer_start};
@@ -7,6 +9,7 @@ use cpu_time::ThreadTime;
 
 use super::figures::CompletedRun;
 use super::recorder::TraceRecorder;
+use crate::progress::Stopped;
 use crate::robustness::{Budget, RunFailure};
 use crate::runner::InputSample;
 
@@ -40,7 +43,7 @@ pub(super) fn drive(
     points: &[Vec<f64>],
     u: f64,
     budget: Budget,
-    tick: &dyn Fn(f64),
+    tick: &dyn Fn(f64) -> ControlFlow<()>,
 ) -> Result<CompletedRun, RunFailure> {
     let failed = |error: DriveError| match error {
         DriveError::Run(error) => budget.failure(scene, &error),
@@ -57,7 +60,9 @@ pub(super) fn drive(
             master.step(&motion, start, from, to).map_err(failed)?;
             master.recorder.check(budget)?;
             from = to;
-            tick(master.carrier.time / duration);
+            if tick(master.carrier.time / duration).is_break() {
+                return Err(RunFailure::Stopped(Stopped.to_string()));
+            }
         }
         master.recorder.end_phase();
     }
@@ -156,9 +161,13 @@ u_rate = 0.01
     #[test]
     fn a_run_ends_at_its_budget_or_stops_at_the_scenes_own_limit() {
         let mut scene = Scene::parse(TEXT, "scene.toml".as_ref()).unwrap();
-        let along = |scene: &Scene, budget| follow(scene, Rows::PerPhase(4), 0.0, Budget(budget), &|_| ());
+        let along = |scene: &Scene, budget| {
+            follow(scene, Rows::PerPhase(4), 0.0, Budget(budget), &|_| ControlFlow::Continue(()))
+        };
         let points = vec![(1..=10).map(|i| 1e-4 * f64::from(i)).collect::<Vec<_>>(); 2];
-        let driven = |scene: &Scene, budget| drive(scene, MasterInputs::Rates, &points, 0.0, Budget(budget), &|_| ());
+        let driven = |scene: &Scene, budget| {
+            drive(scene, MasterInputs::Rates, &points, 0.0, Budget(budget), &|_| ControlFlow::Continue(()))
+        };
         for (run, rows) in [(&along as &dyn Fn(&Scene, u64) -> _, 9), (&driven, 21)] {
             let measured = run(&scene, 10_000).unwrap();
             assert_eq!(measured.trace.forces().rows.len(), rows);

@@ -1,6 +1,7 @@
 //! The robustness of a scene: its quantities scaled by powers of ten, one by one and in pairs, and every run judged.
 
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::robustness::{
@@ -333,8 +334,8 @@ impl PerturbedRunner<'_> {
         let points = communication.map(|factor| communication_points(scene, factor));
         let communication_steps = points.iter().flatten().map(|points| points.len() as u64).sum();
         let along = |scene: &Scene, u: f64, budget: Budget| match &points {
-            None => follow(scene, Rows::PerPhase(self.points), u, budget, &|_| ()),
-            Some(points) => drive(scene, MasterInputs::Rates, points, u, budget, &|_| ()),
+            None => follow(scene, Rows::PerPhase(self.points), u, budget, &|_| ControlFlow::Continue(())),
+            Some(points) => drive(scene, MasterInputs::Rates, points, u, budget, &|_| ControlFlow::Continue(())),
         };
         let budget = self.budget.saturating_add(2 * communication_steps);
         match along(&estimated(scene), 0.0, Budget(budget)) {

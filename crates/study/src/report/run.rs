@@ -1,5 +1,7 @@
 //! One run of a scene for a report, along the excitation and within a budget.
 
+use std::ops::ControlFlow;
+
 use asperity::outputs::Snapshot;
 use asperity::scene::Scene;
 use asperity::simulation::SimulationError;
@@ -20,7 +22,7 @@ pub(super) fn follow(
     rows: Rows,
     u: f64,
     budget: Budget,
-    tick: &dyn Fn(f64),
+    tick: &dyn Fn(f64) -> ControlFlow<()>,
 ) -> Result<CompletedRun, RunFailure> {
     let failed = |error: SimulationError| budget.failure(scene, &error);
     let duration = scene.duration();
@@ -32,7 +34,7 @@ pub(super) fn follow(
     for phase in &scene.excitation {
         let observe = |carrier: InputSample, snapshot: &Snapshot<'_>| {
             recorder.row(snapshot);
-            tick(carrier.time / duration);
+            tick(carrier.time / duration)
         };
         durations.push(runner.run_phase(phase, observe).map_err(failed)?);
         recorder.end_phase();

@@ -101,5 +101,5 @@ impl SceneReport {
 
 /// The method in a word of the scene file.
 pub fn method(scene: &Scene) -> String {
-    scene.parameter(Parameter::Method).to_string().replace('"', "")
+    scene.parameter(Parameter::METHOD).to_string().replace('"', "")
 }

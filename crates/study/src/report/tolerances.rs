@@ -1,5 +1,7 @@
 //! Errors against what a run costs, over the tolerances of each method.
 
+use std::ops::ControlFlow;
+
 use asperity::scene::{Method, Scene};
 
 use super::figures::RunFigures;
@@ -163,7 +165,7 @@ impl ToleranceLadder<'_> {
         let message = format!("{method}, tolerance {tolerance:e}, with its estimate");
         let weight = self.rung_weight(scene.solver.method, tolerance);
         let (comparison, scene) = (reference.comparison, estimated(scene));
-        let follow = |tick: &dyn Fn(f64)| follow(&scene, comparison.rows(), 0.0, UNLIMITED, tick);
+        let follow = |tick: &dyn Fn(f64) -> ControlFlow<()>| follow(&scene, comparison.rows(), 0.0, UNLIMITED, tick);
         let run = progress.during(&message, weight, follow)?;
         let errors = comparison.errors(&run.trace, &reference.measured.trace);
         Ok(RunFigures { estimate: Some(run.estimate), ..run.figures(errors) })

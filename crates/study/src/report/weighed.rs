@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::ops::ControlFlow;
 
-use crate::progress::{Progress, Stopped, Watch};
+use crate::progress::{Progress, Stop, Stopped, Watch};
 use crate::robustness::RunFailure;
 
 /// Runs of which each is a share of all.
@@ -12,13 +12,13 @@ pub(super) struct WeighedRuns<'a> {
     part: &'a str,
     total: f64,
     done: Cell<f64>,
-    is_stopped: Cell<bool>,
+    stop: Stop,
 }
 
 impl<'a> WeighedRuns<'a> {
     /// For runs that weigh `total`.
     pub(super) fn new(watch: &'a Watch<'a>, part: &'a str, total: f64) -> Self {
-        Self { watch, part, total, done: Cell::new(0.0), is_stopped: Cell::new(false) }
+        Self { watch, part, total, done: Cell::new(0.0), stop: Stop::default() }
     }
 
     /// Does a run of this weight; it gets what to call with the fraction that is done. Once stopped no run is begun.
@@ -26,28 +26,26 @@ impl<'a> WeighedRuns<'a> {
         &self,
         doing: &str,
         weight: f64,
-        run: impl FnOnce(&dyn Fn(f64)) -> Result<T, RunFailure>,
+        run: impl FnOnce(&dyn Fn(f64) -> ControlFlow<()>) -> Result<T, RunFailure>,
     ) -> Result<T, RunFailure> {
-        if self.is_stopped.get() {
+        if self.stop.go_on().is_break() {
             return Err(RunFailure::Stopped(Stopped.to_string()));
         }
         let done = self.done.get();
         let show = |fraction: f64| {
             let share = (done + weight * fraction) / self.total;
-            if let ControlFlow::Break(()) = (self.watch)(Progress { part: self.part, doing, share }) {
-                self.is_stopped.set(true);
-            }
+            self.stop.heed((self.watch)(Progress { part: self.part, doing, share }))
         };
-        show(0.0);
+        let _ = show(0.0);
         let result = run(&show);
-        show(1.0);
+        let _ = show(1.0);
         self.done.set(done + weight);
         result
     }
 
     /// Refuses what was stopped.
     pub(super) fn finish(&self) -> Result<(), Stopped> {
-        if self.is_stopped.get() { Err(Stopped) } else { Ok(()) }
+        if self.stop.go_on().is_break() { Err(Stopped) } else { Ok(()) }
     }
 }
 

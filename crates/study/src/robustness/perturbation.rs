@@ -67,21 +67,18 @@ impl ScaledQuantity {
 
     /// Whether a parameter of the scene is scaled with it.
     fn includes(self, parameter: Parameter) -> bool {
+        let path = parameter.path();
+        let is = |table: &str, name: &str| path.starts_with(table) && path.ends_with(name);
         match self {
-            Self::Stiffness => matches!(
-                parameter,
-                Parameter::Stiffness(_)
-                    | Parameter::MaxwellStiffness(..)
-                    | Parameter::EquilibriumModulus
-                    | Parameter::PronyModulus(_)
-            ),
-            Self::Mass => matches!(parameter, Parameter::Mass | Parameter::Density),
-            Self::RelaxationTimes => {
-                matches!(parameter, Parameter::RelaxationTime(..) | Parameter::PronyRelaxationTime(_))
+            Self::Stiffness => {
+                is("layer.", ".stiffness")
+                    || ["material.equilibrium_modulus", "material.prony[].modulus"].contains(&path)
             }
-            Self::CarrierMass => matches!(parameter, Parameter::CarrierMass(_)),
-            Self::Drive => matches!(parameter, Parameter::CarrierStiffness(_) | Parameter::CarrierDamping(_)),
-            Self::Load => parameter == Parameter::Load,
+            Self::Mass => ["layer.mass", "material.density"].contains(&path),
+            Self::RelaxationTimes => path.ends_with("[].relaxation_time"),
+            Self::CarrierMass => is("carrier.", ".mass"),
+            Self::Drive => is("carrier.", ".stiffness") || is("carrier.", ".damping"),
+            Self::Load => path == "carrier.z.load",
             Self::Speed | Self::CommunicationStep => false,
         }
     }

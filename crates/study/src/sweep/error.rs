@@ -14,13 +14,13 @@ pub enum SweepError {
     #[error("cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
     #[error(
-        "--pressures: the scene is in the direct form, which has no width and so no area: give --forces, F_z of the whole \
+        "`pressures`: the scene is in the direct form, which has no width and so no area: give `forces`, F_z of the whole \
          layer in N"
     )]
     NoArea,
-    #[error("--temperatures: the scene has no material.wlf, so nothing in it depends on the temperature")]
+    #[error("`temperatures`: the scene has no material.wlf, so nothing in it depends on the temperature")]
     NoWlf,
-    #[error("--temperatures: {0}")]
+    #[error("`temperatures`: {0}")]
     Temperature(ParameterError),
     #[error(transparent)]
     NeverSteady(#[from] NeverSteady),

@@ -3,7 +3,7 @@
 use asperity::scene::{FoundationKind, HeightMap, Scene};
 
 use super::never_steady::{NeverSteady, check_can_be_steady};
-use super::point::StopBounds;
+use super::search::StopBounds;
 use crate::steady::{GridSize, SurfaceGrid};
 
 /// A method that is asked for.
@@ -29,20 +29,20 @@ pub enum Method {
 #[expect(missing_docs, reason = "the messages say what they are")]
 pub enum MethodError {
     #[error(
-        "steady sliding cannot be solved for: {0}; only the layer can slide (--method layer of sweep, converge and calibrate)"
+        "steady sliding cannot be solved for: {0}; only the layer can slide (`method` layer of sweep, converge and calibrate)"
     )]
     Lacks(&'static str),
     #[error(
-        "{0}: expected none with --method steady, whose points have no scatter and no transient; give --method layer"
+        "`{0}`: expected none with `method` steady, whose points have no scatter and no transient; give `method` layer"
     )]
     OfTheLayer(&'static str),
-    #[error("--points: expected none with --method layer, whose points are its masses")]
+    #[error("`points`: expected none with `method` layer, whose points are its masses")]
     OfTheSolver,
-    #[error("surface: {0}; give --method layer for the line of it that the layer slides on")]
+    #[error("surface: {0}; give `method` layer for the line of it that the layer slides on")]
     NoMap(String),
     #[error("surface: expected a map solved on at least {least} points along x and y, found {found:?}")]
     SmallMap { least: usize, found: [usize; 2] },
-    #[error("--points: expected at least {least}, found {found}")]
+    #[error("`points`: expected at least {least}, found {found}")]
     FewPoints { least: usize, found: usize },
 }
 
@@ -103,7 +103,7 @@ impl SlidingOptions {
         if let Some(lacks) = lacks {
             return Err(MethodError::Lacks(lacks));
         }
-        let of_the_layer = [(self.error.is_some(), "--error"), (self.distance.is_some(), "--distance")];
+        let of_the_layer = [(self.error.is_some(), "error"), (self.distance.is_some(), "distance")];
         if let Some((_, option)) = of_the_layer.into_iter().find(|(is_given, _)| *is_given) {
             return Err(MethodError::OfTheLayer(option));
         }

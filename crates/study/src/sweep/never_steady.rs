@@ -2,7 +2,7 @@
 
 use asperity::scene::Scene;
 
-use super::point::MIN_BLOCKS;
+use super::search::MIN_BLOCKS;
 use super::slide::Blocks;
 
 /// No slide of the layer could become steady.
@@ -13,12 +13,12 @@ pub enum NeverSteady {
     /// point.
     #[error(
         "the profile ends {longest:.4e} m from where the layer starts, and steady sliding takes {needed:.4e} m or more: make it \
-         periodic, as `asperity surface --mirror --write` does, or --taper, and give periodic = true in [surface]"
+         periodic, as `asperity surface --mirror --write` does, or `taper`, and give periodic = true in [surface]"
     )]
     ProfileEnds { longest: f64, needed: f64 },
     #[error(
         "material.heat: expected none for steady sliding of the layer, since contacts that slide on warm without end; leave it \
-         out and vary material.wlf.temperature, or give --method steady, which has the temperature above the surface's mean"
+         out and vary material.wlf.temperature, or give `method` steady, which has the temperature above the surface's mean"
     )]
     Heats,
 }

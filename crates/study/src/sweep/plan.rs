@@ -1,5 +1,7 @@
 //! What a sweep computes: the points of a scene over speed, load and temperature, and the row of each.
 
+use std::ops::ControlFlow;
+
 use asperity::element::{Basis, Load, OperatingPoint, SweepGrid, TableHeader, TableRow};
 use asperity::scene::{FineRoughness, Scene};
 use asperity::simulation::Interrupt;
@@ -8,10 +10,12 @@ use rayon::prelude::*;
 use super::error::SweepError;
 use super::load_search::separation_at_rest;
 use super::method::{Method, SlidingOptions};
-use super::point::{self, StopBounds};
+use super::point;
 use super::scenes::{relevant, scene_at};
+use super::search::StopBounds;
 use super::solved::SolvedPoints;
 use super::table;
+use crate::progress::Stop;
 
 /// Mean loads to sweep over, rising.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,29 +93,37 @@ impl SweepPlan {
         self.warning.as_deref()
     }
 
-    /// The row of a point; one of a layer that `interrupt` stops as it slides says so in its status.
-    pub fn row(&self, point: &OperatingPoint, interrupt: Option<&Interrupt>) -> TableRow {
+    /// The row of a point; `interrupt` may stop a layer as it slides.
+    fn row(&self, point: &OperatingPoint, interrupt: &Interrupt) -> TableRow {
         match &self.solved {
             Some(solved) => solved.row(*point, &self.header),
             None => {
                 let scene = scene_at(&self.scene, point);
-                let force = self.header.load.force(point.load);
-                point::find(&scene, point.speed, force, self.bounds, interrupt).row(*point, &self.header)
+                point::row(&scene, *point, &self.header, self.bounds, interrupt)
             }
         }
     }
 
-    /// Finds points on all cores, in any order, and hands each row to `found`; ends with its first error.
-    ///
-    /// # Errors
-    /// Those of `found`, after which no further point is begun.
-    pub fn find<E: Send>(
+    /// Finds points on all cores, in any order, and hands each row to `found`; ends where that breaks off or `stop` says
+    /// so.
+    pub fn find<B: Send>(
         &self,
         points: &[OperatingPoint],
-        interrupt: Option<&Interrupt>,
-        found: impl Fn(TableRow) -> Result<(), E> + Sync,
-    ) -> Result<(), E> {
-        points.par_iter().with_max_len(1).try_for_each(|point| found(self.row(point, interrupt)))
+        stop: &Stop,
+        found: impl Fn(TableRow) -> ControlFlow<B> + Sync,
+    ) -> ControlFlow<B> {
+        let interrupt = stop.interrupt();
+        let find = |point: &OperatingPoint| {
+            stop.go_on().continue_value()?;
+            let row = self.row(point, &interrupt);
+            // A layer that was stopped as it slid has found nothing.
+            stop.go_on().continue_value()?;
+            Some(row)
+        };
+        points.par_iter().with_max_len(1).try_for_each(|point| match find(point) {
+            Some(row) => stop.heed(found(row)),
+            None => ControlFlow::Continue(()),
+        })
     }
 
     /// The warning where some of the rows have few points of the surface in contact.
@@ -142,8 +154,8 @@ fn loads(loads: &Loads, scene: &Scene) -> Result<(Load, Vec<f64>), SweepError> {
 fn hard_pressure(scene: &Scene, load: Load, loads: &[f64]) -> Option<String> {
     let largest = loads.iter().copied().fold(0.0, f64::max);
     match load {
-        Load::Pressure { .. } => scene.hard_pressure("the largest of --pressures", largest),
-        Load::Force => scene.hard_pressure("the largest of --forces over the area", largest / scene.layer.area()?),
+        Load::Pressure { .. } => scene.hard_pressure("the largest of `pressures`", largest),
+        Load::Force => scene.hard_pressure("the largest of `forces` over the area", largest / scene.layer.area()?),
     }
 }
 

@@ -123,6 +123,23 @@ impl Blocks {
     }
 }
 
+/// A layer that is to slide.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layer<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) blocks: Blocks,
+    /// What may stop its runs.
+    pub(super) interrupt: Option<&'a Interrupt>,
+}
+
+impl Layer<'_> {
+    fn simulation(&self, start: &Start) -> Result<Simulation, SimulationError> {
+        let mut simulation = Simulation::new(self.scene, start)?;
+        simulation.set_interrupt(self.interrupt.cloned());
+        Ok(simulation)
+    }
+}
+
 #[derive(Debug)]
 pub(super) struct Slide {
     simulation: Simulation,
@@ -138,16 +155,10 @@ pub(super) struct Slide {
 }
 
 impl Slide {
-    /// Starts at the displacement `w` (m), relaxed and at full speed; what may stop it.
-    pub(super) fn new(
-        scene: &Scene,
-        blocks: Blocks,
-        w: f64,
-        interrupt: Option<&Interrupt>,
-    ) -> Result<Self, SimulationError> {
-        let start = Start { u: blocks.start, u_rate: blocks.speed, w, ..Start::default() };
-        let mut simulation = Simulation::new(scene, &start)?;
-        simulation.set_interrupt(interrupt.cloned());
+    /// Starts at the displacement `w` (m), relaxed and at full speed.
+    pub(super) fn new(layer: Layer<'_>, w: f64) -> Result<Self, SimulationError> {
+        let Layer { scene, blocks, .. } = layer;
+        let simulation = layer.simulation(&Start { u: blocks.start, u_rate: blocks.speed, w, ..Start::default() })?;
         let duration = blocks.length / blocks.speed;
         Ok(Self {
             elongations: vec![0.0; simulation.maxwell_elongations().len()],
@@ -270,23 +281,21 @@ fn add(sums: &mut [f64], values: &[f64]) {
 /// The tangential stiffness: slope of |F_x| over u as the relaxed layer is set in motion from stick, N/m; `None` where
 /// there is no friction, or where the layer does not come to its load.
 pub(super) fn tangential_stiffness(
-    scene: &Scene,
-    blocks: Blocks,
+    layer: Layer<'_>,
     mut search: LoadSearch,
     frequency: f64,
-    interrupt: Option<&Interrupt>,
 ) -> Result<Option<f64>, SimulationError> {
-    if scene.friction.is_none() {
+    if layer.scene.friction.is_none() {
         return Ok(None);
     }
-    let forces = chosen(scene, &[Output::ForceX, Output::ForceZ]);
+    let forces = chosen(layer.scene, &[Output::ForceX, Output::ForceZ]);
     for _ in 0..TRIES {
-        let mut simulation = at_rest(scene, blocks, (search.w, REST / frequency), interrupt)?;
+        let mut simulation = at_rest(layer, search.w, REST / frequency)?;
         let mut values = [0.0; 2];
         simulation.evaluate(&forces, &mut values);
         let [before, load] = values;
         if (load / search.target - 1.0).abs() <= LOAD_AT_REST {
-            return slope(&mut simulation, blocks, &forces, before).map(Some);
+            return slope(&mut simulation, layer.blocks, &forces, before).map(Some);
         }
         let _ = search.change(load, 0.0);
     }
@@ -294,14 +303,8 @@ pub(super) fn tangential_stiffness(
 }
 
 /// The layer at rest at w (m) after some time (s), its dashpots relaxed.
-fn at_rest(
-    scene: &Scene,
-    blocks: Blocks,
-    (w, duration): (f64, f64),
-    interrupt: Option<&Interrupt>,
-) -> Result<Simulation, SimulationError> {
-    let mut simulation = Simulation::new(scene, &Start { u: blocks.start, w, ..Start::default() })?;
-    simulation.set_interrupt(interrupt.cloned());
+fn at_rest(layer: Layer<'_>, w: f64, duration: f64) -> Result<Simulation, SimulationError> {
+    let mut simulation = layer.simulation(&Start { u: layer.blocks.start, w, ..Start::default() })?;
     for _ in 0..RELAXATIONS {
         simulation.advance(&Motion { duration, u: Path::default(), w: Path::default(), ..Motion::default() })?;
         let elongations = simulation.maxwell_elongations().to_vec();

@@ -2,10 +2,11 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use asperity::element::{Load, OperatingPoint, Quantity, STEADY, TableHeader, TableRow};
+use asperity::element::{Load, OperatingPoint, PointStatus, Quantity, TableHeader, TableRow};
 use asperity::scene::Scene;
 
 use super::error::SweepError;
+use super::not_steady::NotSteady;
 use crate::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 
 /// The solver of the points of a sweep, on all threads.
@@ -38,8 +39,8 @@ impl SolvedPoints {
     pub(super) fn row(&self, point: OperatingPoint, header: &TableHeader) -> TableRow {
         let pressure = self.pressure(&point, header.load);
         match self.slide(&point, pressure) {
-            Some(slide) => self.written(point, pressure, &slide),
-            None => TableRow::new(point, "no such temperature".to_owned()),
+            Ok(slide) => self.written(point, pressure, &slide),
+            Err(problem) => TableRow::new(point, PointStatus::new(Some(problem))),
         }
     }
 
@@ -58,18 +59,25 @@ impl SolvedPoints {
         load.force(point.load) / self.area
     }
 
-    /// Steady sliding at the speed and the temperature of a point under a pressure (Pa); `None` at another temperature.
-    pub(super) fn slide(&self, point: &OperatingPoint, pressure: f64) -> Option<SteadySlide> {
-        let (_, rubber) = self.rubbers.iter().find(|(temperature, _)| *temperature == point.temperature)?;
+    /// Steady sliding at the speed and the temperature of a point under a pressure (Pa); its values may not be relied on.
+    fn slide(&self, point: &OperatingPoint, pressure: f64) -> Result<SteadySlide, NotSteady> {
+        let rubber = self.rubbers.iter().find(|(temperature, _)| *temperature == point.temperature);
+        let (_, rubber) = rubber.ok_or(NotSteady::NoTemperature)?;
         let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut solver = idle.unwrap_or_else(|| SteadySolver::new(self.surface.clone()));
         let slide = solver.slide(rubber, point.speed, pressure);
         self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(solver);
-        Some(slide)
+        Ok(slide)
+    }
+
+    /// Steady sliding as [`slide`](Self::slide) finds it, if its values can be relied on.
+    pub(super) fn steady(&self, point: &OperatingPoint, pressure: f64) -> Result<SteadySlide, NotSteady> {
+        let slide = self.slide(point, pressure)?;
+        slide.problem().map_or(Ok(slide), |problem| Err(problem.into()))
     }
 
     fn written(&self, point: OperatingPoint, pressure: f64, slide: &SteadySlide) -> TableRow {
-        let mut row = TableRow::new(point, status(slide));
+        let mut row = TableRow::new(point, PointStatus::new(slide.problem()));
         let power = |friction: f64| friction * pressure * self.area * point.speed;
         let viscous = slide.viscous_share.map(|share| share * power(slide.profile_hysteresis).max(0.0));
         let hysteresis = slide.profile_hysteresis + slide.fine_hysteresis.unwrap_or(0.0);
@@ -107,14 +115,9 @@ impl SolvedPoints {
         let (first, count) = few.first()?;
         Some(format!(
             "fewer than {FEW} points of the surface are in contact at {} of the points of the table, {count} at {}: give more \
-             --points",
+             `points`",
             few.len(),
             first.point.describe(header.load)
         ))
     }
-}
-
-/// [`STEADY`], or why the values cannot be relied on.
-pub fn status(slide: &SteadySlide) -> String {
-    slide.problem().map_or_else(|| STEADY.to_owned(), |problem| problem.to_string())
 }

@@ -5,8 +5,11 @@ use asperity::scene::Scene;
 
 use super::error::SweepError;
 use super::method::{Method, SlidingOptions};
-use super::point::{SteadySliding, StopBounds, steady_sliding, steady_sliding_at};
+use super::not_steady::NotSteady;
+use super::point::{steady_sliding, steady_sliding_at};
 use super::scenes::relevant;
+use super::search::StopBounds;
+use super::sliding::SteadySliding;
 use super::solved::SolvedPoints;
 use crate::steady::SteadySlide;
 
@@ -66,19 +69,19 @@ impl Swept {
     /// Steady sliding at a point, a layer known to `bounds`.
     ///
     /// # Errors
-    /// The status of the point, where there is none.
+    /// Where there is none.
     pub fn sliding(
         &self,
         scene: &Scene,
         point: &OperatingPoint,
         load: Load,
         bounds: StopBounds,
-    ) -> Result<SweptPoint, String> {
+    ) -> Result<SweptPoint, NotSteady> {
         let Self::Solved { points, rest_separation } = self else {
             return steady_sliding(scene, point, load, bounds).map(SweptPoint::of_layer);
         };
         let pressure = points.pressure(point, load);
-        let slide = steady(points, point, pressure)?;
+        let slide = points.steady(point, pressure)?;
         Ok(SweptPoint::solved(&slide, pressure * points.area(), point.speed, *rest_separation))
     }
 
@@ -93,14 +96,14 @@ impl Swept {
         w: f64,
         load: Load,
         bounds: StopBounds,
-    ) -> Result<SweptPoint, String> {
+    ) -> Result<SweptPoint, NotSteady> {
         let Self::Solved { points, rest_separation } = self else {
             return steady_sliding_at(scene, point, w, load, bounds).map(SweptPoint::of_layer);
         };
         let (separation, mut pressure) = (w + rest_separation, points.pressure(point, load));
         let accuracy = ACCURACY * points.rms_height();
         for _ in 0..MOST_SOLUTIONS {
-            let slide = steady(points, point, pressure)?;
+            let slide = points.steady(point, pressure)?;
             let off = slide.contact.separation - separation;
             if off.abs() <= accuracy {
                 return Ok(SweptPoint::solved(&slide, pressure * points.area(), point.speed, *rest_separation));
@@ -109,14 +112,8 @@ impl Swept {
             let step = slide.normal_stiffness.unwrap_or_default() * off / pressure;
             pressure *= step.exp().clamp(1.0 / LARGEST_CHANGE, LARGEST_CHANGE);
         }
-        Err(format!("no pressure found at the separation {separation:.4e} m"))
+        Err(NotSteady::NoPressure(separation))
     }
-}
-
-/// The solution under a pressure (Pa) that can be relied on, or its status.
-fn steady(points: &SolvedPoints, point: &OperatingPoint, pressure: f64) -> Result<SteadySlide, String> {
-    let slide = points.slide(point, pressure).ok_or("no such temperature")?;
-    slide.problem().map_or(Ok(slide), |problem| Err(problem.to_string()))
 }
 
 impl SweptPoint {

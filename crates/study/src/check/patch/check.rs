@@ -42,7 +42,7 @@ impl PatchCheck {
         let hold = Value::Text(TableExtrapolation::Hold.word().into());
         // Layers stand on what does not give way, and at one temperature.
         let mut patch = patch.contacts_alone();
-        patch.set_parameter(Parameter::TableExtrapolation, hold.clone())?;
+        patch.set_parameter(Parameter::TABLE_EXTRAPOLATION, hold.clone())?;
         let speeds = speeds(&patch.table().grid);
         let faces: Vec<_> = speeds.map(|speed| TiltedFace::new(&patch, speed, count)).collect();
         if faces.iter().any(|face| face.tilted_elements.is_empty()) {
@@ -50,7 +50,7 @@ impl PatchCheck {
         }
         let middle = &faces[faces.len() / 2];
         let mut contact = PointContact::new(patch.table().clone());
-        contact.set_parameter(Parameter::TableExtrapolation, hold)?;
+        contact.set_parameter(Parameter::TABLE_EXTRAPOLATION, hold)?;
         let motion = ToAndFro { speed: middle.speed, length: stick_length(&contact, &patch, middle) };
         let lever = faces.iter().map(TiltedFace::lever).fold(0.0, f64::max);
         Ok(Self { patch, scene, swept, faces, motion, lever })

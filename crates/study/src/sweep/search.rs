@@ -1,0 +1,257 @@
+//! The search for steady sliding: block by block, until a window of them is steady and has the load.
+
+use asperity::model::LinkKind;
+use asperity::simulation::SimulationError;
+
+use super::load_search::LoadSearch;
+use super::not_steady::NotSteady;
+use super::slide::{BlockMeans, Layer, Slide};
+use super::sliding::{FrictionShares, SMALL_FRICTION, SteadySliding};
+use super::window::{MIN_WINDOW, Window, window};
+
+/// The mean of F_z over the window is the load within this share of it.
+const LOAD: f64 = 1e-3;
+/// Standard error of that mean, and its trend, as shares of the load: small enough for a correction of w to reach
+/// [`LOAD`].
+const LOAD_ERROR: f64 = 5e-4;
+/// The search ends with a block whose F_z is as close as this to the load, and the force of its dashpots to 0, ...
+const NEAR: f64 = 5e-4;
+/// ... or after so many blocks: the windows correct the rest.
+const SEARCHES: usize = 12;
+/// Fraction of a block over which w is changed, and fraction over which the effect of that decays.
+const RAMP: f64 = 0.125;
+const CALM: f64 = 0.125;
+/// Blocks of the shortest slide on which means can be judged: pressed, then averaged.
+pub(super) const MIN_BLOCKS: f64 = RAMP + CALM + MIN_WINDOW as f64;
+/// A window of so many blocks whose load has a trend is abandoned: the dashpots are not yet at rest.
+const ABANDONED: usize = 6;
+/// Longest distance in blocks where none is given.
+const BLOCKS: f64 = 100.0;
+
+/// When a point ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StopBounds {
+    /// Standard error of the friction coefficient over its mean.
+    pub error: f64,
+    /// Longest distance, m; `None`: 100 blocks.
+    pub distance: Option<f64>,
+}
+
+/// Blocks at one w, averaged.
+#[derive(Clone, Debug, PartialEq)]
+struct Average {
+    means: BlockMeans,
+    friction: Window,
+    load: Window,
+    contact: Window,
+    steady: bool,
+    /// F_z has a trend.
+    drifts: bool,
+}
+
+/// What a layer does once no more blocks are needed, or there is no room for more.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Slid {
+    pub(super) sliding: SteadySliding,
+    /// Why that is no steady sliding under the load; `None` where it is.
+    pub(super) problem: Option<NotSteady>,
+}
+
+impl Slid {
+    pub(super) fn steady(self) -> Result<SteadySliding, NotSteady> {
+        self.problem.map_or(Ok(self.sliding), Err)
+    }
+}
+
+/// What is held while a layer slides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Held {
+    /// w, which is searched until it bears the load.
+    Searched,
+    /// The load, by a carrier of this mass, kg.
+    Load(f64),
+    /// w, whatever it bears.
+    Given,
+}
+
+/// The search for steady sliding under a load, or for steady sliding at a displacement that is given.
+#[derive(Debug)]
+pub(super) struct Search<'a> {
+    layer: Layer<'a>,
+    error: f64,
+    distance: f64,
+    slide: Slide,
+    load: LoadSearch,
+    held: Held,
+    /// Stiffness of all vertical springs in the long term, N/m.
+    stiffness: f64,
+    runs: u32,
+    /// Distance of the slides before the present one, m.
+    distance_before: f64,
+}
+
+impl Held {
+    /// w at the start, m: a carrier under its load finds its own.
+    fn start(self, load: &LoadSearch) -> f64 {
+        if matches!(self, Self::Load(_)) { 0.0 } else { load.w }
+    }
+}
+
+impl<'a> Search<'a> {
+    pub(super) fn new(
+        layer: Layer<'a>,
+        bounds: StopBounds,
+        load: LoadSearch,
+        held: Held,
+    ) -> Result<Self, SimulationError> {
+        let vertical = layer.scene.link(LinkKind::Vertical).and_then(|link| link.stiffness).unwrap_or(0.0);
+        Ok(Self {
+            layer,
+            error: bounds.error,
+            distance: bounds.distance.unwrap_or(BLOCKS * layer.blocks.length),
+            slide: Slide::new(layer, held.start(&load))?,
+            load,
+            held,
+            stiffness: layer.scene.layer.masses as f64 * vertical,
+            runs: 1,
+            distance_before: 0.0,
+        })
+    }
+
+    /// Presses, then averages at one w after the other until a window is steady and has the load.
+    ///
+    /// # Errors
+    /// Where a run fails, or there is no room for a window.
+    pub(super) fn finish(mut self) -> Result<Slid, NotSteady> {
+        self.slide.press(RAMP + CALM, 0.0)?;
+        let mut first = self.press()?;
+        loop {
+            let Some(average) = self.average(first.take())? else {
+                return Err(NotSteady::NoRoom { length: self.layer.blocks.length, distance: self.distance });
+            };
+            let pressed = average.steady && self.deviation(&average.means).abs() <= LOAD;
+            if pressed || !self.has_room(MIN_BLOCKS) {
+                return Ok(Slid { sliding: self.sliding(&average), problem: self.problem(&average) });
+            }
+            let maxwell = if average.drifts { self.relax(&average.means) } else { 0.0 };
+            self.correct(average.load.mean, maxwell)?;
+        }
+    }
+
+    /// Slides until F_z is near the load and the slow dashpots are at rest. Returns the last block if they are.
+    fn press(&mut self) -> Result<Option<BlockMeans>, SimulationError> {
+        for _ in 0..SEARCHES {
+            if !self.has_room(1.0) || !self.slide.has_room(1.0) {
+                break;
+            }
+            let means = self.slide.block()?;
+            let maxwell = self.relax(&means);
+            if self.deviation(&means).abs() <= NEAR && maxwell.abs() <= NEAR * self.load.target {
+                return Ok(Some(means));
+            }
+            self.correct(means.load, maxwell)?;
+        }
+        Ok(None)
+    }
+
+    /// Relaxes the dashpots by the `means` of the last blocks; returns what the vertical ones bore of F_z, N.
+    fn relax(&mut self, means: &BlockMeans) -> f64 {
+        match self.held {
+            // Of the masses that bear in the mean: at one instant there may be none.
+            Held::Load(_) => self.slide.relax_under_load(means.contact * self.stiffness),
+            Held::Searched | Held::Given => self.slide.relax(),
+        }
+    }
+
+    /// How far F_z is from the load in the mean, as a share of it: where that is held, what the carrier's inertia
+    /// bears.
+    fn deviation(&self, means: &BlockMeans) -> f64 {
+        match self.held {
+            Held::Load(mass) => mass * means.acceleration / self.load.target,
+            Held::Searched => means.load / self.load.target - 1.0,
+            Held::Given => 0.0,
+        }
+    }
+
+    /// Changes w where F_z was `force`, of which the Maxwell elements bore `maxwell` (N), or lets a carrier under its
+    /// load, or a layer at its w, come to rest. On a profile that ends, a new slide begins where no room is left.
+    fn correct(&mut self, force: f64, maxwell: f64) -> Result<(), SimulationError> {
+        let searched = self.held == Held::Searched;
+        let change = if searched { self.load.change(force, maxwell) } else { 0.0 };
+        self.runs += u32::from(searched);
+        if !self.slide.has_room(MIN_BLOCKS) {
+            return self.restart();
+        }
+        self.slide.press(RAMP, change)?;
+        self.slide.press(CALM, 0.0)
+    }
+
+    /// A new slide from the start of a profile that ends.
+    fn restart(&mut self) -> Result<(), SimulationError> {
+        self.distance_before += self.slide.distance();
+        self.slide = Slide::new(self.layer, self.held.start(&self.load))?;
+        self.slide.press(RAMP + CALM, 0.0)
+    }
+
+    fn has_room(&self, blocks: f64) -> bool {
+        self.distance_before + self.slide.distance() + blocks * self.layer.blocks.length <= self.distance
+    }
+
+    /// Blocks with w held, after a `first` one, until their means are steady or there is no room for more; `None` where
+    /// there is no room for a window.
+    fn average(&mut self, first: Option<BlockMeans>) -> Result<Option<Average>, SimulationError> {
+        let mut blocks: Vec<BlockMeans> = first.into_iter().collect();
+        if !self.slide.has_room(MIN_WINDOW as f64) {
+            blocks.clear();
+            self.restart()?;
+        }
+        while self.has_room(1.0) && self.slide.has_room(1.0) {
+            blocks.push(self.slide.block()?);
+            if blocks.len() >= MIN_WINDOW {
+                let average = self.judge(&blocks);
+                if average.steady || (blocks.len().is_multiple_of(ABANDONED) && average.drifts) {
+                    return Ok(Some(average));
+                }
+            }
+        }
+        Ok((blocks.len() >= MIN_WINDOW).then(|| self.judge(&blocks)))
+    }
+
+    fn judge(&self, blocks: &[BlockMeans]) -> Average {
+        let used = &blocks[window(blocks.len())..];
+        let of = |value: fn(&BlockMeans) -> f64| Window::new(&used.iter().map(value).collect::<Vec<_>>());
+        let (friction, load) = (of(|means| means.drag / means.load), of(|means| means.load));
+        let contact = of(|means| means.contact);
+        let steady = friction.is_steady(self.error * friction.mean.abs().max(SMALL_FRICTION))
+            && load.is_steady(LOAD_ERROR * self.load.target);
+        let drifts = load.has_trend(LOAD_ERROR * self.load.target);
+        Average { means: BlockMeans::mean(used), friction, load, contact, steady, drifts }
+    }
+
+    fn sliding(&self, average: &Average) -> SteadySliding {
+        let means = &average.means;
+        let [damper, maxwell, friction, impact] = means.power;
+        SteadySliding {
+            w: if matches!(self.held, Held::Load(_)) { means.w } else { self.load.w },
+            force_z: means.load,
+            friction: FrictionShares::new(means),
+            friction_error: average.friction.error,
+            contact_ratio: means.contact,
+            real_area: means.real_area.zip(self.layer.scene.layer.area()).map(|(real, area)| real / area),
+            contact_error: average.contact.error,
+            channels: [damper, maxwell, friction, Some(impact.unwrap_or(0.0))],
+            runs: self.runs,
+            time: self.slide.time(),
+        }
+    }
+
+    fn problem(&self, average: &Average) -> Option<NotSteady> {
+        let deviation = self.deviation(&average.means);
+        let distance = self.distance_before + self.slide.distance();
+        if !average.steady {
+            let error = average.friction.error / average.friction.mean.abs().max(SMALL_FRICTION);
+            return Some(NotSteady::Scatter { distance, error });
+        }
+        (deviation.abs() > LOAD).then_some(NotSteady::NotPressed { distance, deviation })
+    }
+}
