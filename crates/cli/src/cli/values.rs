@@ -188,7 +188,7 @@ pub(super) fn picture() -> impl TypedValueParser<Value = PathBuf> {
 
 /// A file for an animation; its name gives the format.
 pub(super) fn animation() -> impl TypedValueParser<Value = PathBuf> {
-    ending_in(&["html", "apng", "png"], "a name that ends in .html, .apng or .png")
+    ending_in(&["html", "png"], "a name that ends in .html or .png")
 }
 
 /// A file for arrays of numpy.
