@@ -7,9 +7,10 @@ use std::path::Path;
 use asperity::patch::{MotionError, PatchError, RestoreError};
 use asperity::scene::{ParameterError, SceneError};
 use asperity::simulation::SimulationError;
-use asperity_cli::{CalibrateError, FileError, FitError};
+use asperity_cli::{CalibrateError, FileError};
 use asperity_study::contact::ContactError;
 use asperity_study::files::ReadError;
+use asperity_study::fit::FitError;
 use asperity_study::pack::PackError;
 use asperity_study::settings::OverrideError;
 use asperity_study::sweep::SweepError;
@@ -148,7 +149,7 @@ impl Raise for ContactError {
 impl Raise for FitError {
     fn raise(self) -> PyErr {
         match self {
-            Self::File(error) => error.raise(),
+            Self::Read(error) => error.raise(),
             error => PyValueError::new_err(error.to_string()),
         }
     }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use asperity::tables::Unit;
-use asperity_cli::{FitOptions, FittedModuli, WlfConstants, fit_moduli};
+use asperity_study::fit::{FitOptions, FittedModuli, WlfConstants, fit_moduli};
 use numpy::{IntoPyArray as _, PyArray1, PyArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -62,7 +62,8 @@ impl Fit {
 
     /// The measured points at the reference temperature, three numbers each.
     fn points<'py>(&self, py: Python<'py>) -> Numbers<'py> {
-        self.0.points().concat().into_pyarray(py)
+        let numbers = self.0.samples().iter().flat_map(|sample| [sample.at, sample.storage, sample.loss]);
+        numbers.collect::<Vec<_>>().into_pyarray(py)
     }
 
     /// E' and E'' at frequencies, or E(t) and 0 at times, two numbers each.

@@ -8,6 +8,7 @@ use asperity::scene::Scene;
 
 use super::draft::Draft;
 use super::terminal::{LabelledLine, labelled, note, warn};
+pub(crate) use asperity_study::files::name_of;
 use asperity_study::files::{self, ReadError, reason};
 use asperity_study::settings::{OverrideError, Setting};
 
@@ -170,11 +171,6 @@ pub(crate) fn print_beside<'a>(outputs: impl IntoIterator<Item = &'a PathBuf>, t
 /// Whether the file has the extension `ending`, in either case.
 pub(crate) fn ends_in(path: &Path, ending: &str) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(ending))
-}
-
-/// The file's name without its folder.
-pub(crate) fn name_of(path: &Path) -> String {
-    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The commands of the program, one module each, and what they share.
 //!
-//! [`execute`] is the program. What its commands compute is in `asperity-study`, but for Prony series ([`fit_moduli`]),
+//! [`execute`] is the program. What its commands compute is in `asperity-study`, but for
 //! calibrations ([`calibrate_scene`]) and FMUs ([`write_fmu`]).
 
 mod calibrate;
@@ -38,10 +38,8 @@ use std::path::PathBuf;
 
 pub use calibrate::{CalibrateError, CalibratedParameter, Calibration, CalibrationOptions, calibrate_scene};
 use clap::Parser as _;
-pub use cli::WlfConstants;
 use cli::{Arguments, Command};
 pub use files::FileError;
-pub use fit::{FitError, FitOptions, FittedModuli, fit_moduli};
 
 /// Exit status of a command that did what was asked for.
 const SUCCESS: u8 = 0;

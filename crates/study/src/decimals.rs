@@ -48,6 +48,21 @@ pub fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }
 
+/// A number for reading, in all its digits: with an exponent outside 1e-3 to 1e5.
+pub fn plain(value: f64) -> String {
+    decimal(value, 1e-3..1e5)
+}
+
+/// A number for reading, of some significant digits.
+pub fn short(value: f64, digits: usize) -> String {
+    plain(rounded(value, digits))
+}
+
+/// A share in per cent, of some significant digits.
+pub fn percent(value: f64, digits: usize) -> String {
+    format!("{} %", short(100.0 * value, digits))
+}
+
 /// Prefixes of units, the largest first.
 const PREFIXES: [(&str, f64); 9] =
     [("G", 1e9), ("M", 1e6), ("k", 1e3), ("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9), ("p", 1e-12), ("f", 1e-15)];

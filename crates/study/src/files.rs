@@ -84,3 +84,8 @@ pub fn text(path: &Path) -> Result<String, ReadError> {
 pub fn bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
     read_file(path).map_err(|source| ReadError::Io { path: path.to_owned(), source })
 }
+
+/// The file's name without its folder.
+pub fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}

@@ -7,6 +7,7 @@ pub mod csv;
 pub mod decimals;
 pub mod elements;
 pub mod files;
+pub mod fit;
 pub mod html;
 pub mod labelled;
 pub mod pack;

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::scene::{LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt};
 use asperity_study::calibration::FreeParameter;
+use asperity_study::fit::WlfConstants;
 use clap::{ArgGroup, Args, Parser, Subcommand};
 
 use super::files::default_output;
@@ -15,12 +16,11 @@ use super::sweep::values::{Shard, Values};
 use asperity_study::csv::Head;
 use asperity_study::settings::Setting;
 use asperity_study::sweep::SweepMethod;
-pub use values::WlfConstants;
 pub(crate) use values::{Condition, PlotAxis};
 use values::{
     Frequencies, Tolerances, animation, arrays, column_unit, count, fit_error, free_parameter, frequency,
     key_and_value, length, moment, picture, picture_or_table, poisson_ratio, powers, pressure, seconds, seeds, share,
-    speed, sweep_method, table_or_arrays, temperature, wavelengths,
+    speed, sweep_method, table_or_arrays, temperature, wavelengths, wlf_constants,
 };
 
 /// Simulates rubber on a rough surface and packs the simulation as an FMU.
@@ -276,7 +276,7 @@ pub(crate) struct Fit {
     pub(crate) error: f64,
     /// Constants of the Williams-Landel-Ferry equation, which shifts rows at other temperatures to TREF: C1 (1), C2
     /// (K), TREF (K). Default: shift factors are found where the curves overlap, and constants for them.
-    #[arg(long, value_name = "C1,C2,TREF", value_parser = WlfConstants::parse)]
+    #[arg(long, value_name = "C1,C2,TREF", value_parser = wlf_constants)]
     pub(crate) wlf: Option<WlfConstants>,
     /// Also fits a Kelvin-Voigt viscosity in parallel to the terms.
     #[arg(long)]

@@ -9,6 +9,7 @@ use asperity::scene::Wlf;
 use asperity::tables::{Dimension, Unit, quantity};
 use asperity_study::calibration::FreeParameter;
 use asperity_study::decimals::tenth;
+use asperity_study::fit::WlfConstants;
 use asperity_study::sweep::SweepMethod;
 use clap::builder::{PathBufValueParser, PossibleValue, PossibleValuesParser, StringValueParser, TypedValueParser};
 
@@ -225,40 +226,20 @@ fn ending_in(endings: &'static [&str], expected: &'static str) -> impl TypedValu
     })
 }
 
-/// Constants of the Williams-Landel-Ferry equation.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WlfConstants {
-    /// C_1, 1.
-    pub c1: f64,
-    /// C_2, K.
-    pub c2: f64,
-    /// T_ref, K.
-    pub reference_temperature: f64,
-}
-
-impl WlfConstants {
-    /// The equation at `temperature` (K).
-    pub(crate) fn at(&self, temperature: f64) -> Wlf {
-        let Self { c1, c2, reference_temperature } = *self;
-        Wlf { c1, c2, reference_temperature, temperature }
-    }
-
-    pub(super) fn parse(text: &str) -> Result<Self, String> {
-        let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
-        match numbers.unwrap_or_default()[..] {
-            [c1, c2, reference_temperature]
-                if [c1, c2, reference_temperature].iter().all(|number| *number > 0.0 && number.is_finite()) =>
-            {
-                if reference_temperature < Wlf::COLDEST {
-                    let cold = reference_temperature;
-                    return Err(format!("TREF = {cold} is too cold for rubber: it is in K, 20 °C being 293.15 K"));
-                }
-                Ok(Self { c1, c2, reference_temperature })
+/// The constants of `--wlf`.
+pub(super) fn wlf_constants(text: &str) -> Result<WlfConstants, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+    match numbers.unwrap_or_default()[..] {
+        [c1, c2, reference_temperature]
+            if [c1, c2, reference_temperature].iter().all(|number| *number > 0.0 && number.is_finite()) =>
+        {
+            if reference_temperature < Wlf::COLDEST {
+                let cold = reference_temperature;
+                return Err(format!("TREF = {cold} is too cold for rubber: it is in K, 20 °C being 293.15 K"));
             }
-            _ => {
-                Err("expected C1,C2,TREF, three numbers above 0, such as 7.52,119.75,293.15 (C2 and TREF in K)".into())
-            }
+            Ok(WlfConstants { c1, c2, reference_temperature })
         }
+        _ => Err("expected C1,C2,TREF, three numbers above 0, such as 7.52,119.75,293.15 (C2 and TREF in K)".into()),
     }
 }
 
@@ -326,12 +307,12 @@ mod tests {
 
     #[test]
     fn wlf_takes_three_positive_numbers() {
-        let constants = WlfConstants::parse("7.52, 119.75,293.15").unwrap();
+        let constants = wlf_constants("7.52, 119.75,293.15").unwrap();
         assert_eq!((constants.c1, constants.c2, constants.reference_temperature), (7.52, 119.75, 293.15));
         for wrong in ["7.52,119.75", "7.52,x,119.75,293.15", "-1,100,300", "1,2,3,4", "7.52,x,119.75,20", ""] {
-            assert!(WlfConstants::parse(wrong).unwrap_err().contains("C1,C2,TREF"), "{wrong}");
+            assert!(wlf_constants(wrong).unwrap_err().contains("C1,C2,TREF"), "{wrong}");
         }
-        assert!(WlfConstants::parse("7.52,119.75,20").unwrap_err().contains("20 °C being 293.15 K"));
+        assert!(wlf_constants("7.52,119.75,20").unwrap_err().contains("20 °C being 293.15 K"));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use asperity::tables::{Block, Line, NumberStyle, is_missing, words};
 use super::columns::{Column, Columns, Quantity};
 use super::measured::{MeasuredPoint, Reading};
 use super::moduli_error::ModuliError;
-use super::search::{Sample, Test};
+use super::sample::{Sample, Test};
 use super::stated_temperature::{setting, temperatures_above};
 
 /// The size that a number in SI units may have in a scene.

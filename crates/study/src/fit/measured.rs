@@ -5,7 +5,7 @@ use asperity::tables::{self, Block};
 
 use super::columns::{EXPECTED, GivenUnits};
 use super::moduli_error::ModuliError;
-use super::search::{Sample, Test};
+use super::sample::{Sample, Test};
 use super::table::Table;
 
 /// Measured moduli of tension, in SI units.

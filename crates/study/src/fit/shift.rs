@@ -11,8 +11,9 @@ use std::f64::consts::LN_10;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::search::{Problem, Sample, Solution, Test};
-use crate::cli::WlfConstants;
+use super::options::WlfConstants;
+use super::prony_problem::{PronyProblem, Solution};
+use super::sample::{Sample, Test};
 
 /// The rows of one temperature.
 #[derive(Clone, Debug, PartialEq)]
@@ -135,7 +136,7 @@ impl<'a> Curves<'a> {
     fn solve(&self, shifts: &[f64]) -> (Vec<Sample>, Solution) {
         let shifted = |(sample, group): (&Sample, &usize)| sample.shifted(shifts[*group].exp(), self.test);
         let samples: Vec<Sample> = self.samples.iter().zip(&self.group).map(shifted).collect();
-        let problem = Problem::new(&samples, self.test, false);
+        let problem = PronyProblem::new(&samples, self.test, false);
         let solution = problem.solve(&problem.grid(PER_DECADE));
         (samples, solution)
     }
@@ -148,7 +149,7 @@ impl<'a> Curves<'a> {
         slopes: &DMatrix<f64>,
         damping: f64,
     ) -> Option<(DVector<f64>, DVector<f64>)> {
-        let problem = Problem::new(samples, self.test, false);
+        let problem = PronyProblem::new(samples, self.test, false);
         let (by_shift, residual) = problem.shift_slopes(solution, &self.group, self.isotherms.len());
         let by_parameter = by_shift * slopes;
         let normal = by_parameter.tr_mul(&by_parameter);
@@ -320,7 +321,7 @@ mod tests {
     use asperity::math::SplitMix64;
 
     use super::*;
-    use crate::fit::search::Compound;
+    use crate::fit::compound::Compound;
 
     const LAW: WlfConstants = WlfConstants { c1: 7.52, c2: 119.75, reference_temperature: 293.15 };
 

@@ -6,15 +6,31 @@ use std::path::Path;
 use asperity::tables::{Block, NumberStyle, decode};
 
 use super::columns::{Column, Columns, Quantity};
+use super::compound::{Compound, FitErrors};
+use super::error::FitError;
 use super::measured::{MeasuredModuli, MeasuredPoint};
 use super::moduli_error::ModuliError;
-use super::search::{Compound, FitErrors, Sample};
+use super::options::{FitOptions, WlfConstants};
+use super::sample::Sample;
 use super::shift::{Factor, Isotherm, Superposition, law_of, rms_with, superpose};
-use super::{FitError, FitOptions, percent, short, written};
-use crate::cli::WlfConstants;
+use super::shift_error::ShiftError;
+use crate::decimals::{percent, plain, rounded, short};
 use crate::files;
-use crate::terminal::LabelledLine;
-use asperity_study::decimals::rounded;
+
+/// The rows of one temperature in a master curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShiftedCurve {
+    /// Their mean temperature, K.
+    pub temperature: f64,
+    /// How many there are.
+    pub rows: usize,
+    /// ln a_T.
+    pub ln_factor: f64,
+    /// The standard error of that; 0 where it was given.
+    pub ln_factor_error: f64,
+    /// Root mean square of the relative errors of the fit at them.
+    pub rms: f64,
+}
 
 /// What is done about temperatures.
 #[derive(Debug)]
@@ -27,29 +43,6 @@ pub(super) enum Shift {
     Given { factors: Vec<Factor>, isotherms: Vec<Isotherm>, law: Option<WlfConstants> },
     /// By factors that were found.
     Found { found: Superposition, isotherms: Vec<Isotherm> },
-}
-
-/// Moduli of several temperatures cannot be put together.
-#[derive(Debug, thiserror::Error)]
-pub enum ShiftError {
-    #[error(
-        "the temperatures run through from {from:.2} to {to:.2} K: rows of one temperature each have no range in \
-         common; expected --wlf C1,C2,TREF or --shifts SHIFTS.csv, or rows at a few temperatures"
-    )]
-    Ramp { from: f64, to: f64 },
-    #[error(
-        "{temperature:.2} K has rows at one {what} alone: shift factors are found where curves overlap; expected --wlf \
-         C1,C2,TREF or --shifts SHIFTS.csv"
-    )]
-    OnePlace { temperature: f64, what: &'static str },
-    #[error("some rows have a temperature and others have none")]
-    Mixed,
-    #[error("{file} has no factor for {temperature:.2} K, within {NEAR} K")]
-    NoFactor { file: String, temperature: f64 },
-    #[error("the table has no temperatures to shift by --shifts")]
-    NoTemperatures,
-    #[error("a_T at {temperature:.2} K differs from row to row: {from} and {to}")]
-    Factors { temperature: f64, from: f64, to: f64 },
 }
 
 /// Temperatures that are nearer belong to one curve, K.
@@ -166,8 +159,8 @@ impl Shift {
             Some((_, rms)) if !found.law_holds() => warnings.push(format!(
                 "no WLF constants have these shift factors: with the nearest {} are left of one curve, {} with the \
                  factors, by which rows are shifted; do not use the constants far from the reference temperature",
-                percent(rms),
-                percent(found.rms)
+                percent(rms, 3),
+                percent(found.rms, 3)
             )),
             Some(_) => (),
         }
@@ -195,53 +188,60 @@ impl Shift {
             return None;
         }
         let constants = found.law.map_or_else(String::new, |(law, _)| {
-            format!(": --wlf {},{},{}", short(law.c1), short(law.c2), written(rounded(law.reference_temperature, 6)))
+            format!(
+                ": --wlf {},{},{}",
+                short(law.c1, 4),
+                short(law.c2, 4),
+                plain(rounded(law.reference_temperature, 6))
+            )
         });
         Some(format!(
             "the WLF constants do not put the temperatures together: they leave {} of one curve, factors of their own \
              {} (leave --wlf out){constants}",
-            percent(with),
-            percent(found.rms)
+            percent(with, 3),
+            percent(found.rms, 3)
         ))
     }
 
-    /// Lines of the summary: factors and residuals by temperature, and the constants.
-    pub(super) fn rows(&self, measured: &MeasuredModuli, samples: &[Sample], compound: &Compound) -> Vec<LabelledLine> {
+    /// The constants that follow from the data, and whether they shift the rows: else they are fitted to the factors that
+    /// do.
+    pub(super) fn found_law(&self) -> Option<(WlfConstants, bool)> {
+        let shifts = match self {
+            Self::None | Self::Known(..) => return None,
+            Self::Given { .. } => false,
+            Self::Found { found, .. } => found.law_holds(),
+        };
+        Some((self.constants()?, shifts))
+    }
+
+    /// Factors and residuals by temperature.
+    pub(super) fn curves(
+        &self,
+        measured: &MeasuredModuli,
+        samples: &[Sample],
+        compound: &Compound,
+    ) -> Vec<ShiftedCurve> {
         let (isotherms, factors): (&[Isotherm], Vec<Factor>) = match self {
             Self::None => return Vec::new(),
             Self::Known(wlf, isotherms) => (isotherms, isotherms.iter().map(|isotherm| known(wlf, isotherm)).collect()),
             Self::Given { factors, isotherms, .. } => (isotherms, factors.clone()),
             Self::Found { found, isotherms } => (isotherms, found.factors.clone()),
         };
-        let mut rows = Vec::new();
-        if let (Some(law), false) = (self.constants(), matches!(self, Self::Known(..))) {
-            let how = match self {
-                Self::Found { found, .. } if found.law_holds() => "which shift the rows",
-                _ => "fitted to the factors, which shift the rows",
-            };
-            let text = format!(
-                "C1 {}, C2 {} K about {} K, {how}",
-                written(law.c1),
-                written(law.c2),
-                written(law.reference_temperature)
-            );
-            rows.push(("WLF", text));
-        }
-        rows.push(("Shift", format!("{:<11}{:<8}{:<20}rms", "T, K", "rows", "log10 a_T")));
-        for (i, (isotherm, factor)) in isotherms.iter().zip(&factors).enumerate() {
+        let curve = |(i, (isotherm, factor)): (usize, (&Isotherm, &Factor))| {
             let of_isotherm = measured.points.iter().zip(samples);
             let own: Vec<Sample> = of_isotherm
                 .filter(|(point, _)| isotherm_of(point, isotherms) == i)
                 .map(|(_, sample)| *sample)
                 .collect();
-            let errors = FitErrors::of(compound, &own, measured.test);
-            let uncertain = if factor.error > 0.0 { format!(" ± {:.4}", factor.error / LN_10) } else { String::new() };
-            // Without the sign of -0.
-            let log = format!("{:.4}{uncertain}", (factor.ln / LN_10 * 1e4).round() / 1e4 + 0.0);
-            let text = format!("{:<11.2}{:<8}{log:<20}{}", isotherm.temperature, own.len(), percent(errors.both.rms));
-            rows.push(("", text));
-        }
-        rows
+            ShiftedCurve {
+                temperature: isotherm.temperature,
+                rows: own.len(),
+                ln_factor: factor.ln,
+                ln_factor_error: factor.error,
+                rms: FitErrors::of(compound, &own, measured.test).both.rms,
+            }
+        };
+        isotherms.iter().zip(&factors).enumerate().map(curve).collect()
     }
 }
 
@@ -327,14 +327,18 @@ fn factors_of(measured: &MeasuredModuli, isotherms: &[Isotherm]) -> Result<Vec<F
 
 /// Reads factors from a table: columns temperature and a_T.
 fn given(path: &Path, options: &FitOptions, isotherms: Vec<Isotherm>) -> Result<Shift, FitError> {
-    let bytes = files::read(path)?;
+    let bytes = files::bytes(path)?;
     let in_file = |error: ModuliError| FitError::Moduli { path: path.to_owned(), error };
     let table = shift_table(&bytes, options).map_err(in_file)?;
     let factor = |isotherm: &Isotherm| {
         let distance = |(kelvin, _): &&(f64, f64)| (kelvin - isotherm.temperature).abs();
         let nearest = table.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let found = nearest.filter(|row| distance(row) <= NEAR);
-        let missing = || ShiftError::NoFactor { file: path.display().to_string(), temperature: isotherm.temperature };
+        let missing = || ShiftError::NoFactor {
+            file: path.display().to_string(),
+            temperature: isotherm.temperature,
+            within: NEAR,
+        };
         let ln = found.ok_or_else(missing)?.1.ln();
         Ok(Factor { temperature: isotherm.temperature, ln, error: 0.0 })
     };

@@ -1,0 +1,220 @@
+//! `asperity fit`: fits Prony terms to measured moduli.
+
+use std::f64::consts::{LN_10, TAU};
+use std::path::{Path, PathBuf};
+
+use asperity_study::decimals::{percent, plain, rounded, short};
+use asperity_study::fit::{FitOptions, FittedModuli, RelativeError, Sample, ShiftedCurve, Test, fit_moduli};
+
+use super::cli::Fit;
+use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
+use super::files::{self, FileError, check_outputs, name_of, named, picture_beside, print_beside};
+use super::terminal::{LabelledLine, lines, note, warn};
+use super::{NOT_REACHED, SUCCESS};
+
+/// `asperity fit` failed.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum FitError {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error(transparent)]
+    Fit(#[from] asperity_study::fit::FitError),
+}
+
+/// Points per decade of a plotted curve.
+const POINTS_PER_DECADE: f64 = 20.0;
+
+impl From<&Fit> for FitOptions {
+    fn from(command: &Fit) -> Self {
+        Self {
+            data: command.data.clone(),
+            sheet: command.sheet.clone(),
+            ignored: command.ignore.clone(),
+            units: command.unit.clone(),
+            frequency: command.frequency,
+            poisson_ratio: command.poisson_ratio,
+            shear: command.shear,
+            error: command.error,
+            viscosity: command.viscosity,
+            wlf: command.wlf,
+            shifts: command.shifts.clone(),
+            reference: command.reference,
+        }
+    }
+}
+
+/// Reads the moduli, puts those of several temperatures together, fits, writes the terms and the plot, and prints a
+/// summary. Where the requested error cannot be reached, the best fit is written, with a warning and an exit status of
+/// its own.
+pub(crate) fn fit(command: &Fit) -> Result<u8, FitError> {
+    let picture = picture_beside(&command.output, command.plot.as_ref());
+    let read: Vec<PathBuf> = std::iter::once(&command.data).chain(&command.shifts).cloned().collect();
+    check_outputs([&command.output].into_iter().chain(&picture), read)?;
+    let fitted = fit_moduli(&command.into())?;
+    fitted.notes().iter().for_each(|text| note(text));
+    fitted.warnings().iter().for_each(|text| warn(text));
+    files::write(&command.output, fitted.file())?;
+    if let Some(picture) = &picture {
+        drawn(&fitted, &command.data).write(picture)?;
+    }
+    print_beside([&command.output], &summary(&fitted, command, picture.as_deref()))?;
+    if fitted.error() <= command.error {
+        return Ok(SUCCESS);
+    }
+    warn(&not_reached(&fitted, command));
+    Ok(NOT_REACHED)
+}
+
+/// Why the error asked for was not reached: the data scatter, or known constants do not put them together.
+fn not_reached(fitted: &FittedModuli, command: &Fit) -> String {
+    let (wanted, reached) = (percent(command.error, 3), percent(fitted.error(), 3));
+    let scatter = || "the data scatter too much for less, and --error sets what is enough".to_owned();
+    let why = fitted.blame().unwrap_or_else(scatter);
+    format!(
+        "the error asked for, {wanted}, cannot be reached: {reached} is about the smallest of any series with moduli of 0 \
+         or more, and {} has such a series; {why}",
+        command.output.display()
+    )
+}
+
+/// The printed summary, and the lines for a scene.
+fn summary(fitted: &FittedModuli, command: &Fit, picture: Option<&Path>) -> String {
+    let modulus = fitted.equilibrium_modulus();
+    let mut rows = vec![("Data", fitted.data()), ("E_inf", format!("{} Pa", plain(modulus)))];
+    if command.viscosity {
+        rows.push(("Viscosity", format!("{} Pa s", plain(fitted.viscosity()))));
+    }
+    let glassy: f64 = fitted.terms().iter().map(|term| term.modulus).sum::<f64>() + modulus;
+    rows.push(("Glassy", format!("{} Pa, the sum of all moduli", short(glassy, 4))));
+    rows.push(("Terms", terms(fitted)));
+    rows.extend(errors(fitted, command.error));
+    rows.extend(shifts(fitted));
+    let written = [Some(command.output.as_path()), picture].into_iter().flatten().map(named);
+    rows.push(("Written", written.collect::<Vec<_>>().join(", ")));
+    let name = name_of(&command.output);
+    format!("{}\nFor a scene in the folder of {name}:\n\n{}", lines(&rows), scene(fitted, &name))
+}
+
+fn terms(fitted: &FittedModuli) -> String {
+    match fitted.terms() {
+        [] => "none".into(),
+        [only] => format!("1, at {} s", short(only.relaxation_time, 4)),
+        [first, .., last] => {
+            let [first, last] = [first, last].map(|term| short(term.relaxation_time, 4));
+            format!("{}, from {first} s to {last} s", fitted.terms().len())
+        }
+    }
+}
+
+/// A table of the errors.
+fn errors(fitted: &FittedModuli, requested: f64) -> Vec<LabelledLine> {
+    let errors = fitted.errors();
+    let together = if fitted.test() == Test::Oscillation { "E' and E'' together" } else { "E(t)" };
+    let (rms, requested) = (percent(errors.both.rms, 3), percent(requested, 3));
+    let mut rows = vec![
+        ("Error", format!("{rms} rms of {together}; {requested} requested")),
+        ("", format!("{:<11}{:<11}{:<11}at", "", "rms", "largest")),
+    ];
+    let row = |name: &str, error: &RelativeError| {
+        let (rms, largest) = (percent(error.rms, 3), percent(error.largest, 3));
+        ("", format!("{name:<11}{rms:<11}{largest:<11}{}", fitted.place(error.at)))
+    };
+    match fitted.test() {
+        Test::Oscillation => {
+            let tangent = row("tan delta", &errors.loss_tangent);
+            rows.extend([row("E'", &errors.storage), row("E''", &errors.loss), tangent]);
+        }
+        Test::Relaxation => rows.push(row("E(t)", &errors.storage)),
+    }
+    rows
+}
+
+/// Factors and errors by temperature, and the constants.
+fn shifts(fitted: &FittedModuli) -> Vec<LabelledLine> {
+    let curves = fitted.shifted_curves();
+    if curves.is_empty() {
+        return Vec::new();
+    }
+    let mut rows = Vec::new();
+    if let Some((law, shifts)) = fitted.found_law() {
+        let how = if shifts { "which shift the rows" } else { "fitted to the factors, which shift the rows" };
+        let (c1, c2, reference) = (plain(law.c1), plain(law.c2), plain(law.reference_temperature));
+        rows.push(("WLF", format!("C1 {c1}, C2 {c2} K about {reference} K, {how}")));
+    }
+    rows.push(("Shift", format!("{:<11}{:<8}{:<20}rms", "T, K", "rows", "log10 a_T")));
+    rows.extend(curves.iter().map(|curve| ("", shifted(curve))));
+    rows
+}
+
+fn shifted(curve: &ShiftedCurve) -> String {
+    let ShiftedCurve { temperature, rows, ln_factor, ln_factor_error, rms } = *curve;
+    let uncertain = if ln_factor_error > 0.0 { format!(" ± {:.4}", ln_factor_error / LN_10) } else { String::new() };
+    // Without the sign of -0.
+    let log = format!("{:.4}{uncertain}", (ln_factor / LN_10 * 1e4).round() / 1e4 + 0.0);
+    format!("{temperature:<11.2}{rows:<8}{log:<20}{}", percent(rms, 3))
+}
+
+/// The lines for a scene in the folder of the terms, in the file of this `name`.
+fn scene(fitted: &FittedModuli, name: &str) -> String {
+    let mut lines = vec![
+        "[material]".to_owned(),
+        "# density (kg/m³) and poisson_ratio are not in the data".into(),
+        format!("equilibrium_modulus = {}", plain(fitted.equilibrium_modulus())),
+    ];
+    if fitted.viscosity() > 0.0 {
+        lines.push(format!("viscosity = {}", plain(fitted.viscosity())));
+    }
+    lines.push(if fitted.terms().is_empty() { "prony = []".into() } else { format!("prony = {name:?}") });
+    if let Some(wlf) = fitted.wlf() {
+        let reference = plain(wlf.reference_temperature);
+        let (c1, c2) = (plain(wlf.c1), plain(wlf.c2));
+        lines.push(format!(
+            "wlf = {{ c1 = {c1}, c2 = {c2}, reference_temperature = {reference}, temperature = {reference} }}"
+        ));
+    }
+    lines.iter().map(|line| format!("{line}\n")).collect()
+}
+
+/// The plot: data as rings, the fit as lines; of several temperatures the master curve.
+fn drawn(fitted: &FittedModuli, data: &Path) -> Stacked {
+    let unit = if fitted.counts_cycles() { TAU } else { 1.0 };
+    let places = between(fitted.samples());
+    let curves = |name: &str, look: usize, measured: fn(&Sample) -> f64, of_fit: fn((f64, f64)) -> f64| {
+        let points = fitted.samples().iter().map(|sample| (sample.at / unit, measured(sample))).collect();
+        let line = places.iter().map(|&at| (at / unit, of_fit(fitted.response(at)))).collect();
+        [
+            Curve { name: format!("{name} measured"), look, stroke: Stroke::Rings, points },
+            Curve { name: format!("{name} fitted"), look, stroke: Stroke::Line, points: line },
+        ]
+    };
+    let panel = |title: &str, curves: Vec<Curve>| Panel { title: title.into(), curves };
+    let panels = if fitted.test() == Test::Oscillation {
+        let storage = curves("E'", 0, |sample| sample.storage, |(storage, _)| storage);
+        let loss = curves("E''", 1, |sample| sample.loss, |(_, loss)| loss);
+        let tangent = curves("tan δ", 2, |sample| sample.loss / sample.storage, |(storage, loss)| loss / storage);
+        vec![panel("modulus in Pa", [storage, loss].concat()), panel("tan δ", tangent.to_vec())]
+    } else {
+        let relaxed = curves("E(t)", 0, |sample| sample.storage, |(storage, _)| storage);
+        vec![panel("modulus in Pa", relaxed.to_vec())]
+    };
+    let title = format!("{}: {} terms, {} rms", name_of(data), fitted.terms().len(), percent(fitted.error(), 3));
+    Stacked { title, x_title: x_title(fitted), panels }
+}
+
+fn x_title(fitted: &FittedModuli) -> String {
+    let quantity = match (fitted.test(), fitted.counts_cycles()) {
+        (Test::Relaxation, _) => "time in s",
+        (Test::Oscillation, true) => "frequency in Hz",
+        (Test::Oscillation, false) => "angular frequency in rad/s",
+    };
+    let shifted = |reference: f64| format!("{quantity}, shifted to {} K", plain(rounded(reference, 6)));
+    fitted.reference().map_or_else(|| quantity.into(), shifted)
+}
+
+/// Angular frequencies or times over the range of `samples`, evenly spaced in the logarithm.
+fn between(samples: &[Sample]) -> Vec<f64> {
+    let places = samples.iter().map(|sample| sample.at.log10());
+    let (low, high) = places.fold((f64::MAX, f64::MIN), |(low, high), place| (low.min(place), high.max(place)));
+    let intervals = ((high - low) * POINTS_PER_DECADE).ceil().max(1.0);
+    (0..=intervals as usize).map(|i| 10.0_f64.powf(low + (high - low) * i as f64 / intervals)).collect()
+}

@@ -1,0 +1,27 @@
+//! Why no Prony series is fitted.
+
+use std::path::PathBuf;
+
+use super::moduli_error::ModuliError;
+use super::shift_error::ShiftError;
+use crate::files::ReadError;
+
+/// The moduli cannot be read or put together.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what they are")]
+pub enum FitError {
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    #[error("{}:{error}", .path.display())]
+    Moduli { path: PathBuf, error: ModuliError },
+    #[error("{}: {error}", .path.display())]
+    Shift { path: PathBuf, error: ShiftError },
+    #[error("{}: the workbook cannot be read: {error}", .path.display())]
+    Workbook { path: PathBuf, error: Box<asperity_formats::workbook::WorkbookError> },
+    #[error("{}: {}", .path.display(), sheets(.found, .expected))]
+    Sheets { path: PathBuf, found: Vec<String>, expected: &'static str },
+}
+
+fn sheets(found: &[String], expected: &str) -> String {
+    format!("sheets {}: expected {expected}", found.join(", "))
+}

@@ -1,0 +1,32 @@
+//! Prony series fitted to measured moduli.
+//!
+//! Moduli are read as people and instruments write them ([`FitOptions`]); those of several temperatures become those of one
+//! by shift factors that are given or found; and the series with the fewest terms within an error is searched for:
+//! [`fit_moduli`].
+
+mod columns;
+mod compound;
+mod error;
+mod file;
+mod fitted;
+mod measured;
+mod moduli_error;
+mod nnls;
+mod options;
+mod prony_problem;
+mod sample;
+mod search;
+mod shift;
+mod shift_error;
+mod stated_temperature;
+mod table;
+mod temperatures;
+
+pub use compound::{FitErrors, RelativeError};
+pub use error::FitError;
+pub use fitted::{FittedModuli, fit_moduli};
+pub use moduli_error::ModuliError;
+pub use options::{FitOptions, WlfConstants};
+pub use sample::{Sample, Test};
+pub use shift_error::ShiftError;
+pub use temperatures::ShiftedCurve;
