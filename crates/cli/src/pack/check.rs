@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use asperity::element::PointContact;
 use asperity::patch::Patch;
 use asperity_study::check::{
-    COMPARED_OF_ELEMENTS, COMPARED_OF_PATCHES, COMPONENTS, CheckError, Doubled, Dragged, ElementCheck, Loop,
-    PatchCheck, PointChecks, Sliding, Wrench, WrenchSeries,
+    COMPARED_OF_ELEMENTS, COMPARED_OF_PATCHES, COMPONENTS, CheckError, Doubled, Dragged, ElementCheck, ElementErrors,
+    Loop, PatchCheck, PointChecks, Sliding, Wrench, WrenchSeries,
 };
 use asperity_study::decimals::real;
 
@@ -118,13 +118,10 @@ fn errors_of_points(points: &PointChecks) -> Ladders {
 
 /// -F_x over u.
 fn loop_picture(rows: &Loop) -> LinearStack {
-    let curve = |(look, (name, points)): (usize, (&str, Vec<(f64, f64)>))| Curve {
-        name: name.to_owned(),
-        look,
-        stroke: Stroke::Line,
-        points,
-    };
-    let curves = ["layer", "element"].into_iter().zip(rows.friction()).enumerate().map(curve).collect();
+    let [layer, element] = rows.friction();
+    let curve =
+        |look, name: &str, points: Vec<(f64, f64)>| Curve { name: name.to_owned(), look, stroke: Stroke::Line, points };
+    let curves = vec![curve(0, "layer", layer), curve(1, "element", element)];
     LinearStack { x: ("u", "m"), panels: vec![LinearPanel { quantity: "-F_x", unit: "N", curves }] }
 }
 
@@ -132,7 +129,7 @@ fn loop_picture(rows: &Loop) -> LinearStack {
 fn errors_of_elements(sliding: &Sliding<'_>) -> Ladders {
     let speeds = sliding.errors();
     let panel = |(i, (name, _)): (usize, &(&str, usize))| {
-        let ladder = |(look, (speed, errors)): (usize, &(f64, Vec<(f64, [f64; COMPARED_OF_PATCHES.len()])>))| {
+        let ladder = |(look, ElementErrors { speed, errors }): (usize, &ElementErrors)| {
             let rungs = errors.iter().map(|(pressure, errors)| rung((*pressure, errors[i].abs()))).collect();
             Ladder { name: format!("{} m/s", real(*speed)), stroke: Stroke::Line, look, rungs }
         };

@@ -12,6 +12,7 @@ mod to_and_fro;
 pub use element::{COMPARED as COMPARED_OF_ELEMENTS, ElementCheck, PointCheck, PointChecks};
 pub use error::{CheckError, NotCompared};
 pub use patch::{
-    COMPARED as COMPARED_OF_PATCHES, COMPONENTS, Doubled, Dragged, PatchCheck, Sliding, Wrench, WrenchSeries,
+    COMPARED as COMPARED_OF_PATCHES, COMPONENTS, Doubled, Dragged, ElementErrors, PatchCheck, Sliding, Wrench,
+    WrenchSeries,
 };
 pub use to_and_fro::Loop;

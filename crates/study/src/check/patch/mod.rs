@@ -12,5 +12,5 @@ mod wrench;
 pub use check::PatchCheck;
 pub use doubled::Doubled;
 pub use elements::Dragged;
-pub use sliding::{COMPARED, Sliding};
+pub use sliding::{COMPARED, ElementErrors, Sliding};
 pub use wrench::{COMPONENTS, Wrench, WrenchSeries};

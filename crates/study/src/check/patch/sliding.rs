@@ -81,14 +81,26 @@ impl<'a> Sliding<'a> {
         csv::text(head.iter().map(String::as_str), self.speeds.iter().flat_map(SlidingAtSpeed::rows))
     }
 
-    /// By speed, m/s: pressures on the elements, Pa, and their errors, of what is [`COMPARED`].
-    pub fn errors(&self) -> Vec<(f64, Vec<(f64, [f64; COMPARED.len()])>)> {
-        let errors = |(tilted, layer, element): (&TiltedElement, [f64; 3], [f64; 3])| {
+    /// The errors of the elements whose layers were steady, by speed.
+    pub fn errors(&self) -> Vec<ElementErrors> {
+        let error = |(tilted, layer, element): (&TiltedElement, [f64; 3], [f64; 3])| {
             (element[2] / tilted.element.area, COMPARED.map(|(_, axis)| element[axis] / layer[axis] - 1.0))
         };
-        let at_speed = |sliding: &SlidingAtSpeed<'_>| (sliding.face.speed, sliding.compared().map(errors).collect());
-        self.speeds.iter().map(at_speed).collect()
+        let errors = |at: &SlidingAtSpeed<'_>| ElementErrors {
+            speed: at.face.speed,
+            errors: at.compared().map(error).collect(),
+        };
+        self.speeds.iter().map(errors).collect()
     }
+}
+
+/// The errors of elements at a speed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ElementErrors {
+    /// The speed, m/s.
+    pub speed: f64,
+    /// The pressure on each, Pa, and the errors relative to its layer, of what is [`COMPARED`].
+    pub errors: Vec<(f64, [f64; COMPARED.len()])>,
 }
 
 impl<'a> SlidingAtSpeed<'a> {
