@@ -7,7 +7,6 @@ use super::error::FitError;
 use super::measured::{MeasuredModuli, Reading};
 use super::options::FitOptions;
 use crate::files::{self, name_of};
-use asperity::tables::ContentError;
 
 /// What is wrong in the file of the moduli.
 pub(super) fn in_data(options: &FitOptions, error: ContentError) -> FitError {
