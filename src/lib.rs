@@ -12,7 +12,7 @@
 //! | module | uses | contents |
 //! |---|---|---|
 //! | [`math`] | | splines, tridiagonal systems, roots, Fourier sums and other numerical methods |
-//! | [`tables`] | | tables of text as people and instruments write them: dialect, headings, units |
+//! | [`tables`] | | tables of text as people and instruments write them: dialect, headings, units, the columns that a client wants |
 //! | [`scene`] | math, tables | a scene as data: reading TOML, profiles and materials; parameters; checks and warnings |
 //! | [`model`] | math, scene | the mechanical model: links and their forces, contact laws, state, energies, stiffness scales, reduction |
 //! | `steady` | math, scene, model | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
