@@ -64,15 +64,15 @@ impl PointContact {
 
     /// Its parameters.
     pub fn parameters(&self) -> Vec<Parameter> {
-        let temperature = (self.table.grid.temperatures.len() > 1).then_some(Parameter::Temperature);
-        temperature.into_iter().chain([Parameter::TableExtrapolation, Parameter::Extrapolation]).collect()
+        let temperature = (self.table.grid.temperatures.len() > 1).then_some(Parameter::TEMPERATURE);
+        temperature.into_iter().chain([Parameter::TABLE_EXTRAPOLATION, Parameter::EXTRAPOLATION]).collect()
     }
 
     /// The value of a parameter.
     pub fn parameter(&self, parameter: Parameter) -> Value {
         match parameter {
-            Parameter::Temperature => Value::Real(self.temperature),
-            Parameter::TableExtrapolation => Value::Text(self.table_extrapolation.word().into()),
+            Parameter::TEMPERATURE => Value::Real(self.temperature),
+            Parameter::TABLE_EXTRAPOLATION => Value::Text(self.table_extrapolation.word().into()),
             _ => Value::Text(self.extrapolation.word().into()),
         }
     }
@@ -86,7 +86,7 @@ impl PointContact {
             Err(ParameterError::new(parameter.name(), Problem::Value { given: value.to_string(), expected }))
         };
         match (parameter, &value) {
-            (Parameter::Temperature, &Value::Real(temperature)) => {
+            (Parameter::TEMPERATURE, &Value::Real(temperature)) => {
                 let temperatures = &self.table.grid.temperatures;
                 let (low, high) = (temperatures.first(), temperatures.last());
                 match (low, high) {
@@ -97,11 +97,11 @@ impl PointContact {
                     _ => return refuse("none: the table has no temperatures".into()),
                 }
             }
-            (Parameter::TableExtrapolation, Value::Text(word)) => match TableExtrapolation::from_word(word) {
+            (Parameter::TABLE_EXTRAPOLATION, Value::Text(word)) => match TableExtrapolation::from_word(word) {
                 Some(extrapolation) => self.table_extrapolation = extrapolation,
                 None => return refuse(parameter.allowed()),
             },
-            (Parameter::Extrapolation, Value::Text(word)) => match Extrapolation::from_word(word) {
+            (Parameter::EXTRAPOLATION, Value::Text(word)) => match Extrapolation::from_word(word) {
                 Some(extrapolation) => self.extrapolation = extrapolation,
                 None => return refuse(parameter.allowed()),
             },

@@ -96,7 +96,7 @@ impl Table {
             values[quantity as usize] = text.values(load, quantity, &order)?;
         }
         let table = Self { scene: text.scene(), load, rest_separation, basis: text.basis(), grid, values };
-        table.check_separations().map_err(|problem| text.error(problem))?;
+        table.check_separations().map_err(|crossing| text.error(crossing.to_string()))?;
         Ok(table)
     }
 
@@ -153,19 +153,27 @@ impl Table {
     }
 
     /// Pressed harder, the carrier is closer: the separations have an inverse.
-    fn check_separations(&self) -> Result<(), String> {
+    fn check_separations(&self) -> Result<(), SeparationsCross> {
         let separation = |node| self.value(Quantity::Separation, node);
         for node in self.nodes().filter(|node| node.load > 0) {
             let (here, before) = (separation(node), separation(Node { load: node.load - 1, ..node }));
             if here >= before {
                 let (load, point) = (self.load.name(), self.point(node).describe(self.load));
-                return Err(format!(
-                    "separation = {here} m at {point}, but {before} m at the {load} below: expected a smaller one"
-                ));
+                return Err(SeparationsCross { here, before, point, load });
             }
         }
         Ok(())
     }
+}
+
+/// A carrier that is pressed harder is no closer.
+#[derive(Debug, thiserror::Error)]
+#[error("separation = {here} m at {point}, but {before} m at the {load} below: expected a smaller one")]
+struct SeparationsCross {
+    here: f64,
+    before: f64,
+    point: String,
+    load: &'static str,
 }
 
 /// The values that occur, rising, each once.

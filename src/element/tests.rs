@@ -99,9 +99,9 @@ fn between_the_points_the_error_falls_as_the_grid_gets_finer() {
 fn between_temperatures_it_is_the_law_in_between() {
     let temperatures = [280.0, 290.0, 300.0, 310.0, 320.0].to_vec();
     let mut contact = PointContact::new(table(&Grid { temperatures, ..Grid::plain() }));
-    assert_eq!(contact.parameter(Parameter::Temperature), Value::Real(300.0));
+    assert_eq!(contact.parameter(Parameter::TEMPERATURE), Value::Real(300.0));
     for t in [283.0, 305.0, 320.0] {
-        contact.set_parameter(Parameter::Temperature, Value::Real(t)).unwrap();
+        contact.set_parameter(Parameter::TEMPERATURE, Value::Real(t)).unwrap();
         let (v, p) = (0.1, 3e5);
         let w = separation(v, p, t) - REST;
         let mut element = Element::new(&contact, &Start { w, u_rate: v, ..Start::default() }).unwrap();
@@ -111,7 +111,7 @@ fn between_temperatures_it_is_the_law_in_between() {
         close(-x / z, friction(v, p, t), 0.02);
         close(z, p * AREA, 0.01);
     }
-    let refused = contact.set_parameter(Parameter::Temperature, Value::Real(279.0)).unwrap_err().to_string();
+    let refused = contact.set_parameter(Parameter::TEMPERATURE, Value::Real(279.0)).unwrap_err().to_string();
     let expected =
         "material.wlf.temperature = 279.0: expected a number from 280.0 to 320.0, the temperatures of the table";
     assert_eq!(refused, expected);
@@ -278,7 +278,7 @@ fn beyond_the_table_motions_are_refused_or_extrapolated() {
     let mut low = at_w(&contact, separation(1e-4, 7.9e5, WARM) - REST);
     assert!(matches!(low.advance(1e-3, 10.0, 0.0), Err(ElementError::Pressure { within: false, .. })));
 
-    contact.set_parameter(Parameter::TableExtrapolation, Value::Text("hold".into())).unwrap();
+    contact.set_parameter(Parameter::TABLE_EXTRAPOLATION, Value::Text("hold".into())).unwrap();
     let far = Element::new(&contact, &Start { w: 1e31, ..Start::default() }).unwrap_err();
     assert_eq!(far.to_string(), "the carrier's motion is out of range: w = 1e31, expected a number up to ±1e30");
     for (duration, rates) in [(1e30, (2.0, 0.0)), (1e-3, (0.0, f64::NAN)), (f64::INFINITY, (0.0, 0.0))] {

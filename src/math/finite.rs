@@ -9,7 +9,7 @@ pub fn not_finite(value: &impl Serialize) -> Option<(&'static str, f64)> {
     value.serialize(&mut NonFiniteSearch { field: "value" }).err().and_then(|found| found.0)
 }
 
-/// Serialises to nothing and fails at the first such number.
+/// Serialises to nothing and fails at the first such number; each method that does not returns the search itself.
 struct NonFiniteSearch {
     field: &'static str,
 }
@@ -25,55 +25,49 @@ impl ser::Error for NonFinite {
     }
 }
 
-type Result<T = ()> = std::result::Result<T, NonFinite>;
-
-/// Methods for what holds no such number.
-macro_rules! pass {
-    ($($method:ident($($type:ty),*);)*) => { $(fn $method(self $(, _: $type)*) -> Result { Ok(()) })* };
-}
-
-/// Methods for what holds other values.
-macro_rules! enter {
-    ($($method:ident($($type:ty),*) -> $compound:ident;)*) => {
-        $(type $compound = Self; fn $method(self $(, _: $type)*) -> Result<Self> { Ok(self) })*
+/// Methods for what is no such number, or holds values that come to their turn.
+macro_rules! go_on {
+    ($($method:ident($($type:ty),*);)*) => {
+        $(fn $method(self $(, _: $type)*) -> Result<Self, NonFinite> { Ok(self) })*
     };
 }
 
 impl Serializer for &mut NonFiniteSearch {
-    type Ok = ();
+    type Ok = Self;
     type Error = NonFinite;
+    type SerializeSeq = Self;
+    type SerializeTuple = Self;
+    type SerializeTupleStruct = Self;
+    type SerializeTupleVariant = Self;
+    type SerializeMap = Self;
+    type SerializeStruct = Self;
+    type SerializeStructVariant = Self;
 
-    pass! {
+    go_on! {
         serialize_bool(bool); serialize_char(char); serialize_str(&str); serialize_bytes(&[u8]);
         serialize_i8(i8); serialize_i16(i16); serialize_i32(i32); serialize_i64(i64);
         serialize_u8(u8); serialize_u16(u16); serialize_u32(u32); serialize_u64(u64);
         serialize_none(); serialize_unit(); serialize_unit_struct(&'static str);
         serialize_unit_variant(&'static str, u32, &'static str);
+        serialize_seq(Option<usize>); serialize_tuple(usize); serialize_map(Option<usize>);
+        serialize_tuple_struct(&'static str, usize); serialize_struct(&'static str, usize);
+        serialize_tuple_variant(&'static str, u32, &'static str, usize);
+        serialize_struct_variant(&'static str, u32, &'static str, usize);
     }
 
-    enter! {
-        serialize_seq(Option<usize>) -> SerializeSeq;
-        serialize_tuple(usize) -> SerializeTuple;
-        serialize_tuple_struct(&'static str, usize) -> SerializeTupleStruct;
-        serialize_tuple_variant(&'static str, u32, &'static str, usize) -> SerializeTupleVariant;
-        serialize_map(Option<usize>) -> SerializeMap;
-        serialize_struct(&'static str, usize) -> SerializeStruct;
-        serialize_struct_variant(&'static str, u32, &'static str, usize) -> SerializeStructVariant;
-    }
-
-    fn serialize_f32(self, value: f32) -> Result {
+    fn serialize_f32(self, value: f32) -> Result<Self, NonFinite> {
         self.serialize_f64(f64::from(value))
     }
 
-    fn serialize_f64(self, value: f64) -> Result {
-        if value.is_finite() { Ok(()) } else { Err(NonFinite(Some((self.field, value)))) }
+    fn serialize_f64(self, value: f64) -> Result<Self, NonFinite> {
+        if value.is_finite() { Ok(self) } else { Err(NonFinite(Some((self.field, value)))) }
     }
 
-    fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result {
+    fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result<Self, NonFinite> {
         value.serialize(self)
     }
 
-    fn serialize_newtype_struct<T: Serialize + ?Sized>(self, _: &'static str, value: &T) -> Result {
+    fn serialize_newtype_struct<T: Serialize + ?Sized>(self, _: &'static str, value: &T) -> Result<Self, NonFinite> {
         value.serialize(self)
     }
 
@@ -83,56 +77,43 @@ impl Serializer for &mut NonFiniteSearch {
         _: u32,
         _: &'static str,
         value: &T,
-    ) -> Result {
+    ) -> Result<Self, NonFinite> {
         value.serialize(self)
     }
 }
 
-/// Compounds without names of fields: the field's around them stands.
-macro_rules! unnamed {
-    ($($compound:ident: $($method:ident),*;)*) => {
-        $(impl ser::$compound for &mut NonFiniteSearch {
-            type Ok = ();
+/// What holds other values. Where these have no names, that of the field around them stands.
+macro_rules! compounds {
+    ($($compound:ident: $($method:ident($($field:ident)?)),*;)*) => {
+        $(impl<'a> ser::$compound for &'a mut NonFiniteSearch {
+            type Ok = &'a mut NonFiniteSearch;
             type Error = NonFinite;
 
-            $(fn $method<T: Serialize + ?Sized>(&mut self, value: &T) -> Result {
-                value.serialize(&mut **self)
+            $(fn $method<T: Serialize + ?Sized>(
+                &mut self,
+                $($field: &'static str,)?
+                value: &T,
+            ) -> Result<(), NonFinite> {
+                $(self.field = $field;)?
+                value.serialize(&mut **self).map(|_| ())
             })*
 
-            fn end(self) -> Result {
-                Ok(())
+            fn end(self) -> Result<Self, NonFinite> {
+                Ok(self)
             }
         })*
     };
 }
 
-unnamed! {
-    SerializeSeq: serialize_element;
-    SerializeTuple: serialize_element;
-    SerializeTupleStruct: serialize_field;
-    SerializeTupleVariant: serialize_field;
-    SerializeMap: serialize_key, serialize_value;
+compounds! {
+    SerializeSeq: serialize_element();
+    SerializeTuple: serialize_element();
+    SerializeTupleStruct: serialize_field();
+    SerializeTupleVariant: serialize_field();
+    SerializeMap: serialize_key(), serialize_value();
+    SerializeStruct: serialize_field(field);
+    SerializeStructVariant: serialize_field(field);
 }
-
-macro_rules! named {
-    ($($compound:ident),*) => {
-        $(impl ser::$compound for &mut NonFiniteSearch {
-            type Ok = ();
-            type Error = NonFinite;
-
-            fn serialize_field<T: Serialize + ?Sized>(&mut self, field: &'static str, value: &T) -> Result {
-                self.field = field;
-                value.serialize(&mut **self)
-            }
-
-            fn end(self) -> Result {
-                Ok(())
-            }
-        })*
-    };
-}
-
-named!(SerializeStruct, SerializeStructVariant);
 
 #[cfg(test)]
 mod tests {

@@ -2,6 +2,7 @@
 //! dependencies at one instant of the run (`Snapshot`). All that differs from output to output stands in one table.
 
 mod accounts;
+mod carrier_shift;
 mod snapshot;
 mod table;
 

@@ -1,17 +1,13 @@
-//! A run at one instant: the values of the output variables there, and their directional derivatives.
-//!
-//! In a directional derivative the carrier is shifted and all states are frozen (see `table`). A shift by δu takes δu
-//! from the elongation e of every horizontal link and from a_j = e - y_j of its Maxwell elements, so the link's force
-//! changes by -(c + Σ c_j) δu; that of a vertical link likewise with δw. On its mass a link's force counts negative:
-//! f_x,i grows by (c + Σ c_j) δu, and the contact forces follow.
+//! A run at one instant: the values of the output variables there.
 
 use std::cell::{Cell, OnceCell, RefCell};
 
+use super::carrier_shift::CarrierShift;
 use super::{Counters, Energies, Monitored, Variable};
 use crate::integrator::InterpolatedLayer;
 use crate::model::{
-    BodyEnergy, Carrier, CarrierPoint, ContactForces, FineContact, Flash, Forces, FrictionShares, LinkKind, MaxwellRow,
-    Mode, Model, Powers, State, Tangents, elastic_energy, kinetic_energy,
+    BodyEnergy, Carrier, CarrierPoint, ContactForces, FineContact, Forces, FrictionShares, Mode, Model, Powers, State,
+    Tangents, elastic_energy, kinetic_energy,
 };
 use crate::scene::{Axis, ByAxis};
 
@@ -239,64 +235,43 @@ impl<'a> Snapshot<'a> {
 
     /// F_N on mass `i`, N; 0 where it is free.
     pub(super) fn normal_force(&self, i: usize) -> f64 {
-        self.contact(i).map_or(0.0, |contact| contact.normal)
+        self.contact(i).map_or(0.0, |contact| contact.forces.normal)
     }
 
     /// F_T on mass `i` against v_t, N; 0 where it is free.
     pub(super) fn friction_force(&self, i: usize) -> f64 {
-        let motion = (self.state().mode[i], self.state().velocity_x[i]);
-        self.contact(i).map_or(0.0, |contact| self.friction(motion, &contact, self.state().flash(i)))
+        self.contact(i).map_or(0.0, |contact| contact.friction(self.model))
     }
 
     /// The surface pushes a mass with F_N n - F_T t, n = (-s, 1)/q, t = (1, s)/q (6), (7).
     fn contact_sums(&self) -> ContactSums {
-        let (state, forces) = (self.state(), self.forces());
         let mut sums = ContactSums::default();
-        for i in (0..state.mode.len()).filter(|&i| state.mode[i].in_contact()) {
-            let (mode, v, surface) = (state.mode[i], state.velocity_x[i], &state.surface[i]);
-            let contact = forces.contact(self.model, i, v, surface);
-            let s = surface.slope;
-            let friction = self.friction((mode, v), &contact, state.flash(i));
-            let flash = state.flash(i);
-            let fine = self.model.friction.fine_contact(contact.normal, v * contact.q, flash);
-            let parts = self.parts(mode, &contact, &fine, friction);
-            sums.hysteresis -= contact.normal * s / contact.q + parts.fine / contact.q;
-            sums.fine -= parts.fine / contact.q;
-            sums.adhesion -= (friction - parts.fine) / contact.q;
-            sums.shear -= parts.shear / contact.q;
+        for contact in (0..self.model.masses()).filter_map(|i| self.contact(i)) {
+            let ContactForces { normal, q, .. } = contact.forces;
+            let friction = contact.friction(self.model);
+            let fine = contact.fine(self.model);
+            let parts = contact.parts(self.model, &fine, friction);
+            sums.hysteresis -= normal * contact.slope / q + parts.fine / q;
+            sums.fine -= parts.fine / q;
+            sums.adhesion -= (friction - parts.fine) / q;
+            sums.shear -= parts.shear / q;
             sums.real_area += fine.share.value * self.model.element_area;
-            sums.force_z += (contact.normal - friction * s) / contact.q;
+            sums.force_z += (normal - friction * contact.slope) / q;
         }
         sums
     }
 
-    /// The forces in the contact at mass `i`; `None` where it is free.
-    fn contact(&self, i: usize) -> Option<ContactForces> {
-        let v = self.state().velocity_x[i];
-        self.state().mode[i].in_contact().then(|| self.forces().contact(self.model, i, v, &self.state().surface[i]))
-    }
-
-    /// F_T (N) in a `contact` of this mode and ẋ (m/s), at the flash temperature `flash`, K.
-    fn friction(&self, (mode, v): (Mode, f64), contact: &ContactForces, flash: f64) -> f64 {
-        if self.model.friction.present { contact.friction(self.model, mode, v, flash) } else { 0.0 }
-    }
-
-    /// The parts of the `friction` in a `contact` (N), N: of a sticking mass, as the parts of the largest friction at rest
-    /// share it.
-    fn parts(&self, mode: Mode, contact: &ContactForces, fine: &FineContact, friction: f64) -> FrictionShares {
-        let law = &self.model.friction;
-        match mode {
-            Mode::Stick => {
-                let shares = law.shares_at_rest(contact.normal);
-                FrictionShares { shear: shares.shear * friction, fine: shares.fine * friction }
-            }
-            _ if law.present => {
-                let (sigma, hysteresis) = (mode.direction(), fine.hysteresis.value);
-                let shear = friction - sigma * law.coulomb * contact.normal - sigma * hysteresis;
-                FrictionShares { shear, fine: sigma * hysteresis }
-            }
-            _ => FrictionShares::default(),
-        }
+    /// The contact at mass `i`; `None` where it is free.
+    pub(super) fn contact(&self, i: usize) -> Option<MassContact> {
+        let state = self.state();
+        let (mode, velocity, surface) = (state.mode[i], state.velocity_x[i], &state.surface[i]);
+        mode.in_contact().then(|| MassContact {
+            mode,
+            velocity,
+            slope: surface.slope,
+            flash: state.flash(i),
+            forces: self.forces().contact(self.model, i, velocity, surface),
+        })
     }
 
     /// The mode of mass `i`; without friction a contact slips in the direction of its velocity.
@@ -308,181 +283,45 @@ impl<'a> Snapshot<'a> {
     }
 }
 
-/// A shift of the carrier: the changes that it makes in each link to it and on each mass.
+/// A mass in contact.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct CarrierShift {
-    /// Of the elongations of the links to the carrier, m.
-    elongation: ByAxis<f64>,
-    /// Of the forces of the links on each mass, N.
-    on_mass: ByAxis<f64>,
-    /// Of the drives' displacements, m.
-    drive: ByAxis<f64>,
+pub(super) struct MassContact {
+    pub(super) mode: Mode,
+    /// ẋ, m/s.
+    pub(super) velocity: f64,
+    /// s.
+    pub(super) slope: f64,
+    /// ϑ, K.
+    pub(super) flash: f64,
+    pub(super) forces: ContactForces,
 }
 
-impl CarrierShift {
-    /// A shift of u and w by (δu, δw), m; along the axis of a body it shifts the drive, and the layer not at all.
-    pub(super) fn new(model: &Model, direction: (f64, f64)) -> Self {
-        let change = ByAxis { x: direction.0, z: direction.1 };
-        let of_layer = ByAxis::from_fn(|axis| if model.bodies[axis].is_some() { 0.0 } else { change[axis] });
-        Self {
-            elongation: of_layer.map(|change| -change),
-            on_mass: ByAxis::from_fn(|axis| model.instantaneous_stiffness(axis.link()) * of_layer[axis]),
-            drive: ByAxis::from_fn(|axis| if model.bodies[axis].is_some() { change[axis] } else { 0.0 }),
-        }
-    }
-}
-
-/// Changes of the forces in a contact, N, and the slope there.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct ContactChange {
-    pub(super) normal: f64,
-    pub(super) friction: f64,
-    /// Of the part of the friction that is shear force.
-    shear: f64,
-    /// Of the part by hysteresis of the waves that the profile lacks.
-    fine: f64,
-    /// Of the area that touches, m².
-    real_area: f64,
-    slope: f64,
-    q: f64,
-}
-
-impl ContactChange {
-    pub(super) fn hysteresis(self) -> f64 {
-        -self.normal * self.slope / self.q - self.fine / self.q
+impl MassContact {
+    /// F_T, N.
+    fn friction(&self, model: &Model) -> f64 {
+        let Self { mode, velocity, flash, .. } = *self;
+        if model.friction.present { self.forces.friction(model, mode, velocity, flash) } else { 0.0 }
     }
 
-    pub(super) fn fine(self) -> f64 {
-        -self.fine / self.q
+    /// What the roughness below the profile does in it.
+    pub(super) fn fine(&self, model: &Model) -> FineContact {
+        model.friction.fine_contact(self.forces.normal, self.velocity * self.forces.q, self.flash)
     }
 
-    pub(super) fn adhesion(self) -> f64 {
-        -(self.friction - self.fine) / self.q
-    }
-
-    pub(super) fn shear(self) -> f64 {
-        -self.shear / self.q
-    }
-
-    pub(super) fn coulomb(self) -> f64 {
-        -(self.friction - self.fine - self.shear) / self.q
-    }
-
-    pub(super) fn real_area(self) -> f64 {
-        self.real_area
-    }
-
-    pub(super) fn force_x(self) -> f64 {
-        self.hysteresis() + self.adhesion()
-    }
-
-    pub(super) fn force_z(self) -> f64 {
-        (self.normal - self.friction * self.slope) / self.q
-    }
-}
-
-/// The directional derivatives.
-impl Snapshot<'_> {
-    /// δF_x = -k (c + Σ c_j) δu of the horizontal links, δF_z likewise of the vertical ones.
-    pub(super) fn force_changes(&self, shift: &CarrierShift) -> ByAxis<f64> {
-        let k = self.model.masses() as f64;
-        shift.on_mass.map(|change| -k * change)
-    }
-
-    /// δR = K δu_d of the drive along `axis`.
-    pub(super) fn drive_force_change(&self, axis: Axis, shift: &CarrierShift) -> f64 {
-        let body = &self.model.bodies[axis];
-        body.as_ref().map_or(0.0, |body| body.stiffness * shift.drive[axis])
-    }
-
-    /// Of V_c = ½ K (u - u_d)² of both axes.
-    pub(super) fn drive_energy_change(&self, shift: &CarrierShift) -> f64 {
-        let (carrier, s) = self.motion;
-        let of = |axis: Axis| {
-            let stretch = carrier.outside(self.model, axis, s).map_or(0.0, |(_, outside)| outside.stretch().position);
-            -self.drive_force_change(axis, shift) * stretch
-        };
-        of(Axis::X) + of(Axis::Z)
-    }
-
-    /// Of |F_x|/F_z; 0 where F_x = 0, the kink of |F_x|.
-    pub(super) fn friction_coefficient_change(&self, shift: &CarrierShift) -> f64 {
-        let ByAxis { x, z } = self.on_carrier;
-        if z <= 0.0 || x == 0.0 {
-            return 0.0;
-        }
-        let ByAxis { x: dx, z: dz } = self.force_changes(shift);
-        (x.signum() * dx - x.abs() * dz / z) / z
-    }
-
-    /// δF_N = (s δf_x - δf_z)/q; δF_T = (δf_x + s δf_z)/q where the mass sticks, σ ∂T/∂F_N δF_N where it slips.
-    pub(super) fn contact_change(&self, i: usize, shift: &CarrierShift) -> ContactChange {
-        let mode = self.state().mode[i];
-        if !mode.in_contact() {
-            return ContactChange { q: 1.0, ..ContactChange::default() };
-        }
-        let slope = self.state().surface[i].slope;
-        let q = (1.0 + slope * slope).sqrt();
-        let ByAxis { x: f_x, z: f_z } = shift.on_mass;
-        let normal = (slope * f_x - f_z) / q;
-        let contact = self.forces().contact(self.model, i, self.state().velocity_x[i], &self.state().surface[i]);
-        let (law, v) = (&self.model.friction, self.state().velocity_x[i]);
-        let flash = self.state().flash(i);
-        let by_normal = law.slip(contact.normal, v.abs() * q, Flash::held(flash)).by_normal;
-        let on_fine = law.fine_contact(contact.normal, v * contact.q, flash);
-        let (friction, shear, fine) = match mode {
+    /// The parts of the `friction` (N), N: of a sticking mass, as the parts of the largest friction at rest share it.
+    fn parts(&self, model: &Model, fine: &FineContact, friction: f64) -> FrictionShares {
+        let (law, normal) = (&model.friction, self.forces.normal);
+        match self.mode {
             Mode::Stick => {
-                let friction = (f_x + slope * f_z) / q;
-                let shares = law.shares_at_rest(contact.normal);
-                let changes = law.shares_by_normal(contact.normal, by_normal);
-                let part = |share: f64, change: f64| share * friction + contact.tangential * change * normal;
-                (friction, part(shares.shear, changes.shear), part(shares.fine, changes.fine))
+                let shares = law.shares_at_rest(normal);
+                FrictionShares { shear: shares.shear * friction, fine: shares.fine * friction }
             }
-            _ => {
-                let (sigma, of_fine) = (mode.direction(), on_fine.hysteresis.by_normal);
-                let of_shear = by_normal - law.coulomb - of_fine;
-                (sigma * by_normal * normal, sigma * of_shear * normal, sigma * of_fine * normal)
+            mode if law.present => {
+                let (sigma, hysteresis) = (mode.direction(), fine.hysteresis.value);
+                let shear = friction - sigma * law.coulomb * normal - sigma * hysteresis;
+                FrictionShares { shear, fine: sigma * hysteresis }
             }
-        };
-        let real_area = on_fine.share.by_normal * normal * self.model.element_area;
-        ContactChange { normal, friction, shear, fine, real_area, slope, q }
-    }
-
-    pub(super) fn contact_sum(&self, shift: &CarrierShift, part: impl Fn(ContactChange) -> f64) -> f64 {
-        (0..self.model.masses()).map(|i| part(self.contact_change(i, shift))).sum()
-    }
-
-    /// Of Σ F_T v_t with v_t = ẋ q frozen.
-    pub(super) fn friction_power_change(&self, shift: &CarrierShift) -> f64 {
-        let power = |i| {
-            let contact = self.contact_change(i, shift);
-            contact.friction * self.state().velocity_x[i] * contact.q
-        };
-        (0..self.model.masses()).map(power).sum()
-    }
-
-    /// Of Σ_j c_j a_j²/τ_j.
-    pub(super) fn maxwell_power_change(&self, shift: &CarrierShift) -> f64 {
-        self.maxwell_sum(shift, |row| 2.0 * row.stiffness / row.relaxation_time)
-    }
-
-    /// Of V = Σ ½ c e² + Σ_j ½ c_j a_j², where a_j = e - y_j of frozen dashpots.
-    pub(super) fn elastic_energy_change(&self, shift: &CarrierShift) -> f64 {
-        let spring = |axis: Axis| {
-            let (kind, elongations) = (axis.link(), self.state().elongation(axis));
-            let stiffness = self.model.links[kind].stiffness;
-            let force = stiffness * elongations.iter().sum::<f64>() - self.model.frozen_force_sum(kind);
-            shift.elongation[axis] * force
-        };
-        spring(Axis::X) + spring(Axis::Z) + self.maxwell_sum(shift, |row| row.stiffness)
-    }
-
-    /// Σ weight a δa over the Maxwell elements of the links to the carrier.
-    fn maxwell_sum(&self, shift: &CarrierShift, weight: impl Fn(&MaxwellRow) -> f64) -> f64 {
-        let moved = |kind: LinkKind| if kind.is_lateral() { 0.0 } else { shift.elongation[kind.axis()] };
-        let of_row = |row: &MaxwellRow| {
-            weight(row) * moved(row.kind) * self.state().maxwell[row.range.clone()].iter().sum::<f64>()
-        };
-        self.model.rows.iter().map(of_row).sum()
+            _ => FrictionShares::default(),
+        }
     }
 }

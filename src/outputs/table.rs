@@ -22,7 +22,8 @@
 
 use std::mem::discriminant;
 
-use super::snapshot::{CarrierShift, ContactChange, Evaluation};
+use super::carrier_shift::{CarrierShift, ContactChange};
+use super::snapshot::Evaluation;
 use super::{Dependencies, Output, OutputType, Tangent};
 use crate::model::Mode;
 use crate::scene::{Axis, CarrierBody, Input, Link, LinkKind, OutputGroup, Scene, Unit};

@@ -60,15 +60,23 @@ pub struct Patch {
     pub extrapolation: Extrapolation,
 }
 
+/// Where a number of a backing or of heat is.
+type Real = for<'a> fn(&'a mut Option<Backing>, &'a mut Option<FaceHeat>) -> Option<&'a mut f64>;
+
 /// Parameters that are numbers, of a backing and of heat.
-const REALS: [Parameter; 6] = [
-    Parameter::BackingNormal,
-    Parameter::BackingShear,
-    Parameter::FaceConductivity,
-    Parameter::FaceCapacity,
-    Parameter::FaceDensity,
-    Parameter::FaceShare,
+const REALS: [(Parameter, Real); 6] = [
+    (Parameter::new("patch.backing.normal"), |backing, _| Some(&mut backing.as_mut()?.normal)),
+    (Parameter::new("patch.backing.shear"), |backing, _| Some(&mut backing.as_mut()?.shear)),
+    (Parameter::new("patch.heat.conductivity"), |_, heat| Some(&mut heat.as_mut()?.conductivity)),
+    (Parameter::new("patch.heat.capacity"), |_, heat| Some(&mut heat.as_mut()?.capacity)),
+    (Parameter::new("patch.heat.density"), |_, heat| Some(&mut heat.as_mut()?.density)),
+    (Parameter::new("patch.heat.share"), |_, heat| Some(&mut heat.as_mut()?.share)),
 ];
+
+/// Where the number of a parameter is; `None` of one that is none.
+fn real_of(parameter: Parameter) -> Option<Real> {
+    REALS.iter().find(|(own, _)| *own == parameter).map(|(_, real)| *real)
+}
 
 impl Patch {
     /// Reads the patch file at `path` and the files that it names.
@@ -298,40 +306,24 @@ impl Patch {
 
     /// The parameters.
     pub fn parameters(&self) -> Vec<Parameter> {
-        let others = [Parameter::TableExtrapolation, Parameter::Extrapolation, Parameter::Refine];
-        let reals = REALS.into_iter().filter(|&parameter| self.real(parameter).is_some());
+        let others = [Parameter::TABLE_EXTRAPOLATION, Parameter::EXTRAPOLATION, Parameter::REFINE];
+        let reals =
+            REALS.map(|(parameter, _)| parameter).into_iter().filter(|&parameter| self.real(parameter).is_some());
         others.into_iter().chain(reals).collect()
     }
 
     /// The value of a Real parameter, if the patch has it.
     fn real(&self, parameter: Parameter) -> Option<f64> {
         let (mut backing, mut heat) = (self.backing, self.heat);
-        Self::real_of(&mut backing, &mut heat, parameter).copied()
-    }
-
-    fn real_of<'a>(
-        backing: &'a mut Option<Backing>,
-        heat: &'a mut Option<FaceHeat>,
-        parameter: Parameter,
-    ) -> Option<&'a mut f64> {
-        let (backing, heat) = (backing.as_mut(), heat.as_mut());
-        match parameter {
-            Parameter::BackingNormal => backing.map(|backing| &mut backing.normal),
-            Parameter::BackingShear => backing.map(|backing| &mut backing.shear),
-            Parameter::FaceConductivity => heat.map(|heat| &mut heat.conductivity),
-            Parameter::FaceCapacity => heat.map(|heat| &mut heat.capacity),
-            Parameter::FaceDensity => heat.map(|heat| &mut heat.density),
-            Parameter::FaceShare => heat.map(|heat| &mut heat.share),
-            _ => None,
-        }
+        real_of(parameter)?(&mut backing, &mut heat).copied()
     }
 
     /// The value of a parameter.
     pub fn parameter(&self, parameter: Parameter) -> Value {
         match parameter {
-            Parameter::TableExtrapolation => Value::Text(self.table_extrapolation.word().into()),
-            Parameter::Refine => Value::Integer(i32::try_from(self.refine).unwrap_or(i32::MAX)),
-            Parameter::Extrapolation => Value::Text(self.extrapolation.word().into()),
+            Parameter::TABLE_EXTRAPOLATION => Value::Text(self.table_extrapolation.word().into()),
+            Parameter::REFINE => Value::Integer(i32::try_from(self.refine).unwrap_or(i32::MAX)),
+            Parameter::EXTRAPOLATION => Value::Text(self.extrapolation.word().into()),
             _ => Value::Real(self.real(parameter).unwrap_or(0.0)),
         }
     }
@@ -346,8 +338,8 @@ impl Patch {
         let parameter = parameter.ok_or_else(|| ParameterError::new(name, Problem::Unknown { allowed: names() }))?;
         let text = text.trim();
         let value = match parameter {
-            Parameter::Refine => text.parse().ok().map(Value::Integer),
-            _ if REALS.contains(&parameter) => text.parse().ok().map(Value::Real),
+            Parameter::REFINE => text.parse().ok().map(Value::Integer),
+            _ if real_of(parameter).is_some() => text.parse().ok().map(Value::Real),
             _ => None,
         };
         self.set_parameter(parameter, value.unwrap_or_else(|| Value::Text(text.to_owned())))
@@ -360,7 +352,7 @@ impl Patch {
     pub fn set_parameter(&mut self, parameter: Parameter, value: Value) -> Result<(), ParameterError> {
         let refused = || {
             let expected = match parameter {
-                _ if REALS.contains(&parameter) => {
+                _ if real_of(parameter).is_some() => {
                     "a number above 0, of a patch with a backing, or with heat".to_owned()
                 }
                 _ => parameter.allowed(),
@@ -369,19 +361,20 @@ impl Patch {
             ParameterError::new(parameter.name(), problem)
         };
         match (parameter, &value) {
-            (Parameter::TableExtrapolation, Value::Text(word)) => {
+            (Parameter::TABLE_EXTRAPOLATION, Value::Text(word)) => {
                 self.table_extrapolation = TableExtrapolation::from_word(word).ok_or_else(refused)?;
             }
-            (Parameter::Extrapolation, Value::Text(word)) => {
+            (Parameter::EXTRAPOLATION, Value::Text(word)) => {
                 self.extrapolation = Extrapolation::from_word(word).ok_or_else(refused)?;
             }
-            (Parameter::Refine, &Value::Integer(refine)) => {
+            (Parameter::REFINE, &Value::Integer(refine)) => {
                 let allowed = u32::try_from(refine).ok().filter(|refine| (1..=1000).contains(refine));
                 self.refine = allowed.ok_or_else(refused)?;
             }
-            (_, &Value::Real(number)) if REALS.contains(&parameter) => {
+            (_, &Value::Real(number)) => {
+                let real = real_of(parameter).ok_or_else(refused)?;
                 let number = parameter.check_number(number)?;
-                *Self::real_of(&mut self.backing, &mut self.heat, parameter).ok_or_else(refused)? = number;
+                *real(&mut self.backing, &mut self.heat).ok_or_else(refused)? = number;
             }
             _ => return Err(refused()),
         }

@@ -90,6 +90,16 @@ impl<T> ByAxis<Option<T>> {
     pub fn any(&self) -> bool {
         self.x.is_some() || self.z.is_some()
     }
+
+    /// The value of an axis, if there is one.
+    pub fn get(&self, axis: Axis) -> Option<&T> {
+        self[axis].as_ref()
+    }
+
+    /// The value of an axis, if there is one.
+    pub fn get_mut(&mut self, axis: Axis) -> Option<&mut T> {
+        self[axis].as_mut()
+    }
 }
 
 impl<T: Add<Output = T>> Add for ByAxis<T> {

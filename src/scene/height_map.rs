@@ -9,6 +9,7 @@ use super::surface::{STEEPEST, peak_to_valley};
 use super::values::{LARGEST, SMALLEST};
 use super::{RoughnessSpectrum, Surface};
 use crate::math::{Direction, fourier_2d};
+use crate::tables::ContentError;
 
 /// The most heights of a map.
 pub const MOST_HEIGHTS: usize = 1 << 24;
@@ -22,6 +23,53 @@ pub struct HeightMap {
     nx: usize,
     spacing: [f64; 2],
     heights: Vec<f64>,
+}
+
+/// Why there is no map of a line of an areal measurement: what one takes, and was found.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MapError {
+    /// Steps of the points are not even along an axis.
+    #[error("even steps along {0}")]
+    Uneven(&'static str),
+    /// There are too many heights.
+    #[error("a map of up to {most} heights, not {nx} by {ny}", most = MOST_HEIGHTS)]
+    TooLarge {
+        /// Along x.
+        nx: usize,
+        /// Along y.
+        ny: usize,
+    },
+    /// The shortest step, m, is too short.
+    #[error("points at least {least:e} m apart, not {0:e} m", least = SMALLEST)]
+    TooClose(f64),
+    /// Heights or slopes are too large.
+    #[error("heights with slopes up to {steepest:e}", steepest = STEEPEST)]
+    TooSteep,
+    /// Heights are missing.
+    #[error(
+        "a height at each point, or missing = \"fill\": {count} are missing, the first in line {line}, point {point}"
+    )]
+    Missing {
+        /// How many.
+        count: usize,
+        /// The line of the first, counted from 1.
+        line: usize,
+        /// Its point in the line, counted from 1.
+        point: usize,
+    },
+    /// All heights are missing.
+    #[error("heights, not gaps alone")]
+    OnlyGaps,
+    /// Numbers stand for no height.
+    #[error(transparent)]
+    Sentinels(#[from] ContentError),
+    /// What a map takes in a format of files.
+    #[error("{0}")]
+    Format(String),
+    /// The line was smoothed.
+    #[error("a map as it is: smoothing and splitting are of one line")]
+    Smoothed,
 }
 
 impl HeightMap {
@@ -157,17 +205,17 @@ impl HeightMap {
         open_along_x(open_along_x(self).transposed()).transposed()
     }
 
-    /// Checks that heights and slopes are numbers that can be worked with, or says what they must be.
-    pub(super) fn check(&self) -> Result<(), String> {
+    /// Checks that heights and slopes are numbers that can be worked with.
+    pub(super) fn check(&self) -> Result<(), MapError> {
         let [dx, dy] = self.spacing;
         if dx.min(dy) < SMALLEST {
-            return Err(format!("points at least {SMALLEST:e} m apart, not {:e} m", dx.min(dy)));
+            return Err(MapError::TooClose(dx.min(dy)));
         }
         let steps_x = (0..self.ny()).flat_map(|j| self.line(j).windows(2).map(|pair| (pair[1] - pair[0]) / dx));
         let steps_y = self.heights.iter().zip(self.heights.iter().skip(self.nx)).map(|(a, b)| (b - a) / dy);
         let possible = steps_x.chain(steps_y).all(|slope| slope.abs() <= STEEPEST)
             && self.heights.iter().all(|z| z.abs() <= LARGEST);
-        if possible { Ok(()) } else { Err(format!("heights with slopes up to {STEEPEST:e}")) }
+        if possible { Ok(()) } else { Err(MapError::TooSteep) }
     }
 
     /// The isotropic power spectrum: the mean of C over rings of wave numbers that are even in the logarithm; `None` where

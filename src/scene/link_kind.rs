@@ -103,6 +103,18 @@ impl<T> ByLink<T> {
     }
 }
 
+impl<T> ByLink<Option<T>> {
+    /// The value of a kind, if there is one.
+    pub fn get(&self, kind: LinkKind) -> Option<&T> {
+        self[kind].as_ref()
+    }
+
+    /// The value of a kind, if there is one.
+    pub fn get_mut(&mut self, kind: LinkKind) -> Option<&mut T> {
+        self[kind].as_mut()
+    }
+}
+
 impl<'a, T> IntoIterator for &'a ByLink<T> {
     type Item = &'a T;
     type IntoIter = slice::Iter<'a, T>;

@@ -7,7 +7,7 @@ use super::keys;
 use super::{ByLink, Layer, Link, LinkKind, MaxwellElement, RateShear, Scene, is_possible};
 
 /// A linear viscoelastic solid: a spring, a dashpot and Maxwell elements in parallel, as moduli.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Material {
     /// Density ρ, kg/m³.
     pub density: f64,
@@ -26,7 +26,7 @@ pub struct Material {
 }
 
 /// How a material takes up the heat that friction makes.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Heat {
     /// Conductivity λ, W/(m K).
     pub conductivity: f64,
@@ -37,7 +37,7 @@ pub struct Heat {
 }
 
 /// A term of a Prony series: a Maxwell element of the material.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct PronyTerm {
     /// Relaxation time τ_j at the reference temperature, s.
     pub relaxation_time: f64,
@@ -46,7 +46,7 @@ pub struct PronyTerm {
 }
 
 /// The shift of all times with temperature after Williams, Landel and Ferry.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Wlf {
     /// C_1, 1.
     pub c1: f64,

@@ -3,8 +3,8 @@
 //! Every field is in SI units. A feature that the scene does not name is `None` or empty, and costs nothing at run
 //! time.
 //!
-//! A new key is a line in the table of `keys`, a field of the data below and a line in `reader`. A key that the FMU has
-//! as a parameter is also a variant of [`Parameter`], with its path and its field in `parameters`.
+//! A new key is a row in the table of `keys`, which also reads it and makes it a parameter, and a field of the data
+//! below.
 
 mod axis;
 mod carrier;
@@ -48,16 +48,16 @@ pub use carrier::{CarrierBodies, CarrierBody, CarrierInitial, Input};
 pub use error::{ParameterError, Problem, SceneError};
 pub use excitation::{Force, Motion, Path, Phase};
 pub use fine_roughness::{
-    FineBand, FineRoughness, FineWaves, ModulusFactors, RoughnessSpectrum, Softening, SofteningRow, SplitSurface,
-    WaveModuli,
+    FineBand, FineRoughness, FineWaves, ModulusFactors, RoughnessSpectrum, Softening, SofteningRow, SplitError,
+    SplitSurface, WaveModuli,
 };
 pub use fmu::{DependencyList, FmuOptions, IntegerType};
-pub use foundation::{Body, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};
-pub use height_map::{HeightMap, MOST_HEIGHTS};
+pub use foundation::{ElasticBody, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};
+pub use height_map::{HeightMap, MOST_HEIGHTS, MapError};
 pub use keys::{Absent, KeyEntry, patch_keys, scene_keys, similar_keys};
 pub use link_kind::{ByLink, LinkKind};
 pub use material::{Heat, Material, PronyTerm, Wlf, complex_stiffness};
-pub use parameters::{Parameter, Value};
+pub use parameters::Parameter;
 pub use patch_file::{Backing, FaceHeat, FaceShape, Grid, NotDoubled, PatchFile, PatchGroup, TableExtrapolation};
 pub use profile::{
     Areal, Extract, LengthUnit, LoadedProfile, MeasuredPoints, MeasuredSurface, Missing, ProfileOptions,
@@ -67,7 +67,7 @@ pub use regular_file::{read_file, read_text};
 pub use self_affine::SelfAffine;
 pub use spectrum::{Band, PowerLaw, Spectrum};
 pub use surface::{MeanLine, Surface, peak_to_valley};
-pub use values::{LOOSEST_TOLERANCE, Unit, is_possible};
+pub use values::{LOOSEST_TOLERANCE, Unit, Value, is_possible};
 
 /// A whole scene, checked. Serialised, it is every number of it: what the scene does not name is null or empty.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -119,7 +119,7 @@ pub struct Scene {
 }
 
 /// The elastic layer: k point masses and their links.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Layer {
     /// Number of point masses k ≥ 1.
     pub masses: usize,
@@ -165,7 +165,7 @@ pub struct Link {
 }
 
 /// A spring in series with a dashpot.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct MaxwellElement {
     /// Stiffness c_j of the spring, N/m.
     pub stiffness: f64,
@@ -174,10 +174,11 @@ pub struct MaxwellElement {
 }
 
 /// How the dashpots stand at the start.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Initial {
     /// y_j = e_j: the layer was deformed long ago.
+    #[default]
     Relaxed,
     /// y_j = 0: the layer was deformed just now.
     Undeformed,
@@ -202,7 +203,7 @@ pub struct Friction {
 
 /// Shear strength that depends on the speed: A τ_f(v) = A τ_f0 exp(-c [log10(v/v_0)]²) of one mass in contact, constant
 /// at A τ_f(v_c) below the creep speed v_c.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct RateShear {
     /// The largest force A τ_f0, of one mass in contact at the reference speed, N; in the direct form alone, see
     /// [`Scene::rate_shear`].
@@ -227,8 +228,8 @@ impl RateShear {
     }
 }
 
-/// The integrator's settings.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// The integrator's settings. What a scene leaves out is said by the table of keys: the default here is no tolerance.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Solver {
     /// How mode changes are treated.
     pub method: Method,
@@ -258,24 +259,12 @@ fn most_steps<S: serde::Serializer>(named: &Option<u64>, serializer: S) -> Resul
     serializer.serialize_u64(named.unwrap_or(Solver::DEFAULT_MAX_STEPS))
 }
 
-impl Default for Solver {
-    /// The settings of a scene without `[solver]`.
-    fn default() -> Self {
-        Self {
-            method: Method::Event,
-            relative_tolerance: 1.0e-6,
-            absolute_tolerance: None,
-            max_steps: None,
-            reduce: 0.0,
-        }
-    }
-}
-
 /// How mode changes are treated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
     /// Every mode change is located.
+    #[default]
     Event,
     /// Mode changes are taken at the ends of the steps.
     Step,
@@ -371,11 +360,6 @@ impl OutputGroup {
         Self::Solver,
         Self::Elements,
     ];
-
-    /// The group's name in a scene file.
-    pub fn name(self) -> &'static str {
-        self.as_word()
-    }
 }
 
 impl Scene {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::values::{LARGEST, SMALLEST};
-use super::{HeightMap, SelfAffine};
+use super::{HeightMap, MapError, SelfAffine};
 use crate::math::Spline;
 
 /// The largest slope of a profile: a step of a metre from one atom to the next has less, and its square times that of
@@ -29,7 +29,20 @@ pub struct Surface {
     spline: Arc<Spline>,
     /// Or why there is none, though it is a line of heights over x and y.
     #[serde(skip)]
-    map: Option<Arc<Result<HeightMap, String>>>,
+    map: Option<Arc<Result<HeightMap, MapError>>>,
+}
+
+/// Why no profile goes through points: what they should be, and are.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub(super) enum UnfitPoints {
+    #[error(
+        "points with a spline of slopes up to {steepest:e} and curvatures up to {largest:e} 1/m",
+        steepest = STEEPEST,
+        largest = LARGEST
+    )]
+    TooSteep,
+    #[error("points at least {least:e} m apart along x, not {0:e} m", least = SMALLEST)]
+    TooClose(f64),
 }
 
 /// As profiles: an FMU carries the line alone of a map.
@@ -93,13 +106,13 @@ impl Surface {
         self.map.as_deref()?.as_ref().ok()
     }
 
-    /// Why there is no map, though the profile is a line of an areal measurement: what is expected, and was found.
-    pub fn map_error(&self) -> Option<&str> {
-        self.map.as_deref()?.as_ref().err().map(String::as_str)
+    /// Why there is no map, though the profile is a line of an areal measurement.
+    pub fn map_error(&self) -> Option<&MapError> {
+        self.map.as_deref()?.as_ref().err()
     }
 
     /// The profile as a line of a map, or of an areal measurement that is none for the reason given.
-    pub(super) fn with_map(self, map: Option<Result<HeightMap, String>>) -> Self {
+    pub(super) fn with_map(self, map: Option<Result<HeightMap, MapError>>) -> Self {
         Self { map: map.map(Arc::new), ..self }
     }
 
@@ -127,18 +140,16 @@ impl Surface {
         (squares.sum::<f64>() / (self.x[self.x.len() - 1] - self.x[0])).sqrt()
     }
 
-    /// Checks that slopes and curvatures of the spline are numbers that can be worked with, or says what they must be.
-    pub(super) fn check_slopes(&self) -> Result<(), String> {
+    /// Checks that slopes and curvatures of the spline are numbers that can be worked with.
+    pub(super) fn check_slopes(&self) -> Result<(), UnfitPoints> {
         let bounds = self.spline.bounds();
         let closest = self.x.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
         let possible = bounds.slope_max_abs <= STEEPEST && bounds.curvature_max_abs <= LARGEST;
         if !(self.spline.is_finite() && possible) {
-            return Err(format!(
-                "points with a spline of slopes up to {STEEPEST:e} and curvatures up to {LARGEST:e} 1/m"
-            ));
+            return Err(UnfitPoints::TooSteep);
         }
         if closest < SMALLEST {
-            return Err(format!("points at least {SMALLEST:e} m apart along x, not {closest:e} m"));
+            return Err(UnfitPoints::TooClose(closest));
         }
         Ok(())
     }
@@ -166,7 +177,7 @@ impl Surface {
             heights[self.x.len() - 1] = heights[0];
         }
         let is_of_map = self.map.is_some();
-        let no_map = is_of_map.then(|| Err("a map as it is: smoothing and splitting are of one line".to_owned()));
+        let no_map = is_of_map.then_some(Err(MapError::Smoothed));
         Self::new(self.x.clone(), heights, self.periodic).with_map(no_map)
     }
 

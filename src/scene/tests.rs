@@ -86,7 +86,7 @@ fn reads_phases() {
 #[test]
 fn output_groups_have_the_names_that_a_scene_uses() {
     for group in OutputGroup::ALL {
-        let scene = scene("", &format!("{FLAT}\n[carrier.z]\nmass = 1\n[fmu]\noutputs = ['{}']", group.name()));
+        let scene = scene("", &format!("{FLAT}\n[carrier.z]\nmass = 1\n[fmu]\noutputs = ['{}']", group.word()));
         assert_eq!(scene.outputs, [group]);
     }
 }

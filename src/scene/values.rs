@@ -3,6 +3,8 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 pub(super) use crate::tables::{ANY, LARGEST, NOT_NEGATIVE, NumberRange, POSITIVE, SMALLEST};
 use crate::tables::{Dimension, quantity};
 
@@ -47,6 +49,27 @@ pub(super) fn words<T: Word>() -> String {
 impl fmt::Display for WholeRange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "a whole number from {} to {}", self.low, self.high)
+    }
+}
+
+/// A parameter's value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Value {
+    /// A Real of FMI.
+    Real(f64),
+    /// An Integer of FMI.
+    Integer(i32),
+    /// A String of FMI.
+    Text(String),
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Real(number) => write!(f, "{number:?}"),
+            Self::Integer(number) => write!(f, "{number}"),
+            Self::Text(word) => write!(f, "{word:?}"),
+        }
     }
 }
 

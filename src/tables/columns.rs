@@ -79,7 +79,7 @@ impl<'a, Q: Copy + PartialEq> Header<'a, Q> {
     /// The names in messages.
     pub fn given(&self) -> String {
         let names: Vec<&str> = self.names.iter().map(|name| name.trim()).collect();
-        format!("`{}`", shortened(&names.join(", ")))
+        format!("\"{}\"", shortened(&names.join(", ")))
     }
 
     /// The column at a place, its unit the one `given` or that of its heading.
@@ -196,7 +196,7 @@ impl<Q: Copy> Column<Q> {
         match block.stated_unit(assumed.dimension, names).filter(|(_, unit)| unit.name != assumed.name) {
             Some(((line, text), unit)) => {
                 let expected = format!("the unit beside the name of its column, as in {} [{unit}]", self.text);
-                Err(ContentError::value(Some(line), "unit", &format!("`{}`", shortened(text)), &expected))
+                Err(ContentError::value(Some(line), "unit", &format!("\"{}\"", shortened(text)), &expected))
             }
             None => Ok(()),
         }

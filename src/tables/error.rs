@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use super::text::NotText;
-
 /// What is wrong in the content of a file, before it is known which file that is.
 ///
 /// It reads like `column 2 (E' [MPa]) = "x": expected a number from 1e-30 to 1e30 in Pa`.
@@ -39,6 +37,18 @@ impl ContentError {
         let line = self.line.map_or_else(String::new, |line| format!(":{line}"));
         format!("{}{line}: {self}", file.display())
     }
+}
+
+/// The bytes are no text: some are zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}: expected {}", Self::FOUND, Self::EXPECTED)]
+pub struct NotText;
+
+impl NotText {
+    /// What was found.
+    pub const FOUND: &str = "bytes that are zero";
+    /// What was expected.
+    pub const EXPECTED: &str = "text in UTF-8, UTF-16 or Latin-1";
 }
 
 impl From<NotText> for ContentError {

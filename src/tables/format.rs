@@ -3,7 +3,7 @@
 use super::blocks::Block;
 use super::columns::{Column, Header, ReadingNote, UnitRule};
 use super::error::{ContentError, shortened};
-use super::headings::Words;
+use super::headings::{Heading, Words};
 use super::lines::Line;
 use super::range::{ANY, NumberRange};
 use super::units::Dimension;
@@ -129,7 +129,14 @@ impl<Q: Copy + PartialEq, const N: usize> Format<Q, N> {
             false => self.named(&block, &header, &mut notes)?,
         };
         let used: Vec<usize> = columns.iter().flatten().map(|column| column.index).collect();
-        self.check_others(text, &block, &header, header.left_out(&used), &mut notes)?;
+        match self.others {
+            Others::Refused => self.check_others(text, &block, &header, &used)?,
+            Others::LeftOut | Others::Tables => {
+                notes.extend(header.left_out(&used));
+                let mut below = block.below(text);
+                notes.extend(below.next().map(|(line, _)| behind_note(line, 1 + below.count())));
+            }
+        }
         let mut table =
             Table { columns, rows: Vec::new(), lines: Vec::new(), notes, line: header.line, above: Vec::new() };
         self.add_rows(text, &block, &mut table)?;
@@ -172,7 +179,7 @@ impl<Q: Copy + PartialEq, const N: usize> Format<Q, N> {
         let mut columns = [const { None }; N];
         for (place, wanted) in columns.iter_mut().zip(&self.columns) {
             let Some(index) = self.place(wanted, header)? else { continue };
-            let is_first = |heading: &super::Heading<Q>| heading.quantity == wanted.quantities[0];
+            let is_first = |heading: &Heading<Q>| heading.quantity == wanted.quantities[0];
             let rule = match wanted.unit {
                 UnitRule::AssumedOfFirst if header.headings[index].as_ref().is_some_and(is_first) => UnitRule::Assumed,
                 UnitRule::AssumedOfFirst => UnitRule::Named,
@@ -206,7 +213,7 @@ impl<Q: Copy + PartialEq, const N: usize> Format<Q, N> {
             [index] => Ok(Some(index)),
             [first, second, ..] => {
                 let [first, second] = [first, second].map(|index| header.names[index].trim());
-                refuse(&format!("`{first}` and `{second}`"), &format!("one of them; {}", self.expected))
+                refuse(&format!("\"{first}\" and \"{second}\""), &format!("one of them; {}", self.expected))
             }
         }
     }
@@ -240,37 +247,25 @@ impl<Q: Copy + PartialEq, const N: usize> Format<Q, N> {
         Ok(columns)
     }
 
-    /// Says, or refuses, what else stands in the text.
+    /// Refuses other columns, and other lines than comments below the names.
     fn check_others(
         &self,
         text: &str,
         block: &Block<'_>,
         header: &Header<'_, Q>,
-        left_out: Option<ReadingNote>,
-        notes: &mut Vec<ReadingNote>,
+        used: &[usize],
     ) -> Result<(), ContentError> {
-        let mut below = block.below(text);
-        if self.others == Others::Refused {
-            if left_out.is_some() {
-                return Err(ContentError::value(
-                    header.line,
-                    "columns",
-                    &header.given(),
-                    &format!("{} alone", self.expected),
-                ));
+        if (0..block.columns).any(|index| !used.contains(&index)) {
+            let expected = format!("{} alone, in {} columns", self.expected, used.len());
+            let given = format!("{} in {} columns", header.given(), block.columns);
+            return Err(ContentError::value(header.line, "columns", &given, &expected));
+        }
+        match block.stray_line(&header.head).or_else(|| block.below(text).next()) {
+            Some((line, text)) => {
+                Err(ContentError::value(Some(line), "row", &format!("\"{}\"", shortened(text)), "numbers"))
             }
-            return match block.stray_line(&header.head).or_else(|| below.next()) {
-                Some((line, text)) => {
-                    Err(ContentError::value(Some(line), "row", &format!("`{}`", shortened(text)), "numbers"))
-                }
-                None => Ok(()),
-            };
+            None => Ok(()),
         }
-        notes.extend(left_out);
-        if let Some((line, _)) = below.next() {
-            notes.push(behind_note(line, 1 + below.count()));
-        }
-        Ok(())
     }
 
     fn add_rows(&self, text: &str, block: &Block<'_>, table: &mut Table<'_, Q, N>) -> Result<(), ContentError> {
@@ -302,4 +297,78 @@ pub fn behind_note(line: usize, count: usize) -> ReadingNote {
         _ => format!("{count} lines from line {line} on, behind the table, are left out"),
     };
     ReadingNote { text, assumed: false }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::range::POSITIVE;
+    use super::*;
+
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    enum Of {
+        Time,
+        Force,
+        Pressure,
+    }
+
+    const LOADS: Format<Of, 2> = Format::new(
+        &[
+            Words::new(Of::Time, Dimension::Time, "t time", ""),
+            Words::new(Of::Force, Dimension::Force, "force", ""),
+            Words::new(Of::Pressure, Dimension::Pressure, "pressure", ""),
+        ],
+        [
+            Wanted::new(&[Of::Time], "time", "times"),
+            Wanted { choice: Choice::FirstQuantity, ..Wanted::new(&[Of::Pressure, Of::Force], "load", "loads") }
+                .within(POSITIVE),
+        ],
+        "time and load",
+    );
+
+    fn refusal(format: &Format<Of, 2>, text: &str) -> String {
+        format.read(text).map_or_else(|error| error.within("t.csv".as_ref()), |table| format!("{table:?}"))
+    }
+
+    #[test]
+    fn wanted_columns_are_read_and_all_else_is_said() {
+        let text = "# a drum\nrun;t [ms];force [kN];pressure [bar]\n1;5;9;0,5\n2;7,5;9;1\n\nmean;6\n";
+        let table = LOADS.read(text).unwrap_or_else(|error| unreachable!("{error}"));
+        assert_eq!((&table.rows[..], &table.lines[..]), (&[[0.005, 5e4], [0.0075, 1e5]][..], &[3, 4][..]));
+        let notes: Vec<&str> = table.notes.iter().map(|note| note.text.as_str()).collect();
+        let expected = [
+            "times from column 2 (t [ms]) in ms",
+            "loads from column 4 (pressure [bar]) in bar",
+            "columns left out: run, force [kN]",
+            "line 6, behind the table, is left out",
+        ];
+        assert_eq!(notes, expected);
+        let two = "t [s],force [N]\n1,2\n2,2\n# rest\nt [s],force [N]\n1,2\n";
+        assert!(refusal(&LOADS, two).starts_with("t.csv:6: tables = from line 6 and from line 2: expected one table"));
+        let longest = Format { others: Others::Tables, ..LOADS };
+        let table = longest.read(two).unwrap_or_else(|error| unreachable!("{error}"));
+        assert_eq!(table.notes[0].text, "lines 6 to 6, another table, are left out");
+    }
+
+    #[test]
+    fn a_strict_file_has_nothing_else() {
+        let strict = Format { others: Others::Refused, needs_names: true, ..LOADS };
+        assert!(strict.read("# ours\nt,force\ns,N\n1,2\n\n# end\n").is_ok());
+        for (text, message) in [
+            (
+                "t,force,x\n1,2,3\n",
+                "t.csv:1: columns = \"t, force, x\" in 3 columns: expected time and load alone, in 2 columns",
+            ),
+            ("t,force\n1,2,3\n", "t.csv:1: columns = \"t, force, \" in 3 columns: expected time and load alone"),
+            ("t,force\none,two\n1,2\n", "t.csv:2: row = \"one,two\": expected numbers"),
+            ("t,force\n1,2\nend\n", "t.csv:3: row = \"end\": expected numbers"),
+            ("1,2\n", "t.csv:1: columns = no names: expected time and load"),
+            (
+                "t,force [kN]\n1,2\n1,-2\n",
+                "t.csv:3: column 2 (force [kN]) = \"-2\": expected a number from 1e-30 to 1e30 in N",
+            ),
+            ("t,force\n1,2\n1,\n", "t.csv:3: column 2 (force): expected a number from 1e-30 to 1e30"),
+        ] {
+            assert!(refusal(&strict, text).starts_with(message), "{text}\n{}", refusal(&strict, text));
+        }
+    }
 }

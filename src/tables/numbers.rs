@@ -36,7 +36,7 @@ impl NumberStyle {
     ///
     /// # Errors
     /// As [`NumberStyle::read`].
-    pub fn add(&mut self, field: &str) -> Result<(), MixedDecimals> {
+    fn add(&mut self, field: &str) -> Result<(), MixedDecimals> {
         self.points |= field.contains('.');
         self.commas |= field.contains(',');
         if self.points && self.commas && field.contains(['.', ',']) { Err(MixedDecimals) } else { Ok(()) }

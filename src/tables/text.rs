@@ -3,19 +3,7 @@
 use std::borrow::Cow;
 use std::iter;
 
-use super::error::ContentError;
-
-/// The bytes are no text: some are zero.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}: expected {}", Self::FOUND, Self::EXPECTED)]
-pub struct NotText;
-
-impl NotText {
-    /// What was found.
-    pub const FOUND: &str = "bytes that are zero";
-    /// What was expected.
-    pub const EXPECTED: &str = "text in UTF-8, UTF-16 or Latin-1";
-}
+use super::error::{ContentError, NotText};
 
 /// The text in `bytes`: UTF-8, UTF-16 (by its mark, or by its zeros) or else Latin-1, without a byte order mark, its
 /// lines ended by line feeds.
@@ -129,10 +117,10 @@ fn numbered_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
 /// The fields of a line, without blanks around them. A field in quotation marks may hold separators, and quotation
 /// marks doubled.
 pub fn fields(line: &str, separator: char) -> impl Iterator<Item = Cow<'_, str>> {
-    let mut rest = Some(line);
+    let (mut rest, has_marks) = (Some(line), line.contains('"'));
     iter::from_fn(move || {
         let text = rest?;
-        let end = field_end(text, separator);
+        let end = if has_marks { field_end(text, separator) } else { text.find(separator) };
         rest = end.map(|end| &text[end + separator.len_utf8()..]);
         Some(unquoted(text[..end.unwrap_or(text.len())].trim()))
     })

@@ -57,7 +57,7 @@ fn no_fault_is_found_in_the_shipped_scenes() {
 fn no_fault_is_found_with_every_output_group_and_with_none() {
     let folder = scratch("fmpy-groups");
     let groups: Vec<_> = OutputGroup::ALL.into_iter().filter(|group| *group != OutputGroup::Carrier).collect();
-    let groups: Vec<_> = groups.into_iter().map(OutputGroup::name).collect();
+    let groups: Vec<_> = groups.into_iter().map(OutputGroup::word).collect();
     validate(&pack(&scene_with_groups(&folder, &groups), &folder));
     validate(&pack(&scene_with_groups(&folder, &[]), &folder));
 }
@@ -67,7 +67,7 @@ fn no_fault_is_found_with_every_output_group_and_with_none() {
 fn no_fault_is_found_with_bodies() {
     let folder = scratch("fmpy-bodies");
     let scene = fs::read_to_string(root().join("tests/reference/load/bouncing-load.toml")).unwrap();
-    let all = OutputGroup::ALL.map(|group| format!("\"{}\"", group.name())).join(", ");
+    let all = OutputGroup::ALL.map(|group| format!("\"{}\"", group.word())).join(", ");
     let asked =
         "outputs = [\"forces\", \"carrier\", \"dissipation\", \"friction\", \"contact\", \"energy\", \"solver\"]";
     assert!(scene.contains(asked));
@@ -132,7 +132,7 @@ fn a_missing_library_is_named_with_the_way_to_build_it() {
         .unwrap();
     let text = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1));
-    assert!(text.contains("nowhere/libasperity.so") && text.contains("cargo rustc"), "{text}");
+    assert!(text.contains("nowhere/libasperity.so") && text.contains("cargo build"), "{text}");
 }
 
 /// The library's own results, to rounding: both take the same steps.

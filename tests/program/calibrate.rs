@@ -222,7 +222,7 @@ fn what_cannot_be_fitted_is_refused_and_says_why() {
     refused(
         &["friction.coulomb=0..1"],
         &[],
-        "measured.csv:1: columns = `speed [m/s], pressure [Pa]`: expected columns",
+        "measured.csv:1: columns = \"speed [m/s], pressure [Pa]\": expected columns",
     );
     // A scene that names files goes where it finds them.
     let road = road(&folder, "road.toml", TRUTH);

@@ -4,10 +4,11 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Stdout, Write};
 use std::path::{Path, PathBuf};
 
+use asperity_study::files;
 use tempfile::{Builder, NamedTempFile, TempDir};
 
-use super::files::{FileError, is_standard_output, print, read};
 use super::interrupt::Leftover;
+use super::output::{FileError, STANDARD_OUTPUT, is_standard_output};
 
 /// An output as it is being written. It takes its place when it is [finished](Self::finish); where the run ends before,
 /// whatever was there is still there.
@@ -129,6 +130,17 @@ fn permissions(before: Option<&fs::Metadata>) -> fs::Permissions {
     before.map_or_else(|| fs::Permissions::from_mode(0o666), fs::Metadata::permissions)
 }
 
+/// Writes a file at once: what is at `path` is the one before or this one, whole.
+pub(crate) fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), FileError> {
+    let mut draft = Draft::create(path)?;
+    draft.write_all(content.as_ref()).map_err(FileError::io("write", path))?;
+    draft.finish()
+}
+
+pub(crate) fn print(text: &str) -> Result<(), FileError> {
+    write(Path::new(STANDARD_OUTPUT), text)
+}
+
 /// Where a table is that is continued: in its place or, for standard output, in a folder of its own until it is whole.
 #[derive(Debug)]
 pub(crate) struct TablePlace {
@@ -148,6 +160,6 @@ impl TablePlace {
 
     /// Prints the whole table where it is for standard output.
     pub(crate) fn finish(self) -> Result<(), FileError> {
-        if self.folder.is_some() { print(&String::from_utf8_lossy(&read(&self.path)?)) } else { Ok(()) }
+        if self.folder.is_some() { print(&String::from_utf8_lossy(&files::bytes(&self.path)?)) } else { Ok(()) }
     }
 }

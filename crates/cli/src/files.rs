@@ -7,62 +7,13 @@ use asperity::patch::Patch;
 use asperity::scene::Scene;
 
 use super::draft::Draft;
+pub(crate) use super::draft::{print, write};
+pub use super::output::FileError;
+pub(crate) use super::output::{is_standard_output, named};
 use super::terminal::{LabelledLine, labelled, note, warn};
+use asperity_study::files;
 pub(crate) use asperity_study::files::name_of;
-use asperity_study::files::{self, ReadError, reason};
-use asperity_study::settings::{OverrideError, Setting};
-
-/// A file cannot be read or written, or its scene is invalid.
-#[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say what they are")]
-pub enum FileError {
-    #[error(transparent)]
-    Read(ReadError),
-    #[error("--set: {0}")]
-    Set(OverrideError),
-    #[error("cannot {action} {}: {}", named(.path), reason(.path, .source))]
-    Io { action: &'static str, path: PathBuf, source: io::Error },
-    #[error("will not write {}: it is read or written here already", named(.path))]
-    Overwrites { path: PathBuf },
-    #[error("cannot write {}: {holder} writes it; wait for that, or name another -o", .path.display())]
-    Locked { path: PathBuf, holder: String },
-    #[error("cannot draw {}: {message}", .path.display())]
-    Picture { path: PathBuf, message: String },
-}
-
-impl FileError {
-    /// For `map_err`: `action` ("read", "write") on `path` failed.
-    pub(crate) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self + use<> {
-        let path = path.to_owned();
-        move |source| Self::Io { action, path, source }
-    }
-
-    pub(crate) fn picture(path: &Path, error: &dyn std::error::Error) -> Self {
-        Self::Picture { path: path.to_owned(), message: error.to_string() }
-    }
-}
-
-impl<E: Into<ReadError>> From<E> for FileError {
-    fn from(error: E) -> Self {
-        match error.into() {
-            ReadError::Set(error) => Self::Set(error),
-            error => Self::Read(error),
-        }
-    }
-}
-
-/// What stands for standard output as the name of an output.
-const STANDARD_OUTPUT: &str = "-";
-
-/// Whether an output goes to standard output.
-pub(crate) fn is_standard_output(path: &Path) -> bool {
-    path == Path::new(STANDARD_OUTPUT)
-}
-
-/// An output's name in messages.
-pub(crate) fn named(path: &Path) -> String {
-    if is_standard_output(path) { "standard output".into() } else { path.display().to_string() }
-}
+use asperity_study::settings::Setting;
 
 /// The picture beside a table: the one named, else one with the table's name; none of a table on standard output.
 pub(crate) fn picture_beside(table: &Path, named: Option<&PathBuf>) -> Option<PathBuf> {
@@ -147,17 +98,6 @@ pub(crate) fn check_outputs<'a>(
 
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     Ok(files::bytes(path)?)
-}
-
-/// Writes a file at once: what is at `path` is the one before or this one, whole.
-pub(crate) fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), FileError> {
-    let mut draft = Draft::create(path)?;
-    draft.write_all(content.as_ref()).map_err(FileError::io("write", path))?;
-    draft.finish()
-}
-
-pub(crate) fn print(text: &str) -> Result<(), FileError> {
-    write(Path::new(STANDARD_OUTPUT), text)
 }
 
 /// Prints what is said of `outputs`: to standard error where one of them has standard output for itself.

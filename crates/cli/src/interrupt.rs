@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 
-use super::files::is_standard_output;
+use super::output::is_standard_output;
 use super::terminal::note;
 
 /// Exit status of a program that was stopped: 128 and the number of SIGINT.

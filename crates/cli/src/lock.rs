@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use same_file::Handle;
 
-use super::files::FileError;
 use super::interrupt::{Leftover, command_line};
+use super::output::FileError;
 use super::terminal::warn;
 
 /// Held while a table is written. It is a file beside the table, with the holder's name in it, for the table itself is

@@ -8,9 +8,9 @@ use asperity::outputs::{Accounts, Output, Snapshot, Variable, variable};
 use asperity::scene::{Method, Scene};
 use asperity::simulation::Simulation;
 
-use super::figure::with_prefix;
 use super::terminal::{LabelledLine, labelled};
 use asperity_study::decimals::rounded;
+use asperity_study::decimals::with_prefix;
 
 /// Follows the rows of a run.
 #[derive(Debug)]

@@ -9,12 +9,13 @@ use asperity::simulation::{MethodSwitch, SimulationError};
 use indicatif::ProgressBar;
 
 use super::cli::Simulate;
-use super::elements::{ArraysError, ElementHistory, Span};
-use super::figure::{Figure as _, LayerPicture, TimeHistory, write_film};
+use super::elements::{ArraysError, write_arrays, write_page};
+use super::figure::{Figure as _, LayerPicture, TimeHistory, write_row};
 use super::files::{FileError, check_outputs, ends_in, load, named, print_beside};
 use super::result_file::ResultWriter;
 use super::run_summary::RunSummary;
 use super::terminal::{LabelledLine, bar, is_quiet, is_verbose, lines, note, warn};
+use asperity_study::elements::{ElementHistory, Span};
 use asperity_study::runner::{InputSample, Rows, Runner};
 
 /// `asperity simulate` failed.
@@ -79,10 +80,10 @@ fn check_end(command: &Simulate, end: f64) -> Result<(), SimulateError> {
 /// Writes what shows the masses.
 fn write_elements(elements: &ElementHistory, command: &Simulate) -> Result<(), SimulateError> {
     if let Some(path) = &command.elements {
-        elements.write_arrays(path)?;
+        write_arrays(elements, path)?;
     }
     match &command.animate {
-        Some(path) if ends_in(path, "html") => elements.write_page(path)?,
+        Some(path) if ends_in(path, "html") => write_page(elements, path)?,
         Some(path) => write_frames(elements, path)?,
         None => (),
     }
@@ -96,12 +97,12 @@ fn write_elements(elements: &ElementHistory, command: &Simulate) -> Result<(), S
     Ok(())
 }
 
-/// Animates the masses in pictures, of which there are at most as many as one likes to wait for.
+/// Draws the masses in a row of pictures, of which there are at most as many as one likes to wait for.
 fn write_frames(elements: &ElementHistory, path: &Path) -> Result<(), FileError> {
     const MOST: usize = 100;
     let rows = elements.evenly_in_time(MOST);
     let span = Span::over(elements, &rows);
-    write_film(rows.len(), |i| LayerPicture::in_film(elements, rows[i], span), path)
+    write_row(rows.len(), |i| LayerPicture::in_film(elements, rows[i], span), path)
 }
 
 /// Runs the scene; what the run comes to.

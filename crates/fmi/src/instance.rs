@@ -120,10 +120,10 @@ impl Instance {
         stop: Option<f64>,
     ) -> Result<(), Error> {
         let clock = Clock::new(start, stop)?;
-        let has_tolerance = self.state.parameters.definition().parameters().contains(&Parameter::RelativeTolerance);
+        let has_tolerance = self.state.parameters.definition().parameters().contains(&Parameter::RELATIVE_TOLERANCE);
         if let Some(tolerance) = tolerance.filter(|_| has_tolerance).and_then(|given| self.usable_tolerance(given)) {
             let parameters = Arc::make_mut(&mut self.state.parameters);
-            parameters.set(Parameter::RelativeTolerance, Value::Real(tolerance))?;
+            parameters.set(Parameter::RELATIVE_TOLERANCE, Value::Real(tolerance))?;
         }
         self.state.clock = clock;
         self.state.discard_start();

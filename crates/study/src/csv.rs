@@ -76,6 +76,13 @@ pub struct Field {
     pub value: f64,
 }
 
+impl Field {
+    /// A number.
+    pub fn real(value: f64) -> Self {
+        Self { kind: OutputType::Real, value }
+    }
+}
+
 impl Display for Field {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self.kind {

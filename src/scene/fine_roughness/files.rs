@@ -141,13 +141,13 @@ mod tests {
     use super::*;
 
     /// The points, and how many notes say what is assumed; else the line and the message.
-    type Found = Result<(Vec<[f64; 2]>, usize), (Option<usize>, String)>;
+    type PointsRead = Result<(Vec<[f64; 2]>, usize), (Option<usize>, String)>;
 
-    fn spectrum(text: &str) -> Found {
+    fn spectrum(text: &str) -> PointsRead {
         read_with(text, Convention::Persson)
     }
 
-    fn read_with(text: &str, convention: Convention) -> Found {
+    fn read_with(text: &str, convention: Convention) -> PointsRead {
         let found = read_spectrum(text.as_bytes(), convention);
         let found = found.map_err(|error| (error.line, error.to_string()));
         found.map(|(spectrum, notes)| (spectrum.points().to_vec(), notes.iter().filter(|note| note.assumed).count()))
@@ -225,10 +225,14 @@ mod tests {
                 "unit of column 1 (q [1/furlong]) = \"1/furlong\": expected one of 1/m",
             ),
             ("q [1/m],C1\n1,1\n2,1\n", 1, "unit of column 2 (C1): expected it beside the name: one of m³, mm³"),
-            ("x,y\n1,1\n2,1\n", 1, "columns = `x, y`: expected a wave number and a power spectrum"),
+            ("x,y\n1,1\n2,1\n", 1, "columns = \"x, y\": expected a wave number and a power spectrum"),
             ("1,2,3\n2,3,4\n", 1, "columns = 3: expected a wave number and a power spectrum"),
             ("log q [1/m],C [m^4]\n1,1\n2,1\n", 1, "column 1 (log q [1/m]): expected numbers, not their logarithms"),
-            ("# all lengths in 1/mm\n1,1\n2,1\n", 1, "unit = `all lengths in 1/mm`: expected the unit beside the name"),
+            (
+                "# all lengths in 1/mm\n1,1\n2,1\n",
+                1,
+                "unit = \"all lengths in 1/mm\": expected the unit beside the name",
+            ),
         ];
         for (text, line, message) in cases {
             let (found, error) = spectrum(text).err().unwrap_or_default();
@@ -266,7 +270,7 @@ mod tests {
                 1,
                 "unit of column 2 (storage [MPa]) = \"MPa\": expected one of",
             ),
-            ("strain,storage\n1,1\n2,1\n", 1, "columns = `strain, storage`: expected strain [1] or [%]"),
+            ("strain,storage\n1,1\n2,1\n", 1, "columns = \"strain, storage\": expected strain [1] or [%]"),
         ] {
             let error = read_softening(text.as_bytes()).err();
             let (found, error) = error.map(|error| (error.line, error.to_string())).unwrap_or_default();

@@ -16,7 +16,7 @@ use spectrum::isotropic;
 pub(super) use files::{Convention, read_softening, read_spectrum};
 pub use softening::{ModulusFactors, Softening, SofteningRow};
 pub use spectrum::RoughnessSpectrum;
-pub use split::SplitSurface;
+pub use split::{SplitError, SplitSurface};
 
 /// The waves that the profile lacks, and how contacts rub on them; in the material form alone.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -142,6 +142,12 @@ impl Scene {
     pub fn fine_height(&self) -> f64 {
         let square = |band: &FineBand| band.gradient_square / band.wave_number.powi(2);
         self.fine_bands().iter().map(square).sum::<f64>().sqrt()
+    }
+
+    /// v_c of the waves, m/s; `None` where there are none, or where that of the shear strength counts.
+    pub(super) fn own_fine_creep_speed(&self) -> Option<f64> {
+        let of_shear = self.friction.as_ref().is_some_and(|friction| friction.rate_shear.is_some());
+        self.fine.as_ref().filter(|fine| fine.waves.has_bands() && !of_shear).map(|_| self.fine_creep_speed())
     }
 
     /// v_c, m/s at the reference temperature: slip on the roughness below the profile is no slower.

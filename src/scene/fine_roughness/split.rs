@@ -16,6 +16,20 @@ pub struct SplitSurface {
     pub finer: RoughnessSpectrum,
 }
 
+/// Why a line cannot be split at a wavelength: what is expected.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum SplitError {
+    /// The line is too short; the longest wavelength, m.
+    #[error("at most {0:?} m, a quarter of the line")]
+    TooLong(f64),
+    /// The line is too coarse; the shortest wavelength, m.
+    #[error("at least {0:?} m, four steps of the line")]
+    TooShort(f64),
+    /// It has no spectrum.
+    #[error("a line of more points")]
+    TooFewPoints,
+}
+
 /// The finer waves begin where this part of their power is taken from the profile.
 const LEAST_SHARE: f64 = 0.05;
 /// A line must be this many times as long as where it is split.
@@ -29,18 +43,18 @@ impl Surface {
     /// Splits the line at a wavelength `split` (m) by the filter of [`smoothed`](Self::smoothed).
     ///
     /// # Errors
-    /// What is expected, where the line is too short or too coarse for that.
-    pub fn split(&self, split: f64) -> Result<SplitSurface, String> {
+    /// [`SplitError`] where the line is too short or too coarse for that.
+    pub fn split(&self, split: f64) -> Result<SplitSurface, SplitError> {
         let x = self.x();
         let length = x[x.len() - 1] - x[0];
         let step = length / (x.len() - 1) as f64;
         if split > length / LENGTHS * (1.0 + ROUNDING) {
-            return Err(format!("at most {:?} m, a quarter of the line", length / LENGTHS));
+            return Err(SplitError::TooLong(length / LENGTHS));
         }
         if split < STEPS * step * (1.0 - ROUNDING) {
-            return Err(format!("at least {:?} m, four steps of the line", STEPS * step));
+            return Err(SplitError::TooShort(STEPS * step));
         }
-        let whole = Spectrum::new(self).isotropic().ok_or("a line of more points")?;
+        let whole = Spectrum::new(self).isotropic().ok_or(SplitError::TooFewPoints)?;
         Ok(SplitSurface { profile: self.smoothed(split), finer: whole.finer_than(split, 2.0 * step) })
     }
 }
@@ -112,8 +126,9 @@ mod tests {
     #[test]
     fn a_split_fits_the_line() {
         let line = ROUGH.surface(None);
-        assert_eq!(line.split(0.0251).err().as_deref(), Some("at most 0.025 m, a quarter of the line"));
-        let coarse = line.split(3.9e-5).err().unwrap_or_default();
+        let refused = |at: f64| line.split(at).map_or_else(|error| error.to_string(), |_| String::new());
+        assert_eq!(refused(0.0251), "at most 0.025 m, a quarter of the line");
+        let coarse = refused(3.9e-5);
         assert!(coarse.starts_with("at least 4") && coarse.ends_with(" m, four steps of the line"), "{coarse}");
         assert!(line.split(0.025).is_ok() && line.split(4e-5).is_ok());
         // A level line has no finer waves.

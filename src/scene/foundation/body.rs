@@ -2,7 +2,7 @@
 
 /// The body that a layer stands for: what lies below its surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Body {
+pub enum ElasticBody {
     /// An elastic half-plane.
     HalfPlane,
     /// A layer bonded to a rigid base.
@@ -17,7 +17,7 @@ pub enum Body {
 /// Below this a = qH the difference sinh 2a - 2a is taken from its series.
 const THIN: f64 = 0.01;
 
-impl Body {
+impl ElasticBody {
     /// K(q), 1/m: a pressure wave p_q of the wave number q (rad/m) moves the surface along its normal by p_q/(M K(q)),
     /// with the plane modulus M, in plane strain (K. L. Johnson, *Contact Mechanics*, 1985, section 13.2).
     pub fn normal(self, wave_number: f64) -> f64 {
@@ -62,8 +62,8 @@ fn tangential_numerator(a: f64, kappa: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn bonded(thickness: f64, poisson_ratio: f64) -> Body {
-        Body::Bonded { thickness, poisson_ratio }
+    fn bonded(thickness: f64, poisson_ratio: f64) -> ElasticBody {
+        ElasticBody::Bonded { thickness, poisson_ratio }
     }
 
     #[track_caller]
@@ -76,8 +76,8 @@ mod tests {
         for poisson_ratio in [0.0, 0.3, 0.5] {
             let body = bonded(1.0, poisson_ratio);
             // What is left of the base is e^(-2a).
-            near(body.normal(40.0), Body::HalfPlane.normal(40.0), 1e-15);
-            near(body.tangential(1e4), Body::HalfPlane.tangential(1e4), 1e-15);
+            near(body.normal(40.0), ElasticBody::HalfPlane.normal(40.0), 1e-15);
+            near(body.tangential(1e4), ElasticBody::HalfPlane.tangential(1e4), 1e-15);
         }
     }
 

@@ -8,7 +8,7 @@ mod waves;
 
 use serde::Serialize;
 
-pub use body::Body;
+pub use body::ElasticBody;
 pub use fit::Stiffness;
 pub use quality::Quality;
 pub use waves::{Wave, Waves};
@@ -69,14 +69,14 @@ impl Foundation {
         Some(Self::fitted(self.waves.clone(), layer.body(material)?, material.poisson_ratio))
     }
 
-    fn fitted(waves: Waves, body: Body, poisson_ratio: f64) -> Self {
+    fn fitted(waves: Waves, body: ElasticBody, poisson_ratio: f64) -> Self {
         let normal = Stiffness::fitted(&waves, |q| body.normal(q));
         let tangential = match body {
-            Body::HalfPlane => normal,
-            Body::Bonded { .. } => Stiffness::fitted(&waves, |q| body.tangential(q)),
+            ElasticBody::HalfPlane => normal,
+            ElasticBody::Bonded { .. } => Stiffness::fitted(&waves, |q| body.tangential(q)),
         };
         let depth = waves.depth(poisson_ratio);
-        let depth = if let Body::Bonded { thickness, .. } = body { depth.min(thickness) } else { depth };
+        let depth = if let ElasticBody::Bonded { thickness, .. } = body { depth.min(thickness) } else { depth };
         Self { normal, tangential, depth, waves }
     }
 
@@ -108,11 +108,11 @@ impl Waves {
 impl Layer {
     /// The body that the links stand for: springs are held against a layer of their thickness. `None` in the direct
     /// form.
-    pub fn body(&self, material: &Material) -> Option<Body> {
+    pub fn body(&self, material: &Material) -> Option<ElasticBody> {
         match self.foundation? {
-            FoundationKind::HalfSpace => Some(Body::HalfPlane),
+            FoundationKind::HalfSpace => Some(ElasticBody::HalfPlane),
             FoundationKind::Springs | FoundationKind::Layer => {
-                Some(Body::Bonded { thickness: self.thickness?, poisson_ratio: material.poisson_ratio })
+                Some(ElasticBody::Bonded { thickness: self.thickness?, poisson_ratio: material.poisson_ratio })
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{Body, Stiffness, Waves};
+use super::{ElasticBody, Stiffness, Waves};
 use crate::scene::{LinkKind, Scene};
 
 /// The stiffness of the links over that of the surface, r(q), over the waves of a scene.
@@ -23,7 +23,7 @@ pub struct Quality {
 
 impl Quality {
     /// How the `stiffness` of the links lies to that of the `body` along the direction of `kind`.
-    fn new(waves: &Waves, stiffness: Stiffness, body: Body, kind: LinkKind) -> Option<Self> {
+    fn new(waves: &Waves, stiffness: Stiffness, body: ElasticBody, kind: LinkKind) -> Option<Self> {
         let ratio = |q: f64| stiffness.at_wave_number(waves, q) / body.stiffness_along(kind, q);
         let carrying = waves.carrying();
         let (first, last) = (carrying.first()?.wave_number, carrying.last()?.wave_number);
@@ -65,7 +65,7 @@ impl Stiffness {
     }
 }
 
-impl Body {
+impl ElasticBody {
     fn stiffness_along(self, kind: LinkKind, wave_number: f64) -> f64 {
         if kind.is_along_x() { self.tangential(wave_number) } else { self.normal(wave_number) }
     }

@@ -1,14 +1,15 @@
 //! The keys of a patch file.
 
-use super::{Allowed, NumberRange, POSITIVE, Word, words};
-use super::{DEPENDENCIES, INTEGERS, Key, PATH, key, number, numbers, table, whole, word};
+use super::scene_file::{DEPENDENCIES, INTEGERS};
+use super::{Allowed, Key, Kinds, PATH, key, kinds, number, numbers, table, whole, word};
 use crate::scene::patch_file::{MAX_ELEMENTS, PatchGroup, TableExtrapolation};
-use crate::scene::{Extrapolation, Unit, values::ANY};
+use crate::scene::values::{ANY, NumberRange, POSITIVE, Word, words};
+use crate::scene::{Extrapolation, Unit};
 
 pub(in crate::scene) const PATCH_ROOT: &[Key] = &[
     key("name", Allowed::Text("a text"), "Name of the patch").required(),
     table("table", TABLE).required(),
-    table("patch", &[SHAPE]).required(),
+    key("patch", Allowed::Kinds(&[SHAPE], kinds::<ShapeKind>), "").required(),
     table("input", &[EXTRAPOLATION]),
     table("solver", SOLVER),
     table("fmu", FMU),
@@ -44,9 +45,8 @@ impl Word for ShapeKind {
         &[("flat", Self::Flat), ("cylinder", Self::Cylinder), ("points", Self::Points)];
 }
 
-impl ShapeKind {
-    /// The keys of a face of this shape.
-    pub(in crate::scene) fn keys(self) -> &'static [Key] {
+impl Kinds for ShapeKind {
+    fn keys(self) -> &'static [Key] {
         match self {
             Self::Flat => FLAT,
             Self::Cylinder => CYLINDER,

@@ -83,10 +83,10 @@ fn gives_values_units_and_descriptions() {
     assert_eq!(scene.parameter(time.unwrap()), Value::Real(1e-5));
     assert_eq!(time.unwrap().unit(), Unit::Second);
     assert_eq!(damping.unwrap().unit(), Unit::NewtonSecondPerMeter);
-    assert_eq!(scene.parameter(Parameter::MaxSteps), Value::Integer(10_000_000));
-    assert_eq!(scene.parameter(Parameter::Method), Value::Text("event".into()));
-    assert_eq!(scene.parameter(Parameter::Initial), Value::Text("relaxed".into()));
-    assert_eq!(scene.parameter(Parameter::Extrapolation), Value::Text("linear".into()));
+    assert_eq!(scene.parameter(Parameter::new("solver.max_steps")), Value::Integer(10_000_000));
+    assert_eq!(scene.parameter(Parameter::METHOD), Value::Text("event".into()));
+    assert_eq!(scene.parameter(Parameter::INITIAL), Value::Text("relaxed".into()));
+    assert_eq!(scene.parameter(Parameter::EXTRAPOLATION), Value::Text("linear".into()));
     assert!(scene.parameters().iter().all(|parameter| !parameter.description().is_empty()));
 }
 
@@ -97,8 +97,8 @@ fn sets_every_parameter() {
         let other = match (parameter, scene.parameter(parameter)) {
             (_, Value::Real(number)) => Value::Real(0.01 + 0.5 * number),
             (_, Value::Integer(number)) => Value::Integer(number - 1),
-            (Parameter::Initial, _) => Value::Text("undeformed".into()),
-            (Parameter::Extrapolation, _) => Value::Text("hold".into()),
+            (Parameter::INITIAL, _) => Value::Text("undeformed".into()),
+            (Parameter::EXTRAPOLATION, _) => Value::Text("hold".into()),
             (_, text) => text,
         };
         scene.set_parameter(parameter, other.clone()).unwrap();
@@ -110,7 +110,7 @@ fn sets_every_parameter() {
 fn the_absolute_tolerance_follows_until_it_is_set() {
     let mut scene = scene();
     let height = 2e-5 + 2e-6;
-    let absolute = |scene: &Scene| match scene.parameter(Parameter::AbsoluteTolerance) {
+    let absolute = |scene: &Scene| match scene.parameter(Parameter::new("solver.absolute_tolerance")) {
         Value::Real(number) => number,
         other => unreachable!("{other}"),
     };
@@ -200,11 +200,11 @@ fn refuses_what_the_reader_refuses() {
 fn refuses_the_wrong_type() {
     let mut scene = scene();
     for value in [Value::Integer(1), Value::Text("1".into())] {
-        let message = scene.set_parameter(Parameter::Mass, value).unwrap_err().to_string();
+        let message = scene.set_parameter(Parameter::new("layer.mass"), value).unwrap_err().to_string();
         assert!(message.ends_with("expected a number from 1e-30 to 1e30"), "{message}");
     }
-    assert!(scene.set_parameter(Parameter::MaxSteps, Value::Real(1.0)).is_err());
-    assert!(scene.set_parameter(Parameter::Method, Value::Real(1.0)).is_err());
+    assert!(scene.set_parameter(Parameter::new("solver.max_steps"), Value::Real(1.0)).is_err());
+    assert!(scene.set_parameter(Parameter::METHOD, Value::Real(1.0)).is_err());
 }
 
 #[test]
@@ -349,7 +349,7 @@ fn numbers_of_roughness_below_the_profile_are_set() {
         }
     }
     let mut scene = on_fine_roughness(SELF_AFFINE);
-    assert_eq!(scene.parameter(Parameter::FineCreepSpeed), Value::Real(1e-6));
+    assert_eq!(scene.parameter(Parameter::new("surface.fine.creep_speed")), Value::Real(1e-6));
     scene.set_by_name("surface.fine.rms_slope", "0.5").unwrap();
     assert!((scene.fine_gradient() - 0.5).abs() < 1e-12);
 }
@@ -363,4 +363,23 @@ fn wavelengths_that_clash_are_found_once_all_is_set() {
     assert_eq!(told, "surface.fine.longest = 1e-6: expected more than 1e-5 m, the shortest");
     scene.set_by_name("surface.fine.shortest", "1e-7").unwrap();
     assert_eq!(scene.check(), Ok(()));
+}
+
+/// Those that elements, patches and masters use by themselves are keys.
+#[test]
+fn parameters_by_name_have_their_keys() {
+    let constants = [
+        (Parameter::INITIAL, "one of \"relaxed\", \"undeformed\""),
+        (Parameter::TEMPERATURE, "a number from 1e-30 to 1e30"),
+        (Parameter::METHOD, "one of \"event\", \"step\", \"auto\""),
+        (Parameter::RELATIVE_TOLERANCE, "a number from 1e-30 to 0.1"),
+        (Parameter::EXTRAPOLATION, "one of \"linear\", \"hold\""),
+        (Parameter::TABLE_EXTRAPOLATION, "one of \"refuse\", \"hold\""),
+        (Parameter::REFINE, "a whole number from 1 to 1000"),
+        (Parameter::new("patch.backing.normal"), "a number from 1e-30 to 1e30"),
+        (Parameter::new("patch.heat.share"), "a number from 1e-30 to 1.0"),
+    ];
+    for (parameter, allowed) in constants {
+        assert_eq!(parameter.allowed(), allowed, "{}", parameter.path());
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, Tilt};
 use super::{MeasuredSurface, sentinels};
-use crate::scene::{HeightMap, MOST_HEIGHTS, peak_to_valley};
+use crate::scene::{HeightMap, MOST_HEIGHTS, MapError, peak_to_valley};
 use crate::tables::{ContentError, ReadingNote, Unit};
 
 /// An areal measurement: lines along x, one after the other along y.
@@ -97,19 +97,18 @@ impl Areal {
         }
     }
 
-    fn whole(&self, options: &ProfileOptions) -> Result<HeightMap, String> {
+    fn whole(&self, options: &ProfileOptions) -> Result<HeightMap, MapError> {
         // Positions and heights in metres.
         let unit =
             |given: Option<LengthUnit>, own: Option<Unit>| given.map(LengthUnit::unit).or(own).unwrap_or(Unit::ONE);
         let x_unit = if options.spacing.is_empty() { unit(options.x_unit, self.x_unit) } else { Unit::ONE };
         let z_unit = unit(options.z_unit, self.unit);
-        let step = |axis: &str, positions: &[f64]| {
-            even_step(positions).map(|step| x_unit.to_si(step)).ok_or_else(|| format!("even steps along {axis}"))
-        };
+        let step =
+            |axis, positions: &[f64]| even_step(positions).map(|step| x_unit.to_si(step)).ok_or(MapError::Uneven(axis));
         let spacing = [step("x", &self.x)?, step("y", &self.y)?];
         let (nx, ny) = (self.x.len(), self.y.len());
         if self.heights.len() > MOST_HEIGHTS {
-            return Err(format!("a map of up to {MOST_HEIGHTS} heights, not {nx} by {ny}"));
+            return Err(MapError::TooLarge { nx, ny });
         }
         let mut heights = self.known_heights(options.missing)?;
         heights.iter_mut().for_each(|z| *z = z_unit.to_si(*z));
@@ -128,18 +127,16 @@ impl Areal {
     }
 
     /// All heights, as they stand in the file; what is missing is filled along its line, or refused.
-    fn known_heights(&self, missing: Missing) -> Result<Vec<f64>, String> {
+    fn known_heights(&self, missing: Missing) -> Result<Vec<f64>, MapError> {
         let mut all = MeasuredPoints { z: self.heights.clone(), ..MeasuredPoints::default() };
         // Numbers that stand for no height are gaps too; they are counted below.
-        sentinels::take_out(&mut all, Missing::Fill).map_err(|error| error.to_string())?;
+        sentinels::take_out(&mut all, Missing::Fill)?;
         let (mut heights, nx) = (all.z, self.x.len());
         let Some(first) = heights.iter().position(|z| z.is_nan()) else { return Ok(heights) };
         if missing == Missing::Refuse {
             let count = heights.iter().filter(|z| z.is_nan()).count();
             let (line, point) = (first / nx + 1, first % nx + 1);
-            return Err(format!(
-                "a height at each point, or missing = \"fill\": {count} are missing, the first in line {line}, point {point}"
-            ));
+            return Err(MapError::Missing { count, line, point });
         }
         let mut is_whole = true;
         for line in heights.chunks_exact_mut(nx) {
@@ -152,7 +149,7 @@ impl Areal {
         for i in 0..nx {
             let mut column: Vec<f64> = heights.iter().skip(i).step_by(nx).copied().collect();
             if !fill_evenly(&mut column) {
-                return Err("heights, not gaps alone".to_owned());
+                return Err(MapError::OnlyGaps);
             }
             heights.iter_mut().skip(i).step_by(nx).zip(column).for_each(|(z, filled)| *z = filled);
         }

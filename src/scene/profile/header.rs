@@ -13,15 +13,15 @@ const ONE_UNIT: &str = "the header names a unit for one of the two columns alone
 
 /// What a column of a profile may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Axis {
+pub(super) enum ColumnAxis {
     X,
     Y,
     Z,
 }
 
-pub(super) const VOCABULARY: [Words<Axis>; 3] = [
+pub(super) const VOCABULARY: [Words<ColumnAxis>; 3] = [
     Words::new(
-        Axis::X,
+        ColumnAxis::X,
         Dimension::Length,
         "x distance position pos lateral length chainage station abscissa place weg strecke abstand länge laenge location \
          dist xpos mileage",
@@ -29,21 +29,26 @@ pub(super) const VOCABULARY: [Words<Axis>; 3] = [
          stylus x1 the road of",
     ),
     Words::new(
-        Axis::Z,
+        ColumnAxis::Z,
         Dimension::Length,
         "z z2 z3 z4 height heights elevation elev depth profile topography altitude amplitude höhe hoehe tiefe ordinate z1 \
          profil",
         "axis coordinate coord value values roughness raw primary r p w waviness surface data filtered leveled levelled \
          relative mean measured vertical corrected left right achse road of the center centre",
     ),
-    Words::new(Axis::Y, Dimension::Length, "y y1 y2 y3 y4", "axis coordinate coord position pos value values achse"),
+    Words::new(
+        ColumnAxis::Y,
+        Dimension::Length,
+        "y y1 y2 y3 y4",
+        "axis coordinate coord position pos value values achse",
+    ),
 ];
 
 /// The header of a profile.
 #[derive(Debug)]
 pub(super) struct Header<'a> {
     /// The names of the columns, and what these are.
-    pub(super) table: TableHeader<'a, Axis>,
+    pub(super) table: TableHeader<'a, ColumnAxis>,
     /// The units of x and z that lines such as `X-Unit: mm` set.
     pub(super) set: [Option<Unit>; 2],
     /// A line that speaks of a unit, though it is none of names.
@@ -53,12 +58,13 @@ pub(super) struct Header<'a> {
 impl<'a> Header<'a> {
     pub(super) fn read(block: &Block<'a>) -> Self {
         let is_setting = |line: &str| setting(line).is_some();
+        let is_known = |name: &str| Heading::parse(name, &VOCABULARY).is_some();
         let mut named = block.clone();
         named.above.retain(|(_, line)| !is_setting(line));
         let mut table = TableHeader::read(&named, &VOCABULARY, None);
         // Words above such settings name the file, not its columns.
         let is_above = |names: usize| block.above.iter().any(|(line, text)| *line > names && is_setting(text));
-        if table.line.is_some_and(is_above) && table.headings.iter().all(Option::is_none) {
+        if table.line.is_some_and(is_above) && !table.names.iter().any(|name| is_known(name)) {
             (table.names, table.line, table.headings) = (Vec::new(), None, Vec::new());
         }
         if table.names.is_empty() && table.head.units.len() == block.columns {
@@ -100,7 +106,7 @@ impl<'a> Header<'a> {
         if let (None, None, Some(((line, text), unit))) = (x, z, self.stated) {
             let expected =
                 format!("the units beside the names, as in x [{unit}]; or x_unit and z_unit (--unit {unit})");
-            return Err(ContentError::value(Some(line), "units", &format!("`{}`", shortened(text)), &expected));
+            return Err(ContentError::value(Some(line), "units", &format!("\"{}\"", shortened(text)), &expected));
         }
         let Some(x_column) = x_column else {
             raw.notes.push(note(&format!("heights from {}", self.table.label(z_column)), z));
@@ -140,12 +146,16 @@ pub(super) fn note(what: &str, unit: Option<Unit>) -> ReadingNote {
 }
 
 /// Columns that have units but no names: x and z.
-fn unnamed(units: &[Cow<'_, str>]) -> Vec<Option<Heading<Axis>>> {
-    let heading = |(axis, unit): (Axis, &Cow<'_, str>)| {
-        let name = if axis == Axis::X { "x" } else { "z" };
+fn unnamed(units: &[Cow<'_, str>]) -> Vec<Option<Heading<ColumnAxis>>> {
+    let heading = |(axis, unit): (ColumnAxis, &Cow<'_, str>)| {
+        let name = if axis == ColumnAxis::X { "x" } else { "z" };
         Heading::with_unit(name, unit, &VOCABULARY)
     };
-    if units.len() == 2 { [Axis::X, Axis::Z].into_iter().zip(units).map(heading).collect() } else { Vec::new() }
+    if units.len() == 2 {
+        [ColumnAxis::X, ColumnAxis::Z].into_iter().zip(units).map(heading).collect()
+    } else {
+        Vec::new()
+    }
 }
 
 /// Of a line such as `X-Unit: mm` or `unit;um`: the axes, 0 for x and 1 for z, and their unit.

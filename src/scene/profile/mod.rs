@@ -6,7 +6,6 @@
 mod areal;
 mod header;
 mod options;
-mod plain;
 mod roles;
 mod sentinels;
 mod text;
@@ -21,10 +20,10 @@ use std::path::{Path, PathBuf};
 pub use areal::{Areal, line_note};
 pub use options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
 
-use super::HeightMap;
 use super::error::SceneError;
 use super::regular_file::read_file;
 use super::surface::{Coordinate, Surface, check_points, remove_tilt};
+use super::{HeightMap, MapError};
 use crate::tables::{ContentError, ReadingNote, Unit, decode};
 use text::Content;
 
@@ -174,7 +173,7 @@ pub struct MeasuredSurface {
     /// The line along x.
     pub line: MeasuredPoints,
     /// The map, or what is expected of one; `None` of a single line.
-    pub map: Option<Result<HeightMap, String>>,
+    pub map: Option<Result<HeightMap, MapError>>,
 }
 
 /// The formats of files of surfaces that a scene is read with, beside text of columns.
@@ -214,9 +213,9 @@ fn finish(mut raw: MeasuredPoints, options: &ProfileOptions) -> Result<Parsed, C
     }
     check(&mut raw, options.periodic)?;
     let surface = Surface::new(raw.x, raw.z, options.periodic);
-    if let Err(expected) = surface.check_slopes() {
-        return Err(ContentError::value(raw.lines.first().copied(), "points", &closest(&surface), &expected));
-    }
+    surface.check_slopes().map_err(|expected| {
+        ContentError::value(raw.lines.first().copied(), "points", &closest(&surface), &expected.to_string())
+    })?;
     Ok(Parsed { surface, warnings: raw.warnings, notes: raw.notes, extract: None })
 }
 

@@ -1,6 +1,6 @@
 //! Which columns of a profile are x and z: by what is chosen, by their names, or the only two there are.
 
-use super::header::{Axis, Header};
+use super::header::{ColumnAxis, Header};
 use super::options::{ProfileOptions, ThirdColumn};
 use crate::tables::{Block, ContentError, shortened, words};
 
@@ -58,7 +58,7 @@ impl Roles {
         options: &ProfileOptions,
         mark: Option<(usize, ThirdColumn)>,
     ) -> Result<Self, ContentError> {
-        let [x, y, z] = [Axis::X, Axis::Y, Axis::Z].map(|axis| header.table.places(&[axis]));
+        let [x, y, z] = [ColumnAxis::X, ColumnAxis::Y, ColumnAxis::Z].map(|axis| header.table.places(&[axis]));
         if block.columns == 1 {
             return Ok(Self { x: None, y: None, z: 0, mark });
         }
@@ -111,7 +111,7 @@ fn no_spacing(block: &Block<'_>, header: &Header<'_>) -> ContentError {
     let hint = block.above.iter().find(|(_, line)| {
         ["spacing", "step", "increment", "interval"].iter().any(|word| line.to_lowercase().contains(word))
     });
-    let hint = hint.map_or_else(String::new, |(line, text)| format!("; line {line} says `{}`", shortened(text)));
+    let hint = hint.map_or_else(String::new, |(line, text)| format!("; line {line} says \"{}\"", shortened(text)));
     let expected = format!(
         "the distance of the points in m, spacing = 1e-5 (--spacing 1e-5), for {} holds heights without x{hint}",
         if block.columns == 1 { "the only column".into() } else { header.table.label(0) },

@@ -35,7 +35,7 @@ pub(super) fn read(text: &str) -> Option<Result<WrittenSeries<'_>, ContentError>
 fn abaqus_terms<'a>(mut lines: impl Iterator<Item = Line<'a>>) -> Result<Vec<WrittenTerm>, ContentError> {
     let (number, keyword) = lines.next().unwrap_or_default();
     if !keyword.to_uppercase().replace(' ', "").contains("TIME=PRONY") {
-        let given = format!("`{keyword}`");
+        let given = format!("\"{keyword}\"");
         return Err(ContentError::value(
             Some(number),
             "card",

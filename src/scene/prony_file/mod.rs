@@ -275,7 +275,7 @@ mod tests {
             (
                 "*Viscoelastic, time=CREEP TEST DATA\n0.2,0,1\n",
                 1,
-                "card = `*Viscoelastic, time=CREEP TEST DATA`: expected",
+                "card = \"*Viscoelastic, time=CREEP TEST DATA\": expected",
             ),
             ("**E0=1MPa\n*Viscoelastic, time=PRONY\n0.2,1\n", 3, "columns = 2: expected three: g, k, tau"),
             ("**E0=1MPa\n*Viscoelastic, time=PRONY\n2,0,1\n", 3, "modulus = \"2\": expected a share of E_0"),
@@ -302,7 +302,7 @@ mod tests {
                 "unit of column 1 (tau [fortnights]) = \"fortnights\": expected one of s, ms",
             ),
             ("tau [s],E [mPa]\n1,2\n", 1, "unit of column 2 (E [mPa]) = \"mPa\": expected one of Pa, kPa"),
-            ("a,b\n1,2\n", 1, "columns = `a, b`: expected a relaxation time and a modulus"),
+            ("a,b\n1,2\n", 1, "columns = \"a, b\": expected a relaxation time and a modulus"),
             (
                 "g_i,k_i,tau_i\n0.5,0,1\n",
                 1,
@@ -312,8 +312,8 @@ mod tests {
             ("g,tau\n0.5,1\n0.6,2\n", 1, "relative moduli = a sum of 1.1: expected relative moduli"),
             ("1e-3,0.4\n1,0.5\n", 1, "modulus = at most 0.9 in all, without a unit: expected moduli in Pa"),
             ("tau,E\n1e-3,30\n1,20\n", 1, "modulus = at most 50 in all, without a unit: expected moduli in Pa"),
-            ("# times in ms\ntau,E [MPa]\n1,2\n", 1, "unit = `times in ms`: expected the unit beside the name"),
-            ("# units: ms, MPa\n1,2\n", 1, "unit = `units: ms, MPa`: expected the unit beside the name"),
+            ("# times in ms\ntau,E [MPa]\n1,2\n", 1, "unit = \"times in ms\": expected the unit beside the name"),
+            ("# units: ms, MPa\n1,2\n", 1, "unit = \"units: ms, MPa\": expected the unit beside the name"),
             ("tau;E\n1,5;2e6\n2.5;1e6\n", 3, "column 1 (tau) = \"2.5\": expected numbers with decimal points or"),
             ("1\0,2\n", 1, "bytes that are zero: expected text in UTF-8, UTF-16 or Latin-1"),
         ];

@@ -1,39 +1,23 @@
 //! `[carrier]`, and the phases of `[[excitation]]`, whose keys depend on it.
 
-use super::surface::{Found, read_path};
+use super::surface::{Findings, read_path};
 use super::table::{Result, TableReader};
+use crate::scene::keys::At;
 use crate::scene::motion_file;
-use crate::scene::{Axis, CarrierBodies, CarrierBody, CarrierInitial, Force, Path, Phase, Wlf};
+use crate::scene::{Axis, CarrierBodies, CarrierBody, Force, Path, Phase, Scene, Wlf};
 
-pub(super) fn read(table: &mut TableReader<'_>) -> Result<CarrierBodies> {
-    Ok(CarrierBodies { x: table.optional_table("x", read_x)?, z: table.optional_table("z", read_z)? })
-}
-
-fn read_x(table: &mut TableReader<'_>) -> Result<CarrierBody> {
-    Ok(CarrierBody { pull: table.optional_number("pull")?, ..read_body(table)? })
-}
-
-fn read_z(table: &mut TableReader<'_>) -> Result<CarrierBody> {
-    let body = read_body(table)?;
-    let initial = table.optional_choice("initial")?;
-    if initial.is_some()
-        && let Some(entry) = table.entry("start")
-    {
-        return Err(entry.refuse("no such key beside initial"));
+pub(super) fn read(table: &mut TableReader<'_>, scene: &mut Scene) -> Result<()> {
+    for axis in Axis::ALL {
+        table.optional_table(axis.name(), |table| {
+            scene.carrier[axis] = Some(CarrierBody::default());
+            table.fill(scene, At::axis(axis))?;
+            match table.entry("start").filter(|_| table.has("initial")) {
+                Some(entry) => Err(entry.refuse("no such key beside initial")),
+                None => Ok(()),
+            }
+        })?;
     }
-    let initial = initial.unwrap_or(CarrierInitial::Start);
-    Ok(CarrierBody { load: table.optional_number("load")?, initial, ..body })
-}
-
-fn read_body(table: &mut TableReader<'_>) -> Result<CarrierBody> {
-    Ok(CarrierBody {
-        mass: table.number("mass")?,
-        stiffness: table.optional_number("stiffness")?,
-        damping: table.optional_number("damping")?,
-        start: table.optional_number("start")?,
-        start_rate: table.optional_number("start_rate")?,
-        ..CarrierBody::default()
-    })
+    Ok(())
 }
 
 /// The keys of a phase that move the carrier along an axis.
@@ -70,7 +54,7 @@ pub(super) fn read_phases(
     table: &mut TableReader<'_>,
     carrier: &CarrierBodies,
     temperature: TemperatureInput<'_>,
-    found: &mut Found,
+    found: &mut Findings,
 ) -> Result<Vec<Phase>> {
     let Some(entry) = table.entry("file") else { return Ok(vec![read_phase(table, carrier, temperature)?]) };
     let phases = found.read_file(&entry, &read_path(&entry)?, motion_file::read_motion)?;

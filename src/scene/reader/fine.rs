@@ -1,10 +1,10 @@
 //! Reading of the roughness below the profile, `surface.fine`, and what else of a scene must go with it.
 
-use super::surface::{Found, read_path};
+use super::surface::{Findings, read_path};
 use super::table::{Entry, Result, TableReader};
 use crate::scene::fine_roughness::{Convention, read_softening, read_spectrum};
 use crate::scene::keys::SurfaceKind;
-use crate::scene::{FineRoughness, FineWaves, Friction, Material, Softening, Surface};
+use crate::scene::{FineRoughness, FineWaves, Scene, Softening, Surface};
 
 /// The forms: the key by which each is told, the first one that is there, and its other keys.
 const FORMS: [(&str, &[&str]); 5] = [
@@ -24,7 +24,7 @@ const EXPECTED: &str = "hurst, rms_slope, longest and shortest; spectrum, longes
 pub(super) fn read(
     surface_entry: &Entry<'_>,
     surface: Surface,
-    found: &mut Found,
+    found: &mut Findings,
 ) -> Result<(Surface, Option<FineRoughness>)> {
     let mut surface_table = surface_entry.open()?;
     let Some(entry) = surface_table.entry("fine") else { return Ok((surface, None)) };
@@ -61,7 +61,7 @@ fn read_waves(
     table: &mut TableReader<'_>,
     kind: SurfaceKind,
     surface: Surface,
-    found: &mut Found,
+    found: &mut Findings,
 ) -> Result<(Surface, FineWaves)> {
     let Some((form, keys)) = FORMS.into_iter().find(|(name, _)| table.has(name)) else {
         return Err(entry.refuse(EXPECTED));
@@ -103,20 +103,17 @@ fn read_waves(
 }
 
 /// Refuses what does not go with the roughness below the profile in the rest of the scene.
-pub(super) fn check_rest(
-    surface_entry: &Entry<'_>,
-    fine: Option<&FineRoughness>,
-    material: Option<(&Entry<'_>, &Material)>,
-    friction: Option<&Friction>,
-) -> Result<()> {
-    if let Some((key, expected)) = fine.and_then(|fine| fine.misses(friction)) {
+pub(super) fn check_rest(surface_entry: &Entry<'_>, material_entry: Option<&Entry<'_>>, scene: &Scene) -> Result<()> {
+    let fine = scene.fine.as_ref();
+    if let Some((key, expected)) = fine.and_then(|fine| fine.misses(scene.friction.as_ref())) {
         let entry = surface_entry.open()?.required("fine")?;
         return Err(match key {
             Some(key) => entry.open()?.required(key)?.refuse(expected),
             None => entry.refuse(expected),
         });
     }
-    let Some((entry, material)) = material.filter(|(_, material)| material.heat.is_some()) else { return Ok(()) };
+    let material = scene.material.as_ref().filter(|material| material.heat.is_some());
+    let (Some(entry), Some(material)) = (material_entry, material) else { return Ok(()) };
     let heat = entry.open()?.required("heat")?;
     match (fine.map(|fine| fine.waves.has_bands()), material.wlf.is_some()) {
         (None, _) => Err(heat.refuse("no such key without surface.fine, whose waves make the heat")),

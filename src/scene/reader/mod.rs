@@ -8,15 +8,15 @@ mod table;
 
 use std::path::Path as FilePath;
 
-use super::keys::Form;
+use super::keys::{self, At, Form, ROOT};
 use super::prony_file::{ElasticConstants, PronySeries};
 use super::values::Word;
 use super::{
-    ByLink, CarrierBodies, Extrapolation, FmuOptions, Foundation, FoundationKind, Friction, Heat, Initial, Layer, Link,
-    LinkKind, Material, MaxwellElement, OutputGroup, PronyTerm, RateShear, Scene, SceneError, Solver, SurfaceFormats,
-    TextAlone, Wlf, read_text, warnings,
+    CarrierBodies, Extrapolation, FmuOptions, Foundation, FoundationKind, Friction, Heat, Layer, Link, LinkKind,
+    Material, MaxwellElement, OutputGroup, ParameterError, PronyTerm, RateShear, Scene, SceneError, Solver, Surface,
+    SurfaceFormats, TextAlone, Wlf, read_text, warnings,
 };
-use surface::Found;
+use surface::Findings;
 use table::{Entry, Result, Source, TableReader};
 
 /// The most letters of a scene's name.
@@ -59,77 +59,106 @@ impl Scene {
         let document = source.parse()?;
         let document = document.get_ref();
         let form = if document.contains_key("material") { Form::Material } else { Form::Direct };
-        read_scene(TableReader::root(Source { form, ..source }, document))
+        read_scene(TableReader::root(Source { form, ..source }, document, ROOT)?)
     }
 }
 
 fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
-    root.check_keys()?;
-    let mut found = Found::default();
-    let name = read_name(&root.required("name")?)?;
-    let description = root.entry("description").map(|entry| read_description(&entry)).transpose()?;
-    let layer = root.required("layer")?.table(|table| read_layer(table, &mut found))?;
-    let material_entry = root.entry("material");
-    let read_material = |entry: &Entry<'_>| entry.table(|table| read_material(table, &mut found));
-    let material = material_entry.as_ref().map(read_material).transpose()?;
-    let surface_entry = root.required("surface")?;
-    let surface = surface::read(&surface_entry, &mut found)?;
-    let (surface, fine) = fine::read(&surface_entry, surface, &mut found)?;
-    let carrier_entry = root.entry("carrier");
-    let carrier = carrier_entry.as_ref().map(|entry| entry.table(carrier::read)).transpose()?.unwrap_or_default();
-    let friction = root.optional_table("friction", read_friction)?;
-    let material_and_entry = material_entry.as_ref().zip(material.as_ref());
-    fine::check_rest(&surface_entry, fine.as_ref(), material_and_entry, friction.as_ref())?;
-    let solver = root.optional_table("solver", read_solver)?.unwrap_or_default();
-    let wlf = material.as_ref().and_then(|material| material.wlf.as_ref());
-    let read_input = |table: &mut TableReader<'_>| {
-        Ok((read_input(table)?, read_temperature_input(table, wlf.is_some(), solver.reduce)?))
-    };
-    let (extrapolation, temperature_input) = root.optional_table("input", read_input)?.unwrap_or_default();
-    let read_fmu = |table: &mut TableReader<'_>| Ok((read_outputs(table, &carrier)?, read_fmu_options(table)?));
-    let fmu = root.optional_table("fmu", read_fmu)?;
-    let (outputs, fmu) = fmu.unwrap_or_else(|| (default_outputs(), FmuOptions::default()));
-    let temperature = wlf.filter(|_| temperature_input);
-    let excitation =
-        root.tables("excitation", |table| carrier::read_phases(table, &carrier, temperature, &mut found))?.concat();
-    root.finish()?;
-    let Found { files, extracts, warnings, notes } = found;
-    let foundation = material.as_ref().and_then(|material| Foundation::new(&layer, material, &surface));
-    let mut scene = Scene {
-        name,
-        description,
-        layer,
-        material,
-        foundation,
-        surface,
-        fine,
-        carrier,
-        friction,
-        solver,
-        extrapolation,
-        temperature_input,
-        outputs,
-        fmu,
-        excitation,
-        files,
-        extracts,
-        warnings,
-        notes,
-    };
-    let cold = scene.material.as_ref().and_then(warnings::cold_temperatures);
-    let temperature = scene.material.as_ref().and_then(|material| material.wlf).map(|wlf| wlf.temperature);
-    let cold_contacts = temperature.and_then(|temperature| scene.cold_contacts(temperature));
-    let of_contacts = scene.fine_warnings().into_iter().chain(cold_contacts);
-    let of_scene = warnings::other_units(&scene).into_iter().chain(scene.short_profile()).chain(cold);
-    let of_scene = of_scene.chain(scene.foundation_warnings());
-    let warnings: Vec<String> = of_scene.chain(of_contacts).collect();
-    scene.warnings.extend(warnings);
-    if let (Err(error), Some(entry)) = (scene.check_equilibrium(scene.first_load()), carrier_entry) {
-        return Err(SceneError::new(entry.location(), error.name(), error.problem().clone()));
+    let (mut scene, mut found) = (unread_scene(), Findings::default());
+    scene.name = read_name(&root.required("name")?)?;
+    scene.description = root.entry("description").map(|entry| read_description(&entry)).transpose()?;
+    root.required("layer")?.table(|table| read_layer(table, &mut scene, &mut found))?;
+    let material = root.entry("material");
+    if let Some(entry) = &material {
+        entry.table(|table| read_material(table, &mut scene, &mut found))?;
     }
-    match (scene.check(), material_entry) {
+    let surface = root.required("surface")?;
+    let read = surface::read(&surface, &mut found)?;
+    (scene.surface, scene.fine) = fine::read(&surface, read, &mut found)?;
+    let carrier = root.entry("carrier");
+    if let Some(entry) = &carrier {
+        entry.table(|table| carrier::read(table, &mut scene))?;
+    }
+    root.optional_table("friction", |table| read_friction(table, &mut scene))?;
+    fine::check_rest(&surface, material.as_ref(), &scene)?;
+    read_options(&mut root, &mut scene)?;
+    let temperature = wlf(&scene).filter(|_| scene.temperature_input);
+    let phases = |table: &mut TableReader<'_>| carrier::read_phases(table, &scene.carrier, temperature, &mut found);
+    scene.excitation = root.tables("excitation", phases)?.concat();
+    root.finish()?;
+    scene.foundation =
+        scene.material.as_ref().and_then(|material| Foundation::new(&scene.layer, material, &scene.surface));
+    (scene.files, scene.extracts, scene.warnings, scene.notes) =
+        (found.files, found.extracts, found.warnings, found.notes);
+    add_warnings(&mut scene);
+    refuse_at(carrier, scene.check_equilibrium(scene.first_load()))?;
+    refuse_at(material, scene.check())?;
+    Ok(scene)
+}
+
+/// A scene whose file says nothing.
+fn unread_scene() -> Scene {
+    let mut scene = Scene {
+        name: String::new(),
+        description: None,
+        layer: Layer::default(),
+        material: None,
+        foundation: None,
+        surface: Surface::flat(),
+        fine: None,
+        carrier: CarrierBodies::default(),
+        friction: None,
+        solver: Solver::default(),
+        extrapolation: Extrapolation::default(),
+        temperature_input: false,
+        outputs: default_outputs(),
+        fmu: FmuOptions::default(),
+        excitation: Vec::new(),
+        files: Vec::new(),
+        extracts: Vec::new(),
+        warnings: Vec::new(),
+        notes: Vec::new(),
+    };
+    keys::fields().iter().for_each(|row| row.key.set_default(&mut scene, row.at));
+    scene
+}
+
+fn wlf(scene: &Scene) -> Option<&Wlf> {
+    scene.material.as_ref()?.wlf.as_ref()
+}
+
+/// The settings of `[solver]`, `[input]` and `[fmu]`.
+fn read_options(root: &mut TableReader<'_>, scene: &mut Scene) -> Result<()> {
+    root.optional_table("solver", |table| table.fill(scene, At::FIRST))?;
+    root.optional_table("input", |table| {
+        table.fill(scene, At::FIRST)?;
+        scene.temperature_input = read_temperature_input(table, wlf(scene).is_some(), scene.solver.reduce)?;
+        Ok(())
+    })?;
+    root.optional_table("fmu", |table| {
+        scene.outputs = read_outputs(table, &scene.carrier)?;
+        scene.fmu = read_fmu_options(table)?;
+        Ok(())
+    })?;
+    Ok(())
+}
+
+/// Adds what is probably not meant, beside what reading has found.
+fn add_warnings(scene: &mut Scene) {
+    let temperature = wlf(scene).map(|wlf| wlf.temperature);
+    let cold_contacts = temperature.and_then(|temperature| scene.cold_contacts(temperature));
+    let of_scene = warnings::other_units(scene).into_iter().chain(scene.short_profile());
+    let of_scene = of_scene.chain(scene.material.as_ref().and_then(warnings::cold_temperatures));
+    let of_contacts = scene.fine_warnings().into_iter().chain(cold_contacts);
+    let warnings: Vec<String> = of_scene.chain(scene.foundation_warnings()).chain(of_contacts).collect();
+    scene.warnings.extend(warnings);
+}
+
+/// An error of what several keys together say, at the table with them, if it is there.
+fn refuse_at(table: Option<Entry<'_>>, checked: std::result::Result<(), ParameterError>) -> Result<()> {
+    match (checked, table) {
         (Err(error), Some(entry)) => Err(SceneError::new(entry.location(), error.name(), error.problem().clone())),
-        _ => Ok(scene),
+        _ => Ok(()),
     }
 }
 
@@ -150,111 +179,95 @@ fn read_description(entry: &Entry<'_>) -> Result<String> {
     if description.contains(illegal) { Err(entry.refuse_type()) } else { Ok(description.to_owned()) }
 }
 
-fn read_layer(table: &mut TableReader<'_>, found: &mut Found) -> Result<Layer> {
+fn read_layer(table: &mut TableReader<'_>, scene: &mut Scene, found: &mut Findings) -> Result<()> {
+    table.fill(scene, At::FIRST)?;
     let foundation = table.optional_choice("foundation")?.unwrap_or_default();
-    let mut layer = Layer {
-        masses: usize::try_from(table.whole("masses")?).unwrap_or(usize::MAX),
-        spacing: table.number("spacing")?,
-        origin: table.optional_number("origin")?.unwrap_or(0.0),
-        clearance: table.optional_number("clearance")?.unwrap_or(0.0),
-        mass: table.number_of_form("mass")?,
-        foundation: table.is_material().then_some(foundation),
-        thickness: read_thickness(table, foundation)?,
-        width: table.number_of_form("width")?,
-        initial: table.optional_choice("initial")?.unwrap_or(Initial::Relaxed),
-        roughness: Vec::new(),
-        links: ByLink::default(),
-    };
+    scene.layer.foundation = table.is_material().then_some(foundation);
+    check_thickness(table, foundation)?;
     for kind in LinkKind::ALL {
-        layer.links[kind] = table.optional_table(kind.name(), read_link)?;
+        table.optional_table(kind.name(), |table| read_link(table, scene, At::link(kind)))?;
     }
     if let Some(entry) = table.entry("roughness") {
-        layer.roughness = surface::read_roughness(&entry, &layer, found)?;
+        scene.layer.roughness = surface::read_roughness(&entry, &scene.layer, found)?;
     }
-    Ok(layer)
+    Ok(())
 }
 
 /// A half-space has no thickness.
-fn read_thickness(table: &mut TableReader<'_>, foundation: FoundationKind) -> Result<Option<f64>> {
-    if foundation != FoundationKind::HalfSpace {
-        return table.number_of_form("thickness");
+fn check_thickness(table: &mut TableReader<'_>, foundation: FoundationKind) -> Result<()> {
+    if !table.is_material() {
+        return Ok(());
     }
-    match table.entry("thickness") {
+    match table.entry("thickness").filter(|_| foundation == FoundationKind::HalfSpace) {
         Some(entry) => Err(entry.refuse("no such key with foundation = \"half_space\", which has no end")),
-        None => Ok(None),
+        None if foundation == FoundationKind::HalfSpace => Ok(()),
+        None => table.required("thickness").map(|_| ()),
     }
 }
 
-fn read_link(table: &mut TableReader<'_>) -> Result<Link> {
-    Ok(Link {
-        stiffness: table.optional_number("stiffness")?,
-        damping: table.optional_number("damping")?,
-        maxwell: table.tables("maxwell", |table| {
-            Ok(MaxwellElement {
-                stiffness: table.number("stiffness")?,
-                relaxation_time: table.number("relaxation_time")?,
-            })
-        })?,
-    })
+fn read_link(table: &mut TableReader<'_>, scene: &mut Scene, at: At) -> Result<()> {
+    scene.layer.links[at.link] = Some(Link::default());
+    table.fill(scene, at)?;
+    let elements = table.entry("maxwell").map_or_else(|| Ok(Vec::new()), |entry| entry.elements())?;
+    if let Some(link) = &mut scene.layer.links[at.link] {
+        link.maxwell = vec![MaxwellElement::default(); elements.len()];
+    }
+    fill_each(&elements, scene, at)
 }
 
-fn read_material(table: &mut TableReader<'_>, found: &mut Found) -> Result<Material> {
-    let density = table.number("density")?;
-    let (poisson_ratio, equilibrium_modulus) = (table.number("poisson_ratio")?, table.number("equilibrium_modulus")?);
-    let elastic = ElasticConstants { poisson_ratio, equilibrium_modulus };
-    Ok(Material {
-        density,
-        poisson_ratio,
-        equilibrium_modulus,
-        viscosity: table.optional_number("viscosity")?,
-        prony: read_prony(&table.required("prony")?, elastic, found)?,
-        wlf: table.optional_table("wlf", read_wlf)?,
-        heat: table.optional_table("heat", read_heat)?,
-    })
+/// Fills a list, which has its elements.
+fn fill_each(elements: &[Entry<'_>], scene: &mut Scene, at: At) -> Result<()> {
+    let mut numbered = elements.iter().enumerate();
+    numbered.try_for_each(|(index, entry)| entry.table(|table| table.fill(scene, at.element(index))))
 }
 
-fn read_heat(table: &mut TableReader<'_>) -> Result<Heat> {
-    Ok(Heat {
-        conductivity: table.number("conductivity")?,
-        capacity: table.number("capacity")?,
-        share: table.optional_number("share")?.unwrap_or(1.0),
-    })
+fn read_material(table: &mut TableReader<'_>, scene: &mut Scene, found: &mut Findings) -> Result<()> {
+    scene.material = Some(Material::default());
+    table.fill(scene, At::FIRST)?;
+    read_prony(&table.required("prony")?, scene, found)?;
+    table.optional_table("wlf", |table| read_wlf(table, scene))?;
+    table.optional_table("heat", |table| {
+        scene.material.as_mut().map(|material| material.heat.insert(Heat::default()));
+        table.fill(scene, At::FIRST)
+    })?;
+    Ok(())
 }
 
 /// The Prony series, in the scene or in a file.
-fn read_prony(entry: &Entry<'_>, elastic: ElasticConstants, found: &mut Found) -> Result<Vec<PronyTerm>> {
+fn read_prony(entry: &Entry<'_>, scene: &mut Scene, found: &mut Findings) -> Result<()> {
+    let Some(material) = &mut scene.material else { return Ok(()) };
     if !entry.is_text() {
-        return entry.tables(|table| {
-            Ok(PronyTerm { modulus: table.number("modulus")?, relaxation_time: table.number("relaxation_time")? })
-        });
+        let elements = entry.elements()?;
+        material.prony = vec![PronyTerm::default(); elements.len()];
+        return fill_each(&elements, scene, At::FIRST);
     }
-    found.read_file(entry, &surface::read_path(entry)?, |bytes| {
+    let Material { poisson_ratio, equilibrium_modulus, .. } = *material;
+    let elastic = ElasticConstants { poisson_ratio, equilibrium_modulus };
+    material.prony = found.read_file(entry, &surface::read_path(entry)?, |bytes| {
         PronySeries::parse(bytes, elastic).map(|series| (series.terms, series.notes))
-    })
+    })?;
+    Ok(())
 }
 
-fn read_wlf(table: &mut TableReader<'_>) -> Result<Wlf> {
+fn read_wlf(table: &mut TableReader<'_>, scene: &mut Scene) -> Result<()> {
+    scene.material.as_mut().map(|material| material.wlf.insert(Wlf::default()));
+    table.fill(scene, At::FIRST)?;
     let temperature = table.required("temperature")?;
-    let wlf = Wlf {
-        c1: table.number("c1")?,
-        c2: table.number("c2")?,
-        reference_temperature: table.number("reference_temperature")?,
-        temperature: temperature.number()?,
-    };
-    wlf.check().map_err(|error| temperature.error(error.problem().clone()))?;
-    Ok(wlf)
+    let checked = wlf(scene).map_or(Ok(()), Wlf::check);
+    checked.map_err(|error| temperature.error(error.problem().clone()))
 }
 
-fn read_friction(table: &mut TableReader<'_>) -> Result<Friction> {
+fn read_friction(table: &mut TableReader<'_>, scene: &mut Scene) -> Result<()> {
     if let Some(entry) = table.entry("real_area") {
         return Err(entry.refuse(entry.table(fine_in_place)?));
     }
-    Ok(Friction {
-        coulomb: table.optional_number("coulomb")?,
-        shear_force: table.optional_number("shear_force")?,
-        shear_strength: table.optional_number("shear_strength")?,
-        rate_shear: table.optional_table("rate_shear", read_rate_shear)?,
-    })
+    scene.friction = Some(Friction::default());
+    table.fill(scene, At::FIRST)?;
+    table.optional_table("rate_shear", |table| {
+        scene.friction.as_mut().map(|friction| friction.rate_shear.insert(RateShear::default()));
+        table.fill(scene, At::FIRST)
+    })?;
+    Ok(())
 }
 
 /// What says the same as the old key `friction.real_area`.
@@ -275,27 +288,6 @@ fn fine_in_place(table: &mut TableReader<'_>) -> Result<String> {
         _ => "...".into(),
     };
     Ok(format!("surface.fine = {{ {keys} }} in its place"))
-}
-
-fn read_rate_shear(table: &mut TableReader<'_>) -> Result<RateShear> {
-    Ok(RateShear {
-        force: table.number_of_form("force")?,
-        strength: table.number_of_form("strength")?,
-        reference_speed: table.number("reference_speed")?,
-        sharpness: table.number("sharpness")?,
-        creep_speed: table.optional_number("creep_speed")?,
-    })
-}
-
-fn read_solver(table: &mut TableReader<'_>) -> Result<Solver> {
-    let defaults = Solver::default();
-    Ok(Solver {
-        method: table.optional_choice("method")?.unwrap_or(defaults.method),
-        relative_tolerance: table.optional_number("relative_tolerance")?.unwrap_or(defaults.relative_tolerance),
-        absolute_tolerance: table.optional_number("absolute_tolerance")?,
-        max_steps: table.optional_whole("max_steps")?.map(i64::unsigned_abs),
-        reduce: table.optional_number("reduce")?.unwrap_or(defaults.reduce),
-    })
 }
 
 fn read_input(table: &mut TableReader<'_>) -> Result<Extrapolation> {

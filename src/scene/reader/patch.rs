@@ -53,8 +53,7 @@ impl PatchFile {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let source = Source { file, text, form: Form::Direct, formats: &TextAlone };
         let document = source.parse()?;
-        let mut root = TableReader::root(source, document.get_ref());
-        root.use_keys(PATCH_ROOT)?;
+        let mut root = TableReader::root(source, document.get_ref(), PATCH_ROOT)?;
         let name = read_name(&root.required("name")?)?;
         let table_entry = root.required("table")?;
         let mut table = table_entry.open()?;
@@ -106,7 +105,7 @@ struct FaceKeys {
 fn read_face(entry: &Entry<'_>) -> Result<FaceKeys> {
     let mut table = entry.open()?;
     let kind = table.required("shape")?.choice::<ShapeKind>()?;
-    table.use_keys(kind.keys())?;
+    table.use_keys(kind)?;
     let shape = match kind {
         ShapeKind::Flat => FaceShape::Flat(read_grid(&mut table)?),
         ShapeKind::Cylinder => read_cylinder(&mut table)?,

@@ -14,14 +14,14 @@ const ROUNDING: f64 = 1.0e-9;
 
 /// What reading finds beside the values of the scene.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Found {
+pub(super) struct Findings {
     pub(super) files: Vec<PathBuf>,
     pub(super) extracts: Vec<Extract>,
     pub(super) warnings: Vec<String>,
     pub(super) notes: Vec<ReadingNote>,
 }
 
-impl Found {
+impl Findings {
     /// Adds how the file at `path` was read.
     pub(super) fn add_notes(&mut self, path: &FilePath, notes: Vec<ReadingNote>) {
         let named = |note: ReadingNote| ReadingNote { text: format!("{}: {}", path.display(), note.text), ..note };
@@ -58,10 +58,10 @@ impl Found {
 
 /// The surface given by the table `entry`, without the roughness below it; the file that it names, if any, is added to
 /// those `found`.
-pub(super) fn read(entry: &Entry<'_>, found: &mut Found) -> Result<Surface> {
+pub(super) fn read(entry: &Entry<'_>, found: &mut Findings) -> Result<Surface> {
     let mut table = entry.open()?;
     let kind = table.required("kind")?.choice::<SurfaceKind>()?;
-    table.use_keys(kind.keys())?;
+    table.use_keys(kind)?;
     let surface = match kind {
         SurfaceKind::Flat => Surface::flat(),
         SurfaceKind::Sinusoid => read_sinusoid(&mut table)?,
@@ -83,7 +83,7 @@ fn read_sinusoid(table: &mut TableReader<'_>) -> Result<Surface> {
     Ok(Surface::sinusoid(amplitude, wavelength, points))
 }
 
-fn read_self_affine(table: &mut TableReader<'_>, found: &mut Found) -> Result<Surface> {
+fn read_self_affine(table: &mut TableReader<'_>, found: &mut Findings) -> Result<Surface> {
     let length = table.number("length")?;
     let points = table.required("points")?;
     let count = points.whole()?;
@@ -158,7 +158,7 @@ fn read_points(table: &mut TableReader<'_>) -> Result<Surface> {
     Ok(Surface::new(x, z, periodic))
 }
 
-fn read_file(table: &mut TableReader<'_>, found: &mut Found) -> Result<Surface> {
+fn read_file(table: &mut TableReader<'_>, found: &mut Findings) -> Result<Surface> {
     let options = read_options(table)?;
     let entry = table.required("path")?;
     let path = read_path(&entry)?;
@@ -227,7 +227,7 @@ pub(super) fn read_path(entry: &Entry<'_>) -> Result<PathBuf> {
 }
 
 /// The roughness at the masses: given there, or a surface sampled at the masses' positions. A flat one is none.
-pub(super) fn read_roughness(entry: &Entry<'_>, layer: &Layer, found: &mut Found) -> Result<Vec<f64>> {
+pub(super) fn read_roughness(entry: &Entry<'_>, layer: &Layer, found: &mut Findings) -> Result<Vec<f64>> {
     let mut table = entry.open()?;
     let kind = table.required("kind")?.choice::<SurfaceKind>()?;
     match (kind, table.has("x")) {
@@ -238,7 +238,7 @@ pub(super) fn read_roughness(entry: &Entry<'_>, layer: &Layer, found: &mut Found
 }
 
 /// A surface without roughness below it: only the scene's has that.
-fn read_alone(entry: &Entry<'_>, found: &mut Found) -> Result<Surface> {
+fn read_alone(entry: &Entry<'_>, found: &mut Findings) -> Result<Surface> {
     match entry.open()?.entry("fine") {
         Some(fine) => Err(fine.refuse("no such key here: surface has it")),
         None => read(entry, found),
@@ -247,7 +247,7 @@ fn read_alone(entry: &Entry<'_>, found: &mut Found) -> Result<Surface> {
 
 /// `z` without `x`: one height for each mass.
 fn read_heights(table: &mut TableReader<'_>, masses: usize) -> Result<Vec<f64>> {
-    table.use_keys(SurfaceKind::Points.keys())?;
+    table.use_keys(SurfaceKind::Points)?;
     if let Some(entry) = table.entry("periodic") {
         return Err(entry.refuse("no such key for heights at the masses, which have no x"));
     }
@@ -257,7 +257,7 @@ fn read_heights(table: &mut TableReader<'_>, masses: usize) -> Result<Vec<f64>> 
     if heights.len() == masses { Ok(heights) } else { Err(entry.refuse_count(heights.len(), &expected)) }
 }
 
-fn sample(entry: &Entry<'_>, layer: &Layer, found: &mut Found) -> Result<Vec<f64>> {
+fn sample(entry: &Entry<'_>, layer: &Layer, found: &mut Findings) -> Result<Vec<f64>> {
     let surface = read_alone(entry, found)?;
     found.warnings.extend(warnings::short_roughness(layer, &surface));
     let spline = surface.spline();

@@ -6,10 +6,10 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::scene::SurfaceFormats;
 use crate::scene::error::{Location, Problem, SceneError};
-use crate::scene::keys::{self, Allowed, Form, Key};
-use crate::scene::values::{NumberRange, Word, words};
+use crate::scene::keys::{self, Absent, Allowed, At, Field, Form, Key, Kinds};
+use crate::scene::values::{NumberRange, Value, Word, words};
+use crate::scene::{Scene, SurfaceFormats};
 
 pub(super) type Result<T> = std::result::Result<T, SceneError>;
 
@@ -139,6 +139,15 @@ impl<'a> Entry<'a> {
         whole(self.value).filter(|&number| range.holds(number)).ok_or_else(|| self.refuse(range))
     }
 
+    /// The number or the word that its key holds.
+    fn value(&self) -> Result<Value> {
+        match self.key.allowed {
+            Allowed::Number(_) => self.number().map(Value::Real),
+            Allowed::Whole(_) => Ok(Value::Integer(i32::try_from(self.whole()?).unwrap_or(i32::MAX))),
+            _ => self.text().map(|word| Value::Text(word.to_owned())),
+        }
+    }
+
     pub(super) fn flag(&self) -> Result<bool> {
         self.value.as_bool().ok_or_else(|| self.refuse_type())
     }
@@ -224,8 +233,11 @@ fn whole(value: &DeValue<'_>) -> Option<i64> {
 }
 
 impl<'a> TableReader<'a> {
-    pub(super) fn root(source: Source<'a>, table: &'a DeTable<'a>) -> Self {
-        Self { source, path: String::new(), offset: 0, table, keys: keys::ROOT, asked: Vec::new() }
+    /// The table of a whole file, which has these `keys`; they are checked.
+    pub(super) fn root(source: Source<'a>, table: &'a DeTable<'a>, keys: &'static [Key]) -> Result<Self> {
+        let root = Self { source, path: String::new(), offset: 0, table, keys, asked: Vec::new() };
+        root.check_keys()?;
+        Ok(root)
     }
 
     /// Whether the scene has a material.
@@ -233,9 +245,9 @@ impl<'a> TableReader<'a> {
         self.source.form == Form::Material
     }
 
-    /// From now on the table has these keys; they are checked.
-    pub(super) fn use_keys(&mut self, keys: &'static [Key]) -> Result<()> {
-        self.keys = keys;
+    /// From now on the table has the keys of its kind; they are checked.
+    pub(super) fn use_keys(&mut self, kind: impl Kinds) -> Result<()> {
+        self.keys = kind.keys();
         self.check_keys()
     }
 
@@ -288,6 +300,20 @@ impl<'a> TableReader<'a> {
         Some(Entry { source: self.source, path: self.full(key.name), key, value: value.get_ref(), span, offset })
     }
 
+    /// Writes what the table says of the keys that have a field into `scene`, which has the tables around them.
+    pub(super) fn fill(&mut self, scene: &mut Scene, at: At) -> Result<()> {
+        let form = self.source.form;
+        for key in self.keys.iter().filter(|key| key.form.is_none_or(|own| own == form)) {
+            let Some(Field { set, .. }) = key.field else { continue };
+            match self.entry(key.name) {
+                Some(entry) => set(scene, at, &entry.value()?).ok_or_else(|| entry.refuse_type())?,
+                None if key.absent == Absent::Refused => return Err(self.missing(key.name, key.allowed)),
+                None => key.set_default(scene, at),
+            }
+        }
+        Ok(())
+    }
+
     /// The entry of a key, if the table has it.
     pub(super) fn entry(&mut self, name: &'static str) -> Option<Entry<'a>> {
         self.asked.push(name);
@@ -316,11 +342,6 @@ impl<'a> TableReader<'a> {
 
     pub(super) fn optional_number(&mut self, name: &'static str) -> Result<Option<f64>> {
         self.entry(name).map(|entry| entry.number()).transpose()
-    }
-
-    /// The number of a key that a scene of the key's form must have, and no other has.
-    pub(super) fn number_of_form(&mut self, name: &'static str) -> Result<Option<f64>> {
-        if self.key(name).form == Some(self.source.form) { self.number(name).map(Some) } else { Ok(None) }
     }
 
     pub(super) fn whole(&mut self, name: &'static str) -> Result<i64> {

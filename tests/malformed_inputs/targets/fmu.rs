@@ -122,7 +122,7 @@ fn with_all_outputs(text: &str) -> String {
     let base = if text.starts_with("name") { "" } else { EVERYTHING };
     let shown = |group: &&OutputGroup| **group != OutputGroup::Carrier || base.contains("[carrier.");
     let groups: Vec<String> =
-        OutputGroup::ALL.iter().filter(shown).map(|group| format!("'{}'", group.name())).collect();
+        OutputGroup::ALL.iter().filter(shown).map(|group| format!("'{}'", group.word())).collect();
     format!("{text}fmu = {{ outputs = [{}] }}\n{base}", groups.join(", "))
 }
 

@@ -29,7 +29,7 @@ fn run_table(table: Table, goes_beyond: bool) {
     let w = 0.5 * (separations[0] + separations[1]) - table.rest_separation;
     let mut contact = PointContact::new(table);
     if goes_beyond {
-        contact.set_parameter(Parameter::TableExtrapolation, Value::Text("hold".into())).unwrap();
+        contact.set_parameter(Parameter::TABLE_EXTRAPOLATION, Value::Text("hold".into())).unwrap();
     }
     let variables = contact.variables();
     let Ok(mut element) = Element::new(&contact, &Start { w, ..Start::default() }) else { return };

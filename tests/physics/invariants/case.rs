@@ -97,7 +97,7 @@ impl Case {
             .method(&word(&solver.method))
             .tolerances(solver.relative_tolerance, self.scene.absolute_tolerance())
             .set("solver.max_steps", solver.max_steps() as usize)
-            .outputs(&self.scene.outputs.iter().map(|group| group.name()).collect::<Vec<_>>());
+            .outputs(&self.scene.outputs.iter().map(|group| group.word()).collect::<Vec<_>>());
         let text = if layer.roughness.is_empty() { text } else { text.roughness(&layer.roughness) };
         let text = LinkKind::ALL.into_iter().fold(text, |text, kind| link(text, kind, layer.links[kind].as_ref()));
         let text = self.scene.friction.iter().fold(text, friction);

@@ -259,7 +259,7 @@ fn solver(scales: Scales, method: Method) -> impl Strategy<Value = Solver> {
         relative_tolerance,
         absolute_tolerance: Some(relative_tolerance * part * scales.height),
         max_steps: Some(MAX_STEPS),
-        reduce: 0.0,
+        ..Solver::default()
     })
 }
 

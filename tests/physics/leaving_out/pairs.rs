@@ -133,7 +133,7 @@ impl Parts {
         let roughness =
             if self.roughness { format!("roughness = {{ kind = 'points', z = [{zeros}] }}\n") } else { String::new() };
         let friction = self.friction.map_or_else(String::new, |parts| format!("friction = {{ {parts} }}\n"));
-        let groups: Vec<_> = self.outputs.iter().map(|group| format!("'{}'", group.name())).collect();
+        let groups: Vec<_> = self.outputs.iter().map(|group| format!("'{}'", group.word())).collect();
         let text = format!(
             "name = 'pair'\n{friction}fmu = {{ outputs = [{}] }}\n\
              surface = {{ kind = 'sinusoid', amplitude = 1e-5, wavelength = 9.3e-4 }}\n\

@@ -78,7 +78,7 @@ fn patch(name: &str, groups: &str) -> Patch {
 /// The largest difference of each column over its largest value.
 fn errors(name: &str, refine: i32) -> Vec<(String, f64)> {
     let mut patch = patch(name, "");
-    patch.set_parameter(Parameter::Refine, Value::Integer(refine)).unwrap();
+    patch.set_parameter(Parameter::REFINE, Value::Integer(refine)).unwrap();
     let variables = patch.variables();
     let rows = Motion::read(name).follow(&patch, &variables);
     let reference = Table::read(&file(&format!("{name}.csv")));

@@ -1,9 +1,9 @@
 //! The picture of a study: friction and area over the spacing.
 
-use super::table::RunRow;
-use super::verdict::Pair;
-use crate::figure::{Curve, Panel, Stacked, Stroke};
+use asperity_study::converge::{Pair, RunRow};
 use asperity_study::steady::persson::Theory;
+
+use crate::figure::{Curve, Panel, Stacked, Stroke};
 
 /// A curve of Persson's theory: its name, which of the two surfaces, and its value.
 type TheoryCurve = (&'static str, usize, fn(&Theory) -> f64);
@@ -52,7 +52,7 @@ fn hysteresis(runs: &[RunRow]) -> Curve {
     /// Share of the friction coefficient below which two curves look like one.
     const SEEN: f64 = 0.01;
     let of = |run: &RunRow| {
-        let measured = run.outcome.as_ref().ok()?;
+        let measured = run.measured.as_ref()?;
         Some((run.dimensions.spacing, measured.hysteresis, measured.mean.friction))
     };
     let ladder: Vec<_> = runs.iter().filter(|run| run.variant.is_of_ladder()).filter_map(of).collect();

@@ -1,11 +1,11 @@
 //! A study as text: a row for each run, what is left open, and what will do.
 
-use super::table::RunRow;
-use super::variants::Parts;
-use super::verdict::{LargestOpen, Open, Pair, Source, Verdict};
-use crate::terminal::{LabelledLine, labelled, lines};
+use asperity::element::PointStatus;
+use asperity_study::converge::{ConvergenceStudy, Findings, Open, Pair, Parts, RunRow, Source, Verdict, percent};
 use asperity_study::decimals::{decimal, rounded};
 use asperity_study::steady::persson::Theory;
+
+use crate::terminal::{LabelledLine, labelled, lines};
 
 /// Titles of the columns after what is counted.
 const TITLES: [&str; 12] = [
@@ -61,18 +61,20 @@ fn fields(run: &RunRow, change: Option<Pair>) -> Vec<String> {
         dimensions.split.map_or_else(|| "-".into(), number),
         run.fit_rms.map_or_else(String::new, |fit_rms| format!("{fit_rms:.3}")),
     ];
-    let of = |value: fn(&Pair) -> f64| match &run.outcome {
-        Ok(measured) => [
+    let of = |value: fn(&Pair) -> f64| match &run.measured {
+        Some(measured) => [
             number(value(&measured.mean)),
             format!("{:.1e}", value(&measured.error)),
             change.map_or_else(String::new, |change| format!("{:+.1} %", 100.0 * value(&change))),
         ],
-        Err(_) => ["-", "", ""].map(str::to_owned),
+        None => ["-", "", ""].map(str::to_owned),
     };
     fields.extend(of(|pair| pair.friction));
     fields.extend(of(|pair| pair.area));
     fields.push(seconds(run.run_time));
-    fields.extend(run.outcome.as_ref().err().cloned());
+    if let PointStatus::Problem(problem) = &run.status {
+        fields.push(problem.clone());
+    }
     fields
 }
 
@@ -84,25 +86,21 @@ fn seconds(time: f64) -> String {
     format!("{:.*}", if time < 10.0 { 2 } else { 0 }, time)
 }
 
-fn percent(share: f64) -> String {
-    format!("{} %", decimal(rounded(100.0 * share, 2), 1e-3..1e6))
-}
-
-/// Persson's theory, what each source leaves open, the coarsest spacing, and the verdict. `ladder` holds the runs with
-/// the scene's length and seed.
-pub(super) fn judgement(ladder: &[&RunRow], parts: Parts, verdict: &Verdict, error: f64, seeds: Option<u32>) -> String {
+/// Persson's theory, what each source leaves open, the coarsest spacing, and the verdict.
+pub(super) fn judgement(study: &ConvergenceStudy, findings: &Findings) -> String {
+    let (ladder, verdict) = (findings.ladder(), &findings.verdict);
     let mut all: Vec<LabelledLine> = Vec::new();
     all.extend(ladder.last().and_then(|run| hysteresis(run)).map(|line| ("Hysteresis", line)));
     all.extend(labelled("Persson", ladder.last().iter().flat_map(|run| theories(&run.theories))));
-    all.extend(labelled("Open", verdict.open.iter().map(|open| open_line(open, seeds))));
-    all.extend(labelled("Coarsest", coarsest(ladder, parts, verdict, error)));
-    all.push(("Verdict", sentence(verdict, error)));
+    all.extend(labelled("Open", verdict.open.iter().map(|open| open_line(open, study.seeds()))));
+    all.extend(labelled("Coarsest", coarsest(&ladder, study.parts(), verdict, study.header().error)));
+    all.push(("Verdict", verdict.sentence()));
     lines(&all)
 }
 
 /// The part of a run's friction that Persson's theory is of.
 fn hysteresis(run: &RunRow) -> Option<String> {
-    let measured = run.outcome.as_ref().ok()?;
+    let measured = run.measured.as_ref()?;
     let (part, whole) = (number(measured.hysteresis), number(measured.mean.friction));
     Some(format!("{part} of the friction of {whole} at the finest spacing: the part that Persson's theory is of"))
 }
@@ -144,43 +142,4 @@ fn coarsest(ladder: &[&RunRow], parts: Parts, verdict: &Verdict, error: f64) -> 
         )
     };
     [line("friction", verdict.coarsest[0]), line("area", verdict.coarsest[1])]
-}
-
-/// The verdict in a sentence.
-pub(super) fn sentence(verdict: &Verdict, error: f64) -> String {
-    let start = if verdict.is_converged() { "converged" } else { "not converged" };
-    match verdict.largest() {
-        Some(LargestOpen { source, share: Some((quantity, share)) }) => {
-            let against = if share <= error { "within" } else { "more than" };
-            let (name, share, error) = (source.name(), percent(share), percent(error));
-            format!("{start}: {name} leaves most open, {share} of the {quantity}, {against} {error}")
-        }
-        Some(LargestOpen { source, share: None }) => {
-            format!("{start}: what {} leaves open is not known", source.name())
-        }
-        None => start.to_owned(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::verdict::Study;
-    use super::*;
-
-    #[test]
-    fn the_verdict_names_what_leaves_most_open() {
-        let pair = |friction: f64, area: f64| Pair { friction, area };
-        let ladder = vec![pair(0.5, 0.102), pair(0.5, 0.1)];
-        let study = Study { ladder, length: Some(Some(pair(0.5, 0.1))), split: None, seeds: None };
-        assert_eq!(
-            sentence(&Verdict::new(&study, 0.05), 0.05),
-            "converged: spacing leaves most open, 2 % of the area, within 5 %"
-        );
-        assert_eq!(
-            sentence(&Verdict::new(&study, 0.01), 0.01),
-            "not converged: spacing leaves most open, 2 % of the area, more than 1 %"
-        );
-        let study = Study { length: Some(None), ..study };
-        assert_eq!(sentence(&Verdict::new(&study, 0.05), 0.05), "not converged: what length leaves open is not known");
-    }
 }

@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 
 use asperity::outputs::OutputType;
 
-use asperity_study::elements::ElementField;
+use asperity_study::elements::{ElementField, ElementHistory, Instant};
 
-use super::{ElementHistory, Instant};
 use crate::files::{self, FileError};
 use crate::npz::{Array, Values, npz};
 
@@ -20,27 +19,25 @@ pub(crate) enum ArraysError {
     Archive { path: PathBuf, source: zip::result::ZipError },
 }
 
-impl ElementHistory {
-    /// Writes the rows' times, displacements and forces, the fields of the masses with a line for each row, the masses'
-    /// positions at rest, the area that each stands for where the scene gives it, and the data points of the profile.
-    pub(crate) fn write_arrays(&self, path: &Path) -> Result<(), ArraysError> {
-        let of_rows = |value: fn(&Instant) -> f64| self.rows.iter().map(value).collect::<Vec<_>>();
-        let lines = [
-            Array::line("time", of_rows(|row| row.time)),
-            Array::line("u", of_rows(|row| row.u)),
-            Array::line("w", of_rows(|row| row.w)),
-            Array::line("F_x", of_rows(|row| row.force_x)),
-            Array::line("F_z", of_rows(|row| row.force_z)),
-            Array::line("rest_x", self.rest.as_slice()),
-            Array::line("profile_x", self.surface.x()),
-            Array::line("profile_z", self.surface.z()),
-        ];
-        let area = self.area.map(|area| Array::single("area", area));
-        let fields = self.fields.fields().iter().map(|field| array(field, self.rest.len()));
-        let archive = npz(lines.into_iter().chain(area).chain(fields));
-        let archive = archive.map_err(|source| ArraysError::Archive { path: path.to_owned(), source })?;
-        Ok(files::write(path, archive)?)
-    }
+/// Writes the rows' times, displacements and forces, the fields of the masses with a line for each row, the masses'
+/// positions at rest, the area that each stands for where the scene gives it, and the data points of the profile.
+pub(crate) fn write(history: &ElementHistory, path: &Path) -> Result<(), ArraysError> {
+    let of_rows = |value: fn(&Instant) -> f64| history.rows().iter().map(value).collect::<Vec<_>>();
+    let lines = [
+        Array::line("time", of_rows(|row| row.time)),
+        Array::line("u", of_rows(|row| row.u)),
+        Array::line("w", of_rows(|row| row.w)),
+        Array::line("F_x", of_rows(|row| row.force_x)),
+        Array::line("F_z", of_rows(|row| row.force_z)),
+        Array::line("rest_x", history.rest()),
+        Array::line("profile_x", history.surface().x()),
+        Array::line("profile_z", history.surface().z()),
+    ];
+    let area = history.area().map(|area| Array::single("area", area));
+    let fields = history.fields().fields().iter().map(|field| array(field, history.rest().len()));
+    let archive = npz(lines.into_iter().chain(area).chain(fields));
+    let archive = archive.map_err(|source| ArraysError::Archive { path: path.to_owned(), source })?;
+    Ok(files::write(path, archive)?)
 }
 
 fn array(field: &ElementField, masses: usize) -> Array<'_> {

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
+use asperity_study::elements::{Element, ElementHistory, Span, Touch};
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde::Serialize;
 
-use super::{Element, ElementHistory, Span, Touch};
 use crate::files::{self, FileError};
-use crate::html::fill;
+use asperity_study::html::fill;
 
 const TEMPLATE: &str = include_str!("animation.html");
 
@@ -94,90 +94,89 @@ fn reals(values: impl Iterator<Item = f64>) -> String {
     BASE64_STANDARD.encode(values.flat_map(f64::to_le_bytes).collect::<Vec<_>>())
 }
 
-impl ElementHistory {
-    /// Writes the page.
-    pub(crate) fn write_page(&self, path: &Path) -> Result<(), FileError> {
-        let json = serde_json::to_string(&self.page()).map_err(|error| FileError::picture(path, &error))?;
-        // In a script, `</script>` in the scene's name would end it.
-        files::write(path, fill(TEMPLATE, &[("run", json.replace('<', "\\u003c"))]))
-    }
+/// Writes the page.
+pub(crate) fn write(history: &ElementHistory, path: &Path) -> Result<(), FileError> {
+    let json = serde_json::to_string(&page(history)).map_err(|error| FileError::picture(path, &error))?;
+    // In a script, `</script>` in the scene's name would end it.
+    files::write(path, fill(TEMPLATE, &[("run", json.replace('<', "\\u003c"))]))
+}
 
-    fn page(&self) -> Page<'_> {
-        let masses = self.rest.len();
-        // Time and u, and of each mass x, z, load, touch and flash temperature.
-        let bytes = 16 + masses * if self.has_flash() { 9 } else { 7 };
-        let rows = self.spread(FRAME_BYTES / bytes);
-        let span = Span::over(self, &rows);
-        let (load_name, load_unit) = self.load_unit();
-        Page {
-            name: &self.name,
-            masses,
-            spacing: self.spacing(),
-            ends: self.ends(),
-            heights: span.heights,
-            load_name,
-            load_unit,
-            largest_load: span.load,
-            largest_flash: span.flash,
-            profile: self.profile(&rows),
-            frames: self.frames(&rows),
-            forces: self.forces(),
-        }
+fn page(history: &ElementHistory) -> Page<'_> {
+    let masses = history.rest().len();
+    // Time and u, and of each mass x, z, load, touch and flash temperature.
+    let bytes = 16 + masses * if history.has_flash() { 9 } else { 7 };
+    let rows = history.spread(FRAME_BYTES / bytes);
+    let span = Span::over(history, &rows);
+    let (load_name, load_unit) = history.load_unit();
+    Page {
+        name: history.name(),
+        masses,
+        spacing: history.spacing(),
+        ends: history.ends(),
+        heights: span.heights,
+        load_name,
+        load_unit,
+        largest_load: span.load,
+        largest_flash: span.flash,
+        profile: profile(history, &rows),
+        frames: frames(history, &rows),
+        forces: forces(history),
     }
+}
 
-    fn frames(&self, rows: &[usize]) -> Frames {
-        let of_masses = |value: fn(&Element) -> f64| {
-            rows.iter().flat_map(|&row| self.elements(row)).map(|element| value(&element)).collect::<Vec<_>>()
-        };
-        let x = rows.iter().flat_map(|&row| self.elements(row).map(move |element| element.x - self.rows[row].u));
-        let touch = rows.iter().flat_map(|&row| self.elements(row)).map(|element| match element.touch {
-            Touch::Free => 0,
-            Touch::Slips => 1,
-            Touch::Sticks => 2,
-        });
-        Frames {
-            time: reals(rows.iter().map(|&row| self.rows[row].time)),
-            u: reals(rows.iter().map(|&row| self.rows[row].u)),
-            x: Quantised::new(&x.collect::<Vec<_>>()),
-            z: Quantised::new(&of_masses(|element| element.z)),
-            load: Quantised::new(&of_masses(|element| element.load)),
-            flash: self.has_flash().then(|| Quantised::new(&of_masses(|element| element.flash))),
-            touch: BASE64_STANDARD.encode(touch.collect::<Vec<u8>>()),
-        }
+fn frames(history: &ElementHistory, rows: &[usize]) -> Frames {
+    let of_masses = |value: fn(&Element) -> f64| {
+        rows.iter().flat_map(|&row| history.elements(row)).map(|element| value(&element)).collect::<Vec<_>>()
+    };
+    let x = rows.iter().flat_map(|&row| history.elements(row).map(move |element| element.x - history.rows()[row].u));
+    let touch = rows.iter().flat_map(|&row| history.elements(row)).map(|element| match element.touch {
+        Touch::Free => 0,
+        Touch::Slips => 1,
+        Touch::Sticks => 2,
+    });
+    Frames {
+        time: reals(rows.iter().map(|&row| history.rows()[row].time)),
+        u: reals(rows.iter().map(|&row| history.rows()[row].u)),
+        x: Quantised::new(&x.collect::<Vec<_>>()),
+        z: Quantised::new(&of_masses(|element| element.z)),
+        load: Quantised::new(&of_masses(|element| element.load)),
+        flash: history.has_flash().then(|| Quantised::new(&of_masses(|element| element.flash))),
+        touch: BASE64_STANDARD.encode(touch.collect::<Vec<u8>>()),
     }
+}
 
-    fn forces(&self) -> Forces {
-        let rows = self.spread(FORCE_POINTS);
-        let rows = || rows.iter().map(|&row| &self.rows[row]);
-        Forces {
-            time: reals(rows().map(|row| row.time)),
-            x: reals(rows().map(|row| row.force_x)),
-            z: reals(rows().map(|row| row.force_z)),
-        }
+fn forces(history: &ElementHistory) -> Forces {
+    let rows = history.spread(FORCE_POINTS);
+    let rows = || rows.iter().map(|&row| &history.rows()[row]);
+    Forces {
+        time: reals(rows().map(|row| row.time)),
+        x: reals(rows().map(|row| row.force_x)),
+        z: reals(rows().map(|row| row.force_z)),
     }
+}
 
-    /// The profile where the layer comes, or one period of it.
-    fn profile(&self, rows: &[usize]) -> Profile {
-        let (left, right) = self.ends();
-        let ways = || rows.iter().map(|&row| self.rows[row].u);
-        let start = left + ways().fold(f64::INFINITY, f64::min);
-        let reached = right + ways().fold(f64::NEG_INFINITY, f64::max) - start;
-        let spline = self.surface.spline();
-        let period = spline.period().filter(|period| *period < reached);
-        let length = period.unwrap_or(reached);
-        let wanted = (length / (right - left) * POINTS_IN_VIEW).ceil();
-        let steps = (wanted as usize).clamp(1, PROFILE_POINTS);
-        let step = length / steps as f64;
-        let heights: Vec<f64> = (0..=steps).map(|i| spline.evaluate(start + i as f64 * step).0).collect();
-        Profile { start, step, period, z: Quantised::new(&heights) }
-    }
+/// The profile where the layer comes, or one period of it.
+fn profile(history: &ElementHistory, rows: &[usize]) -> Profile {
+    let (left, right) = history.ends();
+    let ways = || rows.iter().map(|&row| history.rows()[row].u);
+    let start = left + ways().fold(f64::INFINITY, f64::min);
+    let reached = right + ways().fold(f64::NEG_INFINITY, f64::max) - start;
+    let spline = history.surface().spline();
+    let period = spline.period().filter(|period| *period < reached);
+    let length = period.unwrap_or(reached);
+    let wanted = (length / (right - left) * POINTS_IN_VIEW).ceil();
+    let steps = (wanted as usize).clamp(1, PROFILE_POINTS);
+    let step = length / steps as f64;
+    let heights: Vec<f64> = (0..=steps).map(|i| spline.evaluate(start + i as f64 * step).0).collect();
+    Profile { start, step, period, z: Quantised::new(&heights) }
 }
 
 #[cfg(test)]
 mod tests {
     use asperity::scene::Scene;
 
-    use super::super::Instant;
+    use asperity_study::elements::Instant;
+
     use super::*;
 
     #[test]
@@ -200,12 +199,13 @@ mod tests {
             );
             let mut history = ElementHistory::new(&Scene::parse(&text, "long.toml".as_ref()).unwrap());
             // As far as a period, and numbers of as many digits as there may be.
-            let row =
-                |i: usize| Instant { time: i as f64 / 3e5, u: i as f64 / 7e4, w: 0.0, force_x: 1.0, force_z: 2.0 };
-            history.rows = (0..rows).map(row).collect();
-            history.reach = (0.0, 1e-6 * masses as f64);
-            history.fields.fill(rows);
-            let length = serde_json::to_string(&history.page()).unwrap().len() + TEMPLATE.len();
+            for i in 0..rows {
+                let u = i as f64 / 7e4;
+                let mass = |mass: usize| [u + 1e-6 * mass as f64, 0.0, 0.0, 0.0, 0.0];
+                let values: Vec<f64> = (0..masses).flat_map(mass).collect();
+                history.add_values(Instant { time: i as f64 / 3e5, u, w: 0.0, force_x: 1.0, force_z: 2.0 }, &values);
+            }
+            let length = serde_json::to_string(&page(&history)).unwrap().len() + TEMPLATE.len();
             assert!((2_000_000..5_000_000).contains(&length), "{masses} masses, {rows} rows: {length}");
         }
     }

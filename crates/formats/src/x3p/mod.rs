@@ -15,9 +15,9 @@ use std::ops::Range;
 
 use md5::{Digest, Md5};
 
-use asperity::scene::MOST_HEIGHTS;
 use asperity::scene::MeasuredSurface;
 use asperity::scene::{Areal, line_note};
+use asperity::scene::{MOST_HEIGHTS, MapError};
 use asperity::scene::{MeasuredPoints, Missing, ProfileOptions};
 use asperity::tables::{ANY, ContentError};
 use document::{Archive, Document, MatrixSize, missing, unreadable};
@@ -41,8 +41,8 @@ pub(super) fn read(bytes: &[u8], options: &ProfileOptions) -> Result<MeasuredSur
     let [x, z] = points(&document, &size, line..line + 1, &mut archive)?;
     let notes = vec![line_note(KIND, line + 1, size.rows, options.line.is_some())];
     let line = MeasuredPoints { x, z, notes, ..MeasuredPoints::default() };
-    let map = (size.rows > 1)
-        .then(|| Err(format!("a map of up to {MOST_HEIGHTS} points, its axes x and y incremental (AxisType I)")));
+    let expected = || format!("a map of up to {MOST_HEIGHTS} points, its axes x and y incremental (AxisType I)");
+    let map = (size.rows > 1).then(|| Err(MapError::Format(expected())));
     match line.z.iter().position(|z| z.is_nan()).filter(|_| options.missing == Missing::Refuse) {
         Some(i) => Err(line.refuse(i, "z", "missing", "a height, or missing = \"fill\" where heights are missing")),
         None => Ok(MeasuredSurface { line, map }),

@@ -189,7 +189,7 @@ fn an_areal_file_is_a_map() {
     assert_eq!((map.nx(), map.ny(), map.heights()), (4, 3, &HEIGHTS[..]));
     assert!(map.spacing().iter().all(|step| (step / 5e-7 - 1.0).abs() < 1e-12));
     let gap = File { mask: Some(vec![0b1111_1101, 0b1111_1111]), ..file() };
-    let refusal = read_map(&gap, Missing::Refuse).unwrap_err();
+    let refusal = read_map(&gap, Missing::Refuse).unwrap_err().to_string();
     assert!(refusal.contains("1 are missing, the first in line 1, point 2"), "{refusal}");
     assert!((read_map(&gap, Missing::Fill).unwrap().heights()[1] - 1e-6).abs() < 1e-18);
 }

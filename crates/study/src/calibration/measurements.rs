@@ -193,7 +193,7 @@ mod tests {
     #[test]
     fn what_is_missing_or_wrong_is_said_with_its_line() {
         for (text, message) in [
-            ("speed [m/s],friction\n1,2\n2,3\n", "t.csv:1: columns = `speed [m/s], friction`: expected columns by"),
+            ("speed [m/s],friction\n1,2\n2,3\n", "t.csv:1: columns = \"speed [m/s], friction\": expected columns by"),
             (
                 "speed [m/s],p [Pa],mu\n1,2,3\n2,-3,1\n",
                 "t.csv:3: column 2 (p [Pa]) = \"-3\": expected a number above 0",
@@ -206,7 +206,7 @@ mod tests {
             ("speed [m/s],p [Pa],mu,temperature\n1,2,3,4\n", "t.csv:1: unit of column 4 (temperature): expected it"),
             (
                 "speed [m/s],v [m/s],p [Pa],mu\n1,2,3,4\n",
-                "t.csv:1: columns = `speed [m/s]` and `v [m/s]`: expected one of",
+                "t.csv:1: columns = \"speed [m/s]\" and \"v [m/s]\": expected one of",
             ),
             ("1,2,3\n", "t.csv:1: columns = no names: expected columns by their names"),
             ("only words\n", "t.csv:1: rows = 0: expected at least one row of numbers: columns by their names"),

@@ -15,7 +15,7 @@ use super::model::{Done, FrictionModel, FrictionParts, SceneAt, Task, groups};
 use crate::steady::persson::{ProfileWaves, Theory};
 use asperity::element::OperatingPoint;
 use asperity::model::Flash;
-use asperity::scene::{Body, Material, Scene, Surface};
+use asperity::scene::{ElasticBody, Material, Scene, Surface};
 
 /// The theory over the free parameters.
 pub struct TheoryModel<'a> {
@@ -30,7 +30,7 @@ pub struct TheoryModel<'a> {
 struct KnownProfile {
     surface: Surface,
     material: Material,
-    body: Body,
+    body: ElasticBody,
     waves: ProfileWaves,
     found: Vec<(OperatingPoint, Theory)>,
 }

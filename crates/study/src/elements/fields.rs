@@ -44,10 +44,17 @@ impl ElementFields {
 
     /// Adds a row.
     pub fn add(&mut self, snapshot: &Snapshot<'_>) {
-        snapshot.evaluate(&self.variables, &mut self.values);
+        let mut values = std::mem::take(&mut self.values);
+        snapshot.evaluate(&self.variables, &mut values);
+        self.add_values(&values);
+        self.values = values;
+    }
+
+    /// Adds a row with the outputs of all masses, all of the first mass first.
+    pub fn add_values(&mut self, masses: &[f64]) {
         let count = self.fields.len();
         for (i, field) in self.fields.iter_mut().enumerate() {
-            field.values.extend(self.values.iter().skip(i).step_by(count));
+            field.values.extend(masses.iter().skip(i).step_by(count));
         }
     }
 
@@ -64,14 +71,5 @@ impl ElementFields {
     /// Values of an output of the first mass, and of the others; `None` where the masses have none such.
     pub fn values(&self, output: Output) -> Option<&[f64]> {
         self.fields.iter().find(|field| field.output == output).map(|field| field.values.as_slice())
-    }
-}
-
-#[doc(hidden)]
-impl ElementFields {
-    /// As after so many rows, all values 0.
-    pub fn fill(&mut self, rows: usize) {
-        let masses = self.variables.len() / self.fields.len();
-        self.fields.iter_mut().for_each(|field| field.values = vec![0.0; masses * rows]);
     }
 }

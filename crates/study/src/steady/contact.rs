@@ -1,4 +1,5 @@
-//! The contact of a sliding surface of rubber: which points touch, and under what pressure.
+//! The contact of a sliding surface of rubber: which points touch, and under what pressure (docs/steady.md, "The problem"
+//! and "The method").
 //!
 //! For a set of points the pressures follow [linearly](super::linear). Points that would be pulled leave the set, points
 //! that would lie below the surface come to it, until there are neither; the first set is that of a grid twice as coarse.
@@ -111,10 +112,13 @@ impl ContactSolver {
         pressure: f64,
     ) -> (Contact, Compliance) {
         let compliance = |level: &Level| Compliance::new(&level.surface, material, &wave_stiffness, speed);
+        // Step 1: full contact, where p = P + M K h is nowhere a pull.
         let finest = compliance(&self.levels[0]);
         if let Some(full) = self.levels[0].full_contact(&finest, pressure) {
             return (full, finest);
         }
+        // Step 3: from the coarsest grid up, each solved from the pressures of the one before; the coarsest of all from P
+        // at all points.
         let mut start: Option<(Contact, usize)> = None;
         for index in (0..self.levels.len()).rev() {
             let level = &mut self.levels[index];
@@ -140,10 +144,12 @@ impl ContactSolver {
             return None;
         }
         let level = &mut self.levels[0];
+        // p' with C p' + d' = 0 on the set and mean p' = 1: the derivatives by the mean pressure, as the points stay.
         let n = contact.points.len() as f64;
         // Of the mean 1 over the grid; the pressures themselves are a good start.
         let scale = level.surface.size.points() as f64 / sum(&contact.pressures);
         let mut p: Vec<f64> = contact.pressures.iter().map(|pressure| scale * pressure).collect();
+        // The residual -C p' there; its mean over the set is d'.
         let mut residual = vec![0.0; p.len()];
         let moved = level.linear.moved(compliance, &contact.points, &p);
         gather(&contact.points, moved, &mut residual);
@@ -153,7 +159,7 @@ impl ContactSolver {
         level.linear.solve(compliance, &contact.points, &mut p, &mut residual, accuracy);
         let moved = level.linear.moved(compliance, &contact.points, &p);
         gather(&contact.points, moved, &mut residual);
-        // C p' + d' = 0
+        // dp/dd = 1/d', with d' = -C p' in the mean over the set.
         Some(1.0 / separation(&residual))
     }
 }
@@ -207,6 +213,7 @@ impl Level {
 
     /// p = P + M K h, where that is nowhere a pull.
     fn full_contact(&mut self, compliance: &Compliance, pressure: f64) -> Option<Contact> {
+        // The surface would lie on h everywhere: û = h, less its mean, needs p_q = M K h_q.
         let mut p = self.surface.heights.clone();
         self.linear.convolution.apply(&mut p, &compliance.stiffness);
         p.iter_mut().for_each(|p| *p += pressure);
@@ -222,15 +229,18 @@ impl Level {
     /// The pressures of a coarser grid, of rows of `coarse_nx`, between its points.
     fn interpolated(&self, coarse: &Contact, coarse_nx: usize) -> Vec<f64> {
         let (nx, ny) = (self.surface.size.nx, self.surface.size.ny);
+        // Ridges have one row, which is not divided.
         let coarse_ny = if ny == 1 { 1 } else { ny / 2 };
         let mut values = vec![0.0; coarse_nx * coarse_ny];
         coarse.points.iter().zip(&coarse.pressures).for_each(|(&point, p)| values[point as usize] = *p);
         let mut fine = vec![0.0; nx * ny];
         let step_y = if ny == 1 { 1 } else { 2 };
         for (j, row) in fine.chunks_exact_mut(nx).enumerate() {
+            // The coarse rows around this one, the same twice where it is one of them; periodic.
             let (here, next) = (j / step_y, (j + 1) / step_y % coarse_ny);
             let next = if step_y == 1 { here } else { next };
             for (i, value) in row.iter_mut().enumerate() {
+                // Alike the points; so the mean of the four is the bilinear interpolation.
                 let (left, right) = (i / 2, i.div_ceil(2) % coarse_nx);
                 let at = |i: usize, j: usize| values[j * coarse_nx + i];
                 *value = 0.25 * (at(left, here) + at(right, here) + at(left, next) + at(right, next));
@@ -246,13 +256,15 @@ impl Level {
         let mut gaps = vec![0.0; count];
         let mut found = Contact::nothing();
         for sets in 1..=goal.sets {
+            // The set, and its pressures scaled to mean p = P; the linear problem holds their sum.
             let points: Vec<u32> = (0..count as u32).filter(|&point| field[point as usize] > 0.0).collect();
             let mut pressures: Vec<f64> = points.iter().map(|&point| field[point as usize]).collect();
             let scale = pressure * count as f64 / sum(&pressures);
             pressures.iter_mut().for_each(|p| *p *= scale);
             let separation = self.solve_set(compliance, &points, &mut pressures, accuracy * self.rms, &mut gaps);
 
-            // Who is wrong: gaps are known as well as they were solved for.
+            // Step 2, who is wrong: p < 0 on the set is a pull, g < 0 beside it lies below. Gaps are known as well as they
+            // were solved for.
             let known = if accuracy > goal.accuracy { accuracy * self.rms } else { 0.0 };
             let below = -known.max(BELOW * self.peak_to_valley);
             let leave = pressures.iter().filter(|&&p| p < 0.0).count();
@@ -260,11 +272,13 @@ impl Level {
             let left_over = leave + come;
             let is_full = points.len() == count;
             found = Contact { points, pressures, separation, is_full, left_over, sets, ..Contact::nothing() };
+            // p ≥ 0 on the set and g ≥ 0 beside it, as far as this grid is to be solved.
             if left_over as f64 <= goal.wrong * found.points.len() as f64 && accuracy <= goal.accuracy {
                 break;
             }
 
-            // The next set; half of the wrong ones change where this one has been before.
+            // The next set, step 4: half of the wrong ones change where this one has been before, so that sets do not
+            // go round. Those that come begin with next to nothing, which makes them part of it.
             let is_new = left_over == 0 || seen.insert((fingerprint(&found.points), accuracy.to_bits()));
             let mut random = SplitMix64::new(sets as u64);
             let mut changes = || is_new || random.unit() < 0.5;
@@ -298,6 +312,7 @@ impl Level {
         tolerance: f64,
         gaps: &mut [f64],
     ) -> f64 {
+        // C p + d = h on the set: u = C p is how the surface moves, g = u + d - h.
         let heights = &self.surface.heights;
         let mut residual = vec![0.0; set.len()];
         let off = |moved: &[f64], residual: &mut [f64]| {
@@ -307,6 +322,7 @@ impl Level {
         self.linear.solve(compliance, set, pressures, &mut residual, tolerance);
         let moved = self.linear.moved(compliance, set, pressures);
         off(moved, &mut residual);
+        // d is the mean of h - C p over the set; what is left of the differences from it is within the tolerance.
         let separation = sum(&residual) / residual.len() as f64;
         let gap = |(moved, height): (&f64, &f64)| moved + separation - height;
         gaps.iter_mut().zip(moved.iter().zip(heights).map(gap)).for_each(|(gap, found)| *gap = found);

@@ -8,7 +8,7 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-use asperity::scene::{Body, FineBand, FineRoughness, Material, Scene, Spectrum, Surface, WaveModuli};
+use asperity::scene::{ElasticBody, FineBand, FineRoughness, Material, Scene, Spectrum, Surface, WaveModuli};
 
 /// Area and friction by the theory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -139,7 +139,7 @@ impl Part {
     fn of_profile(
         (wave_number, mean_square): (f64, f64),
         material: &Material,
-        body: Body,
+        body: ElasticBody,
         speed: f64,
         roughness: Roughness,
     ) -> Self {
@@ -154,7 +154,7 @@ impl Part {
     }
 
     /// Of a band, which is isotropic whatever the profile is; `speed` in m/s at the reference temperature.
-    fn of_band(band: FineBand, fine: &FineRoughness, material: &Material, body: Body, speed: f64) -> Self {
+    fn of_band(band: FineBand, fine: &FineRoughness, material: &Material, body: ElasticBody, speed: f64) -> Self {
         let FineBand { wave_number, gradient_square, .. } = band;
         let moduli = band.moduli(material, speed);
         let ratio = body.normal(wave_number) / wave_number;
@@ -213,7 +213,7 @@ impl ProfileWaves {
     }
 
     /// Area and friction of the waves in rubber of a `material` as part of a `body`, at `speed` (m/s) under `pressure`, Pa.
-    pub fn sliding(&self, material: &Material, body: Body, speed: f64, pressure: f64) -> Theory {
+    pub fn sliding(&self, material: &Material, body: ElasticBody, speed: f64, pressure: f64) -> Theory {
         let part = |&wave: &(f64, f64)| Part::of_profile(wave, material, body, speed, self.roughness);
         Theory::of(&self.waves.iter().map(part).collect::<Vec<_>>(), pressure)
     }
@@ -253,7 +253,7 @@ mod tests {
 
     /// Area and friction of waves (q in rad/m, mean square height in m²) in the order of q, at 0.3 m/s.
     fn on_half_plane(waves: &[(f64, f64)], material: &Material, pressure: f64, roughness: Roughness) -> Theory {
-        let part = |&wave: &(f64, f64)| Part::of_profile(wave, material, Body::HalfPlane, 0.3, roughness);
+        let part = |&wave: &(f64, f64)| Part::of_profile(wave, material, ElasticBody::HalfPlane, 0.3, roughness);
         Theory::of(&waves.iter().map(part).collect::<Vec<_>>(), pressure)
     }
 

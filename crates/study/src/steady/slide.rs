@@ -8,13 +8,13 @@ use super::linear::{gather, scatter};
 use super::surface::SurfaceGrid;
 use asperity::math::{dot, sum};
 use asperity::model::{Flash, FrictionLaw};
-use asperity::scene::{Body, Material, Scene};
+use asperity::scene::{ElasticBody, Material, Scene};
 
 /// Rubber at a temperature: what slides. It serves every surface, speed and pressure.
 #[derive(Clone, Debug)]
 pub struct SlidingRubber {
     material: Material,
-    body: Body,
+    body: ElasticBody,
     friction: FrictionLaw,
     /// The area that the law of friction is for, m².
     element_area: f64,
@@ -238,7 +238,7 @@ impl SteadySolver {
         normal: Option<f64>,
     ) -> Option<f64> {
         let surface = self.solver.surface();
-        if surface.size.ny == 1 && matches!(rubber.body, Body::Bonded { .. }) {
+        if surface.size.ny == 1 && matches!(rubber.body, ElasticBody::Bonded { .. }) {
             let compliance = Compliance::new(surface, &rubber.material, |q| rubber.body.tangential(q), speed);
             return self.solver.stiffness(&compliance, contact);
         }

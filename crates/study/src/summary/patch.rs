@@ -74,7 +74,7 @@ fn low_end(patch: &Patch) -> String {
 fn share_below_table(patch: &Patch) -> Result<f64, LowEndError> {
     // The search presses the face a little beyond the table.
     let mut patch = patch.clone();
-    patch.set_parameter(Parameter::TableExtrapolation, Value::Text(TableExtrapolation::Hold.word().into()))?;
+    patch.set_parameter(Parameter::TABLE_EXTRAPOLATION, Value::Text(TableExtrapolation::Hold.word().into()))?;
     Ok(at_rest(&patch, height_of_largest_pressure(&patch)?)?.share_below_table())
 }
 

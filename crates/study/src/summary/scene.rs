@@ -46,7 +46,7 @@ fn masses(scene: &Scene) -> String {
         number(layer.spacing),
         number(layer.origin),
         number(layer.clearance),
-        word(scene, Parameter::Initial)
+        word(scene, Parameter::INITIAL)
     )
 }
 
@@ -160,13 +160,13 @@ fn outputs(scene: &Scene, group: OutputGroup) -> String {
         let own = variables(scene).into_iter().filter(|variable| variable.group == group);
         own.map(|variable| variable.name).collect::<Vec<_>>().join(", ")
     };
-    format!("{:<13}{names}", group.name())
+    format!("{:<13}{names}", group.word())
 }
 
 fn solver(scene: &Scene) -> String {
     format!(
         "method {}, relative_tolerance {}, absolute_tolerance {} m, max_steps {}",
-        word(scene, Parameter::Method),
+        word(scene, Parameter::METHOD),
         number(scene.solver.relative_tolerance),
         number(scene.absolute_tolerance()),
         scene.solver.max_steps()

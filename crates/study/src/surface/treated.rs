@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use asperity::scene::{RoughnessSpectrum, Surface};
+use asperity::scene::{RoughnessSpectrum, SplitError, Surface};
 
 use super::analysis::{FinerWaves, Removed, SurfaceAnalysis};
 use super::periodic::{mirrored, tapered};
@@ -43,7 +43,7 @@ pub enum SurfaceError {
         /// The wavelength asked for, m.
         split: f64,
         /// What could be.
-        expected: String,
+        expected: SplitError,
     },
 }
 

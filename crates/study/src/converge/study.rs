@@ -1,0 +1,254 @@
+//! The study: its runs, and what they come to.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use asperity::element::PointStatus;
+use asperity::scene::{LinkKind, Scene};
+use cpu_time::ThreadTime;
+use rayon::prelude::*;
+
+use super::error::ConvergeError;
+use super::measure::{self, State};
+use super::plan::{Next, Plan};
+use super::table::{RunRow, StudyHeader};
+use super::variants::{Parts, Template, Variant};
+use super::verdict::{Pair, Study, Verdict};
+use crate::files::ReadError;
+use crate::settings::Setting;
+use crate::steady::persson::{Roughness, Theory};
+use crate::sweep::{Method, SlidingOptions, StopBounds, SweepMethod, fingerprint, relevant};
+
+/// What a study is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConvergenceOptions {
+    /// Mean pressure of the runs, Pa.
+    pub pressure: f64,
+    /// Speed of the runs, m/s.
+    pub speed: f64,
+    /// The change of friction and area that is small enough, as a share of them.
+    pub error: f64,
+    /// Number of seeds, the scene's own included; `None`: 4 where it has any.
+    pub seeds: Option<u32>,
+    /// How steady sliding is found; `None`: as the scene allows.
+    pub method: Option<SweepMethod>,
+    /// Points along x to begin with, where it is solved for; `None`: as of a sweep.
+    pub points: Option<u32>,
+    /// Most masses, or points of the whole surface, that the halved spacing may come to; `None`: 4096 masses, 2097152
+    /// points.
+    pub most_points: Option<u32>,
+    /// Longest distance that a layer slides, m; `None`: 100 blocks.
+    pub distance: Option<f64>,
+}
+
+impl ConvergenceOptions {
+    /// How steady sliding is found.
+    pub fn sliding(&self) -> SlidingOptions {
+        SlidingOptions { method: self.method, points: self.points, error: None, distance: self.distance }
+    }
+
+    fn state(&self) -> State {
+        State { pressure: self.pressure, speed: self.speed }
+    }
+}
+
+/// Seeds where none are asked for.
+const SEEDS: u32 = 4;
+/// What a halved spacing may come to where nothing is asked for: masses of a layer, points of a surface.
+const MOST: (u32, u32) = (4096, 1 << 21);
+/// Standard error of a run over the error that its changes may have.
+const RUN_ERROR: f64 = 0.1;
+
+/// The study of a scene, its runs not made yet.
+#[derive(Debug)]
+pub struct ConvergenceStudy {
+    template: Template,
+    plan: Plan,
+    options: ConvergenceOptions,
+    header: StudyHeader,
+    warning: Option<String>,
+}
+
+/// Runs that are made now.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Round {
+    /// Number of runs that are done.
+    pub done: usize,
+    /// Number of all runs, those that follow these at least included.
+    pub all: usize,
+    /// Masses or points along x of these.
+    pub counts: Vec<u64>,
+}
+
+/// What the runs come to.
+#[derive(Debug)]
+pub struct Findings {
+    /// All runs, halvings first.
+    pub runs: Vec<RunRow>,
+    /// What they leave open.
+    pub verdict: Verdict,
+    /// Number of runs of the ladder of halved spacings that are steady.
+    steady: usize,
+}
+
+/// Why a study ended before it was done.
+#[derive(Debug)]
+pub enum Ended<B> {
+    /// A variant of the scene was refused.
+    Refused(ReadError),
+    /// The callback broke off.
+    Stopped(B),
+}
+
+impl ConvergenceStudy {
+    /// The study of a `scene`, which was read from this `text` of the file at `path`, its keys set to other values.
+    ///
+    /// # Errors
+    /// Where the scene does not go with the options, or has nothing that could be varied.
+    pub fn new(
+        scene: &Scene,
+        (text, path): (&str, &Path),
+        set: &[Setting],
+        options: ConvergenceOptions,
+    ) -> Result<Self, ConvergeError> {
+        if scene.material.is_none() {
+            return Err(ConvergeError::DirectForm { path: path.to_owned() });
+        }
+        let template = Template::read(text, path, set)?;
+        let (method, of_method) = options.sliding().choose(scene)?;
+        let template = match &method {
+            Method::Steady(surface) => template.on_grid(surface),
+            Method::Layer => template,
+        };
+        let plan = plan(&options, &template)?;
+        let warning = scene.hard_pressure("`pressure`", options.pressure).filter(|_| matches!(method, Method::Layer));
+        method.check(scene)?;
+        let ConvergenceOptions { pressure, speed, error, distance, .. } = options;
+        let of_method_alone = method.settings(|| format!("{distance:?}"));
+        let settings = format!("converge {pressure:?} {speed:?} {error:?} {of_method_alone}");
+        let header = StudyHeader {
+            scene: scene.name.clone(),
+            fingerprint: fingerprint(&relevant(scene.clone()), &settings)?,
+            method: of_method,
+            parts: template.parts(),
+            pressure,
+            speed,
+            error,
+        };
+        Ok(Self { template, plan, options, header, warning })
+    }
+
+    /// The header of the table.
+    pub fn header(&self) -> &StudyHeader {
+        &self.header
+    }
+
+    /// What to look at before the runs are made: a pressure that presses the layer harder than its links stand for.
+    pub fn warning(&self) -> Option<&str> {
+        self.warning.as_deref()
+    }
+
+    /// What is counted in a run.
+    pub fn parts(&self) -> Parts {
+        self.template.parts()
+    }
+
+    /// Number of seeds, the scene's own included; `None` where it has none.
+    pub fn seeds(&self) -> Option<u32> {
+        self.plan.seeds
+    }
+
+    /// Makes the runs that are missing beside `runs`, those that do not depend on each other on all cores: `begun` is
+    /// called as such a round begins, `made` for each run.
+    ///
+    /// # Errors
+    /// Where `made` breaks off, or a variant of the scene is refused.
+    pub fn run<B: Send>(
+        &self,
+        mut runs: Vec<RunRow>,
+        begun: impl Fn(&Round),
+        made: impl Fn(&RunRow) -> ControlFlow<B> + Sync,
+    ) -> Result<Findings, Ended<B>> {
+        loop {
+            let outcome = |variant| runs.iter().find(|run| run.variant == variant).map(RunRow::mean);
+            let missing = match self.plan.next(outcome) {
+                Next::Done(study) => return Ok(self.findings(runs, &study)),
+                Next::Runs(missing) => missing,
+            };
+            begun(&self.round(runs.len(), &missing));
+            let make = |&variant: &Variant| {
+                let run = self.make(variant).map_err(Ended::Refused)?;
+                match made(&run) {
+                    ControlFlow::Continue(()) => Ok(run),
+                    ControlFlow::Break(answer) => Err(Ended::Stopped(answer)),
+                }
+            };
+            let made: Result<Vec<RunRow>, Ended<B>> = missing.par_iter().with_max_len(1).map(make).collect();
+            runs.extend(made?);
+        }
+    }
+
+    fn round(&self, done: usize, missing: &[Variant]) -> Round {
+        let counts = missing.iter().map(|&variant| self.template.dimensions(variant).count);
+        Round { done, all: done + missing.len() + self.plan.following(missing), counts: counts.collect() }
+    }
+
+    fn make(&self, variant: Variant) -> Result<RunRow, ReadError> {
+        let ConvergenceOptions { pressure, speed, error, distance, .. } = self.options;
+        let (scene, state) = (self.template.scene(variant)?, self.options.state());
+        let clock = ThreadTime::now();
+        let dimensions = self.template.dimensions(variant);
+        let is_of_layer = self.parts() == Parts::Masses;
+        let measured = if is_of_layer {
+            measure::slide(&scene, state, StopBounds { error: RUN_ERROR * error, distance })
+        } else {
+            measure::solve(&scene, state, dimensions.count)
+        };
+        let run_time = clock.elapsed().as_secs_f64();
+        let theories = [Roughness::Ridges, Roughness::Isotropic]
+            .map(|roughness| Theory::new(&scene, pressure, speed, roughness).unwrap_or_default());
+        let fit_rms = is_of_layer.then(|| scene.quality(LinkKind::Vertical).map_or(0.0, |quality| quality.rms));
+        let status = PointStatus::new(measured.as_ref().err());
+        Ok(RunRow { variant, dimensions, fit_rms, status, measured: measured.ok(), theories, run_time })
+    }
+
+    fn findings(&self, mut runs: Vec<RunRow>, study: &Study) -> Findings {
+        runs.sort_by_key(|run| run.variant.place());
+        Findings { runs, verdict: Verdict::new(study, self.options.error), steady: study.ladder.len() }
+    }
+}
+
+fn plan(options: &ConvergenceOptions, template: &Template) -> Result<Plan, ConvergeError> {
+    let parts = template.parts();
+    let most = options.most_points.unwrap_or(if parts == Parts::Masses { MOST.0 } else { MOST.1 });
+    let within = |halvings: &u32| template.contacts(*halvings) <= u64::from(most);
+    let max_halvings = (1..u32::BITS).take_while(within).count() as u32;
+    if max_halvings == 0 {
+        let [own, least] = [0, 1].map(|halvings| template.contacts(halvings));
+        return Err(ConvergeError::FewParts { parts: parts.name(), own, least });
+    }
+    if options.seeds.is_some() && !template.has_seed() {
+        return Err(ConvergeError::NoSeed);
+    }
+    let seeds = template.has_seed().then_some(options.seeds.unwrap_or(SEEDS));
+    let (has_length, has_split) = (template.has_length(), template.has_split());
+    Ok(Plan { error: options.error, max_halvings, has_length, seeds, has_split })
+}
+
+impl Findings {
+    /// The runs, each with the change of its values from those of the run that it is compared with.
+    pub fn changes(&self) -> Vec<(&RunRow, Option<Pair>)> {
+        self.runs.iter().map(|run| (run, self.change(run))).collect()
+    }
+
+    fn change(&self, run: &RunRow) -> Option<Pair> {
+        let reference = run.variant.reference()?;
+        let before = self.runs.iter().find(|run| run.variant == reference)?;
+        Some(run.mean()?.change_from(&before.mean()?))
+    }
+
+    /// The steady runs with the length and the seed of the scene, from its own spacing to the finest.
+    pub fn ladder(&self) -> Vec<&RunRow> {
+        self.runs.iter().filter(|run| run.variant.is_of_ladder()).take(self.steady).collect()
+    }
+}

@@ -1,0 +1,137 @@
+//! The keys in a list, each with its full path.
+
+use super::patch::PATCH_ROOT;
+use super::scene_file::{RETIRED, ROOT};
+use super::{Absent, Allowed, At, Form, Key, KindKeys};
+use crate::scene::Unit;
+use crate::scene::values::{NumberRange, POSITIVE};
+
+/// A key and the place of its table.
+#[derive(Clone, Debug)]
+pub(in crate::scene) struct KeyRow {
+    /// Its name with those of the tables around it; `[]` behind a table that may be repeated.
+    pub(in crate::scene) path: String,
+    pub(in crate::scene) key: &'static Key,
+    pub(in crate::scene) at: At,
+    /// The kinds of its table that have it; empty where all have.
+    kinds: Vec<&'static str>,
+}
+
+/// The keys of the layer's roughness, which are those of the surface.
+const ROUGHNESS: &str = "layer.roughness.";
+
+/// The key at the end of a path such as `layer.vertical.maxwell[1].stiffness`.
+pub(in crate::scene) fn at(path: &str) -> Option<&'static Key> {
+    let (mut keys, mut found) = (ROOT, None);
+    for part in path.split('.') {
+        let name = part.split_once('[').map_or(part, |(name, _)| name);
+        let key = keys.iter().find(|key| key.name == name)?;
+        (keys, found) = (key.keys(), Some(key));
+    }
+    found
+}
+
+/// The paths of other keys of a scene and of a patch that look like `given`, or end with it; elements of lists as
+/// `[1]`.
+pub fn similar_keys(given: &str) -> Vec<String> {
+    let all = rows(ROOT).into_iter().chain(rows(PATCH_ROOT)).map(|row| row.path.replace("[]", "[1]"));
+    let mut similar: Vec<String> = all.filter(|path| path != given && is_similar(given, path)).collect();
+    similar.sort_unstable();
+    similar.dedup();
+    similar
+}
+
+/// Whether a few letters differ, or only the end of the path is given.
+pub(in crate::scene) fn is_similar(given: &str, name: &str) -> bool {
+    let end_of_path = name.strip_suffix(given).is_some_and(|start| start.ends_with('.'));
+    end_of_path || strsim::levenshtein(given, name) <= 1 + given.chars().count() / 8
+}
+
+/// A key of a file, for a list of all keys.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeyEntry {
+    /// Its name with those of the tables around it; `[]` behind a table that may be repeated.
+    pub path: String,
+    /// What it may hold.
+    pub allowed: String,
+    /// The unit of a number.
+    pub unit: Unit,
+    /// What it means; empty of a table.
+    pub meaning: &'static str,
+    /// What its absence stands for.
+    pub absent: Absent,
+    /// The kinds of its table that have it; empty where all have.
+    pub kinds: Vec<&'static str>,
+    /// Whether it belongs to scenes with a material alone (`Some(true)`), or to those without (`Some(false)`).
+    pub of_material: Option<bool>,
+}
+
+/// All keys of a scene; those of its surface are the layer's roughness's too. A retired key is left out.
+pub fn scene_keys() -> Vec<KeyEntry> {
+    let left_out = [ROUGHNESS, RETIRED];
+    let all = rows(ROOT).into_iter();
+    all.filter(|row| !left_out.iter().any(|path| row.path.starts_with(path))).map(KeyEntry::from).collect()
+}
+
+/// All keys of a patch.
+pub fn patch_keys() -> Vec<KeyEntry> {
+    rows(PATCH_ROOT).into_iter().map(KeyEntry::from).collect()
+}
+
+impl From<KeyRow> for KeyEntry {
+    fn from(KeyRow { path, key, kinds, .. }: KeyRow) -> Self {
+        let of_material = key.form.map(|form| form == Form::Material);
+        let (allowed, unit, meaning, absent) = (key.allowed.to_string(), key.unit, key.meaning, key.absent);
+        Self { path, allowed, unit, meaning, absent, kinds, of_material }
+    }
+}
+
+/// The keys of the scene that have a field, in the order of the parameters.
+pub(in crate::scene) fn fields() -> Vec<KeyRow> {
+    let mut all = below("", At::FIRST, ROOT, |keys| keys.sort_by_key(|key| !key.ahead));
+    all.retain(|row| row.key.field.is_some() && !row.path.starts_with(ROUGHNESS));
+    all
+}
+
+/// All keys in and below the table `root` of a file, in their order.
+pub(in crate::scene) fn rows(root: &'static [Key]) -> Vec<KeyRow> {
+    below("", At::FIRST, root, |_| ())
+}
+
+/// The keys in and below the table whose path is `start`, those of each table ordered by `sort`.
+fn below(start: &str, at: At, keys: &'static [Key], sort: fn(&mut Vec<&'static Key>)) -> Vec<KeyRow> {
+    let with_those_below = |key: &'static Key| {
+        let path = format!("{start}{}", key.name);
+        let at = key.at.unwrap_or(at);
+        let below = match key.allowed {
+            Allowed::Table(keys) => below(&format!("{path}."), at, keys, sort),
+            Allowed::Tables(keys, _) => below(&format!("{path}[]."), at, keys, sort),
+            Allowed::Kinds(_, kinds) => of_kinds(&kinds(), |keys| below(&format!("{path}."), at, keys, sort)),
+            _ => Vec::new(),
+        };
+        std::iter::once(KeyRow { path, key, at, kinds: Vec::new() }).chain(below)
+    };
+    let mut keys: Vec<&'static Key> = keys.iter().collect();
+    sort(&mut keys);
+    keys.into_iter().flat_map(with_those_below).collect()
+}
+
+/// The keys of a table of several kinds, each once.
+fn of_kinds(kinds: &[KindKeys], rows_of: impl Fn(&'static [Key]) -> Vec<KeyRow>) -> Vec<KeyRow> {
+    let mut all: Vec<KeyRow> = Vec::new();
+    for &(name, keys) in kinds {
+        for row in rows_of(keys) {
+            match all.iter_mut().find(|known| known.path == row.path) {
+                Some(known) => known.kinds.push(name),
+                None => all.push(KeyRow { kinds: vec![name], ..row }),
+            }
+        }
+    }
+    all.iter_mut().filter(|row| row.kinds.len() == kinds.len()).for_each(|row| row.kinds.clear());
+    all
+}
+
+/// The range of the number at a path; positive numbers where there is none.
+pub(in crate::scene) fn range_of(path: &str) -> NumberRange {
+    at(path).and_then(Key::range).unwrap_or(POSITIVE)
+}
