@@ -23,8 +23,11 @@
 //! | [`steady`] | | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
 //! | [`sweep`] | decimals, files, progress, steady | friction over speed, load and temperature, as a table |
 //! | [`contact`] | steady, sweep | the contact of a surface in steady sliding |
-//! | [`calibration`] | steady | free numbers of a scene from measured friction: models, least squares, errors, plans |
+//! | [`calibration`] | decimals, files, settings, steady, sweep | free numbers of a scene from measured friction: models, least squares, errors, plans |
+//! | [`comparison`] | calibration, steady, sweep | a table of a sweep beside measured friction |
 //! | [`fit`] | decimals, files | Prony series and shift factors from measured moduli |
+//! | [`material`] | decimals | moduli of a scene's compound, or stiffnesses of its links, over frequency |
+//! | [`surface`] | decimals | numbers, spectra and power laws of a surface; smoothed, split and made periodic |
 //! | [`summary`] | decimals, labelled, steady | what there is in a scene, a patch or a table, in lines |
 //! | [`pack`] | decimals, files, html, labelled, summary | scenes, tables and patches as FMUs |
 //! | [`patch`] | csv | the motion that a patch is moved along |
@@ -44,6 +47,7 @@ pub mod files;
 pub mod fit;
 pub mod html;
 pub mod labelled;
+pub mod material;
 pub mod pack;
 pub mod patch;
 pub mod progress;
@@ -53,4 +57,5 @@ pub mod runner;
 pub mod settings;
 pub mod steady;
 pub mod summary;
+pub mod surface;
 pub mod sweep;

@@ -127,14 +127,14 @@ pub(super) type Column = asperity::tables::Column<Quantity>;
 
 /// Refuses to assume a unit where the header speaks of another one, and for angles.
 pub(super) fn check_unit(column: &Column, block: &Block<'_>, line: usize) -> Result<(), ContentError> {
-    column.check_assumed(block, Some(line)).map_err(|error| error.or("--unit NAME=UNIT"))?;
+    column.check_assumed(block, Some(line)).map_err(|error| error.or("`unit` NAME=UNIT"))?;
     let is_phase = column.assumed_unit().is_some_and(|unit| unit.dimension == Dimension::Angle);
     if is_phase { Err(column.refuse(line, "", &with_unit(column, "°"))) } else { Ok(()) }
 }
 
 /// What to write, in a file or on the command line, for a unit to be known.
 pub(super) fn with_unit(column: &Column, unit: &str) -> String {
-    format!("the unit beside the name, as in {0} [{unit}]; or --unit '{0}={unit}'", column.text)
+    format!("the unit beside the name, as in {0} [{unit}]; or `unit` '{0}={unit}'", column.text)
 }
 
 /// Whether a frequency is in Hz or another number of cycles.
@@ -202,7 +202,7 @@ fn column(header: &Header<'_, Quantity>, index: usize, units: &GivenUnits) -> Re
     let text = header.names[index].trim();
     let given = units.iter().find(|(name, _)| words(text).starts_with(&words(name)) || name.trim() == text);
     let column = header.column(index, UnitRule::Assumed, given.map(|(_, unit)| *unit));
-    let column = column.map_err(|error| error.or("--ignore NAME leaves the column out"))?;
+    let column = column.map_err(|error| error.or("`ignore` NAME leaves the column out"))?;
     let is_rate = column.unit.dimension == Dimension::Rate;
     match column.quantity {
         Quantity::Frequency if is_rate || !column.names_unit => {

@@ -38,14 +38,14 @@ pub(super) fn read_moduli(options: &FitOptions) -> Result<MeasuredModuli, FitErr
         read.retain(|(_, measured)| measured.is_ok());
     }
     match read.len() {
-        0 if chosen.is_empty() => Err(refuse("one of them for --sheet")),
-        0 => Err(refuse("moduli in one of them; --sheet NAME says what one lacks")),
+        0 if chosen.is_empty() => Err(refuse("one of them for `sheet`")),
+        0 => Err(refuse("moduli in one of them; `sheet` NAME says what one lacks")),
         1 => {
             let (name, measured) = read.remove(0);
             let mut measured = measured.map_err(|error| in_data(options, error))?;
             measured.notes.insert(0, format!("sheet {name} of {}", name_of(&options.data)));
             Ok(measured)
         }
-        _ => Err(refuse("moduli in one of them alone, or --sheet NAME")),
+        _ => Err(refuse("moduli in one of them alone, or `sheet` NAME")),
     }
 }

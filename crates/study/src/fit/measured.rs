@@ -77,7 +77,7 @@ impl MeasuredModuli {
         }
         let Some(first) = tables.first() else { return Err(no_table(text, &blocks)) };
         if let Some(name) = reading.ignored.iter().find(|name| !first.has(name, text)) {
-            return Err(refused(first.line, &format!("--ignore {name}"), "one of the headings"));
+            return Err(refused(first.line, &format!("`ignore` {name}"), "one of the headings"));
         }
         let (test, in_hertz, reduced) = (first.test(), first.in_hertz(), first.is_reduced());
         let mut points = Vec::new();
@@ -296,7 +296,7 @@ mod tests {
             MeasuredModuli::parse(text.as_bytes(), &Reading { ignored: &ignored, ..READING })
         };
         assert_eq!(ignored("Temperature").unwrap().points[0].temperature, None);
-        assert_eq!(with_line(ignored("temp").unwrap_err()), "1: --ignore temp: expected one of the headings");
+        assert_eq!(with_line(ignored("temp").unwrap_err()), "1: `ignore` temp: expected one of the headings");
     }
 
     #[test]
@@ -320,7 +320,7 @@ mod tests {
             ("f [Hz],E' [Pa]\n1,2".into(), "1: expected a column of the loss: E'' [MPa] or tan delta"),
             (
                 "T [°C],E' [Pa],E'' [Pa]\n1,2,3".into(),
-                "1: expected a frequency column, f [Hz] or omega [rad/s]; or --frequency",
+                "1: expected a frequency column, f [Hz] or omega [rad/s]; or `frequency`",
             ),
             ("f [Hz],|E*| [Pa]\n1,2".into(), "1: expected a column of the phase beside |E*|"),
             (
@@ -334,7 +334,7 @@ mod tests {
             (
                 "f [Hz],E' [Pa],E'' [Pa],temperature\n1,2,3,4".into(),
                 "2: column 4 (temperature) = \"4\": expected the unit beside the name, as in temperature [°C]; or \
-                --unit",
+                `unit`",
             ),
             (
                 "f [Hz],E' [Pa],E'' [Pa],T [°C]\n1,2,3,-300".into(),
@@ -360,12 +360,12 @@ mod tests {
             ),
             (
                 "f,E',E''\n1,20,3".into(),
-                "2: column 2 (E') = \"20\": expected the unit beside the name, as in E' [MPa]; or --unit 'E'=MPa': in \
+                "2: column 2 (E') = \"20\": expected the unit beside the name, as in E' [MPa]; or `unit` 'E'=MPa': in \
                 Pa it",
             ),
             (
                 "# moduli in MPa\nf [Hz],E',E''\n1,2e6,3".into(),
-                "1: unit = \"moduli in MPa\": expected the unit beside the name of its column, as in E' [MPa]; or --unit",
+                "1: unit = \"moduli in MPa\": expected the unit beside the name of its column, as in E' [MPa]; or `unit`",
             ),
             ("f [Hz],|E*| [Pa],delta\n1,2,3".into(), "1: column 3 (delta): expected the unit beside the name"),
             (
@@ -374,7 +374,7 @@ mod tests {
             ),
             (
                 "T=20;\nf [Hz] E' [Pa] E'' [Pa]\n1 2 3\n2 3 4\n\nT=30;\nf [Hz] E' [Pa] E'' [Pa]\n1 2 3\n2 3 4\n".into(),
-                "1: T=20: expected a unit of temperature, as in 20 °C; or --unit 'T=°C'",
+                "1: T=20: expected a unit of temperature, as in 20 °C; or `unit` 'T=°C'",
             ),
             (
                 "f,E',E''\n\n1,\"2,000.0\",\"3,000.0\"\n".into(),

@@ -30,7 +30,7 @@ pub(super) fn temperatures_above(
             (None, Some(value), None) if value >= Wlf::COLDEST => last = Some(value),
             (None, Some(_), None) => {
                 let expected =
-                    "a unit of temperature, as in 20 °C, above each pair of columns; or --unit temperature=°C";
+                    "a unit of temperature, as in 20 °C, above each pair of columns; or `unit` temperature=°C";
                 let key = format!("column {}", index + 1);
                 return Err(ContentError::value(Some(line), &key, &format!("\"{field}\""), expected));
             }

@@ -117,7 +117,7 @@ impl<'a> Table<'a> {
     pub(super) fn check_temperature(&self) -> Result<(), ContentError> {
         let Some((line, text)) = &self.bare_temperature else { return Ok(()) };
         let name = text.split(['=', ':']).next().unwrap_or_default().trim();
-        let expected = format!("a unit of temperature, as in 20 °C; or --unit '{name}=°C'");
+        let expected = format!("a unit of temperature, as in 20 °C; or `unit` '{name}=°C'");
         Err(ContentError::value(Some(*line), "", text, &expected))
     }
 
@@ -165,11 +165,11 @@ impl<'a> Table<'a> {
         let shear = self.is_shear(&curve.modulus, reading);
         if shear {
             let nu = reading.poisson_ratio;
-            let text = format!("moduli of shear: E = 2(1 + ν) G, with ν = {nu} (--poisson-ratio)");
+            let text = format!("moduli of shear: E = 2(1 + ν) G, with ν = {nu} (`poisson_ratio`)");
             notes.push(text);
         } else if !names_letter(&curve.modulus.text) {
             let text = format!(
-                "{} does not say whether of tension or shear: E is assumed, --shear says G",
+                "{} does not say whether of tension or shear: E is assumed, `shear` says G",
                 name(&curve.modulus)
             );
             notes.push(text);
@@ -259,7 +259,7 @@ impl<'a> Table<'a> {
         match row.number(column)? {
             Some(other) if (other / at - 1.0).abs() > ROUNDING => {
                 let expected =
-                    format!("the same as the other column of frequencies, {at:.4e} rad/s; --ignore leaves one out");
+                    format!("the same as the other column of frequencies, {at:.4e} rad/s; `ignore` leaves one out");
                 Err(column.refuse(row.row.line, &format!("{other:.4e} rad/s"), &expected))
             }
             _ => Ok(()),
@@ -277,7 +277,7 @@ impl<'a> Table<'a> {
         }
         let names = (curve.loss.as_ref().map_or("", |loss| loss.text.as_str()), curve.modulus.text.as_str());
         let expected = format!(
-            "{:.4}, which {} over {} are: are their units right? --ignore leaves a column out",
+            "{:.4}, which {} over {} are: are their units right? `ignore` leaves a column out",
             loss / storage,
             names.0,
             names.1
@@ -386,7 +386,7 @@ impl Chosen {
             }
             (Some(_), true) => missing("a column of the loss: E'' [MPa] or tan delta"),
             _ if at.is_empty() && reading.frequency.is_none() => {
-                missing("a frequency column, f [Hz] or omega [rad/s]; or --frequency 10Hz for all rows")
+                missing("a frequency column, f [Hz] or omega [rad/s]; or `frequency` 10Hz for all rows")
             }
             _ => Ok(Some(Self { at, moduli, losses })),
         }
@@ -424,7 +424,7 @@ impl Chosen {
         let curve = |(i, modulus): (usize, &Column)| {
             let temperature = pairs.temperature(modulus).ok_or_else(|| {
                 let expected = "its temperature, in its name (E' [MPa] 20 °C) or in the line above; or one column of a \
-                                kind: --ignore NAME";
+                                kind: `ignore` NAME";
                 modulus.refuse(columns.line, "", expected)
             })?;
             let at = if at.len() == 1 { at.first().cloned() } else { pairs.partner(at, i, temperature)? };
@@ -468,6 +468,6 @@ impl Pairs<'_> {
 /// Two columns of one kind, where one is used, are one too many.
 fn twin(line: usize, columns: &[Column]) -> Option<ContentError> {
     let [first, second, ..] = columns else { return None };
-    let expected = format!("one column of a kind: {} is there already; ignore one by --ignore NAME", first.text);
+    let expected = format!("one column of a kind: {} is there already; ignore one by `ignore` NAME", first.text);
     Some(second.refuse(line, "", &expected))
 }

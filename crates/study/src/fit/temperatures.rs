@@ -188,7 +188,7 @@ impl Shift {
         }
         let constants = found.law.map_or_else(String::new, |(law, _)| {
             format!(
-                ": --wlf {},{},{}",
+                ": `wlf` {},{},{}",
                 short(law.c1, 4),
                 short(law.c2, 4),
                 plain(rounded(law.reference_temperature, 6))
@@ -196,7 +196,7 @@ impl Shift {
         });
         Some(format!(
             "the WLF constants do not put the temperatures together: they leave {} of one curve, factors of their own \
-             {} (leave --wlf out){constants}",
+             {} (leave `wlf` out){constants}",
             percent(with, 3),
             percent(found.rms, 3)
         ))
