@@ -37,7 +37,6 @@ use std::ffi::OsString;
 
 use clap::Parser as _;
 use cli::{Arguments, Command};
-pub use files::FileError;
 
 /// Exit status of a command that did what was asked for.
 const SUCCESS: u8 = 0;
