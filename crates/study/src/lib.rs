@@ -12,6 +12,7 @@ pub mod labelled;
 pub mod patch;
 pub mod progress;
 pub mod robustness;
+pub mod run_figures;
 pub mod runner;
 pub mod settings;
 pub mod steady;
