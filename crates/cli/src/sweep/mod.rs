@@ -11,7 +11,9 @@ use std::path::{Path, PathBuf};
 use asperity::element::OperatingPoint;
 use asperity::scene::{Scene, Wlf};
 use asperity_study::progress::Stop;
-use asperity_study::sweep::{Loads, SlidingOptions, SweepError, SweepOptions, SweepPlan, SweepTable, verdict};
+use asperity_study::sweep::{
+    Loads, NotAStudy, SlidingOptions, SweepError, SweepOptions, SweepPlan, SweepTable, verdict,
+};
 
 use super::cli::{Sliding, Sweep};
 use super::draft::TablePlace;
@@ -38,7 +40,7 @@ pub(crate) enum SweepCommandError {
     #[error("--master: the scene has no material.wlf, by whose factors speeds would be shifted")]
     NoMaster,
     #[error("{}: not a study of this scene's convergence: {problem}", .path.display())]
-    NotAStudy { path: PathBuf, problem: String },
+    NotAStudy { path: PathBuf, problem: NotAStudy },
     #[error("{failed} of {total} points are not steady or failed: the column status in {} says why", named(.path))]
     NotSteady { failed: usize, total: usize, path: PathBuf },
 }
