@@ -3,7 +3,6 @@
 mod plot;
 mod printed;
 mod table_file;
-pub(super) mod values;
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -23,8 +22,8 @@ use super::files::{
 use super::flags::with_flags;
 use super::interrupt::Farewell;
 use super::terminal::{self, lines, warn};
+use crate::cli::sweep_values::Values;
 use table_file::{TableFile, TableFileError};
-use values::Values;
 
 /// `asperity sweep` failed, or not all of its points are steady.
 #[derive(Debug, thiserror::Error)]
