@@ -14,8 +14,8 @@
 # which are fetched from PyPI into target/.
 #
 # With --wheel the Python package asperity is built in place of an FMU, by maturin, which is fetched from PyPI into
-# target/: a wheel with the shared library of the FMUs, and a source distribution, in target/wheels. With --all-platforms
-# there is a wheel for Linux from glibc 2.17 on, on x86-64 and on aarch64, and one for Windows, all linked by zig; that
+# target/: a wheel with the program and the shared library of the FMUs, and a source distribution, in target/wheels. With
+# --all-platforms there is a wheel for Linux from glibc 2.17 on, on x86-64 and on aarch64, and one for Windows, all linked by zig; that
 # takes the targets of Rust that rustup adds.
 set -euo pipefail
 
@@ -63,32 +63,39 @@ name=$(basename "$scene")
 name=${name%.*}
 output=${output:-$target/$name.fmu}
 
-# The library alone, without the program's packages and optimised as a whole, which cargo does where nothing else is
-# made of it. Each platform has a folder of its own: the builds would rebuild each other's packages otherwise.
-library_options=(--manifest-path "$root/Cargo.toml" --locked --release --lib --no-default-features --crate-type cdylib)
+# Other platforms have folders of their own.
+options=(--manifest-path "$root/Cargo.toml" --locked --release)
 
-build_library() {
-    cargo rustc "${library_options[@]}" --target-dir "$target/fmu"
+# What the machine itself runs: the program, and with `-p asperity-fmu` the shared library.
+build() {
+    if ! [ -e "$target/release/asperity" ]; then
+        echo "Building asperity: some two minutes on two cores where nothing is built yet; packages come from the network." >&2
+    fi
+    cargo build "${options[@]}" -p asperity-cli "$@" --target-dir "$target"
+    local prefix=lib suffix=.so ending=''
     case $(uname -s) in
-        Darwin) libraries=("$target/fmu/release/libasperity.dylib") ;;
-        MINGW* | MSYS* | CYGWIN*) libraries=("$target/fmu/release/asperity.dll") ;;
-        *) libraries=("$target/fmu/release/libasperity.so") ;;
+        Darwin) suffix=.dylib platform=darwin64 ;;
+        MINGW* | MSYS* | CYGWIN*) prefix='' suffix=.dll ending=.exe platform=win64 ;;
+        *) platform=linux64 ;;
     esac
+    asperity=$target/release/asperity$ending
+    library=$target/release/${prefix}asperity_fmu$suffix
 }
 
-# The library by zig's linker, which knows the symbols of every glibc: a target, with the version of glibc behind it, and
-# a folder.
+# Packages by zig's linker, which knows the symbols of every glibc: a target, with the version of glibc behind it, a
+# folder, and options that name them.
 build_by_zig() {
-    local python
+    local python triple=$1 folder=$2
+    shift 2
     python=$("$root/tests/python/environment.sh" "$target/zig" "$root/tests/host/zig.txt")
     PATH=$target/zig/bin:$target/zig/packages/bin:$PATH CARGO_ZIGBUILD_PYTHON_PATH=$python \
-        cargo-zigbuild rustc "${library_options[@]}" --target "$1" --target-dir "$2"
+        cargo-zigbuild build "${options[@]}" "$@" --target "$triple" --target-dir "$folder"
 }
 
 build_linux64() {
     local glibc=2.17 triple=x86_64-unknown-linux-gnu folder=$target/linux64 newest
-    local library=$folder/$triple/release/libasperity.so
-    build_by_zig "$triple.$glibc" "$folder"
+    local library=$folder/$triple/release/libasperity_fmu.so
+    build_by_zig "$triple.$glibc" "$folder" -p asperity-fmu
     newest=$(objdump -T "$library" | grep -o 'GLIBC_[0-9.]*' | sed s/GLIBC_// | sort -V | tail -n 1)
     [ "$(printf '%s\n' "$newest" "$glibc" | sort -V | tail -n 1)" = "$glibc" ] ||
         refuse "$library needs glibc $newest, more than $glibc"
@@ -98,9 +105,9 @@ build_linux64() {
 # Debian's compiler and its standard library's sources: Rust's own has no Windows library on every machine.
 build_win64() {
     local triple=x86_64-pc-windows-gnu folder=$target/win64
-    RUSTC=$debian_rustc RUSTC_BOOTSTRAP=1 cargo rustc "${library_options[@]}" -Zbuild-std=std,panic_unwind \
+    RUSTC=$debian_rustc RUSTC_BOOTSTRAP=1 cargo build "${options[@]}" -p asperity-fmu -Zbuild-std=std,panic_unwind \
         --target "$triple" --target-dir "$folder"
-    libraries+=("win64=$folder/$triple/release/asperity.dll")
+    libraries+=("win64=$folder/$triple/release/asperity_fmu.dll")
 }
 
 debian_rustc=/usr/bin/rustc
@@ -124,6 +131,7 @@ check_tools() {
 simulate() {
     local python base
     base=${output%.fmu}
+    [ -x "$target/venv/bin/python" ] || echo "Installing fmpy and matplotlib into target/venv ..." >&2
     python=$("$root/tests/python/environment.sh" "$target/venv")
     "$asperity" simulate "$scene" -o "$base.csv" --points 200
     "$python" "$root/tests/python/drive.py" "$output" "$base.csv" -o "$base.fmu.csv"
@@ -134,27 +142,28 @@ simulate() {
 
 package=$root/python/python/asperity
 
-# A wheel with the shared library of a platform, as FMUs name it; the other arguments are options of maturin.
+# A wheel with the program and the shared library of a platform, as FMUs name it; the other arguments are options of
+# maturin.
 build_wheel() {
-    local platform=$1 library=$2
-    shift 2
+    local platform=$1 program=$2 library=$3
+    shift 3
     rm -rf "$package/binaries"
     mkdir -p "$package/binaries/$platform"
-    cp "$library" "$package/binaries/$platform/asperity.${library##*.}"
+    cp "$program" "$library" "$package/binaries/$platform/"
     PATH=$target/zig/bin:$target/zig/packages/bin:$target/wheel/bin:$target/wheel/packages/bin:$PATH \
         maturin build --manifest-path "$root/python/Cargo.toml" --locked --release --out "$target/wheels" "$@"
 }
 
 build_wheel_by_zig() {
-    local platform=$1 triple=$2 glibc=$3 library=$4
-    shift 4
+    local platform=$1 triple=$2 glibc=$3 program=$4 library=$5 folder=$target/$2/$2/release
+    shift 5
     rustup target list --installed | grep -qx "$triple" || refuse "the wheel for $triple needs: rustup target add $triple"
-    build_by_zig "$triple$glibc" "$target/$triple"
-    build_wheel "$platform" "$target/$triple/$triple/release/$library" --zig --target "$triple" \
+    build_by_zig "$triple$glibc" "$target/$triple" -p asperity-cli -p asperity-fmu
+    build_wheel "$platform" "$folder/$program" "$folder/$library" --zig --target "$triple" \
         --target-dir "$target/$triple" ${glibc:+--compatibility manylinux2014} "$@"
 }
 
-# The licences of what a wheel links are collected from the packages themselves.
+# The licences of what a wheel brings are collected from the packages themselves.
 build_wheels() {
     local python
     python=$("$root/tests/python/environment.sh" "$target/wheel" wheel.txt)
@@ -163,19 +172,15 @@ build_wheels() {
     "$python" "$root/python/licences.py" "$root/Cargo.toml" "$root/python/licenses/third-party.txt"
     if $all_platforms; then
         command -v rustup > /dev/null || refuse "--wheel --all-platforms needs rustup, which adds Rust's targets"
-        build_wheel_by_zig linux64 x86_64-unknown-linux-gnu .2.17 libasperity.so
-        build_wheel_by_zig linux64 aarch64-unknown-linux-gnu .2.17 libasperity.so
+        build_wheel_by_zig linux64 x86_64-unknown-linux-gnu .2.17 asperity libasperity_fmu.so
+        build_wheel_by_zig linux64 aarch64-unknown-linux-gnu .2.17 asperity libasperity_fmu.so
         # The feature does nothing in this version of pyo3, but this one of maturin asks for it; and it would build for
         # interpreters that the stable interface does not serve, were none named.
-        build_wheel_by_zig win64 x86_64-pc-windows-gnu '' asperity.dll --features pyo3/generate-import-lib \
+        build_wheel_by_zig win64 x86_64-pc-windows-gnu '' asperity.exe asperity_fmu.dll --features pyo3/generate-import-lib \
             --interpreter 3.10
     else
-        build_library
-        case $(uname -s) in
-            Darwin) build_wheel darwin64 "${libraries[0]}" --target-dir "$target" ;;
-            MINGW* | MSYS* | CYGWIN*) build_wheel win64 "${libraries[0]}" --target-dir "$target" ;;
-            *) build_wheel linux64 "${libraries[0]}" --target-dir "$target" ;;
-        esac
+        build -p asperity-fmu
+        build_wheel "$platform" "$asperity" "$library" --target-dir "$target"
     fi
     PATH=$target/wheel/bin:$target/wheel/packages/bin:$PATH \
         maturin sdist --manifest-path "$root/python/Cargo.toml" --out "$target/wheels"
@@ -190,11 +195,11 @@ if $all_platforms; then
     check_tools
     build_linux64
     build_win64
+    build
 else
-    build_library
+    build -p asperity-fmu
+    libraries=("$library")
 fi
-cargo build --manifest-path "$root/Cargo.toml" --locked --release --bin asperity --target-dir "$target"
-asperity=$target/release/asperity
 "$asperity" pack ${kind[@]+"${kind[@]}"} "$scene" -o "$output" "${libraries[@]/#/--library=}"
 echo "$output"
 if $simulate; then simulate; fi

@@ -1,9 +1,9 @@
-"""Writes the licences of all packages that the native part of the wheel links, with their texts.
+"""Writes the licences of all packages that are linked into what the wheel brings, with their texts.
 
     licences.py CARGO.toml OUT.txt
 
-Packages come from cargo's own resolution: normal dependencies of asperity-python, without procedural macros, which are
-no part of what is linked. A text that several packages have stands there once.
+Packages come from cargo's own resolution: normal dependencies of the native part, of the program and of the FMUs' shared
+library, without procedural macros, which are no part of what is linked. A text that several packages have stands there once.
 """
 
 import json
@@ -11,7 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-ROOT = "asperity-python"
+ROOTS = ("asperity-python", "asperity-cli", "asperity-fmu")
 NAMES = ("LICENSE", "LICENCE", "COPYING", "NOTICE", "UNLICENSE", "COPYRIGHT")
 LINE = "-" * 78
 
@@ -30,7 +30,7 @@ def linked(found):
     def is_macro(package):
         return any("proc-macro" in target["kind"] for target in package["targets"])
 
-    left, seen = [one["id"] for one in packages.values() if one["name"] == ROOT], set()
+    left, seen = [one["id"] for one in packages.values() if one["name"] in ROOTS], set()
     while left:
         package = left.pop()
         if package in seen or is_macro(packages[package]):
@@ -53,9 +53,9 @@ def texts(package):
 def main():
     """Writes the file."""
     manifest, output = sys.argv[1:]
-    holders, lines = {}, ["Packages that the native part of this wheel links, and their licences.", ""]
+    holders, lines = {}, ["Packages that are linked into what this wheel brings, and their licences.", ""]
     # The figures' font is no package.
-    font = Path(manifest).parent / "src/program/figure/font/LICENSE.txt"
+    font = Path(manifest).parent / "crates/cli/src/figure/font/LICENSE.txt"
     holders[font.read_text(encoding="utf-8").strip()] = ["DejaVu Sans"]
     lines.append("DejaVu Sans, the font of the program's figures")
     for package in linked(metadata(manifest)):

@@ -12,7 +12,7 @@
 //! | module | uses | contents |
 //! |---|---|---|
 //! | [`math`] | | splines, tridiagonal systems, roots, Fourier sums and other numerical methods |
-//! | [`tables`] | | tables of text as people and instruments write them: dialect, headings, units |
+//! | [`tables`] | | tables of text as people and instruments write them: dialect, headings, units, the columns that a client wants |
 //! | [`scene`] | math, tables | a scene as data: reading TOML, profiles and materials; parameters; checks and warnings |
 //! | [`model`] | math, scene | the mechanical model: links and their forces, contact laws, state, energies, stiffness scales, reduction |
 //! | `steady` | math, scene, model | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
@@ -84,7 +84,7 @@
 //! | a_T | `Material::shift_factor()` | 1 | shift of all times with temperature (Williams, Landel and Ferry) |
 //! | E', E'' | `Material::complex_modulus()` | Pa | storage and loss modulus (2) |
 //! | f_x,i, f_z,i | `Forces::on_mass_x`, `on_mass_z` | N | forces of the links on mass i (3), (4) |
-//! | M, K, D | `model::Body::mass`, `stiffness`, `damping` | kg, N/m, N s/m | carrier that is a body, spring and damper to its drive |
+//! | M, K, D | `CarrierBody::mass`, `stiffness`, `damping` | kg, N/m, N s/m | carrier that is a body, spring and damper to its drive |
 //! | N, P | `Input::Load`, `Input::Pull` | N | normal load (N > 0 presses) and tangential force on a body |
 //! | u_d, w_d, R | `Outside::drive`, `drive_force()` | m, N | displacement of the drive, its force on the body |
 //! | F_x, F_z | `Forces::on_carrier()` | N | forces of the layer on the carrier |

@@ -1,9 +1,11 @@
 //! Numbers of a scene from measured friction.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use asperity_cli::{Calibration, CalibrationOptions, calibrate_scene};
-use asperity_study::calibration::FreeParameter;
+use asperity_study::calibration::{
+    Calibration, CalibrationOptions, FreeParameter, calibrate_scene, chi_square_per_degree,
+};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -38,14 +40,21 @@ pub(crate) fn calibrate<'py>(
         sliding: sliding(method, points, error, distance)?,
     };
     let text = scene.text.clone();
-    let found = in_background(py, None, move |task| calibrate_scene(&text, &options, || !task.is_stopped()))?;
-    as_dictionary(py, found.map_err(|error| error.raise())?)
+    let found = in_background(py, None, move |task| {
+        calibrate_scene(&text, &options, || {
+            if task.is_stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })
+    })?;
+    let (calibration, text) = found.map_err(|error| error.raise())?;
+    as_dictionary(py, &calibration, text)
 }
 
-fn as_dictionary(py: Python<'_>, found: Calibration) -> PyResult<Bound<'_, PyDict>> {
-    let Calibration { parameters, correlation, chi_square, is_whole, measurements, warnings, notes, text } = found;
+fn as_dictionary<'py>(py: Python<'py>, calibration: &Calibration, text: String) -> PyResult<Bound<'py, PyDict>> {
+    let statistics = &calibration.statistics;
+    let correlation: Vec<Vec<f64>> =
+        statistics.correlation.row_iter().map(|row| row.iter().copied().collect()).collect();
     let rows = PyList::empty(py);
-    for one in parameters {
+    for one in calibration.parameters() {
         let row = PyDict::new(py);
         row.set_item("key", one.key)?;
         row.set_item("before", one.before)?;
@@ -56,18 +65,18 @@ fn as_dictionary(py: Python<'_>, found: Calibration) -> PyResult<Bound<'_, PyDic
         rows.append(row)?;
     }
     let measured = PyList::empty(py);
-    for (row, model) in measurements {
-        let point = row.point;
+    for row in &calibration.measurements.rows {
+        let (point, model) = (row.point, calibration.friction_at(&row.point));
         measured.append((point.speed, point.load, point.temperature, row.friction, row.sigma, model))?;
     }
     let found = PyDict::new(py);
     found.set_item("parameters", rows)?;
     found.set_item("correlation", correlation)?;
-    found.set_item("chi_square", chi_square)?;
-    found.set_item("is_whole", is_whole)?;
+    found.set_item("chi_square", chi_square_per_degree(statistics.chi_square, statistics.degrees))?;
+    found.set_item("is_whole", calibration.is_whole())?;
     found.set_item("measured", measured)?;
-    found.set_item("warnings", warnings)?;
-    found.set_item("notes", notes)?;
+    found.set_item("warnings", calibration.warnings())?;
+    found.set_item("notes", &calibration.measurements.notes)?;
     found.set_item("text", text)?;
     Ok(found)
 }

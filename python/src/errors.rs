@@ -4,13 +4,14 @@ use std::fmt::Display;
 use std::io::ErrorKind;
 use std::path::Path;
 
-use asperity::patch::{MotionError, PatchError, RestoreError};
+use asperity::patch::{MotionError, PatchError, PatchRestoreError};
 use asperity::scene::{ParameterError, SceneError};
 use asperity::simulation::SimulationError;
-use asperity_cli::{CalibrateError, FileError, PackError};
+use asperity_study::calibration::{CalibrationError, MeasuredFrictionError};
 use asperity_study::contact::ContactError;
 use asperity_study::files::ReadError;
 use asperity_study::fit::FitError;
+use asperity_study::pack::PackError;
 use asperity_study::settings::OverrideError;
 use asperity_study::sweep::SweepError;
 use pyo3::exceptions::{PyFileNotFoundError, PyKeyError, PyOSError, PyValueError};
@@ -94,20 +95,6 @@ impl Raise for ReadError {
     }
 }
 
-impl Raise for FileError {
-    fn raise(self) -> PyErr {
-        match self {
-            Self::Read(error) => error.raise(),
-            Self::Set(error) => error.raise(),
-            Self::Io { ref source, .. } if source.kind() == ErrorKind::NotFound => {
-                PyFileNotFoundError::new_err(self.to_string())
-            }
-            Self::Io { .. } => PyOSError::new_err(self.to_string()),
-            error => PyValueError::new_err(error.to_string()),
-        }
-    }
-}
-
 impl Raise for SimulationError {
     fn raise(self) -> PyErr {
         match self {
@@ -127,7 +114,7 @@ impl Raise for MotionError {
     }
 }
 
-impl Raise for RestoreError {
+impl Raise for PatchRestoreError {
     fn raise(self) -> PyErr {
         PyValueError::new_err(self.to_string())
     }
@@ -154,10 +141,10 @@ impl Raise for FitError {
     }
 }
 
-impl Raise for CalibrateError {
+impl Raise for CalibrationError {
     fn raise(self) -> PyErr {
         match self {
-            Self::File(error) => error.raise(),
+            Self::Read(error) | Self::Measured(MeasuredFrictionError::Read(error)) => error.raise(),
             error => PyValueError::new_err(error.to_string()),
         }
     }
@@ -166,7 +153,7 @@ impl Raise for CalibrateError {
 impl Raise for PackError {
     fn raise(self) -> PyErr {
         match self {
-            Self::File(error) => error.raise(),
+            Self::Read(error) => error.raise(),
             error => PyValueError::new_err(error.to_string()),
         }
     }

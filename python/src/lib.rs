@@ -6,8 +6,8 @@ mod calibrate;
 mod contact;
 mod errors;
 mod fit;
+mod pack;
 mod patch;
-mod program;
 mod run;
 mod scene;
 mod simulation;
@@ -27,8 +27,6 @@ mod _native {
     use super::fit::{Fit, fit};
     #[pymodule_export]
     use super::patch::{Patch, PatchRun, PatchState};
-    #[pymodule_export]
-    use super::program::main;
     #[pymodule_export]
     use super::run::simulate;
     #[pymodule_export]

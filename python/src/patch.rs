@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use asperity::patch::{PatchMotion, PatchStart, PatchVariable, Pose};
-use asperity_cli::write_fmu;
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::errors::{Raise as _, check_dt, no_output};
+use crate::pack::pack;
 use crate::state::{Reduced, read, reduced};
 
 /// A contact patch, read from its file.
@@ -55,7 +55,7 @@ impl Patch {
 
     /// Writes an FMU.
     fn pack(&self, output: PathBuf, libraries: Vec<OsString>) -> PyResult<()> {
-        write_fmu(&self.patch.clone().into(), &self.file, &libraries, &output).map_err(|error| error.raise())
+        pack(&self.patch.clone().into(), &self.file, &libraries, &output)
     }
 }
 

@@ -4,7 +4,6 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use asperity_cli::write_fmu;
 use asperity_study::files::parse_scene;
 use asperity_study::settings::{Setting, item_at, with_settings};
 use numpy::{PyArray1, PyArrayMethods as _, ToPyArray as _};
@@ -15,6 +14,7 @@ use pyo3::types::{PyDict, PyList};
 use toml_edit::{Item, Value};
 
 use crate::errors::Raise as _;
+use crate::pack::pack;
 
 /// The text of a scene file with keys set, read and checked.
 #[pyclass(frozen, module = "asperity._native")]
@@ -120,7 +120,7 @@ impl Scene {
     /// Writes an FMU. The file of the scene has to hold what the scene is.
     fn pack(&self, output: PathBuf, libraries: Vec<OsString>) -> PyResult<()> {
         let definition = (*self.scene).clone().into();
-        write_fmu(&definition, &self.file, &libraries, &output).map_err(|error| error.raise())
+        pack(&definition, &self.file, &libraries, &output)
     }
 
     /// Whether the scene is the same as another, whatever text and files it is read from.

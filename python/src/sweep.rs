@@ -7,13 +7,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use asperity::element::{OperatingPoint, PointContact, Table};
-use asperity_cli::write_fmu;
 use asperity_study::sweep::{Loads, SlidingOptions, SweepError, SweepMethod, SweepOptions, SweepPlan, SweepTable};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::background::{Task, in_background};
 use crate::errors::Raise as _;
+use crate::pack::pack;
 use crate::scene::Scene;
 
 /// How steady sliding is found, as Python has it.
@@ -87,5 +87,5 @@ pub(crate) fn sweep(
 #[pyfunction]
 pub(crate) fn pack_table(table: PathBuf, output: PathBuf, libraries: Vec<OsString>) -> PyResult<()> {
     let read = Table::load(&table).map_err(|error| PyValueError::new_err(error.to_string()))?;
-    write_fmu(&PointContact::new(read).into(), &table, &libraries, &output).map_err(|error| error.raise())
+    pack(&PointContact::new(read).into(), &table, &libraries, &output)
 }

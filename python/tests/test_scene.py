@@ -180,7 +180,7 @@ def test_a_compound_has_a_time_for_each_modulus(block):
 def test_files_that_are_missing_are_said_so(block):
     with pytest.raises(FileNotFoundError):
         asperity.fit("missing.csv")
-    with pytest.raises(ValueError, match="--free: expected a parameter to fit, found none"):
+    with pytest.raises(ValueError, match="`free`: expected a parameter to fit, found none"):
         block.calibrate({"speed": [0.1], "pressure": [1e5], "friction": [0.5]}, {})
 
 

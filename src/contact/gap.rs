@@ -51,7 +51,7 @@ struct Part {
 }
 
 /// The gap over a part, m.
-struct Ends {
+struct GapAtEnds {
     start: f64,
     end: f64,
     /// The largest |g''| with respect to the fraction.
@@ -72,7 +72,7 @@ impl GapSearch<'_> {
         if part.height.range().0 - profile.z_max > -self.tolerance {
             return None;
         }
-        let Ends { start, end, bend } = self.ends(part, &profile);
+        let GapAtEnds { start, end, bend } = self.ends(part, &profile);
         if self.stays_above(start, end, bend) {
             return None;
         }
@@ -87,7 +87,7 @@ impl GapSearch<'_> {
     }
 
     /// The gap at the ends of a part, and its largest bend between them with the bounds `profile`.
-    fn ends(&self, part: &Part, profile: &Bounds) -> Ends {
+    fn ends(&self, part: &Part, profile: &Bounds) -> GapAtEnds {
         // |g''| over the part: g = z - z_r(x), g'' = z̈ - s ẍ - κ ẋ².
         let (speed_x, bend_x) = part.position.derivative_bounds();
         let bend = part.height.derivative_bounds().1
@@ -95,7 +95,7 @@ impl GapSearch<'_> {
             + profile.curvature_max_abs * speed_x * speed_x;
         let gap = |(x, z): (f64, f64)| z - self.profile.evaluate(x).0;
         let (x, z) = (part.position.ends(), part.height.ends());
-        Ends { start: gap((x.0, z.0)), end: gap((x.1, z.1)), bend }
+        GapAtEnds { start: gap((x.0, z.0)), end: gap((x.1, z.1)), bend }
     }
 
     /// The part of the bend that rounding of the position can make, m; 0 as long as the search is short.

@@ -35,7 +35,7 @@ pub use point_contact::{PointContact, dependencies, variables};
 pub use point_status::PointStatus;
 pub use quantity::Quantity;
 pub use resampled::{LawPlace, ResampledLaw, SpeedCell, SpeedRange};
-pub use run::{Element, ElementError, ElementState, RestoreError};
+pub use run::{Element, ElementError, ElementRestoreError, ElementState};
 pub(crate) use spring::{Advanced, Segment, SpringLaw, advance, apply_jump};
 pub use table::{Node, Table, some_of};
 pub use table_format::{Basis, CONVERGED, FORMAT, TableError, TableHeader, TableRow, TableText};

@@ -65,7 +65,7 @@ pub enum ElementError {
 
 /// Why a run cannot be continued from a saved state.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum RestoreError {
+pub enum ElementRestoreError {
     /// A number that is not valid in any run.
     #[error("invalid state: {what} = {value}")]
     Invalid {
@@ -377,12 +377,12 @@ impl Element {
     /// A run that continues from `saved`, bit for bit as the run that was saved.
     ///
     /// # Errors
-    /// [`RestoreError`] where `saved` is no valid state of a run of this contact.
-    pub fn restore(contact: &PointContact, saved: &ElementState) -> Result<Self, RestoreError> {
+    /// [`ElementRestoreError`] where `saved` is no valid state of a run of this contact.
+    pub fn restore(contact: &PointContact, saved: &ElementState) -> Result<Self, ElementRestoreError> {
         saved.check()?;
         let mut element = Self::at(contact, *saved)?;
         let here = element.contact();
-        let invalid = |what, value| Err(RestoreError::Invalid { what, value });
+        let invalid = |what, value| Err(ElementRestoreError::Invalid { what, value });
         let mode = match Mode::from_number(saved.mode) {
             Some(mode) if mode.in_contact() == (here.stiffness.value > 0.0) => mode,
             _ => return invalid("the mode", f64::from(saved.mode)),
@@ -406,10 +406,10 @@ impl Element {
 }
 
 impl ElementState {
-    fn check(&self) -> Result<(), RestoreError> {
+    fn check(&self) -> Result<(), ElementRestoreError> {
         let positions = [("time", self.time), ("u", self.u), ("w", self.w)];
         match not_finite(self).or_else(|| positions.into_iter().find(|(_, position)| !is_possible(*position))) {
-            Some((what, value)) => Err(RestoreError::Invalid { what, value }),
+            Some((what, value)) => Err(ElementRestoreError::Invalid { what, value }),
             None => Ok(()),
         }
     }

@@ -2,7 +2,7 @@
 
 use std::hint::select_unpredictable;
 
-use super::heat::Heat;
+use super::heat::StageHeat;
 use super::maxwell::Maxwell;
 use super::running_maxima::RunningMaxima;
 use super::scheme::ContactModes;
@@ -87,7 +87,7 @@ pub(super) struct ErrorTest<'a> {
     pub modes: ContactModes,
     pub tableau: &'static Tableau,
     pub maxwell: &'a Maxwell,
-    pub heat: &'a Heat,
+    pub heat: &'a StageHeat,
     pub stages: &'a [StageValues],
     /// The carrier at the stages.
     pub carrier: &'a [CarrierPoint],

@@ -17,7 +17,7 @@ use crate::model::{Flash, FlashTerm, Model};
 
 /// Workspace for the flash temperatures of a layer over one step.
 #[derive(Clone, Debug)]
-pub(super) struct Heat {
+pub(super) struct StageHeat {
     tableau: &'static Tableau,
     interpolation: &'static Interpolation,
     /// By stage, those through whose fluxes the temperature there follows; of the last one, in its embedded error estimate.
@@ -66,7 +66,7 @@ pub(super) struct StageFlash {
 /// is continuous in its length.
 const MAX_FEEDBACK: f64 = 0.5;
 
-impl Heat {
+impl StageHeat {
     /// Workspace for `model` over steps by a method, if it `is_used`.
     pub(super) fn new(coefficients: &'static Coefficients, model: &Model, is_used: bool) -> Self {
         let Coefficients { tableau, interpolation, .. } = coefficients;

@@ -1,7 +1,7 @@
 //! One Runge-Kutta step: the stages of an attempted step, from their history to their error test.
 
 use super::error::{CarrierQuadrature, ErrorEstimate, ErrorTest, ErrorWorkspace};
-use super::heat::{Heat, heat_flux};
+use super::heat::{StageHeat, heat_flux};
 use super::maxwell::Maxwell;
 use super::scheme::{Coefficients, InitialGuess, Scheme};
 use super::sensitivity::{Sensitivity, Solved};
@@ -34,7 +34,7 @@ pub(super) struct RungeKutta {
     pub scheme: Scheme,
     pub coefficients: &'static Coefficients,
     pub maxwell: Maxwell,
-    pub heat: Heat,
+    pub heat: StageHeat,
 }
 
 /// The values at the stages of the last attempted step. Stage 0 is the start of the step.
@@ -76,7 +76,7 @@ impl RungeKutta {
             scheme,
             coefficients,
             maxwell: Maxwell::new(coefficients.tableau, model, is_used),
-            heat: Heat::new(coefficients, model, is_used),
+            heat: StageHeat::new(coefficients, model, is_used),
         }
     }
 
@@ -309,7 +309,7 @@ impl Stages {
 
     /// Computes the tangents at stage `i`, just solved, at `s` seconds after the start of the carrier's motion; the
     /// stages have `weights`.
-    fn vary(&mut self, step: &Attempt<'_>, heat: &Heat, point: &StagePoint, i: usize, s: f64, weights: &[f64]) {
+    fn vary(&mut self, step: &Attempt<'_>, heat: &StageHeat, point: &StagePoint, i: usize, s: f64, weights: &[f64]) {
         if self.tangents.is_empty() {
             return;
         }

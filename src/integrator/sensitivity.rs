@@ -8,10 +8,12 @@
 
 use nalgebra::Vector2;
 
-use super::heat::Heat;
+use super::heat::StageHeat;
 use super::stage::{SlipVariation, SlippingMass, StagePoint, StageSolver};
 use super::stage_values::StageValues;
-use crate::model::{Axis, Body, ByAxis, Flash, Forces, Input, LinkKind, LinkMotion, Mode, Model, State, TangentsOf};
+use crate::model::{
+    Axis, ByAxis, CarrierBody, Flash, Forces, Input, LinkKind, LinkMotion, Mode, Model, State, TangentsOf,
+};
 
 /// The variation of the layer's state: dimensionless for positions, 1/s for velocities. Or its rate of change, each
 /// part that of the part of the state.
@@ -132,7 +134,7 @@ impl Sensitivity {
     }
 
     /// The variation of what acts from outside on the body along `axis`, displaced and moving as given.
-    fn on_body(&self, body: &Body, axis: Axis, s: f64, [displacement, rate]: [f64; 2]) -> f64 {
+    fn on_body(&self, body: &CarrierBody, axis: Axis, s: f64, [displacement, rate]: [f64; 2]) -> f64 {
         let [input, input_rate] = if self.input.axis() == Some(axis) { self.ramp(s) } else { [0.0; 2] };
         let (drive, drive_rate, force) = match self.input {
             Input::U | Input::W => (input, input_rate, 0.0),
@@ -465,7 +467,7 @@ pub(super) struct Solved<'a> {
     pub weights: &'a [f64],
     pub rates: &'a StageValues,
     pub point: &'a StagePoint,
-    pub heat: &'a Heat,
+    pub heat: &'a StageHeat,
 }
 
 /// sum += factor · term.

@@ -78,7 +78,7 @@ pub struct CarrierPosition {
 
 /// The carrier as a body along one axis: what does not change through a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Body {
+pub struct CarrierBody {
     /// Mass M, kg.
     pub mass: f64,
     /// Stiffness K of the spring to the drive, N/m.
@@ -89,7 +89,7 @@ pub struct Body {
     pub force: f64,
 }
 
-impl Body {
+impl CarrierBody {
     /// The bodies of `scene` along x and z.
     pub(super) fn along_axes(scene: &Scene) -> ByAxis<Option<Self>> {
         ByAxis::from_fn(|axis| {
@@ -184,24 +184,24 @@ impl Outside {
     }
 
     /// R, the drive's force on the body, N.
-    pub fn drive_force(&self, body: &Body) -> f64 {
+    pub fn drive_force(&self, body: &CarrierBody) -> f64 {
         let stretch = self.stretch();
         -(body.stiffness * stretch.position + body.damping * stretch.speed)
     }
 
     /// Ṙ, N/s.
-    pub fn drive_force_rate(&self, body: &Body) -> f64 {
+    pub fn drive_force_rate(&self, body: &CarrierBody) -> f64 {
         let stretch = self.stretch();
         -(body.stiffness * stretch.speed + body.damping * stretch.acceleration)
     }
 
     /// The power of the load and of the drive into the body, W.
-    pub fn input(&self, body: &Body) -> f64 {
+    pub fn input(&self, body: &CarrierBody) -> f64 {
         self.force * self.body.speed + self.drive_force(body) * self.drive.speed
     }
 
     /// The power lost in the damper to the drive, W.
-    pub fn lost(&self, body: &Body) -> f64 {
+    pub fn lost(&self, body: &CarrierBody) -> f64 {
         body.damping * self.stretch().speed.powi(2)
     }
 }
@@ -371,13 +371,13 @@ impl Carrier {
 
     /// The body of `model` along `axis` and what acts on it from outside at the time `s` after the start of the
     /// segment, s.
-    pub fn outside<'a>(&self, model: &'a Model, axis: Axis, s: f64) -> Option<(&'a Body, Outside)> {
+    pub fn outside<'a>(&self, model: &'a Model, axis: Axis, s: f64) -> Option<(&'a CarrierBody, Outside)> {
         self.outside_at(model, axis, s, self.along(axis, s))
     }
 
     /// What acts from outside on the body of `model` along `axis`, displaced since the start of the segment as `at`
     /// says, at the time `s` (s).
-    pub fn outside_at<'a>(&self, model: &'a Model, axis: Axis, s: f64, at: Jet) -> Option<(&'a Body, Outside)> {
+    pub fn outside_at<'a>(&self, model: &'a Model, axis: Axis, s: f64, at: Jet) -> Option<(&'a CarrierBody, Outside)> {
         let (body, motion) = (model.bodies[axis].as_ref()?, self.bodies[axis].as_ref()?);
         let sign = match axis {
             Axis::X => 1.0,

@@ -17,7 +17,9 @@ mod slip_curve;
 mod state;
 mod tangents;
 
-pub use carrier::{Body, BodyEnergy, BodyInterpolant, BodyStart, Carrier, CarrierPoint, CarrierPosition, Outside};
+pub use carrier::{
+    BodyEnergy, BodyInterpolant, BodyStart, Carrier, CarrierBody, CarrierPoint, CarrierPosition, Outside,
+};
 pub use contact::ContactForces;
 pub use end_forces::EndForces;
 pub use energy::{BoundaryPowers, ChannelEnergies, Powers, elastic_energy, kinetic_energy, vertical_spring_energy_at};
@@ -103,7 +105,7 @@ pub struct Model {
     /// The rigid profile z_r(x).
     pub profile: Arc<Spline>,
     /// The carrier as a body along x and z; `None` where its displacement is prescribed.
-    pub bodies: ByAxis<Option<Body>>,
+    pub bodies: ByAxis<Option<CarrierBody>>,
     /// Friction in the contacts.
     pub friction: FrictionLaw,
     /// How friction heats the contacts; `None`: they stay at the layer's temperature.
@@ -137,7 +139,7 @@ impl Model {
             relaxation_times,
             glassy: ByLink::from_fn(|kind| scene.link(kind).as_ref().map_or(0.0, scales::glassy)),
             profile: Arc::clone(scene.surface.spline()),
-            bodies: Body::along_axes(scene),
+            bodies: CarrierBody::along_axes(scene),
             friction: FrictionLaw::new(scene),
             flash: FlashKernel::new(scene),
             initial: layer.initial,

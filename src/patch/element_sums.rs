@@ -5,7 +5,7 @@ use super::face::Face;
 use super::motion::{BodyKinematics, PoseMotion};
 use super::run::PatchRun;
 use super::segments::size;
-use super::state::{PatchState, RestoreError, Totals};
+use super::state::{PatchRestoreError, PatchState, Totals};
 use crate::element::{ElementLaw, LawPlace, ROUNDING};
 use crate::math::Number;
 
@@ -143,7 +143,7 @@ impl PatchRun {
     }
 
     /// Refuses springs that no contact of a state can hold.
-    pub(super) fn check_limits(&mut self, saved: &PatchState) -> Result<(), RestoreError> {
+    pub(super) fn check_limits(&mut self, saved: &PatchState) -> Result<(), PatchRestoreError> {
         let now = saved.totals.instant();
         for i in 0..self.patch.count() {
             let here = self.element_contact(i, &saved.totals, &now, saved.springs.rise_of_law(i));
@@ -151,7 +151,7 @@ impl PatchRun {
             let force = saved.springs.x[i].hypot(saved.springs.y[i]);
             let is_held = force == 0.0 || saved.springs.stiffness[i] > 0.0;
             if force.is_nan() || force > limit * (1.0 + ROUNDING) || !is_held {
-                return Err(RestoreError::Invalid { what: "the force of a spring", value: force });
+                return Err(PatchRestoreError::Invalid { what: "the force of a spring", value: force });
             }
         }
         Ok(())

@@ -49,5 +49,5 @@ mod worker_pool;
 pub use definition::{Patch, PatchElement, PatchError};
 pub use face_layout::{FaceElement, FaceLayout};
 pub use run::PatchRun;
-pub use state::{MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError};
+pub use state::{MotionError, PatchMotion, PatchRestoreError, PatchStart, PatchState, Pose};
 pub use variables::{COORDINATES, PatchKind, PatchOutput, PatchOutputEntry, PatchVariable, catalogue, unit_of};

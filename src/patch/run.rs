@@ -9,7 +9,8 @@ use super::face_motion::FaceMotion;
 use super::heat::{ElementHeat, StepHeat};
 use super::motion::{PoseMotion, Substeps, TreadMotion};
 use super::state::{
-    MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError, Springs, Totals, check_duration, max_substeps,
+    MotionError, PatchMotion, PatchRestoreError, PatchStart, PatchState, Pose, Springs, Totals, check_duration,
+    max_substeps,
 };
 use super::step_sums::{BeyondTable, StepSums, TooWarm};
 use super::worker_pool::{WorkerPool, threads};
@@ -330,8 +331,8 @@ impl PatchRun {
     /// A run that continues from `saved`, bit for bit as the run that was saved.
     ///
     /// # Errors
-    /// [`RestoreError`] where `saved` is no valid state of a run of this patch.
-    pub fn restore(patch: &Patch, saved: &PatchState) -> Result<Self, RestoreError> {
+    /// [`PatchRestoreError`] where `saved` is no valid state of a run of this patch.
+    pub fn restore(patch: &Patch, saved: &PatchState) -> Result<Self, PatchRestoreError> {
         let mut run = Self::at(patch, saved.totals.temperature);
         run.set_state(saved)?;
         Ok(run)
@@ -341,7 +342,7 @@ impl PatchRun {
     ///
     /// # Errors
     /// As for [`restore`](Self::restore); the run is then as it was.
-    pub fn set_state(&mut self, saved: &PatchState) -> Result<(), RestoreError> {
+    pub fn set_state(&mut self, saved: &PatchState) -> Result<(), PatchRestoreError> {
         saved.check(&self.patch)?;
         let before = self.totals.temperature;
         self.set_temperature(saved.totals.temperature);

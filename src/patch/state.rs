@@ -141,7 +141,7 @@ pub enum MotionError {
 
 /// Why a run cannot be continued from a saved state.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum RestoreError {
+pub enum PatchRestoreError {
     /// A number that is not valid in any run.
     #[error("invalid state: {what} = {value}")]
     Invalid {
@@ -387,19 +387,19 @@ impl Totals {
 
 impl PatchState {
     /// Refuses numbers that no run can have reached.
-    pub(super) fn check(&self, patch: &Patch) -> Result<(), RestoreError> {
+    pub(super) fn check(&self, patch: &Patch) -> Result<(), PatchRestoreError> {
         let Springs { x, y, stiffness, mode, heat } = &self.springs;
         let count = patch.count();
         let warm = if patch.heat().is_some() { count } else { 0 };
         if heat.len() != warm {
-            return Err(RestoreError::Count { found: heat.len(), expected: warm });
+            return Err(PatchRestoreError::Count { found: heat.len(), expected: warm });
         }
         for found in [x.len(), y.len(), stiffness.len(), mode.len()] {
             if found != count {
-                return Err(RestoreError::Count { found, expected: count });
+                return Err(PatchRestoreError::Count { found, expected: count });
             }
         }
-        let invalid = |what, value| Err(RestoreError::Invalid { what, value });
+        let invalid = |what, value| Err(PatchRestoreError::Invalid { what, value });
         if let Some((what, value)) = self.totals.numbers().find(|(_, value)| !is_possible(*value)) {
             return invalid(what, value);
         }

@@ -93,7 +93,7 @@ pub enum PatchKind {
 type OfElement = fn(usize) -> PatchOutput;
 
 /// An output of a patch, or of each of its elements: what stands for it is `O`.
-struct OutputRow<O> {
+struct PatchOutputRow<O> {
     group: PatchGroup,
     output: O,
     /// Its name; of an element the part behind the element's.
@@ -106,7 +106,7 @@ struct OutputRow<O> {
 }
 
 #[rustfmt::skip]
-const TABLE: &[OutputRow<PatchOutput>] = {
+const TABLE: &[PatchOutputRow<PatchOutput>] = {
     use OutputType::{Integer, Real};
     use PatchGroup::{Contact, Dissipation, Energy, Forces, Friction};
     use PatchKind::{All, Tread, Warm};
@@ -138,7 +138,7 @@ const TABLE: &[OutputRow<PatchOutput>] = {
 };
 
 #[rustfmt::skip]
-const ELEMENT_FIELDS: &[OutputRow<OfElement>] = {
+const ELEMENT_FIELDS: &[PatchOutputRow<OfElement>] = {
     use OutputType::{Integer, Real};
     use PatchGroup::Elements;
     use PatchKind::{All, Warm};
@@ -160,11 +160,11 @@ const fn row<O: Copy>(
     kind: OutputType,
     description: &'static str,
     of: PatchKind,
-) -> OutputRow<O> {
-    OutputRow { group, output, name, unit, kind, description, of }
+) -> PatchOutputRow<O> {
+    PatchOutputRow { group, output, name, unit, kind, description, of }
 }
 
-impl<O> OutputRow<O> {
+impl<O> PatchOutputRow<O> {
     fn variable(&self, output: PatchOutput, name: String, description: String) -> PatchVariable {
         PatchVariable { output, group: self.group, name, unit: self.unit, kind: self.kind, description }
     }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use crate::tables::NotText;
+use crate::tables::{ContentError, assignment};
 
 /// Why a scene is refused: what was expected, what was found, and where.
 ///
@@ -73,18 +73,6 @@ pub(super) struct Location {
     pub(super) line: Option<usize>,
 }
 
-/// What is wrong in the content of a file that a scene names, before it is known which file that is.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}", problem.about(key))]
-pub struct ContentError {
-    /// The line, counted from 1.
-    pub line: Option<usize>,
-    /// The column or the element; empty where there is none.
-    pub key: String,
-    /// What is wrong.
-    pub problem: Problem,
-}
-
 impl SceneError {
     pub(super) fn new(location: Location, key: impl Into<String>, problem: Problem) -> Self {
         Self(Box::new(Details { location, key: key.into(), problem, named_by: None }))
@@ -129,19 +117,9 @@ impl SceneError {
 }
 
 impl ContentError {
-    /// The `problem` of what stands at `key`.
-    pub fn new(line: Option<usize>, key: impl Into<String>, problem: impl Into<Problem>) -> Self {
-        Self { line, key: key.into(), problem: problem.into() }
-    }
-
-    /// The error of a value that is not what was `expected`. Texts of the file are shown on one line.
-    pub fn value(line: Option<usize>, key: &str, given: &str, expected: &str) -> Self {
-        let [key, given] = [key, given].map(|text| text.replace(['\n', '\r'], " "));
-        Self::new(line, key, Problem::value(given, expected))
-    }
-
     pub(super) fn in_file(self, file: PathBuf) -> SceneError {
-        SceneError::new(Location { file, line: self.line }, self.key, self.problem)
+        let problem = Problem::Value { given: self.given, expected: self.expected };
+        SceneError::new(Location { file, line: self.line }, self.key, problem)
     }
 }
 
@@ -162,12 +140,6 @@ impl ParameterError {
     }
 }
 
-impl From<NotText> for Problem {
-    fn from(_: NotText) -> Self {
-        Self::value(NotText::FOUND, NotText::EXPECTED)
-    }
-}
-
 impl Problem {
     pub(super) fn value(given: impl ToString, expected: impl ToString) -> Self {
         Self::Value { given: given.to_string(), expected: expected.to_string() }
@@ -182,15 +154,6 @@ impl Problem {
             Self::Missing { expected } => format!("{key}: missing; expected {expected}"),
             Self::Value { given, expected } => format!("{}expected {expected}", assignment(key, given)),
         }
-    }
-}
-
-fn assignment(key: &str, given: &str) -> String {
-    match (key, given) {
-        ("", "") => String::new(),
-        (key, "") => format!("{key}: "),
-        ("", given) => format!("{given}: "),
-        (key, given) => format!("{key} = {given}: "),
     }
 }
 

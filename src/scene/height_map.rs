@@ -5,11 +5,11 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Complex;
 use serde::Serialize;
 
-use super::error::ContentError;
 use super::surface::{STEEPEST, peak_to_valley};
 use super::values::{LARGEST, SMALLEST};
 use super::{RoughnessSpectrum, Surface};
 use crate::math::{Direction, fourier_2d};
+use crate::tables::ContentError;
 
 /// The most heights of a map.
 pub const MOST_HEIGHTS: usize = 1 << 24;

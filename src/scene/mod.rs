@@ -8,7 +8,6 @@
 
 mod axis;
 mod carrier;
-mod column_file;
 mod error;
 mod excitation;
 mod fine_roughness;
@@ -39,12 +38,14 @@ use std::path::{Path as FilePath, PathBuf};
 
 use serde::Serialize;
 
+use crate::tables::ReadingNote;
 use fine_roughness::Convention;
 use values::Word;
 
+pub use crate::tables::{LARGEST, SMALLEST};
 pub use axis::{Axis, ByAxis};
 pub use carrier::{CarrierBodies, CarrierBody, CarrierInitial, Input};
-pub use error::{ContentError, ParameterError, Problem, SceneError};
+pub use error::{ParameterError, Problem, SceneError};
 pub use excitation::{Force, Motion, Path, Phase};
 pub use fine_roughness::{
     FineBand, FineRoughness, FineWaves, ModulusFactors, RoughnessSpectrum, Softening, SofteningRow, SplitError,
@@ -59,14 +60,14 @@ pub use material::{Heat, Material, PronyTerm, Wlf, complex_stiffness};
 pub use parameters::Parameter;
 pub use patch_file::{Backing, FaceHeat, FaceShape, Grid, NotDoubled, PatchFile, PatchGroup, TableExtrapolation};
 pub use profile::{
-    Areal, Extract, LengthUnit, LoadedProfile, MeasuredPoints, MeasuredSurface, Missing, ProfileOptions, ReadingNote,
+    Areal, Extract, LengthUnit, LoadedProfile, MeasuredPoints, MeasuredSurface, Missing, ProfileOptions,
     SurfaceFormats, TextAlone, ThirdColumn, Tilt, UnknownWord, line_note,
 };
 pub use regular_file::{read_file, read_text};
 pub use self_affine::SelfAffine;
 pub use spectrum::{Band, PowerLaw, Spectrum};
 pub use surface::{MeanLine, Surface, peak_to_valley};
-pub use values::{ANY, LARGEST, LOOSEST_TOLERANCE, NumberRange, SMALLEST, Unit, Value, is_possible};
+pub use values::{LOOSEST_TOLERANCE, Unit, Value, is_possible};
 
 /// A whole scene, checked. Serialised, it is every number of it: what the scene does not name is null or empty.
 #[derive(Clone, Debug, PartialEq, Serialize)]

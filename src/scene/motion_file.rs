@@ -2,13 +2,9 @@
 //! linear between the rows.
 
 use super::carrier::{CarrierBodies, CarrierBody};
-use super::column_file::{Column, ColumnFile, Columns};
-use super::error::ContentError;
 use super::excitation::{Force, Path, Phase};
 use super::material::Wlf;
-use super::profile::ReadingNote;
-use super::values::{ANY, POSITIVE};
-use crate::tables::{Dimension, Words};
+use crate::tables::{ContentError, Dimension, Format, POSITIVE, ReadingNote, Table, Wanted, Words, decode};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum OfMotion {
@@ -21,38 +17,39 @@ enum OfMotion {
     Temperature,
 }
 
-const fn column(quantity: &'static [OfMotion], name: &'static str, meaning: &'static str) -> Column<OfMotion> {
-    Column { required: false, quantities: quantity, name, meaning, range: ANY }
-}
-
-const MOTION: ColumnFile<OfMotion, 7> = ColumnFile {
-    vocabulary: &[
-        Words::new(OfMotion::Time, Dimension::Time, &["time", "t", "zeit"], &[]),
-        Words::new(OfMotion::U, Dimension::Length, &["u", "x"], &["displacement", "carrier"]),
-        Words::new(OfMotion::W, Dimension::Length, &["w", "z"], &["displacement", "carrier"]),
-        Words::new(OfMotion::Load, Dimension::Force, &["load", "f_z", "fz"], &["normal", "force"]),
-        Words::new(OfMotion::Pull, Dimension::Force, &["pull"], &["tangential", "force"]),
-        Words::new(OfMotion::Pressure, Dimension::Pressure, &["pressure"], &["mean"]),
-        Words::new(OfMotion::Temperature, Dimension::Temperature, &["temperature", "temp"], &[]),
-    ],
-    columns: [
-        Column { required: true, ..column(&[OfMotion::Time], "time", "times") },
-        Column { required: true, ..column(&[OfMotion::U], "u", "displacements u") },
-        Column { required: true, ..column(&[OfMotion::W], "w", "displacements w") },
-        column(&[OfMotion::Load], "load", "loads"),
-        column(&[OfMotion::Pull], "pull", "tangential forces"),
-        column(&[OfMotion::Pressure], "pressure", "pressures"),
-        Column { range: POSITIVE, ..column(&[OfMotion::Temperature], "temperature", "temperatures") },
-    ],
-    expected: "time, u and w, and of a body along an axis, which has no u or w but by its drive, load, pressure or pull; \
-               temperature where it is an input",
+const MOTION: Format<OfMotion, 7> = Format {
+    least: 2,
+    rises: true,
+    ..Format::new(
+        &[
+            Words::new(OfMotion::Time, Dimension::Time, "time t zeit", ""),
+            Words::new(OfMotion::U, Dimension::Length, "u x", "displacement carrier"),
+            Words::new(OfMotion::W, Dimension::Length, "w z", "displacement carrier"),
+            Words::new(OfMotion::Load, Dimension::Force, "load f_z fz", "normal force"),
+            Words::new(OfMotion::Pull, Dimension::Force, "pull", "tangential force"),
+            Words::new(OfMotion::Pressure, Dimension::Pressure, "pressure", "mean"),
+            Words::new(OfMotion::Temperature, Dimension::Temperature, "temperature temp", ""),
+        ],
+        [
+            Wanted::new(&[OfMotion::Time], "time", "times"),
+            Wanted::new(&[OfMotion::U], "u", "displacements u"),
+            Wanted::new(&[OfMotion::W], "w", "displacements w"),
+            Wanted::new(&[OfMotion::Load], "load", "loads").optional(),
+            Wanted::new(&[OfMotion::Pull], "pull", "tangential forces").optional(),
+            Wanted::new(&[OfMotion::Pressure], "pressure", "pressures").optional(),
+            Wanted::new(&[OfMotion::Temperature], "temperature", "temperatures").optional().within(POSITIVE),
+        ],
+        "time, u and w, and of a body along an axis, which has no u or w but by its drive, load, pressure or pull; \
+         temperature where it is an input",
+    )
 };
 
 /// The phases between the rows of a file. u and w count from the first row: the carrier moves from where it stands.
 ///
 /// A temperature is held from row to row.
 pub(super) fn read_motion(bytes: &[u8]) -> Result<(Vec<Phase>, Vec<ReadingNote>), ContentError> {
-    let Columns { quantities, rows, mut notes } = MOTION.read(bytes)?;
+    let text = decode(bytes)?;
+    let Table { columns, rows, mut notes, .. } = MOTION.read(&text)?;
     let first = rows.first().copied().unwrap_or_default();
     if first[1..3] != [0.0, 0.0] {
         let text = format!("u and w count from the first row, {:?} m and {:?} m", first[1], first[2]);
@@ -63,7 +60,7 @@ pub(super) fn read_motion(bytes: &[u8]) -> Result<(Vec<Phase>, Vec<ReadingNote>)
         let rate = |column: usize| (there[column] - here[column]) / duration;
         let path = |column: usize| Path { rate: rate(column), ..Path::default() };
         let force =
-            |column: usize| quantities[column].map(|_| Force { start: Some(here[column]), change: path(column) });
+            |column: usize| columns[column].as_ref().map(|_| Force { start: Some(here[column]), change: path(column) });
         Phase {
             duration,
             u: path(1),
@@ -71,7 +68,7 @@ pub(super) fn read_motion(bytes: &[u8]) -> Result<(Vec<Phase>, Vec<ReadingNote>)
             load: force(3),
             pull: force(4),
             pressure: force(5),
-            temperature: quantities[6].map(|_| here[6]),
+            temperature: columns[6].as_ref().map(|_| here[6]),
             is_row: true,
             ..Phase::default()
         }

@@ -5,56 +5,12 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+pub(super) use crate::tables::{ANY, LARGEST, NOT_NEGATIVE, NumberRange, POSITIVE, SMALLEST};
 use crate::tables::{Dimension, quantity};
-
-/// The largest size of a number in SI units that a scene, a carrier or a master may give: m, s, N/m or any other.
-///
-/// Beyond all physics, and still so small that no product of the model overflows: c e², m κ ẋ² and the like have a
-/// handful of factors, and 1e30 to the tenth power is a number.
-pub const LARGEST: f64 = 1e30;
-
-/// The smallest size of a number that is divided by, or whose square must not be rounded to 0.
-pub const SMALLEST: f64 = 1e-30;
 
 /// Whether a carrier or a master may give `number`: it is one, and of a size up to [`LARGEST`].
 pub fn is_possible(number: f64) -> bool {
     number.abs() <= LARGEST
-}
-
-/// Numbers whose size lies between two bounds, both included; 0 and negative numbers where they are allowed.
-#[derive(Clone, Copy, Debug)]
-pub struct NumberRange {
-    smallest: f64,
-    largest: f64,
-    zero: bool,
-    negative: bool,
-}
-
-/// From [`SMALLEST`] to [`LARGEST`].
-pub(super) const POSITIVE: NumberRange =
-    NumberRange { smallest: SMALLEST, largest: LARGEST, zero: false, negative: false };
-/// 0, and from [`SMALLEST`] to [`LARGEST`].
-pub(super) const NOT_NEGATIVE: NumberRange = NumberRange { zero: true, ..POSITIVE };
-/// Up to [`LARGEST`] in size.
-pub const ANY: NumberRange = NumberRange { smallest: 0.0, negative: true, ..NOT_NEGATIVE };
-
-impl NumberRange {
-    /// These numbers up to another bound.
-    pub(super) const fn up_to(self, largest: f64) -> Self {
-        Self { largest, ..self }
-    }
-
-    /// These numbers, and smaller ones down to another bound.
-    pub(super) const fn down_to(self, smallest: f64) -> Self {
-        Self { smallest, ..self }
-    }
-
-    /// Whether `number` is one of them.
-    pub fn holds(&self, number: f64) -> bool {
-        let size = number.abs();
-        let in_range = self.smallest <= size && size <= self.largest && (self.negative || number > 0.0);
-        in_range || (self.zero && number == 0.0)
-    }
 }
 
 /// Whole numbers from `low` to `high`, both included.
@@ -88,14 +44,6 @@ pub(super) trait Word: Copy + PartialEq + 'static {
 pub(super) fn words<T: Word>() -> String {
     let quoted: Vec<String> = T::WORDS.iter().map(|(word, _)| format!("\"{word}\"")).collect();
     format!("one of {}", quoted.join(", "))
-}
-
-impl fmt::Display for NumberRange {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let low = if self.negative { -self.largest } else { self.smallest };
-        let zero = if self.zero && !self.negative { "0 or " } else { "" };
-        write!(f, "{zero}a number from {low:?} to {:?}", self.largest)
-    }
 }
 
 impl fmt::Display for WholeRange {

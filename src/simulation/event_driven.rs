@@ -4,7 +4,7 @@
 use super::context::Context;
 use super::controller::{ChatterGuard, GROWTH, TrialStep, WorkLimit};
 use super::motion::SimulationError;
-use super::stepper::{ErrorTest, Stepper};
+use super::stepper::{StepTest, Stepper};
 use crate::contact::{first_event, is_due, longest_unstable, mode_changes};
 use crate::integrator::{ContactModes, Integrator, Overlay, Polynomials};
 use crate::model::{ByAxis, Model};
@@ -96,7 +96,7 @@ impl EventDriven {
     }
 
     /// Tries a step of length `h`; `None` where it is rejected: the controller's step size is then a better length.
-    fn try_step(&mut self, context: &mut Context, h: f64, test: ErrorTest) -> Option<GoodAttempt> {
+    fn try_step(&mut self, context: &mut Context, h: f64, test: StepTest) -> Option<GoodAttempt> {
         self.clear_changes();
         context.interpolated_at = None;
         let Context { model, settings, state, integrator, .. } = context;
@@ -106,14 +106,14 @@ impl EventDriven {
         context.trace_bodies(h);
         // Some steps need no error test.
         let good = |longest| attempt.map(|attempt| GoodAttempt { error: attempt.error, longest });
-        if test == ErrorTest::Solved && attempt.is_some_and(|attempt| attempt.error.is_finite()) {
+        if test == StepTest::Solved && attempt.is_some_and(|attempt| attempt.error.is_finite()) {
             return good(f64::MAX);
         }
         // The error of the layer, or where the carrier moves unseen between the stages and a mass may touch, that of
         // its motion.
         let of_layer = attempt.map(|attempt| match test {
-            ErrorTest::Motion => attempt.motion_error,
-            ErrorTest::Full | ErrorTest::Solved => attempt.error,
+            StepTest::Motion => attempt.motion_error,
+            StepTest::Full | StepTest::Solved => attempt.error,
         });
         let (mut error, mut allowed) = (of_layer.unwrap_or(f64::NAN), self.allowed_error(context));
         if let Some(attempt) = attempt
@@ -184,9 +184,9 @@ impl Stepper for EventDriven {
             // test.
             work.count(context.state.time(), context.model.masses())?;
             let test = match proposal {
-                Some(_) if context.shorter_is_no_worse() => ErrorTest::Solved,
-                _ if h > RESOLVED * bounds.shortest => ErrorTest::Full,
-                _ => ErrorTest::Motion,
+                Some(_) if context.shorter_is_no_worse() => StepTest::Solved,
+                _ if h > RESOLVED * bounds.shortest => StepTest::Full,
+                _ => StepTest::Motion,
             };
             let Some(tried) = self.try_step(context, h, test) else {
                 if h <= bounds.shortest {
@@ -218,7 +218,7 @@ impl Stepper for EventDriven {
         }
     }
 
-    fn try_shorter(&mut self, context: &mut Context, h: f64, test: ErrorTest) -> bool {
+    fn try_shorter(&mut self, context: &mut Context, h: f64, test: StepTest) -> bool {
         let is_good = self.try_step(context, h, test).is_some();
         if is_good {
             self.plan(context, h, 0.0);

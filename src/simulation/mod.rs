@@ -44,7 +44,7 @@ use sampler::Sampler;
 use settings::Settings;
 use start::body_starts;
 use state::check_length;
-pub use state::{RestoreError, SimulationState};
+pub use state::{SimulationRestoreError, SimulationState};
 
 /// A run of a scene.
 ///
@@ -113,8 +113,8 @@ impl Simulation {
     /// A simulation of `scene` in `state`: it goes on bit for bit as the one whose state this is.
     ///
     /// # Errors
-    /// [`RestoreError`] where `state` is not that of a run of this scene.
-    pub fn restore(scene: &Scene, state: &SimulationState) -> Result<Self, RestoreError> {
+    /// [`SimulationRestoreError`] where `state` is not that of a run of this scene.
+    pub fn restore(scene: &Scene, state: &SimulationState) -> Result<Self, SimulationRestoreError> {
         scene.check()?;
         let mut simulation = Self::started(scene, &Start::default());
         simulation.set_state(state)?;
@@ -124,8 +124,8 @@ impl Simulation {
     /// Puts the simulation in `state`, of the same scene.
     ///
     /// # Errors
-    /// [`RestoreError`] where `state` is not that of a run of this scene; the simulation is then as it was.
-    pub fn set_state(&mut self, state: &SimulationState) -> Result<(), RestoreError> {
+    /// [`SimulationRestoreError`] where `state` is not that of a run of this scene; the simulation is then as it was.
+    pub fn set_state(&mut self, state: &SimulationState) -> Result<(), SimulationRestoreError> {
         let expected = usize::from(self.reference_run.is_some());
         check_length("reference runs", usize::from(state.reference_run.is_some()), expected)?;
         for (run, state) in self.runs().zip(state.states()) {

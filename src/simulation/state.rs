@@ -157,7 +157,7 @@ impl RunState {
 
 /// Why a state cannot be restored.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum RestoreError {
+pub enum SimulationRestoreError {
     /// The scene cannot run at all.
     #[error(transparent)]
     Scene(#[from] ParameterError),
@@ -197,7 +197,12 @@ pub enum RestoreError {
 
 impl RunState {
     /// Checks that this can be the state of a run of `model` that is in `present` now.
-    pub(super) fn check(&self, present: &Self, model: &Model, settings: &Settings) -> Result<(), RestoreError> {
+    pub(super) fn check(
+        &self,
+        present: &Self,
+        model: &Model,
+        settings: &Settings,
+    ) -> Result<(), SimulationRestoreError> {
         for axis in Axis::ALL {
             let bodies = |state: &Self| usize::from(state.carrier.is_body(axis));
             check_length("bodies", bodies(self), bodies(present))?;
@@ -212,7 +217,7 @@ impl RunState {
     /// (m) and roundings.
     ///
     /// It cannot be computed afresh to the last bit: its position was summed in another order.
-    fn check_surface(&self, model: &Model, tolerance: f64) -> Result<(), RestoreError> {
+    fn check_surface(&self, model: &Model, tolerance: f64) -> Result<(), SimulationRestoreError> {
         let (state, mut carrier) = (&self.layer.state, self.carrier);
         carrier.find_profile_position(&model.profile);
         let position = carrier.profile_position + carrier.at(self.s).x.position;
@@ -228,7 +233,7 @@ impl RunState {
         };
         let in_contact = |&i: &usize| state.mode[i].in_contact();
         match (0..model.masses()).filter(in_contact).find(|&i| !fits(i)) {
-            Some(mass) => Err(RestoreError::Surface { mass }),
+            Some(mass) => Err(SimulationRestoreError::Surface { mass }),
             None => Ok(()),
         }
     }
@@ -238,12 +243,12 @@ fn near(a: f64, b: f64, distance: f64) -> bool {
     (a - b).abs() <= distance + POSITION_ROUNDING * b.abs()
 }
 
-pub(super) fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), RestoreError> {
-    if found == expected { Ok(()) } else { Err(RestoreError::Length { what, found, expected }) }
+pub(super) fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), SimulationRestoreError> {
+    if found == expected { Ok(()) } else { Err(SimulationRestoreError::Length { what, found, expected }) }
 }
 
 /// Checks that the arrays of `found` are as long as those `expected`.
-fn check_layer(found: &LayerState, expected: &LayerState) -> Result<(), RestoreError> {
+fn check_layer(found: &LayerState, expected: &LayerState) -> Result<(), SimulationRestoreError> {
     check_length("modes", found.state.mode.len(), expected.state.mode.len())?;
     check_length("surface points", found.state.surface.len(), expected.state.surface.len())?;
     for ((what, found), (_, expected)) in arrays(found).into_iter().zip(arrays(expected)) {
@@ -282,19 +287,19 @@ fn arrays(layer: &LayerState) -> [(&'static str, &[f64]); 17] {
 }
 
 /// Checks that all numbers are finite and that those are positive that have to be.
-fn check_numbers(run: &RunState) -> Result<(), RestoreError> {
+fn check_numbers(run: &RunState) -> Result<(), SimulationRestoreError> {
     let step_size = run.controller.step_size;
     let negative = (run.s < 0.0).then_some(("s", run.s));
     let step_size = (step_size <= 0.0).then_some(("step_size", step_size));
     match not_finite(run).or(negative).or(step_size) {
-        Some((what, value)) => Err(RestoreError::Number { what, value }),
+        Some((what, value)) => Err(SimulationRestoreError::Number { what, value }),
         None => Ok(()),
     }
 }
 
-fn check_modes(modes: &[Mode], has_friction: bool) -> Result<(), RestoreError> {
+fn check_modes(modes: &[Mode], has_friction: bool) -> Result<(), SimulationRestoreError> {
     match modes.iter().position(|&mode| mode == Mode::Stick && !has_friction) {
-        Some(mass) => Err(RestoreError::Mode { mass, number: Mode::Stick.number() }),
+        Some(mass) => Err(SimulationRestoreError::Mode { mass, number: Mode::Stick.number() }),
         None => Ok(()),
     }
 }
@@ -429,7 +434,10 @@ mod tests {
         for part in part {
             let mut changed = simulation.clone();
             *part(&mut changed, mass) += 1e-5;
-            assert_eq!(Simulation::restore(&scene, &changed.state()).unwrap_err(), RestoreError::Surface { mass });
+            assert_eq!(
+                Simulation::restore(&scene, &changed.state()).unwrap_err(),
+                SimulationRestoreError::Surface { mass }
+            );
         }
     }
 }

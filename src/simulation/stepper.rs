@@ -11,7 +11,7 @@ const SHORTEST_CUT: f64 = 1e-12;
 
 /// Which errors of a step are tested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ErrorTest {
+pub(super) enum StepTest {
     /// Those of the motion and of the energies.
     Full,
     /// Those of the motion: a shorter step would not resolve what changes the energies.
@@ -35,7 +35,7 @@ pub(super) trait Stepper {
 
     /// Tries a step of length `h` in place of a longer, good one. Returns whether it is good, too: where it is
     /// rejected, the controller's step size is a better length.
-    fn try_shorter(&mut self, context: &mut Context, h: f64, test: ErrorTest) -> bool;
+    fn try_shorter(&mut self, context: &mut Context, h: f64, test: StepTest) -> bool;
 
     /// F_x and F_z at the fraction `theta` of the step, N.
     fn on_carrier(&mut self, context: &mut Context, h: f64, theta: f64) -> ByAxis<f64>;
@@ -60,7 +60,7 @@ pub(super) trait Stepper {
     /// A step of length `h` in place of a longer, good one: no worse, and without events, or with fewer. A shorter one
     /// where its stages cannot be solved, though those of the longer one could, or have another solution.
     fn cut_step(&mut self, context: &mut Context, h: f64, work: &mut WorkLimit) -> Result<TrialStep, SimulationError> {
-        let test = if context.shorter_is_no_worse() { ErrorTest::Solved } else { ErrorTest::Full };
+        let test = if context.shorter_is_no_worse() { StepTest::Solved } else { StepTest::Full };
         let mut length = h;
         while !self.try_shorter(context, length, test) {
             work.count(context.state.time(), context.model.masses())?;

@@ -4,7 +4,7 @@
 use super::context::Context;
 use super::controller::{GROWTH, TrialStep, WorkLimit};
 use super::motion::SimulationError;
-use super::stepper::{ErrorTest, Stepper};
+use super::stepper::{StepTest, Stepper};
 use crate::contact::{EndCorrection, FixedModeStep, longest_weakening};
 use crate::integrator::{ContactModes, ErrorEstimate, Parabolas};
 use crate::model::{ByAxis, ChannelEnergies, Model};
@@ -72,7 +72,7 @@ impl TimeStepping {
     }
 
     /// Tries a step of length `h`; `None` where it is rejected: the controller's step size is then a better length.
-    fn try_step(&mut self, context: &mut Context, h: f64, test: ErrorTest) -> Option<ErrorEstimate> {
+    fn try_step(&mut self, context: &mut Context, h: f64, test: StepTest) -> Option<ErrorEstimate> {
         context.interpolated_at = None;
         let Context { model, settings, state, integrator, .. } = context;
         let (start, span) = ((&**model, &state.layer, &state.carrier), state.span(h));
@@ -80,7 +80,7 @@ impl TimeStepping {
         context.trace_bodies(h);
         let attempt = attempt.map(|attempt| self.with_event_time_error(context, h, attempt));
         let error = attempt.map_or(f64::NAN, |attempt| attempt.error);
-        if error <= 1.0 || (test == ErrorTest::Solved && error.is_finite()) {
+        if error <= 1.0 || (test == StepTest::Solved && error.is_finite()) {
             return attempt;
         }
         context.state.counters.rejected += 1;
@@ -108,7 +108,7 @@ impl Stepper for TimeStepping {
         let mut h = bounds.fit(context.state.controller.step_size.min(bounds.longest));
         loop {
             work.count(context.state.time(), context.model.masses())?;
-            let test = if h <= bounds.shortest { ErrorTest::Solved } else { ErrorTest::Full };
+            let test = if h <= bounds.shortest { StepTest::Solved } else { StepTest::Full };
             if let Some(attempt) = self.try_step(context, h, test) {
                 let Context { model, state: run, integrator, .. } = context;
                 // The next one resolves the instability of contacts whose friction falls with the speed that they have
@@ -125,7 +125,7 @@ impl Stepper for TimeStepping {
         }
     }
 
-    fn try_shorter(&mut self, context: &mut Context, h: f64, test: ErrorTest) -> bool {
+    fn try_shorter(&mut self, context: &mut Context, h: f64, test: StepTest) -> bool {
         self.try_step(context, h, test).is_some()
     }
 

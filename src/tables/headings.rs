@@ -1,11 +1,15 @@
 //! Headings of columns: from `Storage Modulus (E') [MPa]` to a quantity and its unit.
 //!
 //! What a table may hold is a vocabulary: the words by which each quantity is known. A heading names a quantity if it
-//! has one of its key words and no word beside its key and other words.
+//! has one of its key words and no word beside its key and other words. It may also say what holds for all of its column:
+//! `E' [MPa] @ 20 °C`.
 
+use std::ops::Range;
+
+use super::numbers::number;
 use super::units::{Dimension, Unit};
 
-/// The words of a quantity's names, in lower case.
+/// The words of a quantity's names, in lower case, with blanks between them.
 #[derive(Clone, Copy, Debug)]
 pub struct Words<Q: 'static> {
     /// What they name.
@@ -13,19 +17,14 @@ pub struct Words<Q: 'static> {
     /// What its unit measures.
     pub dimension: Dimension,
     /// One of these must be there.
-    pub key_words: &'static [&'static str],
+    pub key_words: &'static str,
     /// These may stand beside it.
-    pub other_words: &'static [&'static str],
+    pub other_words: &'static str,
 }
 
 impl<Q: Copy> Words<Q> {
     /// The words of a quantity: one of the `key_words` must be in a name, the `other_words` may be.
-    pub const fn new(
-        quantity: Q,
-        dimension: Dimension,
-        key_words: &'static [&'static str],
-        other_words: &'static [&'static str],
-    ) -> Self {
+    pub const fn new(quantity: Q, dimension: Dimension, key_words: &'static str, other_words: &'static str) -> Self {
         Self { quantity, dimension, key_words, other_words }
     }
 }
@@ -100,8 +99,9 @@ fn readings<'v, Q: Copy>(
 ) -> impl Iterator<Item = (&'v Words<Q>, HeadingUnit)> {
     let found = words(name);
     vocabulary.iter().filter_map(move |words| {
-        let is_key = |word: &String| words.key_words.contains(&word.as_str());
-        let is_known = |word: &String| is_key(word) || words.other_words.contains(&word.as_str());
+        let is_one_of = |words: &str, word: &String| words.split(' ').any(|known| known == word);
+        let is_key = |word: &String| is_one_of(words.key_words, word);
+        let is_known = |word: &String| is_key(word) || is_one_of(words.other_words, word);
         let is_named = found.iter().any(is_key) && found.iter().all(is_known);
         if is_named { unit_of(place, words.dimension).map(|unit| (words, unit)) } else { None }
     })
@@ -159,6 +159,40 @@ impl Unit {
     pub fn is_of(&self, dimension: Dimension) -> bool {
         self.dimension == dimension || (dimension == Dimension::Frequency && self.dimension == Dimension::Rate)
     }
+}
+
+/// A heading without what it says of all its column, as in `E' (MPa) @ 20 °C`, and that in SI units; `None` where it says
+/// nothing of this dimension.
+pub(super) fn without_condition(text: &str, dimension: Dimension) -> Option<(String, f64)> {
+    let (place, value) = find_quantity(text, dimension)?;
+    let rest = format!("{} {}", &text[..place.start], &text[place.end..]).replace("()", "").replace("[]", "");
+    let rest = rest.trim().trim_end_matches(['@', ',', ';', '_', '-', '(', ' ']).trim_end_matches(" at").trim();
+    Some((rest.trim_start_matches(['@', ',', ';', '_', ':', ' ']).to_owned(), value))
+}
+
+/// The bytes of a text from a number to the end of its unit of this dimension, and the number in SI units.
+pub fn find_quantity(text: &str, dimension: Dimension) -> Option<(Range<usize>, f64)> {
+    let is_digit = |letter: char| letter.is_ascii_digit() || "+-.,\u{2212}".contains(letter);
+    let mut from = 0;
+    while let Some(offset) = text[from..].find(|letter: char| letter.is_ascii_digit()) {
+        let mut start = from + offset;
+        while let Some(before) = text[..start].chars().next_back().filter(|letter| "+-\u{2212}".contains(*letter)) {
+            start -= before.len_utf8();
+        }
+        let end =
+            text[from + offset..].find(|letter: char| !is_digit(letter)).map_or(text.len(), |end| from + offset + end);
+        let behind = text[end..].trim_start();
+        let stop =
+            behind.find(|letter: char| letter.is_whitespace() || ")],;:_@".contains(letter)).unwrap_or(behind.len());
+        let spaced = plain(&behind[..stop]);
+        // One word of a unit, or the sign of degrees and its letter.
+        let unit = Unit::parse(&spaced).filter(|unit| unit.dimension == dimension);
+        if let (Some(unit), Some(number)) = (unit, number(text[start..end].trim_matches(','), true)) {
+            return Some((start..text.len() - behind.len() + stop, unit.to_si(number)));
+        }
+        from = end.max(from + offset + 1);
+    }
+    None
 }
 
 /// The text with one spelling of primes, degrees and powers.
@@ -240,25 +274,10 @@ mod tests {
     }
 
     const VOCABULARY: [Words<Found>; 4] = [
-        Words { quantity: Found::X, dimension: Dimension::Length, key_words: &["x"], other_words: &["axis"] },
-        Words {
-            quantity: Found::Storage,
-            dimension: Dimension::Pressure,
-            key_words: &["e'", "storage"],
-            other_words: &["modulus"],
-        },
-        Words {
-            quantity: Found::Tangent,
-            dimension: Dimension::Number,
-            key_words: &["tan"],
-            other_words: &["d", "delta"],
-        },
-        Words {
-            quantity: Found::Frequency,
-            dimension: Dimension::Frequency,
-            key_words: &["f", "frequency"],
-            other_words: &[],
-        },
+        Words::new(Found::X, Dimension::Length, "x", "axis"),
+        Words::new(Found::Storage, Dimension::Pressure, "e' storage", "modulus"),
+        Words::new(Found::Tangent, Dimension::Number, "tan", "d delta"),
+        Words::new(Found::Frequency, Dimension::Frequency, "f frequency", ""),
     ];
 
     fn read(text: &str) -> Option<(Found, Option<&'static str>, bool)> {
@@ -298,5 +317,19 @@ mod tests {
         for text in ["y [mm]", "", "[mm]", "loss [MPa]", "x y"] {
             assert_eq!(read(text), None, "{text}");
         }
+    }
+
+    #[test]
+    fn headings_may_say_what_holds_for_their_column() {
+        let read = |text: &str| without_condition(text, Dimension::Temperature);
+        for (text, name, kelvin) in [
+            ("E' (MPa) @ 20 °C", "E' (MPa)", 293.15),
+            ("E'' 313.15 K", "E''", 313.15),
+            ("40C E' (MPa)", "E' (MPa)", 313.15),
+        ] {
+            assert_eq!(read(text), Some((name.to_owned(), kelvin)), "{text}");
+        }
+        assert_eq!(read("E' at -10°C [MPa]").map(|(_, kelvin)| kelvin), Some(263.15));
+        assert_eq!((read("E' (MPa)"), read("N/mm2")), (None, None));
     }
 }

@@ -1,171 +1,34 @@
-//! Tables of text as people, instruments and spreadsheets write them: from bytes to text, from text to rows of fields.
+//! Tables of text as people, instruments and spreadsheets write them: one reader of all that is read as columns.
 //!
-//! All text tables go through it: sweep tables, results, motions and points of a patch, which begin with their header, by
-//! [`rows`]. In the output of instruments and people, which may begin with anything, [`Block`] finds the tables.
-//! [`Heading`] reads what a column holds, and [`Unit`] in which unit.
+//! [`decode`] makes text of bytes. A file that begins with its header, as those of this project do, is a [`Csv`]. In the
+//! output of instruments and people, which may begin with anything, [`Block`] finds the tables, and [`Header`] what their
+//! columns hold by a vocabulary of [`Words`], in which [`Unit`]. A client names the columns that it wants by a [`Format`],
+//! and gets a [`Table`] of numbers in SI units, notes of what was assumed, or a [`ContentError`].
+//!
+//! Where a new way to write tables belongs: encodings to `text`; separators, comments and rows to `lines`; signs in
+//! numbers to `numbers`; lines of names and units to `head`; names, units and what a heading says of its whole column
+//! (wide tables) to `headings`; what is done about columns and rows, for all clients at once, to `columns` and `format`.
 
 mod blocks;
+mod columns;
+mod error;
+mod format;
+mod head;
 mod headings;
+mod lines;
+mod numbers;
+mod range;
+mod text;
 mod units;
 
-use std::borrow::Cow;
-use std::iter;
-
-pub use blocks::{Block, Head, Line, MISSING, MixedDecimals, NumberStyle, Separator, is_missing, number};
-pub use headings::{Heading, HeadingUnit, Words, plain, words};
+pub use blocks::Block;
+pub use columns::{Column, Header, ReadingNote, UnitRule};
+pub use error::{ContentError, NotText, assignment, shortened};
+pub use format::{Choice, Format, Others, Table, Wanted, behind_note};
+pub use head::Head;
+pub use headings::{Heading, HeadingUnit, Words, find_quantity, plain, words};
+pub use lines::{Line, Separator};
+pub use numbers::{MISSING, MixedDecimals, NumberStyle, is_missing, number};
+pub use range::{ABOVE_ZERO, ANY, FINITE, LARGEST, NOT_NEGATIVE, NumberRange, POSITIVE, SMALLEST};
+pub use text::{Csv, Row, comments, decode, fields, quoted, rows};
 pub use units::{Dimension, Unit, quantity, quantity_with_unit};
-
-/// The bytes are no text: some are zero.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}: expected {}", Self::FOUND, Self::EXPECTED)]
-pub struct NotText;
-
-impl NotText {
-    /// What was found.
-    pub const FOUND: &str = "bytes that are zero";
-    /// What was expected.
-    pub const EXPECTED: &str = "text in UTF-8, UTF-16 or Latin-1";
-}
-
-/// The text in `bytes`: UTF-8, UTF-16 (by its mark, or by its zeros) or else Latin-1, without a byte order mark, its
-/// lines ended by line feeds.
-///
-/// # Errors
-/// [`NotText`] where a character is U+0000.
-pub fn decode(bytes: &[u8]) -> Result<Cow<'_, str>, NotText> {
-    let text = match bytes {
-        [0xff, 0xfe, rest @ ..] => Cow::Owned(utf_16(rest, u16::from_le_bytes)),
-        [0xfe, 0xff, rest @ ..] => Cow::Owned(utf_16(rest, u16::from_be_bytes)),
-        [1..=255, 0, 1..=255, 0, ..] => Cow::Owned(utf_16(bytes, u16::from_le_bytes)),
-        [0, 1..=255, 0, 1..=255, ..] => Cow::Owned(utf_16(bytes, u16::from_be_bytes)),
-        _ => match std::str::from_utf8(bytes) {
-            Ok(text) => Cow::Borrowed(text.strip_prefix('\u{feff}').unwrap_or(text)),
-            // Of Latin-1 every byte is the number of its letter: µ is 0xb5.
-            Err(_) => Cow::Owned(bytes.iter().copied().map(char::from).collect()),
-        },
-    };
-    if text.contains('\0') {
-        return Err(NotText);
-    }
-    // Lines of an old Macintosh.
-    if text.contains('\r') && !text.contains('\n') { Ok(Cow::Owned(text.replace('\r', "\n"))) } else { Ok(text) }
-}
-
-fn utf_16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> String {
-    let units: Vec<u16> = bytes.chunks_exact(2).map(|pair| unit([pair[0], pair[1]])).collect();
-    String::from_utf16_lossy(&units)
-}
-
-/// A row of a table.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Row<'a> {
-    /// Its line in the file, counted from 1.
-    pub line: usize,
-    /// Its fields, see [`fields`].
-    pub fields: Vec<Cow<'a, str>>,
-}
-
-/// The lines that are neither blank nor comments (`# …`), as rows: their fields are separated by `separator` or, where
-/// none is given, by the first of semicolon, tab and comma that is in the first row outside quotation marks.
-pub fn rows(text: &str, separator: Option<char>) -> impl Iterator<Item = Row<'_>> {
-    let filled = || numbered_lines(text).filter(|(_, line)| !line.starts_with('#'));
-    let parts = |sign: char| filled().next().is_some_and(|(_, line)| fields(line, sign).nth(1).is_some());
-    let found = || [';', '\t', ','].into_iter().find(|&sign| parts(sign));
-    let separator = separator.or_else(found).unwrap_or(',');
-    filled().map(move |(line, text)| Row { line, fields: fields(text, separator).collect() })
-}
-
-/// The lines that are comments, without their `#`, and their numbers from 1.
-pub fn comments(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    numbered_lines(text).filter_map(|(number, line)| Some((number, line.strip_prefix('#')?)))
-}
-
-fn numbered_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty())
-}
-
-/// The fields of a line, without blanks around them. A field in quotation marks may hold separators, and quotation
-/// marks doubled.
-pub fn fields(line: &str, separator: char) -> impl Iterator<Item = Cow<'_, str>> {
-    let mut rest = Some(line);
-    iter::from_fn(move || {
-        let text = rest?;
-        let end = field_end(text, separator);
-        rest = end.map(|end| &text[end + separator.len_utf8()..]);
-        Some(unquoted(text[..end.unwrap_or(text.len())].trim()))
-    })
-}
-
-/// The index of the first separator that is not in quotation marks.
-fn field_end(text: &str, separator: char) -> Option<usize> {
-    let mut quoted = false;
-    for (i, letter) in text.char_indices() {
-        if letter == separator && !quoted {
-            return Some(i);
-        }
-        // They open at the start of a field alone; doubled ones close and open again.
-        if letter == '"' && (quoted || text[..i].ends_with('"') || text[..i].trim().is_empty()) {
-            quoted = !quoted;
-        }
-    }
-    None
-}
-
-fn unquoted(field: &str) -> Cow<'_, str> {
-    let Some(quoted) = field.strip_prefix('"') else { return Cow::Borrowed(field) };
-    let (mut text, mut inside, mut letters) = (String::new(), true, quoted.chars().peekable());
-    while let Some(letter) = letters.next() {
-        match letter {
-            '"' if inside && letters.next_if_eq(&'"').is_some() => text.push('"'),
-            '"' if inside => inside = false,
-            letter => text.push(letter),
-        }
-    }
-    Cow::Owned(text.trim().to_owned())
-}
-
-/// The text as one field of a line with commas: in quotation marks where it needs them, line ends replaced by blanks.
-pub fn quoted(text: &str) -> String {
-    let text = text.replace(['\n', '\r'], " ");
-    if text.contains([',', '"']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn fields_in_quotes_hold_separators_and_quotes() {
-        let cases: [(&str, char, &[&str]); 6] = [
-            (r#"1, "a, ""b""" ,,c"#, ',', &["1", r#"a, "b""#, "", "c"]),
-            (r#""Frequency, Hz","E"" [MPa]","""#, ',', &["Frequency, Hz", r#"E" [MPa]"#, ""]),
-            (r#"5" stylus;"";""";"""#, ';', &[r#"5" stylus"#, "", r#"";""#]),
-            ("a;b,c;", ';', &["a", "b,c", ""]),
-            ("\t\"x\ty\"\t z ", '\t', &["", "x\ty", "z"]),
-            ("", ',', &[""]),
-        ];
-        for (line, separator, expected) in cases {
-            assert_eq!(fields(line, separator).collect::<Vec<_>>(), expected, "{line}");
-        }
-        assert_eq!(fields(&quoted("a, \"b\"\nc"), ',').collect::<Vec<_>>(), ["a, \"b\" c"]);
-        assert_eq!(quoted("a b"), "a b");
-    }
-
-    #[test]
-    fn rows_have_their_lines_and_the_separator_of_the_first() {
-        let text = "# by hand\n\na;b,c\r\n1;2\n \n# end\n3,5;4\n";
-        let found: Vec<(usize, Vec<Cow<'_, str>>)> = rows(text, None).map(|row| (row.line, row.fields)).collect();
-        let row = |line, fields: [&'static str; 2]| (line, fields.map(Cow::from).to_vec());
-        assert_eq!(found, [row(3, ["a", "b,c"]), row(4, ["1", "2"]), row(7, ["3,5", "4"])]);
-        assert_eq!(comments(text).collect::<Vec<_>>(), [(1, " by hand"), (6, " end")]);
-        let by_commas: Vec<_> = rows(text, Some(',')).map(|row| row.fields.len()).collect();
-        assert_eq!(by_commas, [2, 1, 2]);
-    }
-
-    #[test]
-    fn zeros_are_no_text() {
-        let message = "bytes that are zero: expected text in UTF-8, UTF-16 or Latin-1";
-        assert_eq!(decode(b"a\0").map_err(|error| error.to_string()), Err(message.into()));
-        assert_eq!(decode(b"\xb5m").as_deref(), Ok("\u{b5}m"));
-    }
-}

@@ -8,8 +8,6 @@ mod catalogue;
 mod common;
 mod fmu;
 #[allow(dead_code, reason = "the program's own")]
-#[path = "../../crates/cli/src/html.rs"]
-mod html;
 mod judge;
 #[allow(dead_code, reason = "shared by several tests")]
 #[path = "../common/master.rs"]

@@ -7,9 +7,9 @@ use asperity_study::robustness::{KEPT, Verdict};
 
 use crate::catalogue::Case;
 use crate::common;
-use crate::html::{self, Cell};
 use crate::judge::{Estimate, Judged, Way};
 use crate::run;
+use asperity_study::html::{self, Cell};
 
 const COLUMNS: &str = "scene,phrase,item,method,status,verdict,steps,events,rejected,energy_residual,true_error,estimate,\
                        true_error_E_diss,estimate_E_diss,run_time,what";

@@ -2,8 +2,8 @@
 
 use asperity::scene::Scene;
 use asperity_study::calibration::{
-    CalibrationError, Done, FreeParameter, FrictionModel, FrictionParts, Measurements, Problem, Task, TheoryModel,
-    Tolerance, map_space, minimise,
+    Done, FreeParameter, FrictionModel, FrictionParts, Measurements, ModelError, Problem, Task, TheoryModel, Tolerance,
+    map_space, minimise,
 };
 
 use crate::common::{Table, root};
@@ -29,7 +29,7 @@ fn problem() -> (Problem, Vec<f64>, f64) {
     (Problem::new(parameters, &measured), values, chi_square)
 }
 
-fn scene_at(keys: &[FreeParameter]) -> impl Fn(&[f64]) -> Result<Scene, CalibrationError> + Sync {
+fn scene_at(keys: &[FreeParameter]) -> impl Fn(&[f64]) -> Result<Scene, ModelError> + Sync {
     let path = reference("theory.toml");
     let scene = Scene::parse(&std::fs::read_to_string(&path).unwrap(), &path).unwrap();
     move |values| {
@@ -86,7 +86,7 @@ fn a_bound_holds() {
 struct Jump;
 
 impl FrictionModel for Jump {
-    fn evaluate(&self, tasks: &[Task], done: &Done<'_>) -> Result<(), CalibrationError> {
+    fn evaluate(&self, tasks: &[Task], done: &Done<'_>) -> Result<(), ModelError> {
         for (index, task) in tasks.iter().enumerate() {
             let value = task.parameters[0];
             let shear = if value > 2.0 { value + 0.1 } else { value };

@@ -219,7 +219,11 @@ fn what_cannot_be_fitted_is_refused_and_says_why() {
     fs::write(&data, "speed [m/s],pressure [Pa],mu,T [°C]\n1,100,0.4,20\n2,100,0.4,20\n").unwrap();
     refused(&["friction.coulomb=0..1"], &[], "no material.wlf");
     fs::write(&data, "speed [m/s],pressure [Pa]\n1,100\n").unwrap();
-    refused(&["friction.coulomb=0..1"], &[], "measured.csv:1: columns speed [m/s], pressure [Pa]: expected columns");
+    refused(
+        &["friction.coulomb=0..1"],
+        &[],
+        "measured.csv:1: columns = \"speed [m/s], pressure [Pa]\": expected columns",
+    );
     // A scene that names files goes where it finds them.
     let road = road(&folder, "road.toml", TRUTH);
     let elsewhere = scratch("calibrate-elsewhere").join("out.toml");

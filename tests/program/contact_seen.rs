@@ -166,14 +166,10 @@ fn a_contact_is_drawn_at_its_time_which_is_a_row() {
 }
 
 #[test]
-fn an_animation_may_be_a_picture_or_a_row_of_pictures() {
+fn an_animation_may_be_a_row_of_pictures() {
     let folder = scratch("contact-film");
-    run(&mut simulate(&folder, &["--animate", "out.apng", "--points", "2"]));
-    let rows = Table::read(&folder.join("out.csv")).column("time").len();
-    let film = fs::read(folder.join("out.apng")).unwrap();
-    let chunk = film.windows(4).position(|name| name == b"acTL").expect("an animated PNG");
-    assert_eq!(film[chunk + 4..chunk + 8], u32::try_from(rows).unwrap().to_be_bytes(), "a picture for each row");
     run(&mut simulate(&folder, &["--animate", "row.png", "--points", "2"]));
+    let rows = Table::read(&folder.join("out.csv")).column("time").len();
     let pictures = (1..=rows).map(|i| fs::read(folder.join(format!("row-{i:03}.png"))).unwrap());
     let pictures: std::collections::BTreeSet<_> = pictures.collect();
     assert!(pictures.len() > 1 && !folder.join(format!("row-{:03}.png", rows + 1)).exists());

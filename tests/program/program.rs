@@ -83,10 +83,7 @@ fn errors_on_the_command_line_say_what_was_expected() {
             &["plot", &result, "--y", "u", "-o", "out.svg", "--labels", "a,b"],
             "expected 1, one name for each file, found 2",
         ),
-        (
-            &["plot", &ragged, "--y", "u", "-o", "out.svg"],
-            "line 3: expected as many fields as in the first line, 2, found 3",
-        ),
+        (&["plot", &ragged, "--y", "u", "-o", "out.svg"], "3: fields = 3: expected 2, as in line 1, that of the names"),
         (&["simulate", &scene, "-o", &nowhere], "nowhere/out.csv: there is no folder "),
         (&["simulate", &scene, "-o", "x.csv", "--points", "0"], "expected a whole number, 1 or more"),
         (&["material", &scene, "-o", "out.pdf"], "expected a name that ends in .svg, .png or .csv"),
@@ -258,7 +255,7 @@ fn result_files_are_drawn_over_each_other() {
     assert!(text.contains("one") && text.contains("two") && text.contains("a &lt;title&gt;"), "{text}");
     let refused = plot(&["--y", "nothing"]).output().unwrap();
     assert_eq!(refused.status.code(), Some(1));
-    assert!(String::from_utf8(refused.stderr).unwrap().contains("no column nothing; there are time, u, w,"));
+    assert!(String::from_utf8(refused.stderr).unwrap().contains("columns = time, u, w,"));
 }
 
 #[test]

@@ -268,11 +268,11 @@ fn peers_that_cannot_be_read_are_named_before_anything_is_run() {
     assert!(text.contains("cannot read") && text.contains("peers.csv"), "{text}");
     fs::write(&peers, "scene,program\nsinusoid,CVODE\n").unwrap();
     let text = refused();
-    assert!(text.contains("no column method; there are scene, program"), "{text}");
+    assert!(text.contains("columns = scene, program: expected method among them"), "{text}");
     let head = "scene,program,method,tolerance,error_F_x,error_F_z,error_E_diss,run_time,steps,events";
     fs::write(&peers, format!("{head}\nsinusoid,CVODE,klu,1e-3,soon,1,1,1,1,1\n")).unwrap();
     let text = refused();
-    assert!(text.contains("line 2: expected a number, found \"soon\""), "{text}");
+    assert!(text.contains("peers.csv:2: error_F_x = \"soon\": expected a number"), "{text}");
     assert!(!output.exists());
 }
 

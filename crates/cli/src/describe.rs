@@ -7,6 +7,7 @@ use asperity::scene::{FoundationKind, LinkKind, Scene};
 use asperity::simulation::{Simulation, SimulationError};
 use asperity_fmi::FmuModel;
 use asperity_study::decimals::rounded;
+use asperity_study::runner::start;
 use asperity_study::settings::Setting;
 use asperity_study::summary::{
     DescribedScene, FineFrictionCurve, MIDDLE_PRESSURE, missing_backing, patch_rows, scene_rows,
@@ -16,7 +17,6 @@ use super::cli::Describe;
 use super::figure::{Below, Curve, Figure as _, Panel, PanelRow, SideBySide, Stacked, Stroke};
 use super::files::{FileError, check_outputs, load, load_patch, print, table_lines};
 use super::terminal::{lines, warn};
-use asperity_study::runner::start;
 
 /// `asperity describe` failed.
 #[derive(Debug, thiserror::Error)]

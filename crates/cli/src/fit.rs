@@ -9,6 +9,7 @@ use asperity_study::fit::{FitOptions, FittedModuli, RelativeError, Sample, Shift
 use super::cli::Fit;
 use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
 use super::files::{self, FileError, check_outputs, name_of, named, picture_beside, print_beside};
+use super::flags::with_flags;
 use super::terminal::{LabelledLine, lines, note, warn};
 use super::{NOT_REACHED, SUCCESS};
 
@@ -51,9 +52,9 @@ pub(crate) fn fit(command: &Fit) -> Result<u8, FitError> {
     let read: Vec<PathBuf> = std::iter::once(&command.data).chain(&command.shifts).cloned().collect();
     check_outputs([&command.output].into_iter().chain(&picture), read)?;
     let fitted = fit_moduli(&command.into())?;
-    fitted.notes().iter().for_each(|text| note(text));
-    fitted.warnings().iter().for_each(|text| warn(text));
-    files::write(&command.output, fitted.file())?;
+    fitted.notes().iter().for_each(|text| note(&with_flags(text)));
+    fitted.warnings().iter().for_each(|text| warn(&with_flags(text)));
+    files::write(&command.output, with_flags(fitted.file()))?;
     if let Some(picture) = &picture {
         drawn(&fitted, &command.data).write(picture)?;
     }
@@ -69,7 +70,7 @@ pub(crate) fn fit(command: &Fit) -> Result<u8, FitError> {
 fn not_reached(fitted: &FittedModuli, command: &Fit) -> String {
     let (wanted, reached) = (percent(command.error, 3), percent(fitted.error(), 3));
     let scatter = || "the data scatter too much for less, and --error sets what is enough".to_owned();
-    let why = fitted.blame().unwrap_or_else(scatter);
+    let why = fitted.blame().map_or_else(scatter, with_flags);
     format!(
         "the error asked for, {wanted}, cannot be reached: {reached} is about the smallest of any series with moduli of 0 \
          or more, and {} has such a series; {why}",

@@ -1,7 +1,6 @@
 //! The commands of the program, one module each, and what they share.
 //!
-//! [`execute`] is the program. What its commands compute is in `asperity-study`, but for
-//! calibrations ([`calibrate_scene`]) and FMUs ([`write_fmu`]).
+//! [`execute`] is the program. What its commands compute is in `asperity-study`.
 
 mod calibrate;
 mod cli;
@@ -15,7 +14,6 @@ mod figure;
 mod files;
 mod fit;
 mod flags;
-mod html;
 mod interrupt;
 mod lock;
 mod material;
@@ -36,13 +34,9 @@ mod terminal;
 
 use std::error::Error;
 use std::ffi::OsString;
-use std::path::PathBuf;
 
-pub use calibrate::{CalibrateError, CalibratedParameter, Calibration, CalibrationOptions, calibrate_scene};
 use clap::Parser as _;
 use cli::{Arguments, Command};
-pub use files::FileError;
-pub use pack::{PackError, write_fmu};
 
 /// Exit status of a command that did what was asked for.
 const SUCCESS: u8 = 0;
@@ -53,11 +47,10 @@ const FAILURE: u8 = 1;
 const NOT_REACHED: u8 = 3;
 
 /// Executes a command line, the program's name first; prints its results, and the error that ended it. Returns the exit
-/// status. Does not return from `--help` and from a command line that cannot be understood. `library` is the shared
-/// library that FMUs are packed with where none is named; without it the one beside the program.
+/// status. Does not return from `--help` and from a command line that cannot be understood.
 #[expect(clippy::print_stderr, reason = "the one place where the program prints the error that ended it")]
-pub fn execute(words: impl IntoIterator<Item = OsString>, library: Option<PathBuf>) -> u8 {
-    match run(Arguments::parse_from(words), library) {
+pub fn execute(words: impl IntoIterator<Item = OsString>) -> u8 {
+    match run(Arguments::parse_from(words)) {
         Ok(status) => status,
         Err(error) => {
             eprintln!("asperity: {}", flags::with_flags(error));
@@ -67,7 +60,7 @@ pub fn execute(words: impl IntoIterator<Item = OsString>, library: Option<PathBu
 }
 
 /// Executes the command of the command line.
-fn run(arguments: Arguments, library: Option<PathBuf>) -> Result<u8, Box<dyn Error>> {
+fn run(arguments: Arguments) -> Result<u8, Box<dyn Error>> {
     terminal::set_verbosity(arguments.quiet, arguments.verbose);
     match arguments.command {
         Command::Simulate(command) => run_simulate(&command)?,
@@ -77,12 +70,7 @@ fn run(arguments: Arguments, library: Option<PathBuf>) -> Result<u8, Box<dyn Err
         Command::Converge(command) => return Ok(converge::converge(&command)?),
         Command::Plot(command) => figure::plot_files(&command)?,
         Command::Describe(command) => run_describe(&command)?,
-        Command::Pack(mut command) => {
-            if command.library.is_empty() {
-                command.library.extend(library.map(PathBuf::into_os_string));
-            }
-            pack::pack(&command)?;
-        }
+        Command::Pack(command) => pack::pack(&command)?,
         Command::Fit(command) => return Ok(fit::fit(&command)?),
         Command::Material(command) => material::material(&command)?,
         Command::Reference => reference::reference()?,

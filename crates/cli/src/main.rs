@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    asperity_cli::execute(std::env::args_os(), None).into()
+    asperity_cli::execute(std::env::args_os()).into()
 }

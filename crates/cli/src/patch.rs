@@ -6,11 +6,12 @@ use asperity::outputs::OutputType;
 use asperity::patch::{MotionError, Patch, PatchRun, PatchVariable};
 
 use crate::cli::Simulate;
-use crate::figure::{Figure as _, PatchHistory, with_prefix};
+use crate::figure::{Figure as _, PatchHistory};
 use crate::files::{FileError, check_outputs, load_patch, named, print_beside};
 use crate::result_file::CsvWriter;
 use crate::terminal::{is_quiet, lines, warn};
 use asperity_study::csv::{CsvError, Field};
+use asperity_study::decimals::with_prefix;
 use asperity_study::patch::MotionFile;
 
 /// `asperity simulate --patch` failed.

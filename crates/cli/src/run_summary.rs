@@ -7,9 +7,8 @@ use asperity::outputs::{Accounts, Output, Snapshot, Variable, variable};
 use asperity::scene::Scene;
 use asperity::simulation::Simulation;
 
-use super::figure::with_prefix;
 use super::terminal::{LabelledLine, labelled};
-use asperity_study::decimals::rounded;
+use asperity_study::decimals::{rounded, with_prefix};
 use asperity_study::run_figures::{RunCost, RunFigures, Saving};
 
 /// Follows the rows of a run.

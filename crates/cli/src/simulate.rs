@@ -10,7 +10,7 @@ use indicatif::ProgressBar;
 
 use super::cli::Simulate;
 use super::elements::{ArraysError, write_arrays, write_page};
-use super::figure::{Figure as _, LayerPicture, TimeHistory, write_film};
+use super::figure::{Figure as _, LayerPicture, TimeHistory, write_row};
 use super::files::{FileError, check_outputs, ends_in, load, named, print_beside};
 use super::result_file::ResultWriter;
 use super::run_summary::RunSummary;
@@ -97,12 +97,12 @@ fn write_elements(elements: &ElementHistory, command: &Simulate) -> Result<(), S
     Ok(())
 }
 
-/// Animates the masses in pictures, of which there are at most as many as one likes to wait for.
+/// Draws the masses in a row of pictures, of which there are at most as many as one likes to wait for.
 fn write_frames(elements: &ElementHistory, path: &Path) -> Result<(), FileError> {
     const MOST: usize = 100;
     let rows = elements.evenly_in_time(MOST);
     let span = Span::over(elements, &rows);
-    write_film(rows.len(), |i| LayerPicture::in_film(elements, rows[i], span), path)
+    write_row(rows.len(), |i| LayerPicture::in_film(elements, rows[i], span), path)
 }
 
 /// Runs the scene; what the run comes to.

@@ -1,11 +1,13 @@
 //! Text for the terminal: aligned lines, warnings, the progress bar.
 
 use std::io::{self, IsTerminal as _};
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 pub(crate) use asperity_study::labelled::{LabelledLine, labelled};
+use asperity_study::progress::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle, TermLike};
 
 /// The lines as text, aligned after their labels, and broken between words where they are long.
@@ -66,6 +68,52 @@ pub(crate) fn counter(what: &str) -> ProgressBar {
         &format!("{{spinner}} {{pos}} {what}  {{msg}}  {{elapsed}}"),
         &format!("{{pos}} {what}, {{elapsed}}  {{msg}}"),
     )
+}
+
+/// Bars of a computation of the study, one after the other for its parts.
+#[derive(Debug, Default)]
+pub(crate) struct Bars(Mutex<Option<(String, ProgressBar)>>);
+
+impl Bars {
+    /// Positions of a bar.
+    const POSITIONS: f64 = 1000.0;
+
+    pub(crate) fn new() -> Self {
+        Self::default()
+    }
+
+    /// What the computation calls.
+    pub(crate) fn watch(&self) -> impl Fn(Progress<'_>) -> ControlFlow<()> + Sync {
+        |progress| {
+            self.show(progress);
+            ControlFlow::Continue(())
+        }
+    }
+
+    fn show(&self, Progress { part, doing, share }: Progress<'_>) {
+        let mut current = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if current.as_ref().is_none_or(|(shown, _)| shown != part) {
+            Self::finish(current.take());
+            *current = Some((part.to_owned(), bar(Self::POSITIONS as u64)));
+        }
+        if let Some((_, bar)) = &*current {
+            if bar.message() != doing {
+                bar.set_message(doing.to_owned());
+            }
+            bar.set_position((Self::POSITIONS * share) as u64);
+        }
+    }
+
+    /// Takes a bar off the terminal.
+    fn finish(bar: Option<(String, ProgressBar)>) {
+        bar.iter().for_each(|(_, bar)| bar.finish_and_clear());
+    }
+}
+
+impl Drop for Bars {
+    fn drop(&mut self) {
+        Self::finish(self.0.lock().unwrap_or_else(PoisonError::into_inner).take());
+    }
 }
 
 fn progress(length: Option<u64>, for_terminals: &str, as_lines: &str) -> ProgressBar {

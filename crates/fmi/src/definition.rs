@@ -167,7 +167,7 @@ pub fn guid(sources: &Sources, variables: &VariableTable) -> String {
     for (reference, entry) in variables.entries() {
         append(&mut content, format!("{reference} {} {}", entry.name, entry.kind).as_bytes());
     }
-    let namespace = Uuid::new_v5(&Uuid::NAMESPACE_URL, env!("CARGO_PKG_NAME").as_bytes());
+    let namespace = Uuid::new_v5(&Uuid::NAMESPACE_URL, b"asperity");
     format!("{{{}}}", Uuid::new_v5(&namespace, &content))
 }
 

@@ -161,11 +161,11 @@ pub enum RestoreError {
     #[error(transparent)]
     Parameter(#[from] ParameterError),
     #[error(transparent)]
-    Simulation(#[from] simulation::RestoreError),
+    Simulation(#[from] simulation::SimulationRestoreError),
     #[error(transparent)]
-    Element(#[from] element::RestoreError),
+    Element(#[from] element::ElementRestoreError),
     #[error(transparent)]
-    Patch(#[from] patch::RestoreError),
+    Patch(#[from] patch::PatchRestoreError),
     #[error("{0}")]
     Invalid(&'static str),
 }

@@ -12,7 +12,8 @@ mod instruments;
 pub mod workbook;
 mod x3p;
 
-use asperity::scene::{ContentError, MeasuredSurface, ProfileOptions, SurfaceFormats};
+use asperity::scene::{MeasuredSurface, ProfileOptions, SurfaceFormats};
+use asperity::tables::ContentError;
 
 /// The formats of instruments: X3P, SDF, SUR, OpenCRG and text of Gwyddion.
 #[derive(Clone, Copy, Debug)]

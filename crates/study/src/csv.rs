@@ -1,12 +1,11 @@
 //! Tables of text with a header: read with commas, semicolons or tabs between the fields, written with commas.
 
-use std::borrow::Cow;
 use std::fmt::{self, Display, Formatter};
 use std::path::{Path, PathBuf};
 
 use asperity::outputs::OutputType;
 use asperity::scene::Unit;
-use asperity::tables::{self, Row};
+use asperity::tables::{self, ContentError, Csv, decode};
 
 use crate::decimals::file_decimal;
 use crate::files::{ReadError, bytes};
@@ -17,12 +16,25 @@ use crate::files::{ReadError, bytes};
 pub enum CsvError {
     #[error(transparent)]
     File(#[from] ReadError),
-    #[error("{}: line {line}: {message}", .path.display())]
-    Line { path: PathBuf, line: usize, message: String },
-    #[error("{}: no column {name}; there are {}", .path.display(), .columns.join(", "))]
-    NoColumn { path: PathBuf, name: String, columns: Vec<String> },
-    #[error("{}: expected a line with the columns' names and rows of numbers below it, found no rows", .path.display())]
-    NoRows { path: PathBuf },
+    #[error("{}", .error.within(.path))]
+    Content { path: PathBuf, error: ContentError },
+}
+
+impl CsvError {
+    /// What is wrong in the content of the file at `path`.
+    pub fn content(path: &Path, error: impl Into<ContentError>) -> Self {
+        Self::Content { path: path.to_owned(), error: error.into() }
+    }
+}
+
+/// Reads the file at `path`, which begins with the names of its columns.
+///
+/// # Errors
+/// Where it cannot be read, or a line has not as many fields as the first.
+pub fn read(path: &Path) -> Result<Csv, CsvError> {
+    let bytes = bytes(path)?;
+    let parsed = decode(&bytes).map_err(ContentError::from).and_then(|text| Csv::parse(&text, None));
+    parsed.map_err(|error| CsvError::content(path, error))
 }
 
 /// The fields as a line without its end.
@@ -64,6 +76,13 @@ pub struct Field {
     pub value: f64,
 }
 
+impl Field {
+    /// A number.
+    pub fn real(value: f64) -> Self {
+        Self { kind: OutputType::Real, value }
+    }
+}
+
 impl Display for Field {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self.kind {
@@ -72,82 +91,6 @@ impl Display for Field {
             OutputType::Integer if self.value == self.value as i64 as f64 => (self.value as i64).fmt(f),
             OutputType::Integer => write!(f, "{:.0}", self.value),
         }
-    }
-}
-
-/// A CSV file with a header, its fields as text.
-#[derive(Debug)]
-pub struct CsvFile {
-    path: PathBuf,
-    names: Vec<String>,
-    records: Vec<Record>,
-}
-
-/// The fields of a line, as many as there are columns.
-#[derive(Debug)]
-pub struct Record {
-    line: usize,
-    /// As many as there are columns.
-    pub fields: Vec<String>,
-}
-
-impl CsvFile {
-    /// Reads the file at `path`.
-    ///
-    /// # Errors
-    /// Where it cannot be read, or a line has not as many fields as the first.
-    pub fn read(path: &Path) -> Result<Self, CsvError> {
-        let bytes = bytes(path)?;
-        let error = |line: usize, message: String| CsvError::Line { path: path.to_owned(), line, message };
-        let text = tables::decode(&bytes).map_err(|problem| error(1, problem.to_string()))?;
-        let owned = |row: Row<'_>| -> Vec<String> { row.fields.into_iter().map(Cow::into_owned).collect() };
-        let mut rows = tables::rows(&text, None);
-        let names = rows.next().map(owned).unwrap_or_default();
-        let record = |row: Row<'_>| {
-            let (line, fields) = (row.line, owned(row));
-            if fields.len() == names.len() {
-                return Ok(Record { line, fields });
-            }
-            let (expected, found) = (names.len(), fields.len());
-            Err(error(line, format!("expected as many fields as in the first line, {expected}, found {found}")))
-        };
-        let records = rows.map(record).collect::<Result<_, _>>()?;
-        Ok(Self { path: path.to_owned(), names, records })
-    }
-
-    /// Index of the column `name`; the unit of a header such as `speed [m/s]` may be left out.
-    ///
-    /// # Errors
-    /// Where there is none.
-    pub fn column(&self, name: &str) -> Result<usize, CsvError> {
-        let without_unit = |header: &str| header.split_once(" [").is_some_and(|(start, _)| start == name);
-        let named = self.names.iter().position(|other| other == name);
-        let named = named.or_else(|| self.names.iter().position(|other| without_unit(other)));
-        named.ok_or_else(|| CsvError::NoColumn {
-            path: self.path.clone(),
-            name: name.to_owned(),
-            columns: self.names.clone(),
-        })
-    }
-
-    /// The names of the columns.
-    pub fn names(&self) -> &[String] {
-        &self.names
-    }
-
-    /// The error `message` about the names of the columns.
-    pub fn header_error(&self, message: String) -> CsvError {
-        CsvError::Line { path: self.path.clone(), line: 1, message }
-    }
-
-    /// The lines below the header.
-    pub fn records(&self) -> &[Record] {
-        &self.records
-    }
-
-    /// The error `message` about a record, with its line.
-    pub fn error(&self, record: &Record, message: String) -> CsvError {
-        CsvError::Line { path: self.path.clone(), line: record.line, message }
     }
 }
 
@@ -162,8 +105,8 @@ mod tests {
         let quoted = "\"time; from the start\",F_x [N]\n0,1\n";
         for text in ["time [s],F_x [N]\n0,1\n", "time [s];F_x [N]\n0;1\n", "time [s]\tF_x [N]\n0\t1\n", quoted] {
             std::fs::write(&path, text).unwrap();
-            let file = CsvFile::read(&path).unwrap();
-            assert_eq!((file.column("F_x").unwrap(), &file.records()[0].fields[1][..]), (1, "1"), "{text}");
+            let file = read(&path).unwrap();
+            assert_eq!((file.column("F_x").unwrap(), &file.rows[0].fields[1][..]), (1, "1"), "{text}");
         }
         std::fs::remove_file(path).unwrap();
     }

@@ -63,17 +63,37 @@ pub fn percent(value: f64, digits: usize) -> String {
     format!("{} %", short(100.0 * value, digits))
 }
 
-/// A quantity that was given, in all its digits, with a prefix of its unit: `0.2 MPa`.
+/// Prefixes of units, the largest first.
+const PREFIXES: [(&str, f64); 9] =
+    [("G", 1e9), ("M", 1e6), ("k", 1e3), ("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9), ("p", 1e-12), ("f", 1e-15)];
+
+/// The largest prefix that leaves `largest` at 1 or more, and its factor.
+pub fn prefix(largest: f64, unit: &str) -> (&'static str, f64) {
+    // A prefix before m² would be one of m.
+    if unit.is_empty() || unit.contains(['²', '³']) || unit == "kg" || largest == 0.0 {
+        return ("", 1.0);
+    }
+    PREFIXES.into_iter().find(|(_, factor)| largest >= 0.999 * factor).unwrap_or(("f", 1e-15))
+}
+
+/// A quantity in three digits, with the prefix of its unit that suits `largest`: `1.23 mN`.
+pub fn with_prefix(value: f64, largest: f64, unit: &str) -> String {
+    let (prefix, factor) = prefix(largest.abs(), unit);
+    format!("{} {prefix}{unit}", rounded(value / factor, 3))
+}
+
+/// A quantity that was given, in all its digits, with the prefix of its unit that suits it: `200 kPa`.
 pub fn as_given(value: f64, unit: &str) -> String {
-    let (prefix, factor) = match value {
-        value if value >= 1e5 => ("M", 1e6),
-        value if value >= 1e3 => ("k", 1e3),
-        value if value >= 0.1 => ("", 1.0),
-        value if value >= 1e-4 => ("m", 1e-3),
-        _ => ("µ", 1e-6),
-    };
-    let number = format!("{:.6}", value / factor);
-    format!("{} {prefix}{unit}", number.trim_end_matches('0').trim_end_matches('.'))
+    let (prefix, factor) = prefix(value.abs(), unit);
+    // The quotient of decimals is one but for its rounding.
+    format!("{} {prefix}{unit}", rounded(value / factor, 12))
+}
+
+/// A tenth of a number, rounded in decimal: 1e-11 for 1e-10.
+pub fn tenth(number: f64) -> f64 {
+    let written = format!("{number:e}");
+    let parts = written.split_once('e').and_then(|(digits, power)| Some((digits, power.parse::<i32>().ok()?)));
+    parts.and_then(|(digits, power)| format!("{digits}e{}", power - 1).parse().ok()).unwrap_or(number / 10.0)
 }
 
 #[cfg(test)]
@@ -83,7 +103,13 @@ mod tests {
     #[test]
     fn loads_have_a_prefix_of_their_unit() {
         let names = [2e5, 4e4, 20.0, 0.05].map(|value| as_given(value, "Pa"));
-        assert_eq!(names, ["0.2 MPa", "40 kPa", "20 Pa", "50 mPa"]);
+        assert_eq!(names, ["200 kPa", "40 kPa", "20 Pa", "50 mPa"]);
+    }
+
+    #[test]
+    fn quantities_have_few_digits_and_a_prefix() {
+        assert_eq!([with_prefix(0.9, 4.5, "s"), with_prefix(389_123.0, 4e5, "Pa")], ["0.9 s", "389 kPa"]);
+        assert_eq!(with_prefix(0.0, 0.0, "N"), "0 N");
     }
 
     #[test]

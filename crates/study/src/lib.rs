@@ -1,6 +1,45 @@
-//! What one computes with scenes.
+//! What one computes with scenes: steady sliding, sweeps, fits, calibrations, checks, reports, and their packing as FMUs.
+//! Inputs and results are typed, what is written of them is made as text, and long work tells how far it is by a callback
+//! whose answer may end it.
+//!
+//! It knows nothing of arguments, of the terminal, of pictures and of the process: its errors speak of options in
+//! backquotes, which the program makes flags of.
+//!
+//! # Modules
+//!
+//! Each module uses only those named beside it, which stand before it.
+//!
+//! | module | uses | contents |
+//! |---|---|---|
+//! | [`decimals`] | | numbers as text: in all their digits, rounded, with prefixes of units |
+//! | [`labelled`] | | lines with labels, of which summaries are made |
+//! | [`html`] | | pages in HTML: templates filled in, tables |
+//! | [`progress`] | | how far long work is, and how it is ended |
+//! | [`settings`] | | keys of scenes and patches set to other values |
+//! | [`files`] | settings | scenes, patches and other files, read |
+//! | [`csv`] | decimals, files | tables of text with a header, read and written |
+//! | [`elements`] | | what the masses of a layer do over a run, as arrays and as pictures show it |
+//! | [`runner`] | progress | a scene along its excitation, row by row |
+//! | [`run_figures`] | | forces and friction of a run, what it cost, and what would make it cheaper |
+//! | [`steady`] | | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
+//! | [`sweep`] | decimals, files, progress, steady | friction over speed, load and temperature, as a table |
+//! | [`contact`] | steady, sweep | the contact of a surface in steady sliding |
+//! | [`converge`] | decimals, files, settings, steady, sweep | whether area and friction depend on spacing, length or chance |
+//! | [`calibration`] | decimals, files, settings, steady, sweep | free numbers of a scene from measured friction: models, least squares, errors, plans |
+//! | [`comparison`] | calibration, steady, sweep | a table of a sweep beside measured friction |
+//! | [`fit`] | decimals, files | Prony series and shift factors from measured moduli |
+//! | [`material`] | decimals | moduli of a scene's compound, or stiffnesses of its links, over frequency |
+//! | [`surface`] | decimals | numbers, spectra and power laws of a surface; smoothed, split and made periodic |
+//! | [`summary`] | decimals, labelled, steady | what there is in a scene, a patch or a table, in lines |
+//! | [`pack`] | decimals, files, html, labelled, summary | scenes, tables and patches as FMUs |
+//! | [`patch`] | csv | the motion that a patch is moved along |
+//! | [`check`] | csv, decimals, labelled, progress, runner, sweep | elements and patches against what was swept |
+//! | [`robustness`] | | a catalogue of perturbations of a scene, and the judge of perturbed runs |
+//! | [`report`] | csv, decimals, progress, robustness, runner | what the runs of a scene cost and how accurate they are |
 
 pub mod calibration;
+pub mod check;
+pub mod comparison;
 pub mod contact;
 pub mod converge;
 pub mod csv;
@@ -8,13 +47,18 @@ pub mod decimals;
 pub mod elements;
 pub mod files;
 pub mod fit;
+pub mod html;
 pub mod labelled;
+pub mod material;
+pub mod pack;
 pub mod patch;
 pub mod progress;
+pub mod report;
 pub mod robustness;
 pub mod run_figures;
 pub mod runner;
 pub mod settings;
 pub mod steady;
 pub mod summary;
+pub mod surface;
 pub mod sweep;

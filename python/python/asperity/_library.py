@@ -1,26 +1,34 @@
-"""The shared library of the FMUs, which the wheel brings."""
+"""What the wheel brings beside its native part: the program, and the shared library of the FMUs."""
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 _BINARIES = Path(__file__).parent / "binaries"
+_WHEEL = "expected the one of a wheel built by build-fmu.sh --wheel"
+_PLATFORM = {"win32": "win64", "darwin": "darwin64"}.get(sys.platform, "linux64")
 
 
-def shared_libraries() -> list[Path]:
-    """The shared libraries that this package brings, one a platform."""
-    return sorted(path for path in _BINARIES.glob("*/*") if path.is_file())
+def program() -> Path:
+    """The command line program; it finds the shared library beside itself.
+
+    Raises:
+        FileNotFoundError: Where this package was built without it.
+    """
+    path = _BINARIES / _PLATFORM / ("asperity.exe" if sys.platform == "win32" else "asperity")
+    if not path.is_file():
+        raise FileNotFoundError(f"no program at {path}: {_WHEEL}")
+    return path
 
 
 def options() -> list[str]:
-    """These libraries as ``asperity pack --library`` takes them.
+    """The shared libraries that this package brings, one a platform, as ``asperity pack --library`` takes them.
 
     Raises:
         FileNotFoundError: Where this package was built without any.
     """
-    found = [f"{path.parent.name}={path}" for path in shared_libraries()]
-    if not found:
-        raise FileNotFoundError(
-            f"no shared library below {_BINARIES}: expected the one of a wheel built by build-fmu.sh --wheel"
-        )
-    return found
+    files = sorted(path for path in _BINARIES.glob("*/*") if path.suffix in {".so", ".dll", ".dylib"})
+    if not files:
+        raise FileNotFoundError(f"no shared library below {_BINARIES}: {_WHEEL}")
+    return [f"{path.parent.name}={path}" for path in files]

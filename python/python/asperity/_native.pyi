@@ -10,7 +10,6 @@ __version__: str
 _Floats = NDArray[np.float64]
 _Progress = Callable[[float], object] | None
 
-def main(words: list[str], library: str | None = None) -> int: ...
 def simulate(
     scene: Scene, points: int, times: list[float], elements: bool, progress: _Progress
 ) -> tuple[dict[str, Any], dict[str, str], dict[str, Any], dict[str, str], list[str]]: ...

@@ -61,7 +61,7 @@ impl LawPlace<f64> {
 
 /// The coefficients of [`Intervals`] in an interval between two pressures of the table, by power of the fraction of the
 /// speed's cell.
-type Coefficients = [[f64; 12]; SAMPLES];
+type LawCoefficients = [[f64; 12]; SAMPLES];
 
 /// The coefficients of hysteresis and contact ratio over ln p, in such an interval.
 type ShareCoefficients = [[f64; 8]; SAMPLES];
@@ -96,7 +96,7 @@ pub struct ResampledLaw {
     /// By cell those of all pressures but the first.
     interval_starts: Vec<IntervalStarts>,
     /// By cell and pressure.
-    coefficients: Vec<Coefficients>,
+    coefficients: Vec<LawCoefficients>,
     /// By cell and pressure.
     shares: Vec<ShareCoefficients>,
     /// By cell the temperature's number for which it was computed.
@@ -160,7 +160,7 @@ impl ResampledLaw {
         let planes = if is_warm { Planes::new(table, &Law::new(table, 0.0), cells) } else { None };
         let cells = cells * planes.map_or(1, |planes| planes.count);
         let pressures = table.grid.loads.len();
-        let at_pressure = size_of::<Coefficients>() + size_of::<ShareCoefficients>();
+        let at_pressure = size_of::<LawCoefficients>() + size_of::<ShareCoefficients>();
         let starts = starts_of(pressures) * size_of::<IntervalStarts>();
         cells * (pressures * at_pressure + starts + size_of::<u64>())
     }

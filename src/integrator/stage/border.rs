@@ -9,7 +9,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::{StagePoint, StageSolver};
 use crate::math::Jet;
-use crate::model::{Axis, Body, ByAxis, Forces, LinkKind, Mode, Model, Outside};
+use crate::model::{Axis, ByAxis, CarrierBody, Forces, LinkKind, Mode, Model, Outside};
 
 /// The rows and columns of the bodies.
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ pub(in crate::integrator) struct Border {
 struct Side {
     axis: Axis,
     /// Mass M, stiffness K and damping D.
-    body: Body,
+    body: CarrierBody,
     /// Contributions of the earlier stages: the speed, and the displacement since the start of the step.
     star: BodyHistory,
     /// What acts on the body from outside, and the body itself, at the velocities evaluated last.

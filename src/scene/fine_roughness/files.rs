@@ -3,11 +3,8 @@
 use std::f64::consts::PI;
 
 use super::{ModulusFactors, RoughnessSpectrum, Softening, SofteningRow};
-use crate::scene::column_file::{Column, ColumnFile};
-use crate::scene::error::ContentError;
-use crate::scene::profile::ReadingNote;
-use crate::scene::values::{POSITIVE, Word};
-use crate::tables::{Dimension, Words};
+use crate::scene::values::Word;
+use crate::tables::{ContentError, Dimension, Format, POSITIVE, ReadingNote, Table, UnitRule, Wanted, Words, decode};
 
 /// How the file of a spectrum is normalised.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,65 +33,41 @@ enum OfSpectrum {
 /// A spectrum of a surface falls below all other numbers of scenes: at 1 nm to some 1e-48 m⁴.
 const LEAST_DENSITY: f64 = 1e-90;
 
-const SPECTRUM: ColumnFile<OfSpectrum, 2> = ColumnFile {
-    vocabulary: &[
-        Words::new(
-            OfSpectrum::WaveNumber,
-            Dimension::WaveNumber,
-            &["q", "k", "qx", "kx", "wavevector", "wavevectors", "wavenumber", "wavenumbers", "wave"],
-            &["vector", "vectors", "number", "numbers", "angular", "q", "k", "x"],
-        ),
-        Words::new(
-            OfSpectrum::Surface,
-            Dimension::SurfaceSpectrum,
-            &["c", "cq", "psd", "ciso", "c2d", "spectrum", "spectral", "power"],
-            &[
-                "q",
-                "c",
-                "power",
-                "density",
-                "spectral",
-                "psd",
-                "spectrum",
-                "isotropic",
-                "iso",
-                "2d",
-                "areal",
-                "radial",
-                "radially",
-                "averaged",
-                "average",
-                "surface",
-                "of",
-            ],
-        ),
-        Words::new(
-            OfSpectrum::Lines,
-            Dimension::LineSpectrum,
-            &["c", "c1", "c1d", "cq", "psd", "spectrum", "spectral", "power"],
-            &[
-                "q", "c", "power", "density", "spectral", "psd", "spectrum", "1d", "line", "lines", "profile",
-                "profiles", "averaged", "average", "of",
-            ],
-        ),
-    ],
-    columns: [
-        Column {
-            required: true,
-            quantities: &[OfSpectrum::WaveNumber],
-            name: "q",
-            meaning: "wave numbers",
-            range: POSITIVE,
-        },
-        Column {
-            required: true,
-            quantities: &[OfSpectrum::Surface, OfSpectrum::Lines],
-            name: "C",
-            meaning: "power spectrum",
-            range: POSITIVE.down_to(LEAST_DENSITY),
-        },
-    ],
-    expected: "a wave number and a power spectrum: q [1/m], C [m^4] of an isotropic surface or C1 [m^3] of lines",
+const SPECTRUM: Format<OfSpectrum, 2> = Format {
+    least: 2,
+    rises: true,
+    ..Format::new(
+        &[
+            Words::new(
+                OfSpectrum::WaveNumber,
+                Dimension::WaveNumber,
+                "q k qx kx wavevector wavevectors wavenumber wavenumbers wave",
+                "vector vectors number numbers angular q k x",
+            ),
+            Words::new(
+                OfSpectrum::Surface,
+                Dimension::SurfaceSpectrum,
+                "c cq psd ciso c2d spectrum spectral power",
+                "q c power density spectral psd spectrum isotropic iso 2d areal radial radially averaged average surface \
+                 of",
+            ),
+            Words::new(
+                OfSpectrum::Lines,
+                Dimension::LineSpectrum,
+                "c c1 c1d cq psd spectrum spectral power",
+                "q c power density spectral psd spectrum 1d line lines profile profiles averaged average of",
+            ),
+        ],
+        [
+            Wanted::new(&[OfSpectrum::WaveNumber], "q", "wave numbers").within(POSITIVE),
+            Wanted {
+                unit: UnitRule::AssumedOfFirst,
+                ..Wanted::new(&[OfSpectrum::Surface, OfSpectrum::Lines], "C", "power spectrum")
+                    .within(POSITIVE.down_to(LEAST_DENSITY))
+            },
+        ],
+        "a wave number and a power spectrum: q [1/m], C [m^4] of an isotropic surface or C1 [m^3] of lines",
+    )
 };
 
 /// A spectrum from the bytes of a file, and how it was read.
@@ -102,17 +75,17 @@ pub(in crate::scene) fn read_spectrum(
     bytes: &[u8],
     convention: Convention,
 ) -> Result<(RoughnessSpectrum, Vec<ReadingNote>), ContentError> {
-    let mut file = SPECTRUM.read(bytes)?;
-    let is_of_lines = file.quantities[1] == Some(OfSpectrum::Lines);
+    let text = decode(bytes)?;
+    let Table { columns, mut rows, notes, .. } = SPECTRUM.read(&text)?;
+    let is_of_lines = columns[1].as_ref().is_some_and(|column| column.quantity == OfSpectrum::Lines);
     let divisor = match (convention, is_of_lines) {
         (Convention::Persson, _) => 1.0,
         (Convention::ContactEngineering, true) => PI,
         (Convention::ContactEngineering, false) => 4.0 * PI * PI,
     };
-    file.rows.iter_mut().for_each(|row| row[1] /= divisor);
-    let spectrum =
-        if is_of_lines { RoughnessSpectrum::of_lines(&file.rows) } else { RoughnessSpectrum::new(file.rows) };
-    Ok((spectrum, file.notes))
+    rows.iter_mut().for_each(|row| row[1] /= divisor);
+    let spectrum = if is_of_lines { RoughnessSpectrum::of_lines(&rows) } else { RoughnessSpectrum::new(rows) };
+    Ok((spectrum, notes))
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -122,52 +95,45 @@ enum OfStrain {
     Loss,
 }
 
-const STRAIN_SWEEP: ColumnFile<OfStrain, 3> = ColumnFile {
-    vocabulary: &[
-        Words::new(
-            OfStrain::Strain,
-            Dimension::Number,
-            &["strain", "gamma", "γ", "epsilon", "ε", "dehnung"],
-            &["amplitude", "shear", "dynamic", "peak", "oscillation"],
-        ),
-        Words::new(
-            OfStrain::Storage,
-            Dimension::Number,
-            &["storage", "e'", "g'"],
-            &["factor", "modulus", "ratio", "relative", "e'", "g'", "e'0", "g'0"],
-        ),
-        Words::new(
-            OfStrain::Loss,
-            Dimension::Number,
-            &["loss", "e''", "g''"],
-            &["factor", "modulus", "ratio", "relative", "e''", "g''", "e''0", "g''0"],
-        ),
-    ],
-    columns: [
-        Column { required: true, quantities: &[OfStrain::Strain], name: "strain", meaning: "strains", range: POSITIVE },
-        Column {
-            required: true,
-            quantities: &[OfStrain::Storage],
-            name: "storage",
-            meaning: "factors on the storage modulus",
-            range: POSITIVE.up_to(1.0),
-        },
-        Column {
-            required: true,
-            quantities: &[OfStrain::Loss],
-            name: "loss",
-            meaning: "factors on the loss modulus",
-            range: POSITIVE,
-        },
-    ],
-    expected: "strain [1] or [%], and the factors on both moduli: storage, loss",
+const STRAIN_SWEEP: Format<OfStrain, 3> = Format {
+    least: 2,
+    rises: true,
+    ..Format::new(
+        &[
+            Words::new(
+                OfStrain::Strain,
+                Dimension::Number,
+                "strain gamma γ epsilon ε dehnung",
+                "amplitude shear dynamic peak oscillation",
+            ),
+            Words::new(
+                OfStrain::Storage,
+                Dimension::Number,
+                "storage e' g'",
+                "factor modulus ratio relative e' g' e'0 g'0",
+            ),
+            Words::new(
+                OfStrain::Loss,
+                Dimension::Number,
+                "loss e'' g''",
+                "factor modulus ratio relative e'' g'' e''0 g''0",
+            ),
+        ],
+        [
+            Wanted::new(&[OfStrain::Strain], "strain", "strains").within(POSITIVE),
+            Wanted::new(&[OfStrain::Storage], "storage", "factors on the storage modulus").within(POSITIVE.up_to(1.0)),
+            Wanted::new(&[OfStrain::Loss], "loss", "factors on the loss modulus").within(POSITIVE),
+        ],
+        "strain [1] or [%], and the factors on both moduli: storage, loss",
+    )
 };
 
 /// A table of softening from the bytes of a file, and how it was read.
 pub(in crate::scene) fn read_softening(bytes: &[u8]) -> Result<(Softening, Vec<ReadingNote>), ContentError> {
-    let file = STRAIN_SWEEP.read(bytes)?;
+    let text = decode(bytes)?;
+    let Table { rows, notes, .. } = STRAIN_SWEEP.read(&text)?;
     let row = |[strain, storage, loss]: [f64; 3]| SofteningRow { strain, factors: ModulusFactors { storage, loss } };
-    Ok((Softening::Table(file.rows.into_iter().map(row).collect()), file.notes))
+    Ok((Softening::Table(rows.into_iter().map(row).collect()), notes))
 }
 
 #[cfg(test)]
@@ -183,7 +149,7 @@ mod tests {
 
     fn read_with(text: &str, convention: Convention) -> PointsRead {
         let found = read_spectrum(text.as_bytes(), convention);
-        let found = found.map_err(|error| (error.line, error.problem.about(&error.key)));
+        let found = found.map_err(|error| (error.line, error.to_string()));
         found.map(|(spectrum, notes)| (spectrum.points().to_vec(), notes.iter().filter(|note| note.assumed).count()))
     }
 
@@ -239,22 +205,34 @@ mod tests {
         let cases = [
             ("", 1, "rows = 0: expected at least two rows"),
             ("q [1/m],C [m^4]\n1,1\n", 2, "rows = 1: expected at least two rows"),
-            ("q [1/m],C [m^4]\n2,1\n1,1\n", 3, "q = 1.0: expected more than 2.0, that of the row before"),
-            ("q [1/m],C [m^4]\n1,1\n1,1\n", 3, "q = 1.0: expected more than 1.0, that of the row before"),
-            ("q [1/m],C [m^4]\n1,1\n2,0\n", 3, "C = \"0\": expected a number from 1e-90 to 1e30"),
-            ("q [1/m],C [m^4]\n1,1\n2,-1\n", 3, "C = \"-1\": expected a number from 1e-90 to 1e30"),
-            ("q [1/m],C [m^4]\n0,1\n2,1\n", 2, "q = \"0\": expected a number from 1e-30 to 1e30"),
-            ("q [1/m],C [m^2]\n1,1\n2,1\n", 1, "unit = \"m2\" of column 2 (C [m^2]): expected one of m⁴, mm⁴"),
+            (
+                "q [1/m],C [m^4]\n2,1\n1,1\n",
+                3,
+                "column 1 (q [1/m]) = 1.0 1/m: expected more than 2.0 1/m, that of the row before",
+            ),
+            (
+                "q [1/m],C [m^4]\n1,1\n1,1\n",
+                3,
+                "column 1 (q [1/m]) = 1.0 1/m: expected more than 1.0 1/m, that of the row before",
+            ),
+            ("q [1/m],C [m^4]\n1,1\n2,0\n", 3, "column 2 (C [m^4]) = \"0\": expected a number from 1e-90 to 1e30"),
+            ("q [1/m],C [m^4]\n1,1\n2,-1\n", 3, "column 2 (C [m^4]) = \"-1\": expected a number from 1e-90 to 1e30"),
+            ("q [1/m],C [m^4]\n0,1\n2,1\n", 2, "column 1 (q [1/m]) = \"0\": expected a number from 1e-30 to 1e30"),
+            ("q [1/m],C [m^2]\n1,1\n2,1\n", 1, "unit of column 2 (C [m^2]) = \"m2\": expected one of m⁴, mm⁴"),
             (
                 "q [1/furlong],C [m^4]\n1,1\n2,1\n",
                 1,
-                "unit = \"1/furlong\" of column 1 (q [1/furlong]): expected one of 1/m",
+                "unit of column 1 (q [1/furlong]) = \"1/furlong\": expected one of 1/m",
             ),
-            ("q [1/m],C1\n1,1\n2,1\n", 1, "C = C1: expected its unit, one of m³, mm³"),
-            ("x,y\n1,1\n2,1\n", 1, "columns = `x, y`: expected a wave number and a power spectrum"),
+            ("q [1/m],C1\n1,1\n2,1\n", 1, "unit of column 2 (C1): expected it beside the name: one of m³, mm³"),
+            ("x,y\n1,1\n2,1\n", 1, "columns = \"x, y\": expected a wave number and a power spectrum"),
             ("1,2,3\n2,3,4\n", 1, "columns = 3: expected a wave number and a power spectrum"),
-            ("log q [1/m],C [m^4]\n1,1\n2,1\n", 1, "q = log q [1/m]: expected numbers, not their logarithms"),
-            ("# all lengths in 1/mm\n1,1\n2,1\n", 1, "unit = `all lengths in 1/mm`: expected the unit beside the name"),
+            ("log q [1/m],C [m^4]\n1,1\n2,1\n", 1, "column 1 (log q [1/m]): expected numbers, not their logarithms"),
+            (
+                "# all lengths in 1/mm\n1,1\n2,1\n",
+                1,
+                "unit = \"all lengths in 1/mm\": expected the unit beside the name",
+            ),
         ];
         for (text, line, message) in cases {
             let (found, error) = spectrum(text).err().unwrap_or_default();
@@ -280,14 +258,22 @@ mod tests {
         }
         for (text, line, message) in [
             ("strain,storage,loss\n1,1,1\n", 2, "rows = 1: expected at least two rows"),
-            ("strain,storage,loss\n1,1.1,1\n2,1,1\n", 2, "storage = \"1.1\": expected a number from 1e-30 to 1.0"),
-            ("strain,storage,loss\n1,1,0\n2,1,1\n", 2, "loss = \"0\": expected a number from 1e-30 to 1e30"),
-            ("strain,storage,loss\n2,1,1\n1,1,1\n", 3, "strain = 1.0: expected more than 2.0"),
-            ("strain,storage [MPa],loss\n1,1,1\n2,1,1\n", 1, "unit = \"MPa\" of column 2"),
-            ("strain,storage\n1,1\n2,1\n", 1, "columns = `strain, storage`: expected strain [1] or [%]"),
+            (
+                "strain,storage,loss\n1,1.1,1\n2,1,1\n",
+                2,
+                "column 2 (storage) = \"1.1\": expected a number from 1e-30 to 1.0",
+            ),
+            ("strain,storage,loss\n1,1,0\n2,1,1\n", 2, "column 3 (loss) = \"0\": expected a number from 1e-30 to 1e30"),
+            ("strain,storage,loss\n2,1,1\n1,1,1\n", 3, "column 1 (strain) = 1.0: expected more than 2.0"),
+            (
+                "strain,storage [MPa],loss\n1,1,1\n2,1,1\n",
+                1,
+                "unit of column 2 (storage [MPa]) = \"MPa\": expected one of",
+            ),
+            ("strain,storage\n1,1\n2,1\n", 1, "columns = \"strain, storage\": expected strain [1] or [%]"),
         ] {
             let error = read_softening(text.as_bytes()).err();
-            let (found, error) = error.map(|error| (error.line, error.problem.about(&error.key))).unwrap_or_default();
+            let (found, error) = error.map(|error| (error.line, error.to_string())).unwrap_or_default();
             assert!(found == Some(line) && error.starts_with(message), "{text:?}: {found:?} {error}");
         }
     }

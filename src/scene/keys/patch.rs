@@ -119,7 +119,3 @@ const FMU: &[Key] = &[
     INTEGERS,
     DEPENDENCIES,
 ];
-
-/// The range of a coordinate of a point and of its area.
-pub(in crate::scene) const COORDINATE: Key = number("", ANY, Unit::Meter, "");
-pub(in crate::scene) const AREA: Key = number("area", POSITIVE, Unit::SquareMeter, "");

@@ -1,10 +1,9 @@
 //! Heights over a grid, and the line along x that is taken of them.
 
-use super::options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ReadingNote, Tilt};
+use super::options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, Tilt};
 use super::{MeasuredSurface, sentinels};
-use crate::scene::error::ContentError;
 use crate::scene::{HeightMap, MOST_HEIGHTS, MapError, peak_to_valley};
-use crate::tables::Unit;
+use crate::tables::{ContentError, ReadingNote, Unit};
 
 /// An areal measurement: lines along x, one after the other along y.
 #[derive(Debug)]

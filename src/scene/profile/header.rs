@@ -2,17 +2,14 @@
 
 use std::borrow::Cow;
 
-use super::options::{LengthUnit, MeasuredPoints, ProfileOptions, ReadingNote};
-use crate::scene::error::ContentError;
-use crate::tables::{Block, Dimension, Heading, Line, Unit, Words, words};
+use super::options::{LengthUnit, MeasuredPoints, ProfileOptions};
+use crate::tables::{
+    Block, ContentError, Dimension, Header as TableHeader, Heading, Line, ReadingNote, Unit, UnitRule, Words,
+    shortened, words,
+};
 
 const ONE_UNIT: &str = "the header names a unit for one of the two columns alone; it is taken for both: x_unit and \
                         z_unit say otherwise";
-
-/// The beginning of a text, for messages.
-pub(super) fn cut(text: &str) -> String {
-    text.chars().take(60).collect()
-}
 
 /// What a column of a profile may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,114 +19,36 @@ pub(super) enum ColumnAxis {
     Z,
 }
 
-const fn axis(
-    axis: ColumnAxis,
-    key_words: &'static [&'static str],
-    other_words: &'static [&'static str],
-) -> Words<ColumnAxis> {
-    Words::new(axis, Dimension::Length, key_words, other_words)
-}
-
 pub(super) const VOCABULARY: [Words<ColumnAxis>; 3] = [
-    axis(
+    Words::new(
         ColumnAxis::X,
-        &[
-            "x", "distance", "position", "pos", "lateral", "length", "chainage", "station", "abscissa", "place", "weg",
-            "strecke", "abstand", "länge", "laenge", "location", "dist", "xpos", "mileage",
-        ],
-        &[
-            "axis",
-            "coordinate",
-            "coord",
-            "value",
-            "values",
-            "scan",
-            "direction",
-            "profile",
-            "trace",
-            "along",
-            "travel",
-            "travelled",
-            "measured",
-            "horizontal",
-            "achse",
-            "stylus",
-            "x1",
-            "the",
-            "road",
-            "of",
-        ],
+        Dimension::Length,
+        "x distance position pos lateral length chainage station abscissa place weg strecke abstand länge laenge location \
+         dist xpos mileage",
+        "axis coordinate coord value values scan direction profile trace along travel travelled measured horizontal achse \
+         stylus x1 the road of",
     ),
-    axis(
+    Words::new(
         ColumnAxis::Z,
-        &[
-            "z",
-            "z2",
-            "z3",
-            "z4",
-            "height",
-            "heights",
-            "elevation",
-            "elev",
-            "depth",
-            "profile",
-            "topography",
-            "altitude",
-            "amplitude",
-            "höhe",
-            "hoehe",
-            "tiefe",
-            "ordinate",
-            "z1",
-            "profil",
-        ],
-        &[
-            "axis",
-            "coordinate",
-            "coord",
-            "value",
-            "values",
-            "roughness",
-            "raw",
-            "primary",
-            "r",
-            "p",
-            "w",
-            "waviness",
-            "surface",
-            "data",
-            "filtered",
-            "leveled",
-            "levelled",
-            "relative",
-            "mean",
-            "measured",
-            "vertical",
-            "corrected",
-            "left",
-            "right",
-            "achse",
-            "road",
-            "of",
-            "the",
-            "center",
-            "centre",
-        ],
+        Dimension::Length,
+        "z z2 z3 z4 height heights elevation elev depth profile topography altitude amplitude höhe hoehe tiefe ordinate z1 \
+         profil",
+        "axis coordinate coord value values roughness raw primary r p w waviness surface data filtered leveled levelled \
+         relative mean measured vertical corrected left right achse road of the center centre",
     ),
-    axis(
+    Words::new(
         ColumnAxis::Y,
-        &["y", "y1", "y2", "y3", "y4"],
-        &["axis", "coordinate", "coord", "position", "pos", "value", "values", "achse"],
+        Dimension::Length,
+        "y y1 y2 y3 y4",
+        "axis coordinate coord position pos value values achse",
     ),
 ];
 
 /// The header of a profile.
 #[derive(Debug)]
 pub(super) struct Header<'a> {
-    pub(super) names: Vec<Cow<'a, str>>,
-    pub(super) line: Option<usize>,
-    /// What the columns are, as far as their names say.
-    pub(super) headings: Vec<Option<Heading<ColumnAxis>>>,
+    /// The names of the columns, and what these are.
+    pub(super) table: TableHeader<'a, ColumnAxis>,
     /// The units of x and z that lines such as `X-Unit: mm` set.
     pub(super) set: [Option<Unit>; 2],
     /// A line that speaks of a unit, though it is none of names.
@@ -139,52 +58,35 @@ pub(super) struct Header<'a> {
 impl<'a> Header<'a> {
     pub(super) fn read(block: &Block<'a>) -> Self {
         let is_setting = |line: &str| setting(line).is_some();
+        let is_known = |name: &str| Heading::parse(name, &VOCABULARY).is_some();
         let mut named = block.clone();
         named.above.retain(|(_, line)| !is_setting(line));
-        let is_known = |name: &str| Heading::parse(name, &VOCABULARY).is_some();
-        let mut head = named.head(&is_known);
+        let mut table = TableHeader::read(&named, &VOCABULARY, None);
         // Words above such settings name the file, not its columns.
         let is_above = |names: usize| block.above.iter().any(|(line, text)| *line > names && is_setting(text));
-        if head.line.is_some_and(is_above) && !head.names.iter().any(|name| is_known(name)) {
-            (head.names, head.line) = (Vec::new(), None);
+        if table.line.is_some_and(is_above) && !table.names.iter().any(|name| is_known(name)) {
+            (table.names, table.line, table.headings) = (Vec::new(), None, Vec::new());
         }
-        let headings = if head.names.is_empty() && head.units.len() == block.columns {
-            unnamed(&head.units)
-        } else {
-            head.headings(&VOCABULARY)
-        };
+        if table.names.is_empty() && table.head.units.len() == block.columns {
+            table.headings = unnamed(&table.head.units);
+        }
         let mut set = [None; 2];
         for (axes, unit) in block.above.iter().filter_map(|(_, line)| setting(line)) {
             axes.iter().for_each(|&axis| set[axis] = Some(unit));
         }
-        let stated = named.stated_unit(Dimension::Length, head.line);
-        Self { names: head.names, line: head.line, headings, set, stated }
-    }
-
-    /// Which columns are called so.
-    pub(super) fn named(&self, axis: ColumnAxis) -> Vec<usize> {
-        let is_it = |i: &usize| self.headings[*i].as_ref().is_some_and(|heading| heading.quantity == axis);
-        (0..self.headings.len()).filter(is_it).collect()
-    }
-
-    pub(super) fn name(&self, column: usize) -> String {
-        match self.names.get(column).map(|name| name.trim()).filter(|name| !name.is_empty()) {
-            Some(name) => format!("column {} ({name})", column + 1),
-            None => format!("column {}", column + 1),
-        }
+        let stated = named.stated_unit(Dimension::Length, table.line);
+        Self { table, set, stated }
     }
 
     /// The unit that a column's heading names.
     fn unit(&self, column: usize, key: &str) -> Result<Option<Unit>, ContentError> {
-        let heading = self.headings.get(column).and_then(Option::as_ref);
-        if heading.is_some_and(|heading| heading.logarithm.is_some()) {
-            return Err(ContentError::value(self.line, "columns", &self.name(column), "numbers, not their logarithms"));
+        if self.table.headings.get(column).is_none_or(Option::is_none) {
+            return Ok(None);
         }
-        heading.map_or(Ok(None), |heading| heading.unit.known()).map_err(|unit| {
-            let given = format!("\"{}\" of {}", cut(unit), self.name(column));
-            let expected = format!("a unit of length: {}; or {key} in the scene", Dimension::Length.units());
-            ContentError::value(self.line, "unit", &given, &expected)
-        })
+        let found = self.table.column(column, UnitRule::Assumed, None);
+        let found = found.map_err(|error| error.or(&format!("{key} in the scene")))?;
+        found.check_plain(self.table.line)?;
+        Ok(found.names_unit.then_some(found.unit))
     }
 
     /// The units of x and z, and notes on them.
@@ -197,17 +99,17 @@ impl<'a> Header<'a> {
         let given = [options.x_unit, options.z_unit].map(|unit| unit.map(LengthUnit::unit));
         let of_column = |axis: usize, column: Option<usize>, key: &str| match (given[axis], column) {
             (Some(unit), _) => Ok(Some(unit)),
-            (None, Some(column)) => Ok(self.unit(column, key)?.or(self.set[axis])),
+            (None, Some(column)) => self.unit(column, key).map(|unit| unit.or(self.set[axis])),
             (None, None) => Ok(self.set[axis]),
         };
         let (x, z) = (of_column(0, x_column, "x_unit")?, of_column(1, Some(z_column), "z_unit")?);
         if let (None, None, Some(((line, text), unit))) = (x, z, self.stated) {
             let expected =
                 format!("the units beside the names, as in x [{unit}]; or x_unit and z_unit (--unit {unit})");
-            return Err(ContentError::value(Some(line), "units", &format!("`{}`", cut(text)), &expected));
+            return Err(ContentError::value(Some(line), "units", &format!("\"{}\"", shortened(text)), &expected));
         }
         let Some(x_column) = x_column else {
-            raw.notes.push(note(&format!("heights from {}", self.name(z_column)), z));
+            raw.notes.push(note(&format!("heights from {}", self.table.label(z_column)), z));
             // The spacing is in m.
             return Ok([None, z]);
         };
@@ -215,7 +117,7 @@ impl<'a> Header<'a> {
             raw.warnings.push(ONE_UNIT.into());
         }
         let units = [x.or(z), z.or(x)];
-        let [x, z] = [x_column, z_column].map(|column| self.name(column));
+        let [x, z] = [x_column, z_column].map(|column| self.table.label(column));
         raw.notes.push(match units {
             [Some(x_unit), Some(z_unit)] => {
                 let text = format!("x from {x} in {x_unit}, z from {z} in {z_unit}");
@@ -226,7 +128,9 @@ impl<'a> Header<'a> {
                 ReadingNote { text, assumed: true }
             }
         });
-        if words(self.names.get(z_column).map_or("", |name| name)).iter().any(|word| word == "depth" || word == "tiefe")
+        if words(self.table.names.get(z_column).map_or("", |name| name))
+            .iter()
+            .any(|word| word == "depth" || word == "tiefe")
         {
             raw.notes.push(ReadingNote { text: "depths are taken as heights, upwards".into(), assumed: true });
         }

@@ -6,7 +6,6 @@
 mod areal;
 mod header;
 mod options;
-mod plain;
 mod roles;
 mod sentinels;
 mod text;
@@ -19,13 +18,13 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 pub use areal::{Areal, line_note};
-pub use options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ReadingNote, ThirdColumn, Tilt, UnknownWord};
+pub use options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
 
-use super::error::{ContentError, SceneError};
+use super::error::SceneError;
 use super::regular_file::read_file;
 use super::surface::{Coordinate, Surface, check_points, remove_tilt};
 use super::{HeightMap, MapError};
-use crate::tables::{Unit, decode};
+use crate::tables::{ContentError, ReadingNote, Unit, decode};
 use text::Content;
 
 /// A line of an areal measurement, as an FMU carries it: text in place of the file that it was taken from.
@@ -153,8 +152,7 @@ fn parse(
 }
 
 fn read_text(bytes: &[u8], options: &ProfileOptions) -> Result<Content, ContentError> {
-    let text = decode(bytes).map_err(|error| ContentError::new(Some(1), "", error))?;
-    text::read(&text, options)
+    text::read(&decode(bytes)?, options)
 }
 
 fn no_profile() -> ContentError {

@@ -2,9 +2,8 @@
 
 use std::str::FromStr;
 
-use crate::scene::error::ContentError;
 use crate::scene::values::{Word, words};
-use crate::tables::Unit;
+use crate::tables::{ContentError, ReadingNote, Unit};
 
 /// How a file is to be read. What is not given is as the file says, or else as the defaults are.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -117,15 +116,6 @@ impl LengthUnit {
     pub(super) fn unit(self) -> Unit {
         Unit::parse(self.as_word()).unwrap_or(Unit::ONE)
     }
-}
-
-/// How a table was read, for those who use what it holds.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ReadingNote {
-    /// What was found or assumed: columns, units.
-    pub text: String,
-    /// Whether something was assumed that the file does not say.
-    pub assumed: bool,
 }
 
 /// Points as they stand in a file.

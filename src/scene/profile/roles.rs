@@ -1,9 +1,8 @@
 //! Which columns of a profile are x and z: by what is chosen, by their names, or the only two there are.
 
-use super::header::{ColumnAxis, Header, cut};
+use super::header::{ColumnAxis, Header};
 use super::options::{ProfileOptions, ThirdColumn};
-use crate::scene::error::ContentError;
-use crate::tables::{Block, words};
+use crate::tables::{Block, ContentError, shortened, words};
 
 pub(super) const EXPECTED_COLUMNS: &str = "two, x and z, separated by comma, semicolon, tab or blanks";
 const CHOOSE: &str = "columns = [\"x\", \"z\"] (--columns x,z) with the names or the numbers of the columns";
@@ -46,7 +45,7 @@ impl Roles {
         match (roles.x, &options.spacing[..]) {
             (None, []) => Err(no_spacing(block, header)),
             (Some(x), [_, ..]) => {
-                let expected = format!("none, for x is {}", header.name(x));
+                let expected = format!("none, for x is {}", header.table.label(x));
                 Err(ContentError::value(None, "spacing", "given", &expected))
             }
             _ => Ok(roles),
@@ -59,11 +58,11 @@ impl Roles {
         options: &ProfileOptions,
         mark: Option<(usize, ThirdColumn)>,
     ) -> Result<Self, ContentError> {
-        let [x, y, z] = [ColumnAxis::X, ColumnAxis::Y, ColumnAxis::Z].map(|axis| header.named(axis));
+        let [x, y, z] = [ColumnAxis::X, ColumnAxis::Y, ColumnAxis::Z].map(|axis| header.table.places(&[axis]));
         if block.columns == 1 {
             return Ok(Self { x: None, y: None, z: 0, mark });
         }
-        if header.names.is_empty() && header.headings.is_empty() {
+        if header.table.names.is_empty() && header.table.headings.is_empty() {
             return Self::unnamed(block, options, mark);
         }
         match (&x[..], &y[..], &z[..]) {
@@ -71,15 +70,18 @@ impl Roles {
             (&[x], &[y], &[z]) => Ok(Self { x: Some(x), y: Some(y), z, mark }),
             ([], [], &[z]) if !options.spacing.is_empty() => Ok(Self { x: None, y: None, z, mark }),
             _ => {
-                let names: Vec<&str> = header.names.iter().map(|name| name.trim()).collect();
-                let given = format!("`{}`", cut(&names.join(", ")));
                 let why = match (x.len(), z.len().max(y.len())) {
                     (0, 0) => "the names do not tell x and z",
                     (0, 1) => "no name is that of x; spacing in place of x where points are even",
                     (1, 0) => "no name is that of z",
                     _ => "several columns have such names",
                 };
-                Err(ContentError::value(header.line, "columns", &given, &format!("{CHOOSE}: {why}")))
+                Err(ContentError::value(
+                    header.table.line,
+                    "columns",
+                    &header.table.given(),
+                    &format!("{CHOOSE}: {why}"),
+                ))
             }
         }
     }
@@ -109,10 +111,10 @@ fn no_spacing(block: &Block<'_>, header: &Header<'_>) -> ContentError {
     let hint = block.above.iter().find(|(_, line)| {
         ["spacing", "step", "increment", "interval"].iter().any(|word| line.to_lowercase().contains(word))
     });
-    let hint = hint.map_or_else(String::new, |(line, text)| format!("; line {line} says `{}`", cut(text)));
+    let hint = hint.map_or_else(String::new, |(line, text)| format!("; line {line} says \"{}\"", shortened(text)));
     let expected = format!(
         "the distance of the points in m, spacing = 1e-5 (--spacing 1e-5), for {} holds heights without x{hint}",
-        if block.columns == 1 { "the only column".into() } else { header.name(0) },
+        if block.columns == 1 { "the only column".into() } else { header.table.label(0) },
     );
     ContentError::value(Some(block.first), "spacing", "not given", &expected)
 }
@@ -120,8 +122,9 @@ fn no_spacing(block: &Block<'_>, header: &Header<'_>) -> ContentError {
 /// A column by its name, or by its number from 1.
 fn column(name: &str, block: &Block<'_>, header: &Header<'_>) -> Result<usize, ContentError> {
     let wanted = words(name);
-    let is_it =
-        |by: &dyn Fn(&str) -> bool| (0..header.names.len()).filter(|&i| by(header.names[i].trim())).collect::<Vec<_>>();
+    let is_it = |by: &dyn Fn(&str) -> bool| {
+        (0..header.table.names.len()).filter(|&i| by(header.table.names[i].trim())).collect::<Vec<_>>()
+    };
     let number =
         || name.trim().parse().ok().filter(|number| (1..=block.columns).contains(number)).map(|number| number - 1);
     let exact = is_it(&|text| text == name.trim());
@@ -132,10 +135,10 @@ fn column(name: &str, block: &Block<'_>, header: &Header<'_>) -> Result<usize, C
     match (&found[..], number()) {
         (&[column], _) | ([], Some(column)) => Ok(column),
         (found, _) => {
-            let names: Vec<String> = header.names.iter().map(|name| format!("\"{}\"", name.trim())).collect();
+            let names: Vec<String> = header.table.names.iter().map(|name| format!("\"{}\"", name.trim())).collect();
             let which = if found.is_empty() { "one of" } else { "one name of its own, of" };
             let expected = format!("{which} {} or a number from 1 to {}", names.join(", "), block.columns);
-            Err(ContentError::value(header.line, "columns", &format!("\"{}\"", cut(name)), &expected))
+            Err(ContentError::value(header.table.line, "columns", &format!("\"{}\"", shortened(name)), &expected))
         }
     }
 }
@@ -153,7 +156,7 @@ fn mark(header: &Header<'_>, options: &ProfileOptions, columns: usize) -> Option
             None
         }
     };
-    let by_name = (0..header.names.len()).find_map(|i| Some((i, meaning(&header.names[i])?)));
+    let by_name = (0..header.table.names.len()).find_map(|i| Some((i, meaning(&header.table.names[i])?)));
     match options.third_column {
         Some(ThirdColumn::Ignore) => None,
         Some(given) => by_name.map(|(i, _)| (i, given)).or((columns == 3).then_some((2, given))),

@@ -19,7 +19,7 @@ fn points(text: &str) -> Vec<(f64, f64)> {
 
 fn refused(bytes: &[u8], options: &ProfileOptions) -> (usize, String) {
     match parse(bytes, options, &TextAlone, false) {
-        Err(error) => (error.line.unwrap_or(0), error.problem.about(&error.key)),
+        Err(error) => (error.line.unwrap_or(0), error.to_string()),
         Ok(parsed) => unreachable!("accepted as {parsed:?}"),
     }
 }
@@ -80,7 +80,7 @@ fn refuses_what_is_no_profile() {
         (
             "0,1\n1,2,3",
             2,
-            "columns = 3 in `1,2,3`: expected two, x and z, separated by comma, semicolon, tab or blanks; third_column \
+            "columns = 3 in \"1,2,3\": expected two, x and z, separated by comma, semicolon, tab or blanks; third_column \
              says what a third one means",
         ),
         (
@@ -275,22 +275,18 @@ fn columns_are_found_by_their_names_or_chosen() {
 #[test]
 fn names_and_numbers_that_do_not_tell_are_refused() {
     let cases = [
-        ("left [mm],right [mm]\n0,0.1\n1,1.1\n2,2.1\n", 1, "columns = `left [mm], right [mm]`: expected columns ="),
-        ("time [s],z [m]\n0,1\n1,2\n", 1, "columns = `time [s], z [m]`: expected columns ="),
-        ("x,z1,z2\n0,1,2\n1,2,3\n", 1, "columns = `x, z1, z2`: expected columns ="),
-        (
-            "x [parsec],z [m]\n0,1\n1,2\n",
-            1,
-            "unit = \"parsec\" of column 1 (x [parsec]): expected a unit of length: m, mm, µm",
-        ),
-        ("x [Hz],z [m]\n0,1\n1,2\n", 1, "unit = \"Hz\" of column 1"),
-        ("Distance travelled mm Height um\n0 1\n1 2\n", 1, "units = `Distance travelled mm Height um`: expected the"),
-        ("# all in mm\nx,z\n0,1\n1,2\n", 1, "units = `all in mm`: expected the units beside the names, as in x [mm]"),
-        ("log x [mm],z [mm]\n0,1\n1,2\n", 1, "columns = column 1 (log x [mm]): expected numbers, not their logarithms"),
+        ("left [mm],right [mm]\n0,0.1\n1,1.1\n2,2.1\n", 1, "columns = \"left [mm], right [mm]\": expected columns ="),
+        ("time [s],z [m]\n0,1\n1,2\n", 1, "columns = \"time [s], z [m]\": expected columns ="),
+        ("x,z1,z2\n0,1,2\n1,2,3\n", 1, "columns = \"x, z1, z2\": expected columns ="),
+        ("x [parsec],z [m]\n0,1\n1,2\n", 1, "unit of column 1 (x [parsec]) = \"parsec\": expected one of m, mm, µm"),
+        ("x [Hz],z [m]\n0,1\n1,2\n", 1, "unit of column 1 (x [Hz]) = \"Hz\""),
+        ("Distance travelled mm Height um\n0 1\n1 2\n", 1, "units = \"Distance travelled mm Height um\": expected the"),
+        ("# all in mm\nx,z\n0,1\n1,2\n", 1, "units = \"all in mm\": expected the units beside the names, as in x [mm]"),
+        ("log x [mm],z [mm]\n0,1\n1,2\n", 1, "column 1 (log x [mm]): expected numbers, not their logarithms"),
         ("1 0 5\n2 1 6\n3 3 5\n", 1, "columns = 3: expected two, x and z"),
         ("x,z\n0,1.5\n1,-9999\n2,1.4\n3,-9999\n", 3, "z = -9999.0 (2 times, more than 10 times the range"),
         ("x,z\n0,0\n1e-200,1\n2e-200,0\n", 2, "points = steps along x down to 1e-200 m: expected"),
-        ("x;z\n0;1,5\n1;2.5\n", 3, "number = \"2.5\": expected numbers with decimal points or with decimal commas"),
+        ("x;z\n0;1,5\n1;2.5\n", 3, "z = \"2.5\": expected numbers with decimal points or with decimal commas"),
     ];
     for (text, line, message) in cases {
         let (found, error) = refusal(text.as_bytes(), false);

@@ -3,9 +3,7 @@
 //! Their numbers have no units: times are taken in s, and E_0 stands in a comment, with its unit.
 
 use super::{ModulusKind, WrittenSeries, WrittenTerm, note};
-use crate::scene::error::ContentError;
-use crate::scene::keys;
-use crate::tables::{Line, number};
+use crate::tables::{ContentError, Line, POSITIVE, number};
 
 /// The series in the cards of a text; `None` where there are none.
 pub(super) fn read(text: &str) -> Option<Result<WrittenSeries<'_>, ContentError>> {
@@ -37,7 +35,7 @@ pub(super) fn read(text: &str) -> Option<Result<WrittenSeries<'_>, ContentError>
 fn abaqus_terms<'a>(mut lines: impl Iterator<Item = Line<'a>>) -> Result<Vec<WrittenTerm>, ContentError> {
     let (number, keyword) = lines.next().unwrap_or_default();
     if !keyword.to_uppercase().replace(' ', "").contains("TIME=PRONY") {
-        let given = format!("`{keyword}`");
+        let given = format!("\"{keyword}\"");
         return Err(ContentError::value(
             Some(number),
             "card",
@@ -95,7 +93,6 @@ fn share(line: usize, field: &str) -> Result<f64, ContentError> {
 }
 
 fn seconds(line: usize, field: &str) -> Result<f64, ContentError> {
-    let range = keys::range_of("material.prony.relaxation_time");
-    let error = || ContentError::value(Some(line), "relaxation_time", &format!("\"{field}\""), &range.to_string());
-    number(field, false).filter(|time| range.holds(*time)).ok_or_else(error)
+    let error = || ContentError::value(Some(line), "relaxation_time", &format!("\"{field}\""), &POSITIVE.to_string());
+    number(field, false).filter(|time| POSITIVE.holds(*time)).ok_or_else(error)
 }

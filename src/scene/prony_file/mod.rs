@@ -5,10 +5,8 @@ mod cards;
 mod table;
 
 use super::PronyTerm;
-use super::error::ContentError;
 use super::keys;
-use super::profile::ReadingNote;
-use crate::tables::{Dimension, Line, Unit, decode, number, plain, words};
+use crate::tables::{ContentError, Dimension, Line, ReadingNote, Unit, decode, number, plain, words};
 
 /// What relates the moduli of a file to those of the scene.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +27,7 @@ impl PronySeries {
     /// Reads a series from the bytes of a file: cards, or columns found by their names, with units; without names a
     /// relaxation time in s and a modulus in Pa.
     pub(super) fn parse(bytes: &[u8], elastic: ElasticConstants) -> Result<Self, ContentError> {
-        let text = decode(bytes).map_err(|error| ContentError::new(Some(1), "", error))?;
+        let text = decode(bytes)?;
         let written = match cards::read(&text) {
             Some(written) => written?,
             None => table::read(&text)?,
@@ -220,7 +218,7 @@ mod tests {
 
     fn read(text: &str) -> Result<Vec<PronyTerm>, (Option<usize>, String)> {
         let series = PronySeries::parse(text.as_bytes(), ELASTIC);
-        series.map(|series| series.terms).map_err(|error| (error.line, error.problem.about(&error.key)))
+        series.map(|series| series.terms).map_err(|error| (error.line, error.to_string()))
     }
 
     fn assumptions(text: &str) -> usize {
@@ -277,7 +275,7 @@ mod tests {
             (
                 "*Viscoelastic, time=CREEP TEST DATA\n0.2,0,1\n",
                 1,
-                "card = `*Viscoelastic, time=CREEP TEST DATA`: expected",
+                "card = \"*Viscoelastic, time=CREEP TEST DATA\": expected",
             ),
             ("**E0=1MPa\n*Viscoelastic, time=PRONY\n0.2,1\n", 3, "columns = 2: expected three: g, k, tau"),
             ("**E0=1MPa\n*Viscoelastic, time=PRONY\n2,0,1\n", 3, "modulus = \"2\": expected a share of E_0"),
@@ -293,18 +291,18 @@ mod tests {
     #[test]
     fn refuses_what_is_no_series() {
         let cases = [
-            ("", 1, "terms = 0: expected at least one term"),
-            ("tau,E\n", 1, "terms = 0: expected at least one term"),
-            ("tau,E\n1,2\n0,3\n", 3, "relaxation_time = \"0\": expected a number from 1e-30 to 1e30"),
-            ("1,2\n2,-3\n", 2, "modulus = \"-3\": expected 0 or a number from 1e-30 to 1e30"),
+            ("", 1, "rows = 0: expected at least one row of numbers: a relaxation time and a modulus"),
+            ("tau,E\n", 1, "rows = 0: expected at least one row of numbers: a relaxation time and a modulus"),
+            ("tau,E\n1,2\n0,3\n", 3, "column 1 (tau) = \"0\": expected a number from 1e-30 to 1e30"),
+            ("1,2\n2,-3\n", 2, "column 2 (modulus) = \"-3\": expected 0 or a number from 1e-30 to 1e30"),
             ("1,2,3\n", 1, "columns = 3: expected a relaxation time and a modulus"),
             (
                 "tau [fortnights],E [Pa]\n1,2\n",
                 1,
-                "unit = \"fortnights\" of column 1 (tau [fortnights]): expected one of s, ms",
+                "unit of column 1 (tau [fortnights]) = \"fortnights\": expected one of s, ms",
             ),
-            ("tau [s],E [mPa]\n1,2\n", 1, "unit = \"mPa\" of column 2 (E [mPa]): expected one of Pa, kPa"),
-            ("a,b\n1,2\n", 1, "columns = `a, b`: expected a relaxation time and a modulus"),
+            ("tau [s],E [mPa]\n1,2\n", 1, "unit of column 2 (E [mPa]) = \"mPa\": expected one of Pa, kPa"),
+            ("a,b\n1,2\n", 1, "columns = \"a, b\": expected a relaxation time and a modulus"),
             (
                 "g_i,k_i,tau_i\n0.5,0,1\n",
                 1,
@@ -314,9 +312,9 @@ mod tests {
             ("g,tau\n0.5,1\n0.6,2\n", 1, "relative moduli = a sum of 1.1: expected relative moduli"),
             ("1e-3,0.4\n1,0.5\n", 1, "modulus = at most 0.9 in all, without a unit: expected moduli in Pa"),
             ("tau,E\n1e-3,30\n1,20\n", 1, "modulus = at most 50 in all, without a unit: expected moduli in Pa"),
-            ("# times in ms\ntau,E [MPa]\n1,2\n", 1, "unit = `times in ms`: expected the unit beside the name"),
-            ("# units: ms, MPa\n1,2\n", 1, "unit = `units: ms, MPa`: expected the unit beside the name"),
-            ("tau;E\n1,5;2e6\n2.5;1e6\n", 3, "relaxation_time = \"2.5\": expected numbers with decimal points or"),
+            ("# times in ms\ntau,E [MPa]\n1,2\n", 1, "unit = \"times in ms\": expected the unit beside the name"),
+            ("# units: ms, MPa\n1,2\n", 1, "unit = \"units: ms, MPa\": expected the unit beside the name"),
+            ("tau;E\n1,5;2e6\n2.5;1e6\n", 3, "column 1 (tau) = \"2.5\": expected numbers with decimal points or"),
             ("1\0,2\n", 1, "bytes that are zero: expected text in UTF-8, UTF-16 or Latin-1"),
         ];
         for (text, line, message) in cases {

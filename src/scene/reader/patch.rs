@@ -5,21 +5,34 @@ use std::path::Path as FilePath;
 
 use super::table::{Entry, Result, Source, TableReader};
 use super::{read_input, read_name, surface};
-use crate::scene::error::{ContentError, Location};
-use crate::scene::keys::{AREA, COORDINATE, Form, Key, PATCH_ROOT, ShapeKind};
+use crate::scene::error::Location;
+use crate::scene::keys::{Form, PATCH_ROOT, ShapeKind};
 use crate::scene::patch_file::{
     Backing, FaceHeat, FaceShape, Grid, MAX_ELEMENTS, PatchFile, PatchGroup, TableExtrapolation,
 };
 use crate::scene::{FmuOptions, SceneError, TextAlone, read_file, read_text};
-use crate::tables::{self, Dimension, Heading, Row, Unit, Words, decode};
+use crate::tables::{ContentError, Dimension, Format, Others, POSITIVE, Wanted, Words, decode};
 
-/// The columns of a file of points.
-const COLUMNS: [Words<usize>; 4] = [
-    Words::new(0, Dimension::Length, &["x"], &[]),
-    Words::new(1, Dimension::Length, &["y"], &[]),
-    Words::new(2, Dimension::Length, &["z"], &[]),
-    Words::new(3, Dimension::Area, &["area"], &[]),
-];
+/// A file of points: a row an element.
+const POINTS: Format<usize, 4> = Format {
+    needs_names: true,
+    others: Others::Refused,
+    ..Format::new(
+        &[
+            Words::new(0, Dimension::Length, "x", ""),
+            Words::new(1, Dimension::Length, "y", ""),
+            Words::new(2, Dimension::Length, "z", ""),
+            Words::new(3, Dimension::Area, "area", ""),
+        ],
+        [
+            Wanted::new(&[0], "x", "positions x"),
+            Wanted::new(&[1], "y", "positions y"),
+            Wanted::new(&[2], "z", "positions z"),
+            Wanted::new(&[3], "area", "areas").within(POSITIVE),
+        ],
+        "x,y,z,area",
+    )
+};
 
 impl PatchFile {
     /// Reads the patch file at `path` and the file of points that it names; the table is not read.
@@ -162,55 +175,13 @@ fn read_points(entry: &Entry<'_>) -> Result<FaceShape> {
 }
 
 fn parse_points(bytes: &[u8]) -> std::result::Result<Vec<[f64; 4]>, ContentError> {
-    let text = decode(bytes).map_err(|error| ContentError::new(Some(1), "", error))?;
-    let mut rows = tables::rows(&text, Some(','));
-    let header = rows.next();
-    let line = header.as_ref().map(|row| row.line);
-    let columns = header.as_ref().and_then(|row| columns(row));
-    let Some(columns) = columns else {
-        let given = header.map_or_else(String::new, |row| row.fields.join(","));
-        return Err(ContentError::value(line, "columns", &given, "x,y,z,area"));
-    };
-    let points: Vec<[f64; 4]> = rows.map(|row| point(&row, &columns)).collect::<std::result::Result<_, _>>()?;
-    if points.is_empty() || points.len() as i64 > MAX_ELEMENTS {
+    let text = decode(bytes)?;
+    let table = POINTS.read(&text)?;
+    if table.rows.len() as i64 > MAX_ELEMENTS {
         let expected = format!("1 to {MAX_ELEMENTS}, one an element");
-        return Err(ContentError::value(line, "rows", &points.len().to_string(), &expected));
+        return Err(ContentError::value(table.line, "rows", &table.rows.len().to_string(), &expected));
     }
-    Ok(points)
-}
-
-/// The places of x, y, z and the area in a row, and their units; each column once, and no others.
-fn columns(header: &Row<'_>) -> Option<[(usize, Unit); 4]> {
-    let headings: Vec<Heading<usize>> =
-        header.fields.iter().map(|name| Heading::parse(name, &COLUMNS)).collect::<Option<_>>()?;
-    if headings.len() != COLUMNS.len() {
-        return None;
-    }
-    let mut found = [(0, Unit::ONE); 4];
-    for (place, entry) in found.iter_mut().enumerate() {
-        let index = headings.iter().position(|heading| heading.quantity == place)?;
-        *entry = (index, headings[index].unit.known().ok()?.unwrap_or(Unit::ONE));
-    }
-    Some(found)
-}
-
-fn point(row: &Row<'_>, columns: &[(usize, Unit); 4]) -> std::result::Result<[f64; 4], ContentError> {
-    if row.fields.len() != COLUMNS.len() {
-        let given = row.fields.len().to_string();
-        return Err(ContentError::value(Some(row.line), "columns", &given, "four numbers"));
-    }
-    let mut numbers = [0.0; 4];
-    for (i, (number, (index, unit))) in numbers.iter_mut().zip(columns).enumerate() {
-        let key: &Key = if i == 3 { &AREA } else { &COORDINATE };
-        let (range, field) = (key.range(), &row.fields[*index]);
-        let read = field.parse().ok().map(|written| unit.to_si(written));
-        let read = read.filter(|&value| range.is_some_and(|range| range.holds(value)));
-        let expected = || range.map_or_else(String::new, |range| range.to_string());
-        let given = || format!("\"{}\"", field.chars().take(60).collect::<String>());
-        let name = COLUMNS[i].key_words[0];
-        *number = read.ok_or_else(|| ContentError::value(Some(row.line), name, &given(), &expected()))?;
-    }
-    Ok(numbers)
+    Ok(table.rows)
 }
 
 fn default_outputs() -> Vec<PatchGroup> {

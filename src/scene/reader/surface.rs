@@ -3,11 +3,11 @@
 use std::path::{Component, Path as FilePath, PathBuf};
 
 use super::table::{Entry, Result, TableReader};
-use crate::scene::error::ContentError;
 use crate::scene::keys::{PATH, SurfaceKind};
-use crate::scene::profile::{self, Extract, ProfileOptions, ReadFailure, ReadingNote, Tilt};
+use crate::scene::profile::{self, Extract, ProfileOptions, ReadFailure, Tilt};
 use crate::scene::surface::{Coordinate, check_points};
 use crate::scene::{Layer, MOST_HEIGHTS, SelfAffine, Surface, read_file as read_bytes, warnings};
+use crate::tables::{ContentError, ReadingNote};
 
 /// A number of points that is whole but for rounding is that number.
 const ROUNDING: f64 = 1.0e-9;

@@ -77,9 +77,14 @@ fn files_of_a_prony_series() {
     let refusal = folder.refusal(&text);
     assert!(refusal.starts_with("scene.toml:12: material.prony = 'compound.csv': cannot be read: "), "{refusal}");
     for (table, message) in [
-        ("1e-5,5e6\n-1,1\n", format!("compound.csv:2: relaxation_time = \"-1\": {POSITIVE}")),
-        ("tau,E\n1,x\n", format!("compound.csv:2: modulus = \"x\": {NOT_NEGATIVE}")),
-        ("tau,E\n", "compound.csv:1: terms = 0: expected at least one term".into()),
+        ("1e-5,5e6\n-1,1\n", format!("compound.csv:2: column 1 (relaxation_time) = \"-1\": {POSITIVE}")),
+        ("tau,E\n1,x\n", format!("compound.csv:2: column 2 (E) = \"x\": {NOT_NEGATIVE}")),
+        (
+            "tau,E\n",
+            "compound.csv:1: rows = 0: expected at least one row of numbers: a relaxation time and a modulus: \
+             relaxation_time [s], modulus [Pa]; tau_i, E_i, G_i, or relative to E_0: g_i, rel_mod"
+                .into(),
+        ),
     ] {
         folder.write("compound.csv", table);
         assert_eq!(folder.refusal(&text), format!("{message} {named}"), "{table}");
@@ -133,7 +138,7 @@ fn files_of_fine_roughness() {
     folder.write("psd.csv", "q [1/mm],C [m^4]\n1,1e-18\n0.5,1e-25\n");
     assert_eq!(
         folder.refusal(&scene(table)),
-        "psd.csv:3: q = 500.0: expected more than 1000.0, that of the row before: they must rise \
+        "psd.csv:3: column 1 (q [1/mm]) = 500.0 1/m: expected more than 1000.0 1/m, that of the row before: they must rise \
          (file named by surface.fine.spectrum, scene.toml:16)"
     );
     // 2π/q from 6.28 mm to 62.8 µm.
@@ -146,7 +151,7 @@ fn files_of_fine_roughness() {
     let softened = "hurst = 0.8, rms_slope = 1.0, longest = 1e-3, shortest = 1e-5, softening = 'strain.csv'";
     assert_eq!(
         folder.refusal(&scene(softened)),
-        "strain.csv:3: storage = \"1.5\": expected a number from 1e-30 to 1.0 \
+        "strain.csv:3: column 2 (storage) = \"1.5\": expected a number from 1e-30 to 1.0 \
          (file named by surface.fine.softening, scene.toml:16)"
     );
     folder.write("strain.csv", "strain,storage,loss\n0.001,1,1\n0.1,.5,1\n");

@@ -49,7 +49,7 @@ fn profiles_that_are_none() {
         (
             "x,z\n0,1\n1,2,3\n",
             false,
-            "3: columns = 3 in `1,2,3`: expected two, x and z, separated by comma, semicolon, tab or blanks; \
+            "3: columns = 3 in \"1,2,3\": expected two, x and z, separated by comma, semicolon, tab or blanks; \
              third_column says what a third one means",
         ),
         (

@@ -3,57 +3,48 @@
 use std::path::Path;
 
 use asperity_study::calibration::{
-    Direction, FreeParameter, FrictionParts, Measured, Measurements, Plan, chi_square_per_degree,
+    Calibration, Direction, FreeParameter, FreeScene, FrictionParts, Measured, Plan, chi_square_per_degree, in_words,
 };
+use asperity_study::decimals::short;
 
-use super::{Calibrated, FreeScene};
 use crate::files::{name_of, named};
-use crate::measured_friction::{FAR_OFF, describe, off};
+use crate::measured_friction::off;
 use crate::terminal::{LabelledLine, labelled, lines};
-use asperity_study::decimals::{decimal, rounded};
 
 /// From this on a correlation is said.
 const CORRELATED: f64 = 0.9;
 /// Points that are far off are named up to this many.
 const MOST_NAMED: usize = 10;
 
-/// A number of some digits.
-fn short(value: f64, digits: usize) -> String {
-    decimal(rounded(value, digits), 1e-3..1e5)
-}
+/// Points off by more than this times their standard deviation are named.
+const FAR_OFF: f64 = 3.0;
 
 /// The summary.
-pub(super) fn text(
-    free: &FreeScene<'_>,
-    calibrated: &Calibrated,
-    measurements: &Measurements,
-    plan: Option<&Plan>,
-    files: &[&Path],
-) -> String {
+pub(super) fn text(free: &FreeScene<'_>, calibration: &Calibration, plan: Option<&Plan>, files: &[&Path]) -> String {
     let mut rows = vec![
-        ("Scene", free.scene.name.clone()),
-        ("Data", data(free, calibrated, measurements)),
-        ("Method", free.of_method.clone()),
-        ("Fit", calibrated.way.clone()),
+        ("Scene", free.scene().name.clone()),
+        ("Data", data(free, calibration)),
+        ("Method", free.of_method().to_owned()),
+        ("Fit", calibration.way.clone()),
     ];
     let logarithms: Vec<&str> =
-        free.parameters.iter().filter(|one| one.is_logarithmic()).map(|one| one.key.as_str()).collect();
+        free.parameters().iter().filter(|one| one.is_logarithmic()).map(|one| one.key.as_str()).collect();
     if !logarithms.is_empty() {
         rows.push(("Logarithm", format!("fitted of {}", logarithms.join(", "))));
     }
-    rows.extend(parameters(free, calibrated));
-    rows.extend(correlations(calibrated));
-    rows.extend(labelled("Not told", not_told(calibrated)));
-    rows.push(("Chi square", chi_square(calibrated)));
-    rows.extend(rests_on(calibrated));
-    rows.extend(labelled("Far off", far_off(calibrated, measurements)));
-    rows.extend(plan.map(|plan| planned(plan, &calibrated.problem.parameters)).unwrap_or_default());
+    rows.extend(parameters(free, calibration));
+    rows.extend(correlations(calibration));
+    rows.extend(labelled("Not told", not_told(calibration)));
+    rows.push(("Chi square", chi_square(calibration)));
+    rows.extend(rests_on(calibration));
+    rows.extend(labelled("Far off", far_off(calibration)));
+    rows.extend(plan.map(|plan| planned(plan, &calibration.problem.parameters)).unwrap_or_default());
     rows.push(("Written", files.iter().map(|path| named(path)).collect::<Vec<_>>().join(", ")));
     lines(&rows)
 }
 
-fn data(free: &FreeScene<'_>, calibrated: &Calibrated, measurements: &Measurements) -> String {
-    let problem = &calibrated.problem;
+fn data(free: &FreeScene<'_>, calibration: &Calibration) -> String {
+    let problem = &calibration.problem;
     let deviations = if problem.has_sigma {
         "their standard deviations"
     } else {
@@ -61,21 +52,21 @@ fn data(free: &FreeScene<'_>, calibrated: &Calibrated, measurements: &Measuremen
     };
     format!(
         "{}: {} measurements at {} points, {deviations}",
-        name_of(&free.options.data),
-        measurements.rows.len(),
+        name_of(free.data()),
+        calibration.measurements.rows.len(),
         problem.points.len()
     )
 }
 
 /// A table of the parameters.
-fn parameters(free: &FreeScene<'_>, calibrated: &Calibrated) -> Vec<LabelledLine> {
-    let width = free.parameters.iter().map(|parameter| parameter.key.len()).max().unwrap_or(0) + 2;
+fn parameters(free: &FreeScene<'_>, calibration: &Calibration) -> Vec<LabelledLine> {
+    let width = free.parameters().iter().map(|parameter| parameter.key.len()).max().unwrap_or(0) + 2;
     let row = |cells: [&str; 5]| {
         let [key, before, value, error, interval] = cells;
         format!("{key:<width$}{before:<12}{value:<12}{error:<12}{interval}")
     };
-    let statistics = &calibrated.statistics;
-    let values = calibrated.values();
+    let statistics = &calibration.statistics;
+    let values = calibration.values();
     let of = |(index, parameter): (usize, &FreeParameter)| {
         let error = statistics.errors[index].map(|error| parameter.error_of_value(values[index], error));
         let (error, interval) = match (error, statistics.intervals[index], statistics.at_bound[index]) {
@@ -86,31 +77,31 @@ fn parameters(free: &FreeScene<'_>, calibrated: &Calibrated) -> Vec<LabelledLine
             (_, _, Some(bound)) => ("-".to_owned(), format!("at its bound {}", short(bound, 4))),
             _ => ("-".to_owned(), String::new()),
         };
-        row([&parameter.key, &short(free.own[index], 4), &short(values[index], 5), &error, &interval])
+        row([&parameter.key, &short(calibration.own[index], 4), &short(values[index], 5), &error, &interval])
     };
     let head = row(["", "before", "value", "std. error", "95 % interval"]);
-    labelled("Parameters", std::iter::once(head).chain(free.parameters.iter().enumerate().map(of)))
+    labelled("Parameters", std::iter::once(head).chain(free.parameters().iter().enumerate().map(of)))
 }
 
 /// The correlation matrix, where one of its entries is large.
-fn correlations(calibrated: &Calibrated) -> Vec<LabelledLine> {
-    let matrix = &calibrated.statistics.correlation;
+fn correlations(calibration: &Calibration) -> Vec<LabelledLine> {
+    let matrix = &calibration.statistics.correlation;
     let count = matrix.nrows();
     let is_large = |a: usize, b: usize| matrix[(a, b)].abs() > CORRELATED;
     if !(0..count).any(|a| (0..a).any(|b| is_large(a, b))) {
         return Vec::new();
     }
-    let width = calibrated.problem.parameters.iter().map(|parameter| parameter.key.len()).max().unwrap_or(0) + 2;
+    let width = calibration.problem.parameters.iter().map(|parameter| parameter.key.len()).max().unwrap_or(0) + 2;
     let row = |a: usize| {
         let entries: String = (0..=a).map(|b| format!("{:<8.3}", matrix[(a, b)])).collect();
-        format!("{:<width$}{entries}", calibrated.problem.parameters[a].key)
+        format!("{:<width$}{entries}", calibration.problem.parameters[a].key)
     };
     labelled("Correlation", (0..count).map(row))
 }
 
 /// What the data do not tell.
-fn not_told(calibrated: &Calibrated) -> Vec<String> {
-    let (statistics, parameters) = (&calibrated.statistics, &calibrated.problem.parameters);
+fn not_told(calibration: &Calibration) -> Vec<String> {
+    let (statistics, parameters) = (&calibration.statistics, &calibration.problem.parameters);
     let directions = statistics.not_identifiable.iter().map(|direction| not_identifiable(direction, parameters));
     let covered = parameters.iter().zip(&statistics.covers_bounds).filter(|(_, covers)| **covers);
     let covered = covered
@@ -146,10 +137,10 @@ fn not_identifiable(direction: &Direction, parameters: &[FreeParameter]) -> Stri
     }
 }
 
-fn chi_square(calibrated: &Calibrated) -> String {
-    let statistics = &calibrated.statistics;
+fn chi_square(calibration: &Calibration) -> String {
+    let statistics = &calibration.statistics;
     let per_degree = chi_square_per_degree(statistics.chi_square, statistics.degrees);
-    let end = if calibrated.fitted.has_converged { "converged" } else { "NOT CONVERGED" };
+    let end = if calibration.fitted.has_converged { "converged" } else { "NOT CONVERGED" };
     format!("{} per degree of freedom, of which there are {}; {end}", short(per_degree, 4), statistics.degrees)
 }
 
@@ -157,13 +148,13 @@ fn chi_square(calibrated: &Calibrated) -> String {
 type PartOf = fn(&FrictionParts) -> f64;
 
 /// On what the data rest: shares of friction in the mean, and the points that rest most on each.
-fn rests_on(calibrated: &Calibrated) -> Vec<LabelledLine> {
+fn rests_on(calibration: &Calibration) -> Vec<LabelledLine> {
     let kinds: [(&str, PartOf); 3] =
         [("profile", |parts| parts.profile), ("fine", |parts| parts.fine), ("shear", |parts| parts.shear)];
-    let points = || calibrated.problem.points.iter().zip(&calibrated.frictions);
+    let points = || calibration.problem.points.iter().zip(&calibration.frictions);
     let row = |(name, part): (&str, PartOf)| {
         let shares: Vec<(f64, String)> =
-            points().map(|(point, parts)| (100.0 * part(parts) / parts.friction(), describe(point))).collect();
+            points().map(|(point, parts)| (100.0 * part(parts) / parts.friction(), in_words(point))).collect();
         let mean = shares.iter().map(|(share, _)| share).sum::<f64>() / shares.len().max(1) as f64;
         let least = shares.iter().min_by(|a, b| a.0.total_cmp(&b.0));
         let most = shares.iter().max_by(|a, b| a.0.total_cmp(&b.0));
@@ -175,14 +166,14 @@ fn rests_on(calibrated: &Calibrated) -> Vec<LabelledLine> {
 }
 
 /// The measurements that are off by more than three standard deviations, the worst first.
-fn far_off(calibrated: &Calibrated, measurements: &Measurements) -> Vec<String> {
-    let scale = calibrated.statistics.scale.sqrt();
+fn far_off(calibration: &Calibration) -> Vec<String> {
+    let scale = calibration.statistics.scale.sqrt();
     let deviation = |measured: &Measured| {
-        let model = calibrated.friction_at(&measured.point)?;
+        let model = calibration.friction_at(&measured.point)?;
         let deviations = (model - measured.friction) / (scale * measured.sigma_or_assumed());
         (deviations.abs() > FAR_OFF).then(|| (deviations, off(measured, model, deviations)))
     };
-    let mut found: Vec<(f64, String)> = measurements.rows.iter().filter_map(deviation).collect();
+    let mut found: Vec<(f64, String)> = calibration.measurements.rows.iter().filter_map(deviation).collect();
     found.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
     found.into_iter().take(MOST_NAMED).map(|(_, text)| text).collect()
 }
@@ -209,29 +200,6 @@ fn planned(plan: &Plan, parameters: &[FreeParameter]) -> Vec<LabelledLine> {
             )
         )
     };
-    let points = labelled("To measure", plan.points.iter().map(describe));
+    let points = labelled("To measure", plan.points.iter().map(in_words));
     points.into_iter().chain(labelled("", parameters.iter().enumerate().map(bring))).collect()
-}
-
-/// What is left out, and what is not as it should be.
-pub(super) fn warnings(calibrated: &Calibrated, measurements: &Measurements) -> Vec<String> {
-    let mut warnings = Vec::new();
-    for (point, why) in &calibrated.left_out {
-        let lines: Vec<String> =
-            measurements.rows.iter().filter(|row| row.point == *point).map(|row| row.line.to_string()).collect();
-        warnings.push(format!("left out: line {} ({}): {why}", lines.join(", "), describe(point)));
-    }
-    if !calibrated.fitted.has_converged {
-        warnings.push("the fit has not converged: other bounds or fewer parameters may help".to_owned());
-    }
-    for (parameter, bound) in calibrated.problem.parameters.iter().zip(&calibrated.statistics.at_bound) {
-        if let Some(bound) = bound {
-            warnings.push(format!("{} is at its bound {}", parameter.key, short(*bound, 4)));
-        }
-    }
-    if !calibrated.statistics.tell_all() {
-        warnings
-            .push("not all parameters are identifiable: measure what tells them apart, or fix one of them".to_owned());
-    }
-    warnings
 }

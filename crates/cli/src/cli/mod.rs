@@ -16,7 +16,7 @@ use super::sweep::values::{Shard, Values};
 use asperity_study::csv::Head;
 use asperity_study::settings::Setting;
 use asperity_study::sweep::SweepMethod;
-pub(crate) use values::{Condition, PlotAxis, tenth};
+pub(crate) use values::{Condition, PlotAxis};
 use values::{
     Frequencies, Tolerances, animation, arrays, column_unit, count, fit_error, free_parameter, frequency,
     key_and_value, length, moment, picture, picture_or_table, poisson_ratio, powers, pressure, seconds, seeds, share,
@@ -118,7 +118,7 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "OUT.svg", value_parser = picture())]
     pub(crate) plot: Option<PathBuf>,
     /// Animates the contact: the layer on its profile, pressure, stick and slip, flash temperature, forces. A page for
-    /// a browser (.html), an animated picture (.apng), or a row of pictures (.png: OUT-001.png and so on).
+    /// a browser (.html), or a row of pictures (.png: OUT-001.png and so on).
     #[arg(long, value_name = "OUT.html", value_parser = animation(), conflicts_with = "patch")]
     pub(crate) animate: Option<PathBuf>,
     /// Draws the layer, the profile and the pressure at a time in s, as SVG or PNG; the result file has a row there

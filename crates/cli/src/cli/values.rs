@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use asperity::scene::Wlf;
 use asperity::tables::{Dimension, Unit, quantity};
 use asperity_study::calibration::FreeParameter;
+use asperity_study::decimals::tenth;
 use asperity_study::fit::WlfConstants;
 use asperity_study::sweep::SweepMethod;
 use clap::builder::{PathBufValueParser, PossibleValue, PossibleValuesParser, StringValueParser, TypedValueParser};
@@ -188,7 +189,7 @@ pub(super) fn picture() -> impl TypedValueParser<Value = PathBuf> {
 
 /// A file for an animation; its name gives the format.
 pub(super) fn animation() -> impl TypedValueParser<Value = PathBuf> {
-    ending_in(&["html", "apng", "png"], "a name that ends in .html, .apng or .png")
+    ending_in(&["html", "png"], "a name that ends in .html or .png")
 }
 
 /// A file for arrays of numpy.
@@ -280,13 +281,6 @@ impl Tolerances {
         const ROUNDING: f64 = 1e-9;
         Ok(Self(ladder.take_while(|&tolerance| tolerance >= tightest * (1.0 - ROUNDING)).collect()))
     }
-}
-
-/// A tenth of a number, rounded in decimal: 1e-11 for 1e-10.
-pub(crate) fn tenth(number: f64) -> f64 {
-    let written = format!("{number:e}");
-    let parts = written.split_once('e').and_then(|(digits, power)| Some((digits, power.parse::<i32>().ok()?)));
-    parts.and_then(|(digits, power)| format!("{digits}e{}", power - 1).parse().ok()).unwrap_or(number / 10.0)
 }
 
 #[cfg(test)]

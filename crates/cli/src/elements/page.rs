@@ -8,7 +8,7 @@ use base64::prelude::BASE64_STANDARD;
 use serde::Serialize;
 
 use crate::files::{self, FileError};
-use crate::html::fill;
+use asperity_study::html::fill;
 
 const TEMPLATE: &str = include_str!("animation.html");
 

@@ -6,10 +6,7 @@ use std::ops::Range;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 
-use asperity_study::decimals::rounded;
-
-const PREFIXES: [(&str, f64); 9] =
-    [("G", 1e9), ("M", 1e6), ("k", 1e3), ("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9), ("p", 1e-12), ("f", 1e-15)];
+use asperity_study::decimals::prefix;
 
 /// How far a curve may pass the last tick, as a share of the distance between two: a rounding error below 0 adds no
 /// tick.
@@ -180,21 +177,6 @@ fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
         .fold(None, |range, value| Some(range.map_or((value, value), |(low, high)| (value.min(low), value.max(high)))))
 }
 
-/// The largest prefix that leaves `largest` at 1 or more, and its factor.
-fn prefix(largest: f64, unit: &str) -> (&'static str, f64) {
-    // A prefix before m² would be one of m.
-    if unit.is_empty() || unit.contains(['²', '³']) || unit == "kg" || largest == 0.0 {
-        return ("", 1.0);
-    }
-    PREFIXES.into_iter().find(|(_, factor)| largest >= 0.999 * factor).unwrap_or(("f", 1e-15))
-}
-
-/// A quantity in three digits, with the prefix of its unit that suits `largest`: `1.23 mN`.
-pub(crate) fn with_prefix(value: f64, largest: f64, unit: &str) -> String {
-    let (prefix, factor) = prefix(largest.abs(), unit);
-    format!("{} {prefix}{unit}", rounded(value / factor, 3))
-}
-
 /// The largest of 1, 2 and 5 times a power of ten that is at most `value`; 0 where that is.
 pub(super) fn rounded_down(value: f64) -> f64 {
     let decade = 10_f64.powf(value.log10().floor());
@@ -283,9 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn quantities_have_few_digits_and_a_prefix() {
-        assert_eq!([with_prefix(0.9, 4.5, "s"), with_prefix(389_123.0, 4e5, "Pa")], ["0.9 s", "389 kPa"]);
-        assert_eq!(with_prefix(0.0, 0.0, "N"), "0 N");
+    fn a_round_number_is_at_most_the_value() {
         assert_eq!([0.0, 1.0, 4.99e5, 0.7].map(rounded_down), [0.0, 1.0, 2e5, 0.5]);
     }
 

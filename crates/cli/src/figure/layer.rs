@@ -2,9 +2,10 @@
 
 use plotters::prelude::*;
 
-use super::axis::{Axis, Fit, with_prefix};
+use super::axis::{Axis, Fit};
 use super::chart::{self, Chart, Context, Curve, LEGEND_LINE, Legend, Stroke, Symbol, draw_axes};
 use super::{Backend, COLOURS, Canvas, DrawResult, FINE, Figure, INK};
+use asperity_study::decimals::with_prefix;
 use asperity_study::elements::{Element, ElementHistory, Instant, Span, Touch};
 
 const STICKS: RGBColor = COLOURS[0];

@@ -7,10 +7,11 @@ use asperity::patch::FaceLayout;
 use plotters::coord::ranged1d::{Ranged as _, ValueFormatter as _};
 use plotters::prelude::*;
 
-use super::axis::{Axis, Fit, rounded_down, with_prefix};
+use super::axis::{Axis, Fit, rounded_down};
 use super::chart::{BELOW, LEFT, LEGEND_LINE, MARGIN, RIGHT_MARGIN, context, draw_axes};
 use super::moment::{Detail, Moment, Tile};
 use super::{Backend, Canvas, DrawResult, FINE, GRID, INK, TEXT_SIZE, TICK_SIZE, text_style, text_width};
+use asperity_study::decimals::with_prefix;
 
 /// Most pixels along and across the face, in the large map and in one of the strip.
 const LARGE: (u32, u32) = (620, 420);

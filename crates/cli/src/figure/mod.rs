@@ -3,7 +3,6 @@
 mod axis;
 mod chart;
 mod difference;
-mod film;
 mod ladders;
 mod layer;
 mod maps;
@@ -12,6 +11,7 @@ mod panels;
 mod patch;
 mod plot;
 mod raster;
+mod row;
 mod surface_maps;
 
 use std::convert::Infallible;
@@ -25,9 +25,7 @@ use plotters::style::register_font;
 use plotters::style::text_anchor::{HPos, VPos};
 use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingErrorKind};
 
-pub(crate) use axis::with_prefix;
 pub(crate) use chart::{Curve, Stroke};
-pub(crate) use film::write_film;
 pub(crate) use ladders::{Ladder, LadderPanel, Ladders, Rung};
 pub(crate) use layer::LayerPicture;
 pub(crate) use panels::{
@@ -36,6 +34,7 @@ pub(crate) use panels::{
 pub(crate) use patch::PatchHistory;
 pub(crate) use plot::plot_files;
 use raster::Raster;
+pub(crate) use row::write_row;
 pub(crate) use surface_maps::{Colours, FieldMap, Marks, SurfaceMaps};
 
 use super::files::{self, FileError, ends_in};

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use asperity::outputs;
 use asperity::patch;
+use asperity::tables::{ContentError, Csv, Row};
 
 use super::axis::{Axis, Fit};
 use super::chart::{Chart, Curve, Stroke};
@@ -12,7 +13,7 @@ use super::{Backend, Canvas, DrawResult, Figure};
 use crate::cli::{Condition, Plot, PlotAxis};
 use crate::files::{FileError, check_outputs, named, print_beside};
 use crate::terminal::{lines, warn};
-use asperity_study::csv::{CsvError, CsvFile, Record};
+use asperity_study::csv::{self, CsvError};
 
 /// `asperity plot` failed.
 #[derive(Debug, thiserror::Error)]
@@ -123,21 +124,22 @@ fn panels<'a>(command: &Plot, files: &[Selection<'_>], drawn: &'a [String]) -> R
 #[derive(Debug)]
 pub(super) struct Selection<'a> {
     path: &'a Path,
-    file: CsvFile,
+    file: Csv,
     rows: Vec<usize>,
 }
 
 impl<'a> Selection<'a> {
     fn read(path: &'a Path, command: &Plot) -> Result<Self, PlotError> {
-        let file = CsvFile::read(path)?;
-        let mut rows: Vec<usize> = (0..file.records().len()).collect();
+        let file = csv::read(path)?;
+        let mut rows: Vec<usize> = (0..file.rows.len()).collect();
         if rows.is_empty() {
-            return Err(CsvError::NoRows { path: path.to_owned() }.into());
+            let expected = "a line with the columns' names and rows of numbers below it";
+            return Err(CsvError::content(path, ContentError::value(None, "rows", "0", expected)).into());
         }
         for condition in &command.conditions {
-            let column = file.column(&condition.column)?;
-            let holds = |row: usize| condition.holds_for(&file.records()[row].fields[column]);
-            if !(0..file.records().len()).any(holds) {
+            let column = file.column(&condition.column).map_err(|error| CsvError::content(path, error))?;
+            let holds = |row: usize| condition.holds_for(&file.rows[row].fields[column]);
+            if !(0..file.rows.len()).any(holds) {
                 return Err(no_such_row(&file, path, condition, column));
             }
             rows.retain(|&row| holds(row));
@@ -149,9 +151,17 @@ impl<'a> Selection<'a> {
         Ok(Self { path, file, rows })
     }
 
+    fn refuse(&self, error: ContentError) -> PlotError {
+        CsvError::content(self.path, error).into()
+    }
+
+    fn column(&self, name: &str) -> Result<usize, PlotError> {
+        self.file.column(name).map_err(|error| self.refuse(error))
+    }
+
     /// The unit of a column, from its header or by its name; empty for a plain number or an unknown column.
     pub(super) fn unit(&self, column: &str) -> Result<String, PlotError> {
-        let header = &self.file.names()[self.file.column(column)?];
+        let header = &self.file.names[self.column(column)?];
         let unit = match header.rsplit_once('[').and_then(|(name, rest)| Some((name, rest.strip_suffix(']')?))) {
             Some((name, unit)) if name.ends_with(' ') => unit,
             _ => unit_of_name(header),
@@ -161,21 +171,20 @@ impl<'a> Selection<'a> {
 
     /// The names of all columns, without their units.
     pub(super) fn columns(&self) -> impl Iterator<Item = &str> {
-        self.file.names().iter().map(|name| name.split_once(" [").map_or(name.as_str(), |(name, _)| name))
+        self.file.names.iter().map(|name| name.split_once(" [").map_or(name.as_str(), |(name, _)| name))
     }
 
     /// The numbers of a column; where a field is empty, none is.
     pub(super) fn numbers(&self, column: &str) -> Result<Vec<f64>, PlotError> {
-        let index = self.file.column(column)?;
-        let number = |record: &Record| match record.fields[index].trim() {
+        let index = self.column(column)?;
+        let number = |row: &Row<'_>| match row.fields[index].trim() {
             "" => Ok(f64::NAN),
             text => text.parse().map_err(|_| {
-                let expected =
-                    format!("{column} = {text:?}: expected a number; rows are chosen by --where {column}={text}");
-                self.file.error(record, expected).into()
+                let expected = format!("a number; rows are chosen by --where {column}={text}");
+                self.refuse(ContentError::value(Some(row.line), column, &format!("{text:?}"), &expected))
             }),
         };
-        self.rows.iter().map(|&row| number(&self.file.records()[row])).collect()
+        self.rows.iter().map(|&row| number(&self.file.rows[row])).collect()
     }
 
     fn curve(&self, command: &Plot, column: &str, name: String, look: usize) -> Result<Curve, PlotError> {
@@ -193,11 +202,11 @@ impl<'a> Selection<'a> {
     }
 }
 
-fn no_such_row(file: &CsvFile, path: &Path, condition: &Condition, column: usize) -> PlotError {
+fn no_such_row(file: &Csv, path: &Path, condition: &Condition, column: usize) -> PlotError {
     const SHOWN: usize = 12;
     let mut values: Vec<&str> = Vec::new();
-    for record in file.records() {
-        let value = record.fields[column].as_str();
+    for record in &file.rows {
+        let value = &*record.fields[column];
         if !values.contains(&value) {
             values.push(value);
         }

@@ -4,13 +4,14 @@
 use plotters::coord::ranged1d::Ranged as _;
 use plotters::prelude::*;
 
-use super::axis::{Axis, Fit, rounded_down, with_prefix};
+use super::axis::{Axis, Fit, rounded_down};
 use super::chart::{LEGEND_LINE, MARGIN};
 use super::maps::{draw_colour_bar, fitted};
 use super::raster::Raster;
 use super::{
     Backend, COLOURS, Canvas, DrawResult, FINE, Figure, GRID, INK, LINE_WIDTH, TEXT_SIZE, text_style, text_width,
 };
+use asperity_study::decimals::with_prefix;
 
 /// The most pixels of a map, side by side and below each other.
 const BESIDE: (u32, u32) = (360, 480);

@@ -1,28 +1,19 @@
 //! `asperity report`: what the runs of scenes cost and how accurate they are, as tables, pictures and pages.
 
-mod convergence;
 mod folder;
-mod judgement;
-mod machine;
 mod page;
-mod reference;
-mod robustness;
-mod run;
 mod scene_report;
-mod tables;
-mod trace;
 
 use std::path::{Path, PathBuf};
 
-use asperity_study::robustness::RunFailure;
+use asperity_study::csv::CsvError;
+use asperity_study::report::{self, Judgement, judgements_table};
 
 use super::cli::Report;
-use super::files::FileError;
-use asperity_study::csv::CsvError;
+use super::files::{FileError, write};
 use folder::{INDEX, JUDGEMENTS, ReportFolder};
-use judgement::Judgement;
 use page::SceneJudgements;
-use scene_report::SceneReport;
+use scene_report::WrittenReport;
 
 /// `asperity report` failed.
 #[derive(Debug, thiserror::Error)]
@@ -31,19 +22,25 @@ pub(crate) enum ReportError {
     File(#[from] FileError),
     #[error(transparent)]
     Peers(#[from] CsvError),
-    #[error("{}: the scene {why}", .scene.display())]
-    NoRun { scene: PathBuf, why: &'static str },
+    #[error("{}: {source}", .scene.display())]
+    Scene { scene: PathBuf, source: report::ReportError },
     #[error("two scenes have the same folder: {}", .0.display())]
     SameFolder(PathBuf),
-    #[error("{}: no reference: not even the loosest tolerance comes to its end: {failure}", .scene.display())]
-    Reference { scene: PathBuf, failure: RunFailure },
+}
+
+impl ReportError {
+    /// For `map_err`: of the scene at `path`.
+    fn of(path: &Path) -> impl FnOnce(report::ReportError) -> Self + use<> {
+        let scene = path.to_owned();
+        move |source| Self::Scene { scene, source }
+    }
 }
 
 /// Runs the scenes in every way and writes the results: of one scene into the folder, of several into folders within
 /// it, with a page of all.
 pub(crate) fn report(command: &Report) -> Result<(), ReportError> {
     let [path] = command.scenes.as_slice() else { return report_all(command) };
-    SceneReport::prepare(command, path, &command.output)?.run().map(drop)
+    WrittenReport::prepare(command, path, &command.output)?.run().map(drop)
 }
 
 fn report_all(command: &Report) -> Result<(), ReportError> {
@@ -55,13 +52,13 @@ fn report_all(command: &Report) -> Result<(), ReportError> {
     }
     let scenes = command.scenes.iter().zip(&paths);
     let reports =
-        scenes.map(|(scene, path)| SceneReport::prepare(command, scene, path)).collect::<Result<Vec<_>, _>>()?;
+        scenes.map(|(scene, path)| WrittenReport::prepare(command, scene, path)).collect::<Result<Vec<_>, _>>()?;
     let folder = ReportFolder::new(
         &command.output,
         &[JUDGEMENTS],
-        &reports.iter().flat_map(SceneReport::sources).collect::<Vec<_>>(),
+        &reports.iter().flat_map(WrittenReport::sources).collect::<Vec<_>>(),
     )?;
-    let judgements = reports.iter().map(SceneReport::run).collect::<Result<Vec<_>, _>>()?;
+    let judgements = reports.iter().map(WrittenReport::run).collect::<Result<Vec<_>, _>>()?;
     let names: Vec<String> = command.scenes.iter().map(|scene| stem(scene)).collect();
     Ok(write_overview(&folder, &names, &judgements)?)
 }
@@ -75,7 +72,7 @@ fn write_overview(folder: &ReportFolder, names: &[String], judgements: &[Vec<Jud
 
 /// Writes the table and the picture of errors over the tolerance, and returns the section.
 fn write_judgements(folder: &ReportFolder, scenes: &[SceneJudgements<'_>]) -> Result<String, FileError> {
-    tables::write_judgements(&folder.file(JUDGEMENTS, "csv"), scenes.iter().copied())?;
+    write(&folder.file(JUDGEMENTS, "csv"), judgements_table(scenes.iter().copied()))?;
     let picture = folder.draw(JUDGEMENTS, &page::judgement_picture(scenes))?;
     page::judgements(scenes, &picture).map_err(folder.error())
 }

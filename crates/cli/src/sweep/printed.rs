@@ -3,9 +3,8 @@
 
 use asperity::element::Quantity;
 
-use crate::figure;
 use crate::terminal::{LabelledLine, labelled};
-use asperity_study::decimals::{as_given, rounded};
+use asperity_study::decimals::{as_given, rounded, with_prefix};
 use asperity_study::sweep::{StoredRow, SweepTable};
 
 /// Most speeds and most loads that are printed: a terminal's worth.
@@ -35,7 +34,7 @@ pub(super) fn lines(table: &SweepTable) -> Vec<LabelledLine> {
                 let found = of_block().find(|one| one.row.point.speed == speed && one.row.point.load == load);
                 found.map_or_else(String::new, friction)
             };
-            texts.push(columns(figure::with_prefix(speed, speed, "m/s"), grid.loads.iter().map(friction)));
+            texts.push(columns(with_prefix(speed, speed, "m/s"), grid.loads.iter().map(friction)));
         }
     }
     if texts.iter().any(|text| text.contains(NOT_STEADY)) {

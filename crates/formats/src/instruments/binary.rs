@@ -1,6 +1,6 @@
 //! Numbers at places of a file's bytes; nothing is read beyond their end.
 
-use asperity::scene::ContentError;
+use asperity::tables::ContentError;
 
 /// The bytes of a file of some kind.
 #[derive(Clone, Copy, Debug)]

@@ -2,9 +2,7 @@
 //! or binary. A long section is read as a line along x; a slope or a bank of the reference line is left out, and said.
 
 use super::{Areal, check_size, check_step, refuse};
-use asperity::scene::ContentError;
-use asperity::scene::ReadingNote;
-use asperity::tables::number;
+use asperity::tables::{ContentError, ReadingNote, number};
 
 const KIND: &str = "an OpenCRG file";
 /// A record of text or of binary data is filled up to a multiple of these bytes, where records are long ones.

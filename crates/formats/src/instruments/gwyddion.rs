@@ -1,8 +1,7 @@
 //! The text of a Gwyddion field: a matrix of heights below comments with its size.
 
 use super::{Areal, check_size, check_step, length_unit};
-use asperity::scene::ContentError;
-use asperity::tables::{decode, is_missing, number};
+use asperity::tables::{ContentError, decode, is_missing, number};
 
 const KIND: &str = "a Gwyddion text file";
 
@@ -20,7 +19,7 @@ fn setting<'a>(text: &'a str, name: &str) -> Option<&'a str> {
 }
 
 pub(super) fn read(bytes: &[u8]) -> Result<Areal, ContentError> {
-    let text = decode(bytes).map_err(|error| ContentError::new(Some(1), "", error))?;
+    let text = decode(bytes)?;
     let length = |key: &str| {
         let value = setting(&text, key).unwrap_or_default();
         let parted = value.split_once(char::is_whitespace).unwrap_or((value, "m"));

@@ -10,8 +10,8 @@ mod sur;
 #[cfg(test)]
 mod tests;
 
-use asperity::scene::{Areal, ContentError, MeasuredSurface, ProfileOptions};
-use asperity::tables::{Dimension, Unit};
+use asperity::scene::{Areal, MeasuredSurface, ProfileOptions};
+use asperity::tables::{ContentError, Dimension, Unit};
 
 /// The points of a file that is one of these; `None` of any other.
 pub(super) fn read(bytes: &[u8], options: &ProfileOptions) -> Option<Result<MeasuredSurface, ContentError>> {

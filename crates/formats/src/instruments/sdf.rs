@@ -3,8 +3,7 @@
 
 use super::binary::Binary;
 use super::{Areal, check_size, check_step, refuse};
-use asperity::scene::ContentError;
-use asperity::tables::{is_missing, number};
+use asperity::tables::{ContentError, is_missing, number};
 
 const KIND: &str = "an SDF file";
 /// Bytes of the binary header.

@@ -2,7 +2,7 @@
 
 use super::binary::Binary;
 use super::{Areal, check_size, check_step, length_unit, refuse};
-use asperity::scene::ContentError;
+use asperity::tables::ContentError;
 
 const KIND: &str = "a SUR file";
 const HEADER: usize = 512;

@@ -1,6 +1,7 @@
 //! The container of an X3P file: the zip archive, its document `main.xml` and what that says of the points. What is
 //! read is bounded: a few bytes may unpack into all memory.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read};
 
@@ -9,9 +10,7 @@ use quick_xml::events::{BytesStart, Event};
 use zip::ZipArchive;
 use zip::read::ZipFile;
 
-use asperity::scene::ANY;
-use asperity::scene::ContentError;
-use asperity::tables::decode;
+use asperity::tables::{ANY, ContentError, NotText, decode};
 
 /// The longest document, bytes: heights inline of some million points.
 const LONGEST_MAIN: u64 = 1 << 27;
@@ -46,12 +45,8 @@ impl<'a> Archive<'a> {
         if bytes.len() as u64 > LONGEST_MAIN {
             return Err(ContentError::value(None, "main.xml", "too long", &format!("at most {LONGEST_MAIN} bytes")));
         }
-        let text = decode(&bytes).map_err(|error| ContentError {
-            line: None,
-            key: "main.xml".into(),
-            problem: error.into(),
-        })?;
-        Ok(text.into_owned())
+        let text = decode(&bytes).map_err(|_| ContentError::value(None, "main.xml", NotText::FOUND, NotText::EXPECTED));
+        text.map(Cow::into_owned)
     }
 
     /// The entry that the document links to: beside it, or wherever its path ends so.

@@ -15,12 +15,11 @@ use std::ops::Range;
 
 use md5::{Digest, Md5};
 
-use asperity::scene::ANY;
-use asperity::scene::ContentError;
 use asperity::scene::MeasuredSurface;
 use asperity::scene::{Areal, line_note};
 use asperity::scene::{MOST_HEIGHTS, MapError};
 use asperity::scene::{MeasuredPoints, Missing, ProfileOptions};
+use asperity::tables::{ANY, ContentError};
 use document::{Archive, Document, MatrixSize, missing, unreadable};
 
 /// What the file is, for messages.

@@ -1,27 +1,64 @@
 //! What stops a calibration.
 
-use asperity::element::OperatingPoint;
+use std::path::PathBuf;
 
-/// A calibration cannot go on.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum CalibrationError {
+use asperity::element::OperatingPoint;
+use asperity::scene::{ParameterError, similar_keys};
+use asperity::tables::ContentError;
+use rmpfit::MPError;
+
+use crate::files::ReadError;
+use crate::sweep::{MethodError, NeverSteady};
+
+/// Why there is no steady sliding at a point, as tables of points have it.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct NoSliding(String);
+
+impl NoSliding {
+    /// For this reason.
+    pub fn new(reason: impl ToString) -> Self {
+        Self(reason.to_string())
+    }
+
+    /// The reason.
+    pub fn reason(&self) -> &str {
+        &self.0
+    }
+}
+
+/// A model has no friction at some values of the parameters, or the least squares of it cannot go on.
+#[derive(Debug, thiserror::Error)]
+pub enum ModelError {
     /// The scene is not possible at some values within the bounds.
     #[error("{parameters}: {problem}")]
     Scene {
         /// The values, by key.
         parameters: String,
         /// Why the scene is refused.
-        problem: String,
+        problem: Box<ReadError>,
     },
-    /// The scene has no friction that this model could give.
+    /// The scene has no steady sliding to be solved for.
+    #[error("steady sliding takes a scene in the material form, with layer.width")]
+    NotSolvable,
+    /// Persson's theory knows nothing of the scene.
+    #[error("Persson's theory takes a scene in the material form, with layer.width")]
+    NoTheory,
+    /// Steady sliding of the scene is not solved for; of these words the method that it has.
     #[error("{0}")]
-    Model(String),
-    /// What was found could not be kept.
-    #[error("{0}")]
-    NotKept(String),
+    Layer(String),
+    /// Steady sliding of the scene cannot be solved for.
+    #[error(transparent)]
+    Method(#[from] MethodError),
+    /// The method of Levenberg and Marquardt has met what it cannot go on with.
+    #[error("the fit cannot go on: {0}")]
+    LeastSquares(MPError),
+    /// Who waits for it says to stop.
+    #[error("stopped")]
+    Stopped,
     /// Points of the measurements that cannot be simulated at the parameters tried.
     #[error("{} points cannot be simulated", .0.len())]
-    NotSteady(Vec<(OperatingPoint, String)>),
+    NotSteady(Vec<(OperatingPoint, NoSliding)>),
     /// No measurement is left.
     #[error("{rows} measurements can be simulated, fewer than the {parameters} free parameters")]
     TooFew {
@@ -30,4 +67,68 @@ pub enum CalibrationError {
         /// The free parameters.
         parameters: usize,
     },
+}
+
+/// The parameters to fit are none of the scene.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what they are")]
+pub enum FreeParameterError {
+    #[error(
+        "`free` {key}: expected a number in the scene file, to start from; the file has none there{}",
+        similar_in_words(key)
+    )]
+    NoNumber { key: String },
+    #[error("`free` {key}: expected it once")]
+    Twice { key: String },
+    #[error("`free`: expected a parameter to fit, found none")]
+    None,
+    #[error("`free`: expected at most {most} parameters, found {found}")]
+    Many { most: usize, found: usize },
+    #[error("`free` {key}: expected a scene whose steady sliding is solved for: the layer has no heat in it")]
+    HeatOfLayer { key: String },
+    #[error("`free` {key}: {problem}")]
+    Bound { key: String, problem: ModelError },
+}
+
+fn similar_in_words(key: &str) -> String {
+    let similar = similar_keys(key);
+    if similar.is_empty() { String::new() } else { format!("; did you mean {}?", similar.join(", ")) }
+}
+
+/// The table of measured friction does not go with the scene, or is none.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what they are")]
+pub enum MeasuredFrictionError {
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    #[error("{}", .error.within(.path))]
+    Content { path: PathBuf, error: ContentError },
+    #[error("{}: the scene has no material.wlf, so nothing in it depends on the temperature of the data", .0.display())]
+    NoWlf(PathBuf),
+    #[error("{}:{line}: {problem}", .path.display())]
+    Temperature { path: PathBuf, line: usize, problem: ParameterError },
+}
+
+/// A calibration refuses the scene, the data or the parameters, or cannot go on.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what they are")]
+pub enum CalibrationError {
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    #[error("the scene has no material or layer.width, so nothing in it has a pressure: expected the material form")]
+    NoArea,
+    #[error("the scene has [carrier.x]; expected none, since the speed is prescribed")]
+    BodyAlongX,
+    #[error(transparent)]
+    Method(#[from] MethodError),
+    #[error(transparent)]
+    NeverSteady(#[from] NeverSteady),
+    #[error(transparent)]
+    Free(#[from] FreeParameterError),
+    #[error(transparent)]
+    Measured(#[from] MeasuredFrictionError),
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    #[error("cannot be written as JSON: {0}")]
+    Json(#[from] serde_json::Error),
 }

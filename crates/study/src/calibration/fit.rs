@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use rmpfit::{MPConfig, MPError, MPFitter, MPPar, MPResult, MPSide, MPSuccess};
 
-use super::error::CalibrationError;
+use super::error::ModelError;
 use super::latin_hypercube::latin_hypercube;
 use super::model::{FrictionModel, FrictionParts};
 use super::problem::{Problem, sum_of_squares};
@@ -42,17 +42,17 @@ pub struct Fitted {
 /// The least square nearest to a start, within the bounds; `progress` is told each χ² that is tried.
 ///
 /// # Errors
-/// Those of the model; [`CalibrationError::TooFew`] measurements.
+/// Those of the model; [`ModelError::TooFew`] measurements.
 pub fn minimise(
     problem: &Problem,
     model: &dyn FrictionModel,
     start: &[f64],
     tolerance: Tolerance,
     progress: &dyn Fn(f64),
-) -> Result<Fitted, CalibrationError> {
+) -> Result<Fitted, ModelError> {
     let count = start.len();
     if problem.rows.len() < count {
-        return Err(CalibrationError::TooFew { rows: problem.rows.len(), parameters: count });
+        return Err(ModelError::TooFew { rows: problem.rows.len(), parameters: count });
     }
     let bounded = || MPPar {
         limited_low: true,
@@ -77,7 +77,7 @@ pub fn minimise(
     if let Some(error) = fitter.error {
         return Err(error);
     }
-    let status = status.map_err(|error| CalibrationError::Model(format!("the fit cannot go on: {error}")))?;
+    let status = status.map_err(|error| ModelError::LeastSquares(error))?;
     let has_converged = status.success != MPSuccess::MaxIter;
     let chi_square = sum_of_squares(&problem.residuals(model, &places)?);
     Ok(Fitted { places, chi_square, has_converged })
@@ -101,12 +101,12 @@ struct Fitter<'a> {
     /// Whether the start slides steadily.
     has_begun: bool,
     /// What stopped the model.
-    error: Option<CalibrationError>,
+    error: Option<ModelError>,
 }
 
 impl Fitter<'_> {
     /// What the model gave, or the error that the method knows.
-    fn given<T>(&mut self, result: Result<T, CalibrationError>) -> MPResult<T> {
+    fn given<T>(&mut self, result: Result<T, ModelError>) -> MPResult<T> {
         result.map_err(|error| {
             self.error = Some(error);
             MPError::Eval
@@ -117,7 +117,7 @@ impl Fitter<'_> {
 impl MPFitter for Fitter<'_> {
     fn eval(&mut self, places: &[f64], deviates: &mut [f64]) -> MPResult<()> {
         let residuals = self.problem.residuals(self.model, places);
-        if matches!(residuals, Err(CalibrationError::NotSteady(_))) && self.has_begun {
+        if matches!(residuals, Err(ModelError::NotSteady(_))) && self.has_begun {
             deviates.fill(REFUSED);
             return Ok(());
         }
@@ -171,7 +171,7 @@ pub fn starts_by_theory(
     theory: &dyn FrictionModel,
     own: &[f64],
     tolerance: Tolerance,
-) -> Result<Vec<Fitted>, CalibrationError> {
+) -> Result<Vec<Fitted>, ModelError> {
     let places = latin_hypercube(PLACES, problem.parameters.len(), SEED);
     let frictions = problem.frictions(theory, &places)?;
     let chi_square = |frictions: &Vec<FrictionParts>| sum_of_squares(&problem.residuals_of(frictions));
@@ -179,7 +179,7 @@ pub fn starts_by_theory(
     places.sort_by(|a, b| a.0.total_cmp(&b.0));
     let best = places.into_iter().take(STARTS).map(|(_, places)| places);
     let starts: Vec<Vec<f64>> = std::iter::once(own.to_vec()).chain(best).collect();
-    let fits: Result<Vec<Fitted>, CalibrationError> =
+    let fits: Result<Vec<Fitted>, ModelError> =
         starts.par_iter().map(|start| minimise(problem, theory, start, tolerance, &|_| ())).collect();
     let mut fits = fits?;
     fits.sort_by(|a, b| a.chi_square.total_cmp(&b.chi_square));

@@ -1,7 +1,15 @@
 //! Tables of measured friction: columns by their names and units.
 
+use std::path::Path;
+
 use asperity::element::{Load, OperatingPoint};
-use asperity::tables::{Block, Dimension, Head, Heading, HeadingUnit, NumberStyle, Unit, Words, decode};
+use asperity::tables::{
+    ABOVE_ZERO, Choice, ContentError, Dimension, FINITE, Format, Others, ReadingNote, Table, UnitRule, Wanted, Words,
+    decode,
+};
+
+use super::error::MeasuredFrictionError;
+use crate::files;
 
 /// A measured friction coefficient.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,20 +45,6 @@ pub struct Measurements {
     pub notes: Vec<String>,
 }
 
-/// Why a table is refused: `12: column 2 (mu) = "fast": expected a number above 0`.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{line}: {problem}")]
-pub struct MeasurementsError {
-    line: usize,
-    problem: String,
-}
-
-impl MeasurementsError {
-    fn new(line: usize, problem: impl Into<String>) -> Self {
-        Self { line, problem: problem.into() }
-    }
-}
-
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Quantity {
     Speed,
@@ -61,111 +55,98 @@ enum Quantity {
     Deviation,
 }
 
-const EXPECTED: &str = "columns by their names with units: speed [m/s], pressure [bar] or force [N], friction; temperature [°C] \
-                        and the standard deviation of friction where there are such";
-
-const VOCABULARY: [Words<Quantity>; 6] = [
-    Words::new(
-        Quantity::Deviation,
-        Dimension::Number,
-        &["sigma", "σ", "std", "sd", "stdev", "deviation", "uncertainty", "standardabweichung"],
-        &["standard", "of", "friction", "coefficient", "mu", "μ", "cof", "error", "the"],
-    ),
-    Words::new(
-        Quantity::Speed,
-        Dimension::Speed,
-        &["speed", "velocity", "v", "geschwindigkeit", "gleitgeschwindigkeit"],
-        &["sliding", "slip", "slide", "relative", "mean", "v"],
-    ),
-    Words::new(
-        Quantity::Pressure,
-        Dimension::Pressure,
-        &["pressure", "p", "druck", "flächenpressung"],
-        &["mean", "nominal", "contact", "normal", "average", "p"],
-    ),
-    Words::new(
-        Quantity::Force,
-        Dimension::Force,
-        &["force", "load", "fz", "fn", "normalkraft", "last"],
-        &["normal", "f", "z", "vertical", "mean"],
-    ),
-    Words::new(
-        Quantity::Friction,
-        Dimension::Number,
-        &["friction", "mu", "μ", "cof", "reibwert", "reibungszahl"],
-        &["coefficient", "of", "friction", "mean", "the", "measured"],
-    ),
-    Words::new(
-        Quantity::Temperature,
-        Dimension::Temperature,
-        &["T", "temp", "temperature", "temperatur", "t"],
-        &["sample", "mean", "rubber", "surface", "ambient", "track", "measured"],
-    ),
-];
-
-/// A column that is used.
-#[derive(Clone, Copy, Debug)]
-struct Column {
-    index: usize,
-    unit: Unit,
-}
-
-/// The numbers that a column may hold in SI units, and how to say so.
-type Allowed = (fn(f64) -> bool, &'static str);
-const ABOVE_ZERO: Allowed = (|value| value > 0.0, "a number above 0");
+const FRICTION: Format<Quantity, 5> = Format {
+    needs_names: true,
+    others: Others::Tables,
+    ..Format::new(
+        &[
+            Words::new(
+                Quantity::Deviation,
+                Dimension::Number,
+                "sigma σ std sd stdev deviation uncertainty standardabweichung",
+                "standard of friction coefficient mu μ cof error the",
+            ),
+            Words::new(
+                Quantity::Speed,
+                Dimension::Speed,
+                "speed velocity v geschwindigkeit gleitgeschwindigkeit",
+                "sliding slip slide relative mean v",
+            ),
+            Words::new(
+                Quantity::Pressure,
+                Dimension::Pressure,
+                "pressure p druck flächenpressung",
+                "mean nominal contact normal average p",
+            ),
+            Words::new(
+                Quantity::Force,
+                Dimension::Force,
+                "force load fz fn normalkraft last",
+                "normal f z vertical mean",
+            ),
+            Words::new(
+                Quantity::Friction,
+                Dimension::Number,
+                "friction mu μ cof reibwert reibungszahl",
+                "coefficient of friction mean the measured",
+            ),
+            Words::new(
+                Quantity::Temperature,
+                Dimension::Temperature,
+                "T temp temperature temperatur t",
+                "sample mean rubber surface ambient track measured",
+            ),
+        ],
+        [
+            Wanted::new(&[Quantity::Speed], "speed", "speeds").within(ABOVE_ZERO),
+            Wanted {
+                choice: Choice::FirstQuantity,
+                ..Wanted::new(&[Quantity::Pressure, Quantity::Force], "pressure", "loads").within(ABOVE_ZERO)
+            },
+            Wanted::new(&[Quantity::Friction], "friction", "friction").within(FINITE),
+            Wanted {
+                unit: UnitRule::Named,
+                ..Wanted::new(&[Quantity::Temperature], "temperature", "temperatures").optional().within(ABOVE_ZERO)
+            },
+            Wanted::new(&[Quantity::Deviation], "sigma", "standard deviations").optional().within(ABOVE_ZERO),
+        ],
+        "columns by their names with units: speed [m/s], pressure [bar] or force [N], friction; temperature [°C] and the \
+         standard deviation of friction where there are such",
+    )
+};
 
 impl Measurements {
     /// Reads the table in the bytes of a file; forces are those on the whole layer, whose `area` (m²) makes pressures of
     /// them.
     ///
     /// # Errors
-    /// [`MeasurementsError`] with the line, what was expected and what was found.
-    pub fn parse(bytes: &[u8], area: f64) -> Result<Self, MeasurementsError> {
-        let text = decode(bytes).map_err(|error| MeasurementsError::new(1, error.to_string()))?;
-        let blocks = Block::all(&text, false);
-        let Some(block) = blocks.iter().max_by_key(|block| block.rows) else {
-            return Err(MeasurementsError::new(
-                text.lines().count().max(1),
-                format!("no rows of numbers: expected {EXPECTED}"),
-            ));
-        };
-        let head = block.head(&|name| Heading::parse(name, &VOCABULARY).is_some());
-        let mut reader = TableReader { block, head: &head, notes: Vec::new() };
-        let needed = |column: Option<Column>| {
-            let names = if head.names.is_empty() { "no names".to_owned() } else { head.names.join(", ") };
-            let line = head.line.unwrap_or(block.first);
-            column.ok_or_else(|| MeasurementsError::new(line, format!("columns {names}: expected {EXPECTED}")))
-        };
-        let speed = needed(reader.column(Quantity::Speed)?)?;
-        let pressure = reader.column(Quantity::Pressure)?;
-        let force = if pressure.is_none() { reader.column(Quantity::Force)? } else { None };
-        let load = needed(pressure.or(force))?;
-        let friction = needed(reader.column(Quantity::Friction)?)?;
-        let (temperature, deviation) = (reader.column(Quantity::Temperature)?, reader.column(Quantity::Deviation)?);
-        let to_pressure = if force.is_some() { Load::Pressure { area }.at_force(1.0) } else { 1.0 };
-        if force.is_some() {
-            reader.notes.push(format!("forces are those on the scene's whole layer, {area:.6e} m²"));
+    /// [`ContentError`] with the line, what was expected and what was found.
+    pub fn parse(bytes: &[u8], area: f64) -> Result<Self, ContentError> {
+        let text = decode(bytes)?;
+        let Table { columns, rows, lines, notes, .. } = FRICTION.read(&text)?;
+        let [_, load, _, temperature, deviation] = &columns;
+        let is_said = |note: &ReadingNote| note.assumed || note.text.contains("left out");
+        let mut notes: Vec<String> = notes.into_iter().filter(is_said).map(|note| note.text).collect();
+        let is_force = load.as_ref().is_some_and(|column| column.quantity == Quantity::Force);
+        let to_pressure = if is_force { Load::Pressure { area }.at_force(1.0) } else { 1.0 };
+        if is_force {
+            notes.push(format!("forces are those on the scene's whole layer, {area:.6e} m²"));
         }
-        let mut style = NumberStyle::of(block);
-        let mut rows = Vec::with_capacity(block.rows);
-        for (line, row) in block.lines(&text) {
-            let fields = block.separator.split(row);
-            let mut number = |column: Column, allowed: Allowed| {
-                let field = fields.get(column.index).map_or("", |field| field);
-                reader.number(&mut style, line, field, column, allowed)
-            };
-            let point = OperatingPoint {
-                speed: number(speed, ABOVE_ZERO)?,
-                load: to_pressure * number(load, ABOVE_ZERO)?,
-                temperature: temperature
-                    .map(|column| number(column, (|value| value > 0.0, "a temperature above 0 K")))
-                    .transpose()?,
-            };
-            let friction = number(friction, (f64::is_finite, "a number"))?;
-            let sigma = deviation.map(|column| number(column, ABOVE_ZERO)).transpose()?;
-            rows.push(Measured { line, point, friction, sigma });
-        }
-        Ok(Self { rows, notes: reader.notes })
+        let row = |(&[speed, load, friction, kelvin, sigma], line): (&[f64; 5], usize)| {
+            let (load, temperature) = (to_pressure * load, temperature.as_ref().map(|_| kelvin));
+            let point = OperatingPoint { speed, load, temperature };
+            Measured { line, point, friction, sigma: deviation.as_ref().map(|_| sigma) }
+        };
+        Ok(Self { rows: rows.iter().zip(lines).map(row).collect(), notes })
+    }
+
+    /// Reads the table in the file at `path`, as [`Self::parse`] does.
+    ///
+    /// # Errors
+    /// Where the file cannot be read, or the table in it is refused.
+    pub fn read(path: &Path, area: f64) -> Result<Self, MeasuredFrictionError> {
+        let refused = |error| MeasuredFrictionError::Content { path: path.to_owned(), error };
+        Self::parse(&files::bytes(path)?, area).map_err(refused)
     }
 
     /// Whether the standard deviations were measured.
@@ -179,92 +160,12 @@ impl Measurements {
     }
 }
 
-/// Reads the columns of a table.
-#[derive(Debug)]
-struct TableReader<'a, 'b> {
-    block: &'a Block<'b>,
-    head: &'a Head<'b>,
-    notes: Vec<String>,
-}
-
-impl TableReader<'_, '_> {
-    /// The column of a quantity; `None` where there is none.
-    fn column(&mut self, quantity: Quantity) -> Result<Option<Column>, MeasurementsError> {
-        let line = self.head.line.unwrap_or(self.block.first);
-        let headings = self.head.headings(&VOCABULARY);
-        let found: Vec<(usize, &Heading<Quantity>)> = (0..)
-            .zip(&headings)
-            .filter_map(|(index, heading)| Some((index, heading.as_ref()?)))
-            .filter(|(_, heading)| heading.quantity == quantity)
-            .collect();
-        let (index, heading) = match found[..] {
-            [] => return Ok(None),
-            [only] => only,
-            [(first, _), (second, _), ..] => {
-                let [first, second] = [first, second].map(|index| self.head.names[index].trim());
-                return Err(MeasurementsError::new(
-                    line,
-                    format!("columns {first} and {second}: expected one of them"),
-                ));
-            }
-        };
-        let name = format!("column {} ({})", index + 1, self.head.names[index].trim());
-        if heading.logarithm.is_some() {
-            return Err(MeasurementsError::new(line, format!("{name}: expected numbers, not their logarithms")));
-        }
-        let dimension = heading.dimension;
-        let unit = match &heading.unit {
-            HeadingUnit::Known(unit) => *unit,
-            HeadingUnit::None if dimension == Dimension::Number => Unit::ONE,
-            HeadingUnit::None if dimension == Dimension::Temperature => {
-                let problem = format!("{name}: expected the unit beside the name, as in temperature [°C]");
-                return Err(MeasurementsError::new(line, problem));
-            }
-            HeadingUnit::None => {
-                let unit = Unit::si(dimension);
-                if let Some(((stated, text), other)) = self.block.stated_unit(dimension, self.head.line)
-                    && !other.is_si()
-                {
-                    let problem = format!("`{text}`: expected the unit beside the name of {name}, as in [{other}]");
-                    return Err(MeasurementsError::new(stated, problem));
-                }
-                self.notes.push(format!("{name} names no unit: {unit} is assumed"));
-                unit
-            }
-            HeadingUnit::Unknown(unit) => {
-                let problem = format!("{name}: unit \"{unit}\": expected one of {}", dimension.units());
-                return Err(MeasurementsError::new(line, problem));
-            }
-        };
-        Ok(Some(Column { index, unit }))
-    }
-
-    /// The number in a field, in SI units.
-    fn number(
-        &self,
-        style: &mut NumberStyle,
-        line: usize,
-        field: &str,
-        column: Column,
-        (is_allowed, expected): Allowed,
-    ) -> Result<f64, MeasurementsError> {
-        let name = self.head.names.get(column.index).map_or("", |name| name.trim());
-        let refuse = |expected: &str| {
-            let number = column.index + 1;
-            MeasurementsError::new(line, format!("column {number} ({name}) = \"{field}\": expected {expected}"))
-        };
-        let written = style.read(field).map_err(|_| refuse(NumberStyle::EXPECTED))?;
-        let value = written.map(|written| column.unit.to_si(written));
-        value.filter(|value| value.is_finite() && is_allowed(*value)).ok_or_else(|| refuse(expected))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<Measurements, String> {
-        Measurements::parse(text.as_bytes(), 2e-3).map_err(|error| error.to_string())
+        Measurements::parse(text.as_bytes(), 2e-3).map_err(|error| error.within("t.csv".as_ref()))
     }
 
     #[test]
@@ -275,7 +176,8 @@ mod tests {
         assert_eq!(first.line, 2);
         assert_eq!(first.point, OperatingPoint { speed: 0.01, load: 2.5e5, temperature: Some(293.15) });
         assert_eq!((first.friction, first.sigma), (0.8, Some(0.02)));
-        assert!(measured.has_sigma() && measured.has_temperature() && measured.notes.is_empty());
+        assert!(measured.has_sigma() && measured.has_temperature());
+        assert_eq!(measured.notes, ["columns left out: sample"]);
     }
 
     /// 40 N on 2e-3 m² are 20 kPa; 5 % of 0.8 and 0.01 together are 0.0412.
@@ -291,12 +193,23 @@ mod tests {
     #[test]
     fn what_is_missing_or_wrong_is_said_with_its_line() {
         for (text, message) in [
-            ("speed [m/s],friction\n1,2\n2,3\n", "1: columns speed [m/s], friction: expected columns by"),
-            ("speed [m/s],p [Pa],mu\n1,2,3\n2,-3,1\n", "3: column 2 (p [Pa]) = \"-3\": expected a number above 0"),
-            ("speed [m/s],p [furlong],mu\n1,2,3\n", "1: column 2 (p [furlong]): unit \"furlong\": expected one of Pa"),
-            ("speed [m/s],p [Pa],mu,temperature\n1,2,3,4\n", "1: column 4 (temperature): expected the unit"),
-            ("speed [m/s],v [m/s],p [Pa],mu\n1,2,3,4\n", "1: columns speed [m/s] and v [m/s]: expected one of them"),
-            ("only words\n", "1: no rows of numbers"),
+            ("speed [m/s],friction\n1,2\n2,3\n", "t.csv:1: columns = \"speed [m/s], friction\": expected columns by"),
+            (
+                "speed [m/s],p [Pa],mu\n1,2,3\n2,-3,1\n",
+                "t.csv:3: column 2 (p [Pa]) = \"-3\": expected a number above 0",
+            ),
+            ("speed [m/s],p [bar],mu\n1,x,3\n", "t.csv:2: column 2 (p [bar]) = \"x\": expected a number above 0 in Pa"),
+            (
+                "speed [m/s],p [furlong],mu\n1,2,3\n",
+                "t.csv:1: unit of column 2 (p [furlong]) = \"furlong\": expected one of",
+            ),
+            ("speed [m/s],p [Pa],mu,temperature\n1,2,3,4\n", "t.csv:1: unit of column 4 (temperature): expected it"),
+            (
+                "speed [m/s],v [m/s],p [Pa],mu\n1,2,3,4\n",
+                "t.csv:1: columns = \"speed [m/s]\" and \"v [m/s]\": expected one of",
+            ),
+            ("1,2,3\n", "t.csv:1: columns = no names: expected columns by their names"),
+            ("only words\n", "t.csv:1: rows = 0: expected at least one row of numbers: columns by their names"),
         ] {
             let refusal = read(text).unwrap_err();
             assert!(refusal.starts_with(message), "{text}\n{refusal}");

@@ -2,13 +2,14 @@
 
 use std::collections::HashMap;
 use std::fmt::{self, Debug, Formatter};
+use std::ops::ControlFlow;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use super::error::CalibrationError;
+use super::error::{ModelError, NoSliding};
 use super::model::{Done, FrictionModel, Outcome, Task};
 
-/// What is done with an outcome that was not known before.
-pub type NewOutcome<'a> = dyn Fn(&Task, &Outcome) -> Result<(), CalibrationError> + Sync + 'a;
+/// What is done with an outcome that was not known before, from any thread; says whether to go on.
+pub type NewOutcome<'a> = dyn Fn(&Task, &Outcome) -> ControlFlow<()> + Sync + 'a;
 
 /// The bits of a task.
 type Key = (Vec<u64>, [u64; 3]);
@@ -42,7 +43,7 @@ fn key(task: &Task) -> Key {
 }
 
 impl FrictionModel for Memo<'_> {
-    fn evaluate(&self, tasks: &[Task], done: &Done<'_>) -> Result<(), CalibrationError> {
+    fn evaluate(&self, tasks: &[Task], done: &Done<'_>) -> Result<(), ModelError> {
         // Of the same tasks one is found.
         let mut missing: Vec<usize> = Vec::new();
         let mut asked = std::collections::HashSet::new();
@@ -54,13 +55,15 @@ impl FrictionModel for Memo<'_> {
         }
         let wanted: Vec<Task> = missing.iter().map(|&index| tasks[index].clone()).collect();
         self.model.evaluate(&wanted, &|index, outcome| {
-            (self.new)(&wanted[index], &outcome)?;
+            if (self.new)(&wanted[index], &outcome).is_break() {
+                return Err(ModelError::Stopped);
+            }
             self.known().insert(key(&wanted[index]), outcome);
             Ok(())
         })?;
         tasks.iter().enumerate().try_for_each(|(index, task)| {
             let found = self.known().get(&key(task)).cloned();
-            let outcome = found.unwrap_or_else(|| Err("the model gave no friction".to_owned()));
+            let outcome = found.unwrap_or_else(|| Err(NoSliding::new("the model gave no friction")));
             done(index, outcome)
         })
     }

@@ -1,6 +1,6 @@
 //! What gives friction at values of the free parameters.
 
-use super::error::CalibrationError;
+use super::error::{ModelError, NoSliding};
 use asperity::element::OperatingPoint;
 use asperity::scene::Scene;
 
@@ -32,10 +32,10 @@ impl FrictionParts {
 }
 
 /// Friction at a point, or why there is no steady sliding.
-pub type Outcome = Result<FrictionParts, String>;
+pub type Outcome = Result<FrictionParts, NoSliding>;
 
 /// What is done with the outcome of a task, by its index, as soon as it is there; from any thread.
-pub type Done<'a> = dyn Fn(usize, Outcome) -> Result<(), CalibrationError> + Sync + 'a;
+pub type Done<'a> = dyn Fn(usize, Outcome) -> Result<(), ModelError> + Sync + 'a;
 
 /// Friction over the free parameters.
 pub trait FrictionModel: Sync {
@@ -43,7 +43,7 @@ pub trait FrictionModel: Sync {
     ///
     /// # Errors
     /// Where the scene is not possible at the values, or `done` fails.
-    fn evaluate(&self, tasks: &[Task], done: &Done<'_>) -> Result<(), CalibrationError>;
+    fn evaluate(&self, tasks: &[Task], done: &Done<'_>) -> Result<(), ModelError>;
 
     /// The step of finite differences, over the distance of the bounds: small against what friction bends over, large
     /// against its errors.
@@ -51,7 +51,7 @@ pub trait FrictionModel: Sync {
 }
 
 /// The scene at values of the free parameters, or why there is none.
-pub type SceneAt<'a> = dyn Fn(&[f64]) -> Result<Scene, CalibrationError> + Sync + 'a;
+pub type SceneAt<'a> = dyn Fn(&[f64]) -> Result<Scene, ModelError> + Sync + 'a;
 
 /// The tasks by their parameters and temperatures: the indices of those that have both alike.
 pub(super) fn groups(tasks: &[Task]) -> Vec<(Vec<f64>, Option<f64>, Vec<usize>)> {

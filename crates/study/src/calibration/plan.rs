@@ -6,10 +6,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::error::CalibrationError;
+use super::error::ModelError;
 use super::measurements::assumed_sigma;
 use super::model::FrictionModel;
-use super::problem::{Linearised, Problem, Row};
+use super::problem::{FrictionMeasurement, Linearised, Problem};
 use super::statistics::{Statistics, by_coordinates};
 use asperity::element::OperatingPoint;
 
@@ -36,7 +36,7 @@ pub fn plan(
     (places, linearised, statistics): (&[f64], &Linearised, &Statistics),
     candidates: &[OperatingPoint],
     count: usize,
-) -> Result<Plan, CalibrationError> {
+) -> Result<Plan, ModelError> {
     let scale = statistics.scale.max(f64::MIN_POSITIVE);
     let jacobian = by_coordinates(problem, linearised) / scale.sqrt();
     let mut information = jacobian.transpose() * &jacobian;
@@ -56,7 +56,7 @@ pub fn plan(
 
 /// The root mean square of sigma over friction.
 fn relative_deviation(problem: &Problem) -> f64 {
-    let square = |row: &Row| (row.sigma / row.friction.abs().max(assumed_sigma(0.0))).powi(2);
+    let square = |row: &FrictionMeasurement| (row.sigma / row.friction.abs().max(assumed_sigma(0.0))).powi(2);
     (problem.rows.iter().map(square).sum::<f64>() / problem.rows.len().max(1) as f64).sqrt()
 }
 
@@ -67,14 +67,14 @@ fn candidate_rows(
     places: &[f64],
     candidates: &[OperatingPoint],
     relative: f64,
-) -> Result<(Vec<OperatingPoint>, Vec<DVector<f64>>), CalibrationError> {
+) -> Result<(Vec<OperatingPoint>, Vec<DVector<f64>>), ModelError> {
     // Residuals with sigma = 1: frictions.
-    let row = |point| Row { point, friction: 0.0, sigma: 1.0 };
+    let row = |point| FrictionMeasurement { point, friction: 0.0, sigma: 1.0 };
     let mut grid = Problem { points: candidates.to_vec(), ..problem.clone() };
     grid.rows = (0..candidates.len()).map(row).collect();
     let at = loop {
         match grid.linearised_to_both_sides(model, places) {
-            Err(CalibrationError::NotSteady(failed)) => {
+            Err(ModelError::NotSteady(failed)) => {
                 grid = grid.without(&failed.iter().map(|(point, _)| *point).collect::<Vec<_>>());
             }
             found => break found?,

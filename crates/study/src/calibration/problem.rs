@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 use std::sync::{Mutex, PoisonError};
 
-use super::error::CalibrationError;
+use super::error::{ModelError, NoSliding};
 use super::measurements::Measurements;
 use super::model::{FrictionModel, FrictionParts, Outcome, Task};
 use super::parameter::FreeParameter;
@@ -11,7 +11,7 @@ use asperity::element::OperatingPoint;
 
 /// A measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub struct FrictionMeasurement {
     /// The index of its point.
     pub point: usize,
     /// Its friction coefficient.
@@ -30,7 +30,7 @@ pub struct Problem {
     /// The points that were measured, each once.
     pub points: Vec<OperatingPoint>,
     /// The measurements, repeats included.
-    pub rows: Vec<Row>,
+    pub rows: Vec<FrictionMeasurement>,
     /// Whether the standard deviations were measured.
     pub has_sigma: bool,
 }
@@ -52,13 +52,13 @@ pub(super) fn sum_of_squares(residuals: &[f64]) -> f64 {
 impl Problem {
     /// The problem of some measurements.
     pub fn new(parameters: Vec<FreeParameter>, measurements: &Measurements) -> Self {
-        let (mut points, mut rows): (Vec<OperatingPoint>, Vec<Row>) = (Vec::new(), Vec::new());
+        let (mut points, mut rows): (Vec<OperatingPoint>, Vec<FrictionMeasurement>) = (Vec::new(), Vec::new());
         for measured in &measurements.rows {
             let point = points.iter().position(|point| *point == measured.point).unwrap_or_else(|| {
                 points.push(measured.point);
                 points.len() - 1
             });
-            rows.push(Row { point, friction: measured.friction, sigma: measured.sigma_or_assumed() });
+            rows.push(FrictionMeasurement { point, friction: measured.friction, sigma: measured.sigma_or_assumed() });
         }
         Self { parameters, points, rows, has_sigma: measurements.has_sigma() }
     }
@@ -78,11 +78,7 @@ impl Problem {
     ///
     /// # Errors
     /// Those of the model.
-    pub fn outcomes(
-        &self,
-        model: &dyn FrictionModel,
-        places: &[Vec<f64>],
-    ) -> Result<Vec<Vec<Outcome>>, CalibrationError> {
+    pub fn outcomes(&self, model: &dyn FrictionModel, places: &[Vec<f64>]) -> Result<Vec<Vec<Outcome>>, ModelError> {
         let tasks: Vec<Task> = places
             .iter()
             .flat_map(|places| {
@@ -97,7 +93,7 @@ impl Problem {
         })?;
         let outcome = |found: Mutex<Option<Outcome>>| {
             let found = found.into_inner().unwrap_or_else(PoisonError::into_inner);
-            found.unwrap_or_else(|| Err("the model gave no friction".to_owned()))
+            found.unwrap_or_else(|| Err(NoSliding::new("the model gave no friction")))
         };
         let mut found = found.into_iter().map(outcome);
         Ok(places.iter().map(|_| found.by_ref().take(self.points.len()).collect()).collect())
@@ -106,14 +102,14 @@ impl Problem {
     /// [`outcomes`](Self::outcomes) of points that all slide steadily.
     ///
     /// # Errors
-    /// Those of the model, and [`CalibrationError::NotSteady`] with the points that do not.
+    /// Those of the model, and [`ModelError::NotSteady`] with the points that do not.
     pub fn frictions(
         &self,
         model: &dyn FrictionModel,
         places: &[Vec<f64>],
-    ) -> Result<Vec<Vec<FrictionParts>>, CalibrationError> {
+    ) -> Result<Vec<Vec<FrictionParts>>, ModelError> {
         let outcomes = self.outcomes(model, places)?;
-        let mut failed: Vec<(OperatingPoint, String)> = Vec::new();
+        let mut failed: Vec<(OperatingPoint, NoSliding)> = Vec::new();
         for outcomes in &outcomes {
             for (point, outcome) in self.points.iter().zip(outcomes) {
                 if let Err(why) = outcome
@@ -126,13 +122,13 @@ impl Problem {
         if failed.is_empty() {
             Ok(outcomes.into_iter().map(|outcomes| outcomes.into_iter().flatten().collect()).collect())
         } else {
-            Err(CalibrationError::NotSteady(failed))
+            Err(ModelError::NotSteady(failed))
         }
     }
 
     /// (model - measured)/sigma of all rows.
     pub fn residuals_of(&self, frictions: &[FrictionParts]) -> Vec<f64> {
-        let residual = |row: &Row| (frictions[row.point].friction() - row.friction) / row.sigma;
+        let residual = |row: &FrictionMeasurement| (frictions[row.point].friction() - row.friction) / row.sigma;
         self.rows.iter().map(residual).collect()
     }
 
@@ -140,7 +136,7 @@ impl Problem {
     ///
     /// # Errors
     /// Those of [`frictions`](Self::frictions).
-    pub fn residuals(&self, model: &dyn FrictionModel, places: &[f64]) -> Result<Vec<f64>, CalibrationError> {
+    pub fn residuals(&self, model: &dyn FrictionModel, places: &[f64]) -> Result<Vec<f64>, ModelError> {
         let frictions = self.frictions(model, &[places.to_vec()])?;
         Ok(frictions.iter().flat_map(|frictions| self.residuals_of(frictions)).collect())
     }
@@ -149,7 +145,7 @@ impl Problem {
     ///
     /// # Errors
     /// Those of [`frictions`](Self::frictions).
-    pub fn linearised(&self, model: &dyn FrictionModel, places: &[f64]) -> Result<Linearised, CalibrationError> {
+    pub fn linearised(&self, model: &dyn FrictionModel, places: &[f64]) -> Result<Linearised, ModelError> {
         self.differences(model, places, model.step())
     }
 
@@ -163,7 +159,7 @@ impl Problem {
         &self,
         model: &dyn FrictionModel,
         places: &[f64],
-    ) -> Result<Linearised, CalibrationError> {
+    ) -> Result<Linearised, ModelError> {
         let upwards = self.differences(model, places, model.step())?;
         let downwards = self.differences(model, places, -model.step())?;
         let smaller = |a: f64, b: f64| if a * b > 0.0 { a.abs().min(b.abs()).copysign(a) } else { 0.0 };
@@ -172,12 +168,7 @@ impl Problem {
 
     /// The residuals at some places and their difference quotients by a step, taken the other way where it would leave
     /// the bounds.
-    fn differences(
-        &self,
-        model: &dyn FrictionModel,
-        places: &[f64],
-        step: f64,
-    ) -> Result<Linearised, CalibrationError> {
+    fn differences(&self, model: &dyn FrictionModel, places: &[f64], step: f64) -> Result<Linearised, ModelError> {
         let shifted = |parameter: usize| {
             let mut shifted = places.to_vec();
             let along = shifted[parameter] + step;
@@ -207,7 +198,7 @@ impl Problem {
                 kept.points.push(point);
                 kept.points.len() - 1
             });
-            kept.rows.push(Row { point: index, ..*row });
+            kept.rows.push(FrictionMeasurement { point: index, ..*row });
         }
         kept
     }

@@ -4,7 +4,7 @@
 //! evaluated, the cheap one times their ratio is fitted, and so on until the parameters stay within a tenth of their
 //! standard errors.
 
-use super::error::CalibrationError;
+use super::error::ModelError;
 use super::fit::{Fitted, Tolerance, minimise};
 use super::model::{Done, FrictionModel, FrictionParts, Task};
 use super::problem::{Linearised, Problem, sum_of_squares};
@@ -45,7 +45,7 @@ impl std::fmt::Debug for dyn FrictionModel + '_ {
 }
 
 impl FrictionModel for Corrected<'_> {
-    fn evaluate(&self, tasks: &[Task], done: &Done<'_>) -> Result<(), CalibrationError> {
+    fn evaluate(&self, tasks: &[Task], done: &Done<'_>) -> Result<(), ModelError> {
         self.model.evaluate(tasks, &|index, outcome| {
             let ratio = self.ratios.iter().find(|(point, _)| *point == tasks[index].point).map_or(1.0, |found| found.1);
             let times = |parts: FrictionParts| FrictionParts {
@@ -73,7 +73,7 @@ pub fn map_space(
     expensive: &dyn FrictionModel,
     start: &[f64],
     progress: &dyn Fn(f64),
-) -> Result<Option<SpaceMapping>, CalibrationError> {
+) -> Result<Option<SpaceMapping>, ModelError> {
     let seen = problem.linearised(cheap, start)?.jacobian;
     let sizes: Vec<f64> = seen.column_iter().map(|column| column.norm()).collect();
     let largest = sizes.iter().copied().fold(0.0, f64::max);

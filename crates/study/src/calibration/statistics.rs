@@ -179,7 +179,7 @@ fn student(degrees: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::calibration::Row;
+    use crate::calibration::FrictionMeasurement;
 
     /// Quantiles of Student's distribution from tables.
     #[test]
@@ -195,7 +195,7 @@ mod tests {
         Problem {
             parameters: (0..parameters).map(parameter).collect(),
             points: Vec::new(),
-            rows: vec![Row { point: 0, friction: 1.0, sigma: 0.1 }; rows],
+            rows: vec![FrictionMeasurement { point: 0, friction: 1.0, sigma: 0.1 }; rows],
             has_sigma,
         }
     }

@@ -4,14 +4,14 @@ use std::fmt::{self, Debug, Formatter};
 
 use rayon::prelude::*;
 
-use super::error::CalibrationError;
+use super::error::{ModelError, NoSliding};
 use super::known_laws::KnownLaws;
 use super::model::{Done, FrictionModel, FrictionParts, Outcome, SceneAt, Task, groups};
 use crate::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 use asperity::scene::Scene;
 
 /// The grid that a scene is solved on, or why it cannot be.
-pub type GridOf<'a> = dyn Fn(&Scene) -> Result<SurfaceGrid, CalibrationError> + Sync + 'a;
+pub type GridOf<'a> = dyn Fn(&Scene) -> Result<SurfaceGrid, ModelError> + Sync + 'a;
 
 /// Steady sliding over the free parameters.
 pub struct SteadyModel<'a> {
@@ -31,17 +31,15 @@ impl<'a> SteadyModel<'a> {
 }
 
 impl FrictionModel for SteadyModel<'_> {
-    fn evaluate(&self, tasks: &[Task], done: &Done<'_>) -> Result<(), CalibrationError> {
+    fn evaluate(&self, tasks: &[Task], done: &Done<'_>) -> Result<(), ModelError> {
         let groups = groups(tasks);
         let prepared = groups.into_par_iter().map(|(parameters, temperature, indices)| {
             let scene = (self.scene_at)(&parameters)?.with_temperature(temperature);
             let grid = (self.grid_of)(&scene)?;
-            let rubber = SlidingRubber::with_friction(&scene, self.laws.law(&scene)).ok_or_else(|| {
-                CalibrationError::Model("steady sliding takes a scene in the material form, with layer.width".into())
-            })?;
+            let rubber = SlidingRubber::with_friction(&scene, self.laws.law(&scene)).ok_or(ModelError::NotSolvable)?;
             Ok((rubber, grid, indices))
         });
-        let prepared: Vec<_> = prepared.collect::<Result<_, CalibrationError>>()?;
+        let prepared: Vec<_> = prepared.collect::<Result<_, ModelError>>()?;
         let points =
             prepared.iter().flat_map(|(rubber, grid, indices)| indices.iter().map(move |i| (rubber, grid, *i)));
         let points: Vec<_> = points.collect();
@@ -67,7 +65,7 @@ impl FrictionModel for SteadyModel<'_> {
 /// Full contact has friction; only elements have no use for it.
 fn outcome(slide: &SteadySlide) -> Outcome {
     match slide.problem() {
-        Some(problem) if !problem.leaves_friction() => Err(problem.to_string()),
+        Some(problem) if !problem.leaves_friction() => Err(NoSliding::new(problem)),
         _ => Ok(FrictionParts {
             profile: slide.profile_hysteresis,
             fine: slide.fine_hysteresis.unwrap_or(0.0),

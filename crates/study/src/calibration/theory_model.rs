@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 
-use super::error::CalibrationError;
+use super::error::ModelError;
 use super::known_laws::KnownLaws;
 use super::model::{Done, FrictionModel, FrictionParts, SceneAt, Task, groups};
 use crate::steady::persson::{ProfileWaves, Theory};
@@ -47,9 +47,9 @@ impl<'a> TheoryModel<'a> {
     }
 
     /// Friction at some points of a scene.
-    fn friction(&self, scene: &Scene, points: &[OperatingPoint]) -> Result<Vec<FrictionParts>, CalibrationError> {
-        let area = scene.layer.element_area().ok_or_else(no_theory)?;
-        let theories = self.theories(scene, points).ok_or_else(no_theory)?;
+    fn friction(&self, scene: &Scene, points: &[OperatingPoint]) -> Result<Vec<FrictionParts>, ModelError> {
+        let area = scene.layer.element_area().ok_or(ModelError::NoTheory)?;
+        let theories = self.theories(scene, points).ok_or(ModelError::NoTheory)?;
         let law = self.laws.law(scene);
         let parts = |(point, theory): (&OperatingPoint, Theory)| {
             let normal = point.load / theory.area * area;
@@ -89,10 +89,6 @@ impl<'a> TheoryModel<'a> {
     }
 }
 
-fn no_theory() -> CalibrationError {
-    CalibrationError::Model("Persson's theory takes a scene in the material form, with layer.width".to_owned())
-}
-
 impl KnownProfile {
     fn at(&mut self, point: &OperatingPoint) -> Theory {
         if let Some((_, theory)) = self.found.iter().find(|(found, _)| found == point) {
@@ -105,7 +101,7 @@ impl KnownProfile {
 }
 
 impl FrictionModel for TheoryModel<'_> {
-    fn evaluate(&self, tasks: &[Task], done: &Done<'_>) -> Result<(), CalibrationError> {
+    fn evaluate(&self, tasks: &[Task], done: &Done<'_>) -> Result<(), ModelError> {
         groups(tasks).into_par_iter().try_for_each(|(parameters, temperature, indices)| {
             let scene = (self.scene_at)(&parameters)?.with_temperature(temperature);
             let points: Vec<OperatingPoint> = indices.iter().map(|&index| tasks[index].point).collect();

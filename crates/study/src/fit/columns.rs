@@ -1,12 +1,6 @@
 //! The columns of tables of moduli: quantities as people and instruments name them, and what a block of a table has.
 
-use std::borrow::Cow;
-use std::f64::consts::TAU;
-
-use asperity::tables::{Block, Dimension, Heading, HeadingUnit, Unit, Words, words};
-
-use super::moduli_error::ModuliError;
-use super::stated_temperature::without_temperature;
+use asperity::tables::{Block, ContentError, Dimension, Header, Heading, HeadingUnit, Unit, UnitRule, Words, words};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
@@ -55,172 +49,103 @@ const VOCABULARY: [Words<Quantity>; 18] = {
         Words::new(
             Quantity::Frequency,
             Rate,
-            &["f", "freq", "frequency", "frequenz", "frequencies", "prüffrequenz", "messfrequenz"],
-            &["oscillation", "test", "reduced", "at", "a", "T", "shifted", "excitation", "f", "mean"],
+            "f freq frequency frequenz frequencies prüffrequenz messfrequenz",
+            "oscillation test reduced at a T shifted excitation f mean",
         ),
         Words::new(
             Quantity::AngularFrequency,
             Rate,
-            &["omega", "ω", "angular", "ang", "circular", "kreisfrequenz", "w"],
-            &["f", "freq", "frequency", "reduced", "at", "a", "T", "shifted", "oscillation", "omega", "ω"],
+            "omega ω angular ang circular kreisfrequenz w",
+            "f freq frequency reduced at a T shifted oscillation omega ω",
         ),
         Words::new(
             Quantity::Storage,
             Pressure,
-            &["e'", "storage", "speichermodul", "stor", "estor"],
-            &[
-                "e'", "e", "modulus", "moduli", "mod", "dynamic", "dyn", "tensile", "elastic", "young's", "real",
-                "measured",
-            ],
+            "e' storage speichermodul stor estor",
+            "e' e modulus moduli mod dynamic dyn tensile elastic young's real measured",
         ),
         Words::new(
             Quantity::Loss,
             Pressure,
-            &["e''", "loss", "verlustmodul", "eloss"],
-            &["e''", "e", "modulus", "moduli", "mod", "dynamic", "dyn", "tensile", "young's", "imaginary", "measured"],
+            "e'' loss verlustmodul eloss",
+            "e'' e modulus moduli mod dynamic dyn tensile young's imaginary measured",
         ),
         Words::new(
             Quantity::ShearStorage,
             Pressure,
-            &["g'", "storage", "speichermodul", "stor", "gstor"],
-            &["g'", "g", "shear", "modulus", "moduli", "mod", "dynamic", "dyn", "elastic", "schub", "measured"],
+            "g' storage speichermodul stor gstor",
+            "g' g shear modulus moduli mod dynamic dyn elastic schub measured",
         ),
         Words::new(
             Quantity::ShearLoss,
             Pressure,
-            &["g''", "loss", "verlustmodul", "gloss"],
-            &["g''", "g", "shear", "modulus", "moduli", "mod", "dynamic", "dyn", "viscous", "schub", "measured"],
+            "g'' loss verlustmodul gloss",
+            "g'' g shear modulus moduli mod dynamic dyn viscous schub measured",
         ),
         Words::new(
             Quantity::Complex,
             Pressure,
-            &["estar", "complex", "komplexer"],
-            &["e", "estar", "modulus", "modul", "tensile", "abs", "magnitude", "young's", "dynamic"],
+            "estar complex komplexer",
+            "e estar modulus modul tensile abs magnitude young's dynamic",
         ),
-        Words::new(
-            Quantity::ShearComplex,
-            Pressure,
-            &["gstar", "complex"],
-            &["g", "gstar", "shear", "modulus", "abs", "magnitude", "dynamic"],
-        ),
+        Words::new(Quantity::ShearComplex, Pressure, "gstar complex", "g gstar shear modulus abs magnitude dynamic"),
         Words::new(
             Quantity::LossTangent,
             Number,
-            &["tan", "tandelta", "tanδ", "tand", "factor", "tangent", "verlustfaktor"],
-            &["delta", "δ", "d", "loss", "damping", "factor"],
+            "tan tandelta tanδ tand factor tangent verlustfaktor",
+            "delta δ d loss damping factor",
         ),
-        Words::new(
-            Quantity::Phase,
-            Angle,
-            &["delta", "δ", "phase", "phasenwinkel"],
-            &["angle", "lag", "delta", "δ", "shift"],
-        ),
-        Words::new(
-            Quantity::ShiftFactor,
-            Number,
-            &["at", "a", "shift"],
-            &["T", "factor", "factors", "horizontal", "at", "a"],
-        ),
-        Words::new(
-            Quantity::Time,
-            Seconds,
-            &["t", "time", "zeit"],
-            &["step", "run", "test", "elapsed", "relaxation", "total"],
-        ),
+        Words::new(Quantity::Phase, Angle, "delta δ phase phasenwinkel", "angle lag delta δ shift"),
+        Words::new(Quantity::ShiftFactor, Number, "at a shift", "T factor factors horizontal at a"),
+        Words::new(Quantity::Time, Seconds, "t time zeit", "step run test elapsed relaxation total"),
         Words::new(
             Quantity::Temperature,
             Kelvin,
-            &["T", "temp", "temperature", "temperatur", "t"],
-            &[
-                "sample",
-                "mean",
-                "average",
-                "actual",
-                "probe",
-                "probentemperatur",
-                "T",
-                "temp",
-                "isothermal",
-                "measured",
-            ],
+            "T temp temperature temperatur t",
+            "sample mean average actual probe probentemperatur T temp isothermal measured",
         ),
         Words::new(
             Quantity::SetTemperature,
             Kelvin,
-            &["temp", "temperature", "temperatur", "T"],
-            &["set", "setpoint", "point", "nominal", "furnace", "oven", "chamber", "target", "soll", "program"],
+            "temp temperature temperatur T",
+            "set setpoint point nominal furnace oven chamber target soll program",
         ),
-        Words::new(Quantity::Set, Number, &["set"], &["no", "number", "id"]),
+        Words::new(Quantity::Set, Number, "set", "no number id"),
         Words::new(
             Quantity::Relaxation,
             Pressure,
-            &["e", "relax", "relaxation", "erelax"],
-            &["e", "t", "modulus", "relaxation", "tensile", "young's", "stress"],
+            "e relax relaxation erelax",
+            "e t modulus relaxation tensile young's stress",
         ),
-        Words::new(
-            Quantity::ShearRelaxation,
-            Pressure,
-            &["g", "relax", "relaxation", "grelax"],
-            &["g", "t", "modulus", "relaxation", "shear"],
-        ),
-        Words::new(Quantity::ShearRelaxation, Pressure, &["g(t)"], &[]),
+        Words::new(Quantity::ShearRelaxation, Pressure, "g relax relaxation grelax", "g t modulus relaxation shear"),
+        Words::new(Quantity::ShearRelaxation, Pressure, "g(t)", ""),
     ]
 };
 
 /// A column that is used.
-#[derive(Clone, Debug)]
-pub(super) struct Column {
-    /// Counted from 0.
-    pub(super) index: usize,
-    /// Its heading as written.
-    pub(super) text: String,
-    pub(super) quantity: Quantity,
-    /// What was multiplied already: a_T ω.
-    pub(super) reduced: bool,
-    unit: Unit,
-    /// Whether the file or the command line names it; SI is assumed else.
-    pub(super) names_unit: bool,
-    /// A frequency in 1/s that its name does not call angular.
-    cycles: bool,
-    logarithm: Option<f64>,
-    /// The temperature in its heading, K.
-    pub(super) temperature: Option<f64>,
+pub(super) type Column = asperity::tables::Column<Quantity>;
+
+/// Refuses to assume a unit where the header speaks of another one, and for angles.
+pub(super) fn check_unit(column: &Column, block: &Block<'_>, line: usize) -> Result<(), ContentError> {
+    column.check_assumed(block, Some(line)).map_err(|error| error.or("`unit` NAME=UNIT"))?;
+    let is_phase = column.assumed_unit().is_some_and(|unit| unit.dimension == Dimension::Angle);
+    if is_phase { Err(column.refuse(line, "", &with_unit(column, "°"))) } else { Ok(()) }
 }
 
-impl Column {
-    /// A number of the column in SI units: rad/s, Pa, K, s, rad.
-    pub(super) fn to_si(&self, written: f64) -> f64 {
-        let plain = self.logarithm.map_or(written, |base| base.powf(written));
-        self.unit.to_si(plain) * if self.cycles { TAU } else { 1.0 }
-    }
+/// What to write, in a file or on the command line, for a unit to be known.
+pub(super) fn with_unit(column: &Column, unit: &str) -> String {
+    format!("the unit beside the name, as in {0} [{unit}]; or `unit` '{0}={unit}'", column.text)
+}
 
-    /// The unit that is assumed, where none is named.
-    pub(super) fn assumed_unit(&self) -> Option<&'static str> {
-        let assumed = if self.cycles { "Hz" } else { self.unit.name };
-        (!self.names_unit && self.unit.dimension != Dimension::Number).then_some(assumed)
-    }
+/// Whether a frequency is in Hz or another number of cycles.
+pub(super) fn counts_cycles(column: &Column) -> bool {
+    !(column.unit.is_si() || column.unit.dimension == Dimension::Rate)
+}
 
-    /// Refuses to assume a unit where the header speaks of another one, and for angles.
-    pub(super) fn check_unit(&self, block: &Block<'_>, line: usize) -> Result<(), ModuliError> {
-        let Some(assumed) = self.assumed_unit() else { return Ok(()) };
-        let dimension = self.unit.dimension;
-        let stated = block.stated_unit(dimension, Some(line)).filter(|(_, unit)| unit.name != assumed);
-        if let Some(((line, text), unit)) = stated {
-            return Err(ModuliError::in_line(line, text, self.with_unit(unit.name)));
-        }
-        let is_phase = dimension == Dimension::Angle;
-        if is_phase { Err(ModuliError::of(self, line, &self.text, self.with_unit("°"))) } else { Ok(()) }
-    }
-
-    /// What to write, in a file or on the command line, for a unit to be known.
-    pub(super) fn with_unit(&self, unit: &str) -> String {
-        format!("the unit beside the name, as in {0} [{unit}]; or --unit '{0}={unit}'", self.text)
-    }
-
-    /// Whether a frequency is in Hz or another number of cycles.
-    pub(super) fn counts_cycles(&self) -> bool {
-        self.cycles || !(self.unit.is_si() || self.unit.dimension == Dimension::Rate)
-    }
+/// Whether a frequency was multiplied by a_T already.
+pub(super) fn is_reduced(column: &Column) -> bool {
+    let says_so = |word: &String| ["reduced", "at", "a", "shifted"].contains(&word.as_str());
+    column.quantity == Quantity::Frequency && words(&column.text).iter().any(says_so)
 }
 
 /// Units given on the command line, by the names of columns.
@@ -236,84 +161,29 @@ pub(super) struct Columns {
 
 impl Columns {
     /// The columns of a block by the names above it; `None` where it has none of a table of moduli.
-    pub(super) fn read(block: &Block<'_>, ignored: &[String], units: &GivenUnits) -> Result<Option<Self>, ModuliError> {
-        let head = block.head(&|name| {
-            let (name, _) = without_temperature(name);
-            Heading::parse(&name, &VOCABULARY).is_some()
-        });
-        let Some(line) = head.line else { return Ok(None) };
+    pub(super) fn read(
+        block: &Block<'_>,
+        ignored: &[String],
+        units: &GivenUnits,
+    ) -> Result<Option<Self>, ContentError> {
+        let header = Header::read(block, &VOCABULARY, Some(Dimension::Temperature));
+        let Some(line) = header.line else { return Ok(None) };
         let mut columns = Self { line, used: Vec::new(), left_out: Vec::new() };
-        let parsed: Vec<(Option<Heading<Quantity>>, Option<f64>)> = (0..head.names.len())
-            .map(|i| {
-                let (name, temperature) = without_temperature(&head.names[i]);
-                let unit_below = head.units.get(i).map_or("", Cow::as_ref);
-                (Heading::with_unit(&name, unit_below, &VOCABULARY), temperature)
-            })
-            .collect();
         let is_unknown = |heading: &Heading<Quantity>| matches!(heading.unit, HeadingUnit::Unknown(_));
-        for (index, text) in head.names.iter().enumerate() {
-            let (heading, temperature) = parsed[index].clone();
+        for (index, text) in header.names.iter().enumerate() {
             let is_ignored = ignored.iter().any(|other| other.trim() == text.trim());
             // `F [N]` is no frequency where there is one, and a time in counts need not be known.
             let is_other = |heading: &Heading<Quantity>| {
-                let alike = |(other, _): &(Option<Heading<Quantity>>, _)| {
-                    other.as_ref().is_some_and(|other| other.quantity == heading.quantity && !is_unknown(other))
-                };
-                is_unknown(heading) && (!heading.quantity.is_needed() || parsed.iter().any(alike))
+                let alike = |other: &Heading<Quantity>| other.quantity == heading.quantity && !is_unknown(other);
+                is_unknown(heading) && (!heading.quantity.is_needed() || header.headings.iter().flatten().any(alike))
             };
-            match heading.filter(|heading| !is_ignored && !is_other(heading)) {
-                Some(heading) => columns.add(index, text, heading, temperature, units)?,
+            match header.headings[index].as_ref().filter(|heading| !is_ignored && !is_other(heading)) {
+                Some(_) => columns.used.push(column(&header, index, units)?),
                 None if text.trim().is_empty() => (),
                 None => columns.left_out.push(text.trim().to_owned()),
             }
         }
         Ok(Some(columns))
-    }
-
-    fn add(
-        &mut self,
-        index: usize,
-        text: &str,
-        heading: Heading<Quantity>,
-        temperature: Option<f64>,
-        units: &GivenUnits,
-    ) -> Result<(), ModuliError> {
-        let quantity = heading.quantity;
-        let given = units.iter().find(|(name, _)| words(text).starts_with(&words(name)) || name.trim() == text.trim());
-        let unit = match (given, heading.unit) {
-            (Some((_, unit)), _) if unit.is_of(heading.dimension) => Some(*unit),
-            (Some((_, unit)), _) => {
-                let expected = format!("--unit of {}: one of {}", text.trim(), heading.dimension.units());
-                return Err(ModuliError::in_column(self.line, index, text, &unit.to_string(), expected));
-            }
-            (None, HeadingUnit::Known(unit)) => Some(unit),
-            (None, HeadingUnit::None) => None,
-            (None, HeadingUnit::Unknown(unit)) => {
-                let expected = format!("a unit: one of {}; --ignore leaves the column out", heading.dimension.units());
-                return Err(ModuliError::in_column(self.line, index, text, &unit, expected));
-            }
-        };
-        let angular = quantity == Quantity::AngularFrequency;
-        let cycles = quantity == Quantity::Frequency && unit.is_none_or(|unit| unit.dimension == Dimension::Rate);
-        let is_reduced = |word: &String| ["reduced", "at", "a", "shifted"].contains(&word.as_str());
-        let reduced = (angular || quantity == Quantity::Frequency) && words(text).iter().any(is_reduced);
-        if angular && unit.is_some_and(|unit| unit.name.ends_with("Hz")) {
-            let expected = "rad/s or 1/s of an angular frequency; a frequency is in Hz";
-            return Err(ModuliError::in_column(self.line, index, text, text, expected));
-        }
-        let quantity = if angular { Quantity::Frequency } else { quantity };
-        self.used.push(Column {
-            index,
-            text: text.trim().to_owned(),
-            quantity,
-            reduced,
-            unit: unit.unwrap_or(Unit::si(heading.dimension)),
-            names_unit: unit.is_some(),
-            cycles,
-            logarithm: heading.logarithm,
-            temperature,
-        });
-        Ok(())
     }
 
     pub(super) fn all(&self, quantities: &[Quantity]) -> Vec<&Column> {
@@ -324,6 +194,26 @@ impl Columns {
     pub(super) fn first(&self, kinds: &[&[Quantity]]) -> Vec<Column> {
         let found = kinds.iter().map(|quantities| self.all(quantities)).find(|found| !found.is_empty());
         found.unwrap_or_default().into_iter().cloned().collect()
+    }
+}
+
+/// A column in the unit that is given or named; of frequencies that are not called angular, 1/s and no unit are Hz.
+fn column(header: &Header<'_, Quantity>, index: usize, units: &GivenUnits) -> Result<Column, ContentError> {
+    let text = header.names[index].trim();
+    let given = units.iter().find(|(name, _)| words(text).starts_with(&words(name)) || name.trim() == text);
+    let column = header.column(index, UnitRule::Assumed, given.map(|(_, unit)| *unit));
+    let column = column.map_err(|error| error.or("`ignore` NAME leaves the column out"))?;
+    let is_rate = column.unit.dimension == Dimension::Rate;
+    match column.quantity {
+        Quantity::Frequency if is_rate || !column.names_unit => {
+            Ok(Column { unit: Unit::parse("Hz").unwrap_or(column.unit), ..column })
+        }
+        Quantity::AngularFrequency if column.unit.name.ends_with("Hz") => {
+            let expected = "rad/s or 1/s of an angular frequency; a frequency is in Hz";
+            Err(ContentError::value(header.line, &column.label(), "", expected))
+        }
+        Quantity::AngularFrequency => Ok(Column { quantity: Quantity::Frequency, ..column }),
+        _ => Ok(column),
     }
 }
 

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::moduli_error::ModuliError;
+use asperity::tables::ContentError;
+
 use super::shift_error::ShiftError;
 use crate::files::ReadError;
 
@@ -12,8 +13,8 @@ use crate::files::ReadError;
 pub enum FitError {
     #[error(transparent)]
     Read(#[from] ReadError),
-    #[error("{}:{error}", .path.display())]
-    Moduli { path: PathBuf, error: ModuliError },
+    #[error("{}", .error.within(.path))]
+    Moduli { path: PathBuf, error: ContentError },
     #[error("{}: {error}", .path.display())]
     Shift { path: PathBuf, error: ShiftError },
     #[error("{}: the workbook cannot be read: {error}", .path.display())]

@@ -172,25 +172,25 @@ impl FittedModuli {
         )
     }
 
-    /// The options as a command line has them.
+    /// The options that were given.
     fn options_in_words(&self) -> String {
-        let mut text = format!("--error {}", plain(self.options.error));
+        let mut text = format!("`error` {}", plain(self.options.error));
         if let Some(wlf) = self.options.wlf {
-            text += &format!(" --wlf {},{},{}", plain(wlf.c1), plain(wlf.c2), plain(wlf.reference_temperature));
+            text += &format!(" `wlf` {},{},{}", plain(wlf.c1), plain(wlf.c2), plain(wlf.reference_temperature));
         }
         if self.options.viscosity {
-            text += " --viscosity";
+            text += " `viscosity`";
         }
         if let Some(shifts) = &self.options.shifts {
-            text += &format!(" --shifts {}", name_of(shifts));
+            text += &format!(" `shifts` {}", name_of(shifts));
         }
         if let Some(frequency) = self.options.frequency {
-            text += &format!(" --frequency {}Hz", plain(frequency / TAU));
+            text += &format!(" `frequency` {}Hz", plain(frequency / TAU));
         }
         if self.options.shear {
-            text += " --shear";
+            text += " `shear`";
         }
-        text + &self.options.ignored.iter().map(|name| format!(" --ignore '{name}'")).collect::<String>()
+        text + &self.options.ignored.iter().map(|name| format!(" `ignore` '{name}'")).collect::<String>()
     }
 
     /// Whether the data are over frequencies in Hz.

@@ -1,10 +1,9 @@
 //! Tables of measured moduli, as people and instruments write them: what each row says, in SI units.
 
 use asperity::scene::Wlf;
-use asperity::tables::{self, Block};
+use asperity::tables::{Block, ContentError, decode, shortened};
 
 use super::columns::{EXPECTED, GivenUnits};
-use super::moduli_error::ModuliError;
 use super::sample::{Sample, Test};
 use super::table::Table;
 
@@ -49,14 +48,12 @@ pub(super) struct Reading<'a> {
 
 impl MeasuredModuli {
     /// Reads all tables of moduli in the bytes of a file.
-    pub(super) fn parse(bytes: &[u8], reading: &Reading<'_>) -> Result<Self, ModuliError> {
-        let text = tables::decode(bytes)
-            .map_err(|_| ModuliError::in_line(1, tables::NotText::FOUND, tables::NotText::EXPECTED))?;
-        Self::parse_text(&text, reading)
+    pub(super) fn parse(bytes: &[u8], reading: &Reading<'_>) -> Result<Self, ContentError> {
+        Self::parse_text(&decode(bytes)?, reading)
     }
 
     /// The same from text.
-    pub(super) fn parse_text(text: &str, reading: &Reading<'_>) -> Result<Self, ModuliError> {
+    pub(super) fn parse_text(text: &str, reading: &Reading<'_>) -> Result<Self, ContentError> {
         let blocks = Block::all(text, true);
         let mut tables: Vec<Table<'_>> = Vec::new();
         let (mut notes, mut errors) = (Vec::new(), Vec::new());
@@ -80,14 +77,14 @@ impl MeasuredModuli {
         }
         let Some(first) = tables.first() else { return Err(no_table(text, &blocks)) };
         if let Some(name) = reading.ignored.iter().find(|name| !first.has(name, text)) {
-            return Err(ModuliError::in_line(first.line, format!("--ignore {name}"), "one of the headings"));
+            return Err(refused(first.line, &format!("`ignore` {name}"), "one of the headings"));
         }
         let (test, in_hertz, reduced) = (first.test(), first.in_hertz(), first.is_reduced());
         let mut points = Vec::new();
         for table in &tables {
             if (table.test(), table.is_reduced()) != (test, reduced) {
                 let expected = "tables of one kind in a file: all of oscillation, or all of relaxation";
-                return Err(ModuliError::in_line(table.line, "another kind of table", expected));
+                return Err(refused(table.line, "another kind of table", expected));
             }
             if tables.len() > 1 {
                 table.check_temperature()?;
@@ -100,7 +97,7 @@ impl MeasuredModuli {
         }
         notes.splice(0..0, first.notes(reading, tables.len()));
         if points.is_empty() {
-            return Err(ModuliError::in_line(first.line + 1, "", "a row of numbers"));
+            return Err(refused(first.line + 1, "", "a row of numbers"));
         }
         Ok(Self { points, test, in_hertz, reduced, notes })
     }
@@ -130,7 +127,7 @@ impl MeasuredModuli {
     }
 
     /// The points at the reference temperature by known constants: their moduli unchanged.
-    pub(super) fn at_reference(&self, wlf: impl Fn(f64) -> Wlf) -> Result<Vec<Sample>, ModuliError> {
+    pub(super) fn at_reference(&self, wlf: impl Fn(f64) -> Wlf) -> Result<Vec<Sample>, ContentError> {
         /// Far above the shift of any rubber: closer to the pole, a fit would depend on the constants alone.
         const LARGEST: f64 = 1e60;
         let factor = |point: &MeasuredPoint| {
@@ -144,27 +141,32 @@ impl MeasuredModuli {
                 "more than TREF - C2 = {:.2} K, and not close to it: there the shift has its pole",
                 wlf.lowest_temperature()
             );
-            Err(ModuliError::in_line(point.line, format!("a temperature of {temperature} K"), expected))
+            Err(refused(point.line, &format!("a temperature of {temperature} K"), &expected))
         };
         let shifted = |point: &MeasuredPoint| Ok(point.sample.shifted(factor(point)?, self.test));
         self.points.iter().map(shifted).collect()
     }
 }
 
+/// The error of what was `found` in a line.
+fn refused(line: usize, found: &str, expected: &str) -> ContentError {
+    ContentError::value(Some(line), "", &shortened(found), expected)
+}
+
 /// No table has what is needed: the nearest that was found, or what is expected.
-fn no_table(text: &str, blocks: &[Block<'_>]) -> ModuliError {
+fn no_table(text: &str, blocks: &[Block<'_>]) -> ContentError {
     match blocks.iter().max_by_key(|block| block.rows) {
-        None if text.trim().is_empty() => ModuliError::in_line(1, "", "a header line, then rows"),
+        None if text.trim().is_empty() => refused(1, "", "a header line, then rows"),
         None => {
             let begins_with_digit =
                 |(_, line): &(usize, &str)| line.trim_start().starts_with(|c: char| c.is_ascii_digit());
             let (line, found) =
                 (1..).zip(text.lines()).find(begins_with_digit).unwrap_or((text.lines().count() + 1, ""));
-            ModuliError::in_line(line, found, "a row of numbers")
+            refused(line, found, "a row of numbers")
         }
         Some(block) => {
             let (line, header) = block.above.last().copied().unwrap_or((block.first, ""));
-            ModuliError::in_line(line, header, EXPECTED)
+            refused(line, header, EXPECTED)
         }
     }
 }
@@ -189,7 +191,11 @@ mod tests {
     }
 
     fn refusal(text: &str) -> String {
-        MeasuredModuli::parse(text.as_bytes(), &READING).unwrap_err().to_string()
+        with_line(MeasuredModuli::parse(text.as_bytes(), &READING).unwrap_err())
+    }
+
+    fn with_line(error: ContentError) -> String {
+        format!("{}: {error}", error.line.unwrap_or_default())
     }
 
     /// 2 Hz, E' = 3 MPa, E'' = 0.6 MPa, 20 °C, however they are written.
@@ -290,25 +296,31 @@ mod tests {
             MeasuredModuli::parse(text.as_bytes(), &Reading { ignored: &ignored, ..READING })
         };
         assert_eq!(ignored("Temperature").unwrap().points[0].temperature, None);
-        assert_eq!(ignored("temp").unwrap_err().to_string(), "1: --ignore temp: expected one of the headings");
+        assert_eq!(with_line(ignored("temp").unwrap_err()), "1: `ignore` temp: expected one of the headings");
     }
 
     #[test]
     fn what_is_wrong_is_refused_with_line_and_column() {
         let head = "f [Hz],E' [MPa],E'' [MPa]";
         let cases = [
-            (format!("{head}\n1,2,3\n\n2,x,3\n3,2,1"), "4: column 2 (E' [MPa]) = \"x\": expected a number above 0"),
-            (format!("{head}\n1,2,-3"), "2: column 3 (E'' [MPa]) = \"-3\": expected a number above 0"),
-            (format!("{head}\n0,2,3"), "2: column 1 (f [Hz]) = \"0\": expected a number above 0"),
-            (format!("{head}\n1,,3"), "2: column 2 (E' [MPa]): expected a number above 0"),
-            (format!("{head}\n1,1e-40,3"), "2: column 2 (E' [MPa]) = \"1e-40\": expected a number above 0"),
+            (
+                format!("{head}\n1,2,3\n\n2,x,3\n3,2,1"),
+                "4: column 2 (E' [MPa]) = \"x\": expected a number from 1e-30 to 1e30 in Pa",
+            ),
+            (format!("{head}\n1,2,-3"), "2: column 3 (E'' [MPa]) = \"-3\": expected a number from 1e-30 to 1e30 in Pa"),
+            (format!("{head}\n0,2,3"), "2: column 1 (f [Hz]) = \"0\": expected a number from 1e-30 to 1e30 in rad/s"),
+            (format!("{head}\n1,,3"), "2: column 2 (E' [MPa]): expected a number from 1e-30 to 1e30 in Pa"),
+            (
+                format!("{head}\n1,1e-40,3"),
+                "2: column 2 (E' [MPa]) = \"1e-40\": expected a number from 1e-30 to 1e30 in Pa",
+            ),
             (head.into(), "2: expected a row of numbers"),
             (String::new(), "1: expected a header line, then rows"),
             ("f [Hz],E'' [Pa]\n1,2".into(), "1: expected a column of the storage modulus: E' [MPa]"),
             ("f [Hz],E' [Pa]\n1,2".into(), "1: expected a column of the loss: E'' [MPa] or tan delta"),
             (
                 "T [°C],E' [Pa],E'' [Pa]\n1,2,3".into(),
-                "1: expected a frequency column, f [Hz] or omega [rad/s]; or --frequency",
+                "1: expected a frequency column, f [Hz] or omega [rad/s]; or `frequency`",
             ),
             ("f [Hz],|E*| [Pa]\n1,2".into(), "1: expected a column of the phase beside |E*|"),
             (
@@ -322,21 +334,21 @@ mod tests {
             (
                 "f [Hz],E' [Pa],E'' [Pa],temperature\n1,2,3,4".into(),
                 "2: column 4 (temperature) = \"4\": expected the unit beside the name, as in temperature [°C]; or \
-                --unit",
+                `unit`",
             ),
             (
                 "f [Hz],E' [Pa],E'' [Pa],T [°C]\n1,2,3,-300".into(),
-                "2: column 4 (T [°C]) = \"-300\": expected a temperature above 0 K",
+                "2: column 4 (T [°C]) = \"-300\": expected a number above 0 in K",
             ),
             (
                 "f [Hz],E' [furlong],E'' [Pa]\n1,2,3".into(),
-                "1: column 2 (E' [furlong]) = \"furlong\": expected a unit: one of Pa",
+                "1: unit of column 2 (E' [furlong]) = \"furlong\": expected one of Pa",
             ),
             (
                 "f [Hz],E' [MPa],E'' [kPa],tan d\n1,2,0.2,0.1".into(),
                 "2: column 4 (tan d) = \"0.1\": expected 0.0001, which",
             ),
-            ("omega [Hz],E' [Pa],E'' [Pa]\n1,2,3".into(), "1: column 1 = \"omega [Hz]\": expected rad/s or 1/s"),
+            ("omega [Hz],E' [Pa],E'' [Pa]\n1,2,3".into(), "1: column 1 (omega [Hz]): expected rad/s or 1/s"),
             (
                 "f [Hz];E' [Pa];E'' [Pa]\n1,5;2;3\n2.5;2;3".into(),
                 "3: column 1 (f [Hz]) = \"2.5\": expected numbers with",
@@ -348,21 +360,21 @@ mod tests {
             ),
             (
                 "f,E',E''\n1,20,3".into(),
-                "2: column 2 (E') = \"20\": expected the unit beside the name, as in E' [MPa]; or --unit 'E'=MPa': in \
+                "2: column 2 (E') = \"20\": expected the unit beside the name, as in E' [MPa]; or `unit` 'E'=MPa': in \
                 Pa it",
             ),
             (
                 "# moduli in MPa\nf [Hz],E',E''\n1,2e6,3".into(),
-                "1: moduli in MPa: expected the unit beside the name, as in E'",
+                "1: unit = \"moduli in MPa\": expected the unit beside the name of its column, as in E' [MPa]; or `unit`",
             ),
-            ("f [Hz],|E*| [Pa],delta\n1,2,3".into(), "1: column 3 = \"delta\": expected the unit beside the name"),
+            ("f [Hz],|E*| [Pa],delta\n1,2,3".into(), "1: column 3 (delta): expected the unit beside the name"),
             (
                 "f [Hz],E' [Pa] 20 °C,E' [Pa] 30 °C,E'' [Pa] 20 °C,E'' [Pa] 40 °C\n1,2,3,4,5\n".into(),
-                "1: column 5 = \"E'' [Pa] 40 °C\": expected one column of its kind at 303.15 K",
+                "1: column 5 (E'' [Pa] 40 °C): expected one column of its kind at 303.15 K",
             ),
             (
                 "T=20;\nf [Hz] E' [Pa] E'' [Pa]\n1 2 3\n2 3 4\n\nT=30;\nf [Hz] E' [Pa] E'' [Pa]\n1 2 3\n2 3 4\n".into(),
-                "1: T=20: expected a unit of temperature, as in 20 °C; or --unit 'T=°C'",
+                "1: T=20: expected a unit of temperature, as in 20 °C; or `unit` 'T=°C'",
             ),
             (
                 "f,E',E''\n\n1,\"2,000.0\",\"3,000.0\"\n".into(),
@@ -411,7 +423,7 @@ mod tests {
     #[test]
     fn temperatures_at_and_near_the_pole_are_refused() {
         for temperature in [193.15, 150.0, 194.0] {
-            let refusal = at(temperature).at_reference(law).unwrap_err().to_string();
+            let refusal = with_line(at(temperature).at_reference(law).unwrap_err());
             let wanted = format!("7: a temperature of {temperature} K: expected more than TREF - C2 = 193.15");
             assert!(refusal.starts_with(&wanted), "{refusal}");
         }

@@ -3,16 +3,12 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use asperity::scene::Wlf;
-use asperity::tables::{Block, Line, NumberStyle, is_missing, words};
+use asperity::tables::{ABOVE_ZERO, Block, ContentError, Line, NumberStyle, POSITIVE, Row, words};
 
-use super::columns::{Column, Columns, Quantity};
+use super::columns::{self, Column, Columns, Quantity, with_unit};
 use super::measured::{MeasuredPoint, Reading};
-use super::moduli_error::ModuliError;
 use super::sample::{Sample, Test};
-use super::stated_temperature::{setting, temperatures_above};
-
-/// The size that a number in SI units may have in a scene.
-const POSITIVE: &str = "a number above 0 (from 1e-30 to 1e30 in SI units)";
+use super::stated_temperature::{Setting, setting, temperatures_above};
 
 /// E' of any rubber is above it, Pa: without a unit, a modulus below it is in another one.
 const SOFTEST: f64 = 1e3;
@@ -53,20 +49,20 @@ impl<'a> Table<'a> {
         block: &Block<'a>,
         before: Option<&Self>,
         reading: &Reading<'_>,
-    ) -> Result<Option<Self>, ModuliError> {
+    ) -> Result<Option<Self>, ContentError> {
         let found = Self::with_own_header(block, reading)?;
         let alike = |table: &&Self| (table.block.separator, table.block.columns) == (block.separator, block.columns);
         match before.filter(alike).filter(|_| found.is_none()) {
             Some(before) => {
                 let header: Vec<Line<'a>> =
                     before.block.above.iter().copied().filter(|(line, _)| *line >= before.line).collect();
-                Self::with_own_header(&block.below(&header), reading)
+                Self::with_own_header(&block.with_header(&header), reading)
             }
             None => Ok(found),
         }
     }
 
-    fn with_own_header(block: &Block<'a>, reading: &Reading<'_>) -> Result<Option<Self>, ModuliError> {
+    fn with_own_header(block: &Block<'a>, reading: &Reading<'_>) -> Result<Option<Self>, ContentError> {
         use Quantity::{Loss, LossTangent, Set, SetTemperature, ShearLoss, ShiftFactor, Temperature};
         let Some(columns) = Columns::read(block, reading.ignored, reading.units)? else { return Ok(None) };
         let Some(mut chosen) = Chosen::of(&columns, reading)? else { return Ok(None) };
@@ -93,13 +89,13 @@ impl<'a> Table<'a> {
     }
 
     /// There is one column of temperatures, and columns in use have a unit or may be taken in SI units.
-    fn check_columns(&self) -> Result<(), ModuliError> {
+    fn check_columns(&self) -> Result<(), ContentError> {
         if let Some(error) = twin(self.line, &self.columns.first(&[&[Quantity::Temperature]])) {
             return Err(error);
         }
         let of_curve = |curve: &'_ Curve| [curve.at.clone(), Some(curve.modulus.clone()), curve.loss.clone()];
         let used = self.curves.iter().flat_map(of_curve).flatten().chain(self.temperature.clone());
-        used.into_iter().try_for_each(|column| column.check_unit(&self.block, self.line))
+        used.into_iter().try_for_each(|column| columns::check_unit(&column, &self.block, self.line))
     }
 
     /// The temperature of a table whose rows have none: in its heading lines, `Temperature: 20 °C`.
@@ -109,18 +105,20 @@ impl<'a> Table<'a> {
         }
         let mut lines = self.block.above.iter().rev();
         match lines.find_map(|(line, text)| Some((*line, setting(text, reading.units)?))) {
-            Some((_, Ok(kelvin))) => self.curves.iter_mut().for_each(|curve| curve.temperature = Some(kelvin)),
-            Some((line, Err(text))) => self.bare_temperature = Some((line, text)),
+            Some((_, Setting::Kelvin(kelvin))) => {
+                self.curves.iter_mut().for_each(|curve| curve.temperature = Some(kelvin))
+            }
+            Some((line, Setting::Bare(text))) => self.bare_temperature = Some((line, text)),
             None => (),
         }
     }
 
     /// Of several tables each temperature must be known.
-    pub(super) fn check_temperature(&self) -> Result<(), ModuliError> {
+    pub(super) fn check_temperature(&self) -> Result<(), ContentError> {
         let Some((line, text)) = &self.bare_temperature else { return Ok(()) };
         let name = text.split(['=', ':']).next().unwrap_or_default().trim();
-        let expected = format!("a unit of temperature, as in 20 °C; or --unit '{name}=°C'");
-        Err(ModuliError::in_line(*line, text, expected))
+        let expected = format!("a unit of temperature, as in 20 °C; or `unit` '{name}=°C'");
+        Err(ContentError::value(Some(*line), "", text, &expected))
     }
 
     pub(super) fn has(&self, name: &str, text: &str) -> bool {
@@ -138,17 +136,17 @@ impl<'a> Table<'a> {
     }
 
     pub(super) fn in_hertz(&self) -> bool {
-        self.curves[0].at.as_ref().is_none_or(Column::counts_cycles)
+        self.curves[0].at.as_ref().is_none_or(columns::counts_cycles)
     }
 
     pub(super) fn is_reduced(&self) -> bool {
-        self.curves[0].at.as_ref().is_some_and(|column| column.reduced)
+        self.curves[0].at.as_ref().is_some_and(columns::is_reduced)
     }
 
     /// What was found and assumed.
     pub(super) fn notes(&self, reading: &Reading<'_>, tables: usize) -> Vec<String> {
         let curve = &self.curves[0];
-        let name = |column: &Column| format!("column {} ({})", column.index + 1, column.text);
+        let name = Column::label;
         let used = [curve.at.as_ref(), Some(&curve.modulus), curve.loss.as_ref(), self.temperature.as_ref()];
         let read: Vec<String> = used.into_iter().flatten().map(name).collect();
         let many = if tables > 1 { format!("{tables} tables, the first with ") } else { String::new() };
@@ -167,11 +165,11 @@ impl<'a> Table<'a> {
         let shear = self.is_shear(&curve.modulus, reading);
         if shear {
             let nu = reading.poisson_ratio;
-            let text = format!("moduli of shear: E = 2(1 + ν) G, with ν = {nu} (--poisson-ratio)");
+            let text = format!("moduli of shear: E = 2(1 + ν) G, with ν = {nu} (`poisson_ratio`)");
             notes.push(text);
         } else if !names_letter(&curve.modulus.text) {
             let text = format!(
-                "{} does not say whether of tension or shear: E is assumed, --shear says G",
+                "{} does not say whether of tension or shear: E is assumed, `shear` says G",
                 name(&curve.modulus)
             );
             notes.push(text);
@@ -203,16 +201,14 @@ impl<'a> Table<'a> {
         text: &str,
         reading: &Reading<'_>,
         points: &mut Vec<MeasuredPoint>,
-    ) -> Result<usize, ModuliError> {
+    ) -> Result<usize, ContentError> {
         let mut zeros = 0;
-        let mut row = Row { fields: Vec::new(), line: 0, style: NumberStyle::of(&self.block) };
-        for (line, content) in self.block.lines(text) {
-            row.line = line;
-            row.fields = self.block.separator.split(content).into_iter().map(|field| field.into_owned()).collect();
+        let mut style = self.block.style();
+        for row in self.block.rows(text) {
             for curve in &self.curves {
-                match self.point(curve, &mut row, reading)? {
+                match self.point(curve, &mut Numbers { row: &row, style: &mut style }, reading)? {
                     Some(point) => points.push(point),
-                    None if row.is_empty(&curve.modulus) => (),
+                    None if curve.modulus.is_empty(&row) => (),
                     None => zeros += 1,
                 }
             }
@@ -221,9 +217,15 @@ impl<'a> Table<'a> {
     }
 
     /// The point of a curve in a row; `None` where the curve has none there, or no loss.
-    fn point(&self, curve: &Curve, row: &mut Row, reading: &Reading<'_>) -> Result<Option<MeasuredPoint>, ModuliError> {
+    fn point(
+        &self,
+        curve: &Curve,
+        row: &mut Numbers<'_>,
+        reading: &Reading<'_>,
+    ) -> Result<Option<MeasuredPoint>, ContentError> {
         let has_many = self.curves.len() > 1;
-        if has_many && row.is_empty(&curve.modulus) && curve.loss.as_ref().is_none_or(|loss| row.is_empty(loss)) {
+        if has_many && curve.modulus.is_empty(row.row) && curve.loss.as_ref().is_none_or(|loss| loss.is_empty(row.row))
+        {
             return Ok(None);
         }
         let at = match &curve.at {
@@ -233,8 +235,8 @@ impl<'a> Table<'a> {
         self.check_other_frequency(at, row)?;
         let modulus = row.positive(&curve.modulus)?;
         if modulus < SOFTEST && curve.modulus.assumed_unit().is_some() {
-            let expected = format!("{}: in Pa it is too soft for rubber", curve.modulus.with_unit("MPa"));
-            return Err(ModuliError::of(&curve.modulus, row.line, row.field(&curve.modulus), expected));
+            let expected = format!("{}: in Pa it is too soft for rubber", with_unit(&curve.modulus, "MPa"));
+            return Err(row.refuse(&curve.modulus, &expected));
         }
         let Some((storage, loss)) = response(modulus, curve, row)? else { return Ok(None) };
         self.check_tangent(storage, loss, curve, row)?;
@@ -246,26 +248,26 @@ impl<'a> Table<'a> {
         };
         let shift = self.shift.as_ref().map(|column| row.positive(column)).transpose()?;
         let set = self.set.as_ref().map(|column| row.number(column)).transpose()?.flatten();
-        Ok(Some(MeasuredPoint { line: row.line, sample, temperature, shift, set }))
+        Ok(Some(MeasuredPoint { line: row.row.line, sample, temperature, shift, set }))
     }
 
     /// A frequency in Hz and an angular one must be the same.
-    fn check_other_frequency(&self, at: f64, row: &mut Row) -> Result<(), ModuliError> {
+    fn check_other_frequency(&self, at: f64, row: &mut Numbers<'_>) -> Result<(), ContentError> {
         let Some(column) = &self.other_frequency else { return Ok(()) };
         /// Share by which rounded columns may differ.
         const ROUNDING: f64 = 0.02;
         match row.number(column)? {
             Some(other) if (other / at - 1.0).abs() > ROUNDING => {
                 let expected =
-                    format!("the same as the other column of frequencies, {at:.4e} rad/s; --ignore leaves one out");
-                Err(ModuliError::of(column, row.line, &format!("{other:.4e} rad/s"), expected))
+                    format!("the same as the other column of frequencies, {at:.4e} rad/s; `ignore` leaves one out");
+                Err(column.refuse(row.row.line, &format!("{other:.4e} rad/s"), &expected))
             }
             _ => Ok(()),
         }
     }
 
     /// tan δ must be E''/E': if not, a unit is wrong or columns are mixed up.
-    fn check_tangent(&self, storage: f64, loss: f64, curve: &Curve, row: &mut Row) -> Result<(), ModuliError> {
+    fn check_tangent(&self, storage: f64, loss: f64, curve: &Curve, row: &mut Numbers<'_>) -> Result<(), ContentError> {
         let Some(column) = self.tangent.as_ref().filter(|_| self.curves.len() == 1) else { return Ok(()) };
         let Some(tangent) = row.number(column)?.filter(|tangent| *tangent > 0.0) else { return Ok(()) };
         let ratio = loss / storage / tangent;
@@ -275,12 +277,12 @@ impl<'a> Table<'a> {
         }
         let names = (curve.loss.as_ref().map_or("", |loss| loss.text.as_str()), curve.modulus.text.as_str());
         let expected = format!(
-            "{:.4}, which {} over {} are: are their units right? --ignore leaves a column out",
+            "{:.4}, which {} over {} are: are their units right? `ignore` leaves a column out",
             loss / storage,
             names.0,
             names.1
         );
-        Err(ModuliError::of(column, row.line, &tangent.to_string(), expected))
+        Err(column.refuse(row.row.line, &tangent.to_string(), &expected))
     }
 }
 
@@ -295,7 +297,7 @@ fn names_letter(text: &str) -> bool {
 }
 
 /// Storage and loss modulus of a row; `None` where the loss is 0.
-fn response(modulus: f64, curve: &Curve, row: &mut Row) -> Result<Option<(f64, f64)>, ModuliError> {
+fn response(modulus: f64, curve: &Curve, row: &mut Numbers<'_>) -> Result<Option<(f64, f64)>, ContentError> {
     let Some(column) = &curve.loss else { return Ok(Some((modulus, 0.0))) };
     if row.number(column)? == Some(0.0) {
         return Ok(None);
@@ -308,7 +310,7 @@ fn response(modulus: f64, curve: &Curve, row: &mut Row) -> Result<Option<(f64, f
         _ => return Ok(Some((modulus, loss))),
     };
     if angle >= FRAC_PI_2 {
-        return Err(ModuliError::of(column, row.line, &angle.to_degrees().to_string(), "a phase below 90°"));
+        return Err(column.refuse(row.row.line, &angle.to_degrees().to_string(), "a phase below 90°"));
     }
     Ok(Some(if is_complex {
         (modulus * angle.cos(), modulus * angle.sin())
@@ -319,44 +321,31 @@ fn response(modulus: f64, curve: &Curve, row: &mut Row) -> Result<Option<(f64, f
     }))
 }
 
-/// The fields of a row.
-struct Row {
-    line: usize,
-    fields: Vec<String>,
-    style: NumberStyle,
+/// Reads the numbers of a row.
+struct Numbers<'r> {
+    row: &'r Row<'r>,
+    style: &'r mut NumberStyle,
 }
 
-impl Row {
-    fn field(&self, column: &Column) -> &str {
-        self.fields.get(column.index).map_or("", String::as_str)
-    }
-
-    fn is_empty(&self, column: &Column) -> bool {
-        let field = self.field(column);
-        field.is_empty() || is_missing(field)
-    }
-
+impl Numbers<'_> {
     /// The number in SI units, if the field is one.
-    fn number(&mut self, column: &Column) -> Result<Option<f64>, ModuliError> {
-        let field = self.fields.get(column.index).map_or("", String::as_str);
-        let written = self.style.read(field);
-        let written = written.map_err(|_| ModuliError::of(column, self.line, field, NumberStyle::EXPECTED))?;
-        Ok(written.map(|written| column.to_si(written)).filter(|value| value.is_finite()))
+    fn number(&mut self, column: &Column) -> Result<Option<f64>, ContentError> {
+        column.number(self.row, self.style)
     }
 
-    fn positive(&mut self, column: &Column) -> Result<f64, ModuliError> {
-        let value = self.number(column)?.filter(|value| (1e-30..=1e30).contains(value));
-        value.ok_or_else(|| ModuliError::of(column, self.line, self.field(column), POSITIVE))
+    fn positive(&mut self, column: &Column) -> Result<f64, ContentError> {
+        column.read(self.row, self.style, POSITIVE)
     }
 
-    fn temperature(&mut self, column: &Column) -> Result<f64, ModuliError> {
-        let value = self.number(column)?;
-        if !column.names_unit && value.is_some_and(|value| value < Wlf::COLDEST) {
-            let expected = format!("{}: in K it is too cold for rubber", column.with_unit("°C"));
-            return Err(ModuliError::of(column, self.line, self.field(column), expected));
+    fn temperature(&mut self, column: &Column) -> Result<f64, ContentError> {
+        if !column.names_unit && self.number(column)?.is_some_and(|value| value < Wlf::COLDEST) {
+            return Err(self.refuse(column, &format!("{}: in K it is too cold for rubber", with_unit(column, "°C"))));
         }
-        let value = value.filter(|value| *value > 0.0);
-        value.ok_or_else(|| ModuliError::of(column, self.line, self.field(column), "a temperature above 0 K"))
+        column.read(self.row, self.style, ABOVE_ZERO)
+    }
+
+    fn refuse(&self, column: &Column, expected: &str) -> ContentError {
+        column.refuse(self.row.line, column.field(self.row), expected)
     }
 }
 
@@ -370,7 +359,7 @@ struct Chosen {
 
 impl Chosen {
     /// `None` where there are no moduli.
-    fn of(columns: &Columns, reading: &Reading<'_>) -> Result<Option<Self>, ModuliError> {
+    fn of(columns: &Columns, reading: &Reading<'_>) -> Result<Option<Self>, ContentError> {
         use Quantity::{
             Complex, Frequency, Loss, LossTangent, Phase, Relaxation, ShearComplex, ShearLoss, ShearRelaxation,
             ShearStorage, Storage, Time,
@@ -388,7 +377,7 @@ impl Chosen {
             Some(_) => &[&[Phase], &[LossTangent]],
             None => &[&[Loss], &[ShearLoss], &[LossTangent], &[Phase]],
         });
-        let missing = |expected: &str| Err(ModuliError::in_line(columns.line, "", expected));
+        let missing = |expected: &str| Err(ContentError::value(Some(columns.line), "", "", expected));
         match (kind, losses.is_empty()) {
             (None, true) => Ok(None),
             (None, false) => missing("a column of the storage modulus: E' [MPa]"),
@@ -397,7 +386,7 @@ impl Chosen {
             }
             (Some(_), true) => missing("a column of the loss: E'' [MPa] or tan delta"),
             _ if at.is_empty() && reading.frequency.is_none() => {
-                missing("a frequency column, f [Hz] or omega [rad/s]; or --frequency 10Hz for all rows")
+                missing("a frequency column, f [Hz] or omega [rad/s]; or `frequency` 10Hz for all rows")
             }
             _ => Ok(Some(Self { at, moduli, losses })),
         }
@@ -410,7 +399,7 @@ impl Chosen {
     }
 
     /// One curve, or a pair of columns for each temperature.
-    fn curves(&self, block: &Block<'_>, columns: &Columns, reading: &Reading<'_>) -> Result<Vec<Curve>, ModuliError> {
+    fn curves(&self, block: &Block<'_>, columns: &Columns, reading: &Reading<'_>) -> Result<Vec<Curve>, ContentError> {
         let Self { at, moduli, losses } = self;
         if let [modulus] = &moduli[..] {
             return match twin(columns.line, at).or_else(|| twin(columns.line, losses)) {
@@ -419,7 +408,7 @@ impl Chosen {
                     at: at.first().cloned(),
                     modulus: modulus.clone(),
                     loss: losses.first().cloned(),
-                    temperature: modulus.temperature,
+                    temperature: modulus.condition,
                 }]),
             };
         }
@@ -428,15 +417,15 @@ impl Chosen {
             let given =
                 format!("{} columns of moduli, {} of losses, {} of frequencies", moduli.len(), losses.len(), at.len());
             let expected = "a pair of moduli a temperature, and one frequency or one for each";
-            return Err(ModuliError::in_line(columns.line, given, expected));
+            return Err(ContentError::value(Some(columns.line), "", &given, expected));
         }
         let above = temperatures_above(block, columns.line, reading.units)?;
         let pairs = Pairs { above: &above, line: columns.line };
         let curve = |(i, modulus): (usize, &Column)| {
             let temperature = pairs.temperature(modulus).ok_or_else(|| {
                 let expected = "its temperature, in its name (E' [MPa] 20 °C) or in the line above; or one column of a \
-                                kind: --ignore NAME";
-                ModuliError::of(modulus, columns.line, &modulus.text, expected)
+                                kind: `ignore` NAME";
+                modulus.refuse(columns.line, "", expected)
             })?;
             let at = if at.len() == 1 { at.first().cloned() } else { pairs.partner(at, i, temperature)? };
             let loss = pairs.partner(losses, i, temperature)?;
@@ -455,12 +444,12 @@ struct Pairs<'c> {
 
 impl Pairs<'_> {
     fn temperature(&self, column: &Column) -> Option<f64> {
-        column.temperature.or_else(|| self.above.get(column.index).copied().flatten())
+        column.condition.or_else(|| self.above.get(column.index).copied().flatten())
     }
 
     /// The column for place `i`, where its temperature is that one or none is named; else the only one of that
     /// temperature.
-    fn partner(&self, columns: &[Column], i: usize, temperature: f64) -> Result<Option<Column>, ModuliError> {
+    fn partner(&self, columns: &[Column], i: usize, temperature: f64) -> Result<Option<Column>, ContentError> {
         let Some(own) = columns.get(i) else { return Ok(None) };
         if self.temperature(own).is_none_or(|other| other == temperature) {
             return Ok(Some(own.clone()));
@@ -470,15 +459,15 @@ impl Pairs<'_> {
             (Some(found), None) => Ok(Some(found.clone())),
             _ => {
                 let expected = format!("one column of its kind at {temperature:.2} K");
-                Err(ModuliError::of(own, self.line, &own.text, expected))
+                Err(own.refuse(self.line, "", &expected))
             }
         }
     }
 }
 
 /// Two columns of one kind, where one is used, are one too many.
-fn twin(line: usize, columns: &[Column]) -> Option<ModuliError> {
+fn twin(line: usize, columns: &[Column]) -> Option<ContentError> {
     let [first, second, ..] = columns else { return None };
-    let expected = format!("one column of a kind: {} is there already; ignore one by --ignore NAME", first.text);
-    Some(ModuliError::of(second, line, &second.text, expected))
+    let expected = format!("one column of a kind: {} is there already; ignore one by `ignore` NAME", first.text);
+    Some(second.refuse(line, "", &expected))
 }

@@ -3,13 +3,12 @@
 use std::f64::consts::LN_10;
 use std::path::Path;
 
-use asperity::tables::{Block, NumberStyle, decode};
+use asperity::tables::{ABOVE_ZERO, Block, ContentError, Row, decode};
 
 use super::columns::{Column, Columns, Quantity};
 use super::compound::{Compound, FitErrors};
 use super::error::FitError;
 use super::measured::{MeasuredModuli, MeasuredPoint};
-use super::moduli_error::ModuliError;
 use super::options::{FitOptions, WlfConstants};
 use super::sample::Sample;
 use super::shift::{Factor, Isotherm, Superposition, law_of, rms_with, superpose};
@@ -94,7 +93,7 @@ impl Shift {
     }
 
     /// The samples at the reference temperature.
-    pub(super) fn samples(&self, measured: &MeasuredModuli) -> Result<Vec<Sample>, ModuliError> {
+    pub(super) fn samples(&self, measured: &MeasuredModuli) -> Result<Vec<Sample>, ContentError> {
         match self {
             Self::None => Ok(measured.samples()),
             Self::Known(wlf, _) => measured.at_reference(|temperature| wlf.at(temperature)),
@@ -189,7 +188,7 @@ impl Shift {
         }
         let constants = found.law.map_or_else(String::new, |(law, _)| {
             format!(
-                ": --wlf {},{},{}",
+                ": `wlf` {},{},{}",
                 short(law.c1, 4),
                 short(law.c2, 4),
                 plain(rounded(law.reference_temperature, 6))
@@ -197,7 +196,7 @@ impl Shift {
         });
         Some(format!(
             "the WLF constants do not put the temperatures together: they leave {} of one curve, factors of their own \
-             {} (leave --wlf out){constants}",
+             {} (leave `wlf` out){constants}",
             percent(with, 3),
             percent(found.rms, 3)
         ))
@@ -328,7 +327,7 @@ fn factors_of(measured: &MeasuredModuli, isotherms: &[Isotherm]) -> Result<Vec<F
 /// Reads factors from a table: columns temperature and a_T.
 fn given(path: &Path, options: &FitOptions, isotherms: Vec<Isotherm>) -> Result<Shift, FitError> {
     let bytes = files::bytes(path)?;
-    let in_file = |error: ModuliError| FitError::Moduli { path: path.to_owned(), error };
+    let in_file = |error: ContentError| FitError::Moduli { path: path.to_owned(), error };
     let table = shift_table(&bytes, options).map_err(in_file)?;
     let factor = |isotherm: &Isotherm| {
         let distance = |(kelvin, _): &&(f64, f64)| (kelvin - isotherm.temperature).abs();
@@ -348,27 +347,17 @@ fn given(path: &Path, options: &FitOptions, isotherms: Vec<Isotherm>) -> Result<
 }
 
 /// Temperatures in K and their factors.
-fn shift_table(bytes: &[u8], options: &FitOptions) -> Result<Vec<(f64, f64)>, ModuliError> {
-    let text = decode(bytes).map_err(|error| ModuliError::in_line(1, error.to_string(), "a table of shift factors"))?;
-    const EXPECTED: &str = "columns temperature [°C] and a_T, or log a_T";
+fn shift_table(bytes: &[u8], options: &FitOptions) -> Result<Vec<(f64, f64)>, ContentError> {
+    let text = decode(bytes)?;
+    let missing = |line| ContentError::value(Some(line), "", "", "columns temperature [°C] and a_T, or log a_T");
     let blocks = Block::all(&text, false);
-    let block = blocks.iter().max_by_key(|block| block.rows);
-    let block = block.ok_or_else(|| ModuliError::in_line(1, "", EXPECTED))?;
-    let missing = || ModuliError::in_line(block.first, "", EXPECTED);
-    let columns = Columns::read(block, &[], &options.units)?.ok_or_else(missing)?;
-    let [temperature] = columns.all(&[Quantity::Temperature])[..] else { return Err(missing()) };
-    let [factor] = columns.all(&[Quantity::ShiftFactor])[..] else { return Err(missing()) };
-    let (mut rows, mut style) = (Vec::new(), NumberStyle::of(block));
-    for (line, row) in block.lines(&text) {
-        let fields = block.separator.split(row);
-        let mut value = |column: &Column| {
-            let field = fields.get(column.index).map_or("", |field| field);
-            let refuse = |expected: &str| ModuliError::in_column(line, column.index, &column.text, field, expected);
-            let written = style.read(field).map_err(|_| refuse(NumberStyle::EXPECTED))?;
-            let value = written.map(|written| column.to_si(written)).filter(|value| *value > 0.0 && value.is_finite());
-            value.ok_or_else(|| refuse("a number above 0 in SI units"))
-        };
-        rows.push((value(temperature)?, value(factor)?));
-    }
-    Ok(rows)
+    let block = blocks.iter().max_by_key(|block| block.rows).ok_or_else(|| missing(1))?;
+    let columns = Columns::read(block, &[], &options.units)?.ok_or_else(|| missing(block.first))?;
+    let of = |quantity| columns.all(&[quantity]);
+    let (&[temperature], &[factor]) = (&of(Quantity::Temperature)[..], &of(Quantity::ShiftFactor)[..]) else {
+        return Err(missing(block.first));
+    };
+    let mut style = block.style();
+    let mut value = |column: &Column, row: &Row<'_>| column.read(row, &mut style, ABOVE_ZERO);
+    block.rows(&text).map(|row| Ok((value(temperature, &row)?, value(factor, &row)?))).collect()
 }

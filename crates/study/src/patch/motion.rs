@@ -4,26 +4,54 @@ use std::path::Path;
 
 use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchStart, Pose};
 use asperity::scene;
-use asperity::tables::{Dimension, Heading, Unit, Words};
+use asperity::tables::{ContentError, Dimension, FINITE, Format, Others, Table, Wanted, Words, decode};
 
-use crate::csv::{CsvError, CsvFile, Record};
+use crate::csv::CsvError;
+use crate::files::bytes;
 
 const TIME: &str = "time";
 const TRANSPORT: &str = "transport.speed";
 const TEMPERATURE: &str = "temperature";
 
-/// The names of columns; a unit may stand behind them.
-const COLUMNS: [Words<&str>; 9] = [
-    Words::new(TIME, Dimension::Time, &["time"], &["time"]),
-    Words::new("x", Dimension::Length, &["x"], &["x"]),
-    Words::new("y", Dimension::Length, &["y"], &["y"]),
-    Words::new("z", Dimension::Length, &["z"], &["z"]),
-    Words::new("roll", Dimension::Angle, &["roll"], &["roll"]),
-    Words::new("pitch", Dimension::Angle, &["pitch"], &["pitch"]),
-    Words::new("yaw", Dimension::Angle, &["yaw"], &["yaw"]),
-    Words::new(TRANSPORT, Dimension::Speed, &["transport", "speed"], &["transport", "speed"]),
-    Words::new(TEMPERATURE, Dimension::Temperature, &["temperature"], &["temperature"]),
-];
+const fn words(name: &'static str, dimension: Dimension) -> Words<&'static str> {
+    Words::new(name, dimension, name, "")
+}
+
+const fn wanted(name: &'static [&'static str], meaning: &'static str) -> Wanted<&'static str> {
+    Wanted::new(name, name[0], meaning).within(FINITE)
+}
+
+/// The columns of a patch with a tread whose temperature is an input.
+const MOTION: Format<&str, 9> = Format {
+    needs_names: true,
+    rises: true,
+    others: Others::Refused,
+    ..Format::new(
+        &[
+            words(TIME, Dimension::Time),
+            words("x", Dimension::Length),
+            words("y", Dimension::Length),
+            words("z", Dimension::Length),
+            words("roll", Dimension::Angle),
+            words("pitch", Dimension::Angle),
+            words("yaw", Dimension::Angle),
+            Words::new(TRANSPORT, Dimension::Speed, "transport speed", ""),
+            words(TEMPERATURE, Dimension::Temperature),
+        ],
+        [
+            wanted(&[TIME], "times"),
+            wanted(&["x"], "positions x"),
+            wanted(&["y"], "positions y"),
+            wanted(&["z"], "positions z"),
+            wanted(&["roll"], "angles of roll"),
+            wanted(&["pitch"], "angles of pitch"),
+            wanted(&["yaw"], "angles of yaw"),
+            wanted(&[TRANSPORT], "speeds of the tread"),
+            wanted(&[TEMPERATURE], "temperatures").optional(),
+        ],
+        "time, x, y, z, roll, pitch, yaw, of a tread transport.speed, and temperature where it is an input",
+    )
+};
 
 /// A motion, row by row.
 #[derive(Debug)]
@@ -52,33 +80,26 @@ impl MotionFile {
     /// # Errors
     /// Where the file cannot be read, a column is missing or is none of these, or a field is not what its column holds.
     pub fn read(path: &Path, patch: &Patch) -> Result<Self, CsvError> {
-        let file = CsvFile::read(path)?;
-        let headings: Vec<Option<Heading<&str>>> =
-            file.names().iter().map(|name| Heading::parse(name, &COLUMNS)).collect();
-        let place = |name: &str| {
-            headings.iter().position(|heading| heading.as_ref().is_some_and(|heading| heading.quantity == name))
-        };
-        let has = |name: &str| place(name).is_some();
-        let (has_transport, has_temperature) = (patch.has_tread(), patch.has_temperatures() && has(TEMPERATURE));
-        let optional = [(TRANSPORT, has_transport), (TEMPERATURE, has_temperature)];
-        let wanted: Vec<&str> = std::iter::once(TIME)
-            .chain(COORDINATES)
-            .chain(optional.iter().filter(|(_, is_there)| *is_there).map(|(name, _)| *name))
-            .collect();
-        let indices = wanted
-            .iter()
-            .map(|name| place(name).map_or_else(|| file.column(name), Ok))
-            .collect::<Result<Vec<_>, _>>()?;
-        if let Some((_, name)) = file.names().iter().enumerate().find(|(i, _)| !indices.contains(i)) {
-            return Err(file.header_error(format!("column {name}: expected {} alone", wanted.join(", "))));
+        let (has_transport, may_have_temperature) = (patch.has_tread(), patch.has_temperatures());
+        let mut format = MOTION;
+        if !has_transport {
+            format.columns[7] = format.columns[7].absent();
         }
-        let with_unit = |i: usize| {
-            let unit = headings[i].as_ref().map_or(Ok(Unit::ONE), unit_of);
-            Ok((i, unit.map_err(|message| file.header_error(message))?))
+        if !may_have_temperature {
+            format.columns[8] = format.columns[8].absent();
+        }
+        let bytes = bytes(path)?;
+        let text = decode(&bytes).map_err(|error| CsvError::content(path, error))?;
+        let table = format.read(&text).map_err(|error: ContentError| CsvError::content(path, error))?;
+        let Table { columns, rows, .. } = table;
+        let has_temperature = columns[8].is_some();
+        let row = |&[time, x, y, z, roll, pitch, yaw, transport_speed, temperature]: &[f64; 9]| MotionRow {
+            time,
+            pose: [x, y, z, roll, pitch, yaw],
+            transport_speed,
+            temperature: if has_temperature { temperature } else { patch.temperature() },
         };
-        let columns = indices.into_iter().map(with_unit).collect::<Result<Vec<_>, CsvError>>()?;
-        let motion = Self { rows: rows(&file, &columns, patch, has_transport)?, has_transport, has_temperature };
-        if motion.rows.is_empty() { Err(CsvError::NoRows { path: path.to_owned() }) } else { Ok(motion) }
+        Ok(Self { rows: rows.iter().map(row).collect(), has_transport, has_temperature })
     }
 
     /// Its rows, one at least.
@@ -141,42 +162,4 @@ impl MotionRow {
     fn rates_to(&self, next: &Self) -> [f64; 6] {
         std::array::from_fn(|i| (next.pose[i] - self.pose[i]) / (next.time - self.time))
     }
-}
-
-/// The unit of a column; in SI units where none is named.
-fn unit_of(heading: &Heading<&str>) -> Result<Unit, String> {
-    let unknown =
-        |unit| format!("column {} in \"{unit}\": expected one of {}", heading.quantity, heading.dimension.units());
-    heading.unit.known().map(|unit| unit.unwrap_or(Unit::ONE)).map_err(unknown)
-}
-
-fn rows(
-    file: &CsvFile,
-    columns: &[(usize, Unit)],
-    patch: &Patch,
-    has_transport: bool,
-) -> Result<Vec<MotionRow>, CsvError> {
-    let mut rows: Vec<MotionRow> = Vec::new();
-    for record in file.records() {
-        let value = |&(i, unit): &(usize, Unit)| number(file, record, i).map(|written| unit.to_si(written));
-        let values = columns.iter().map(value).collect::<Result<Vec<_>, _>>()?;
-        let mut optional = values.iter().skip(1 + COORDINATES.len()).copied();
-        let row = MotionRow {
-            time: values[0],
-            pose: std::array::from_fn(|i| values[1 + i]),
-            transport_speed: if has_transport { optional.next().unwrap_or_default() } else { 0.0 },
-            temperature: optional.next().unwrap_or(patch.temperature()),
-        };
-        if let Some(before) = rows.last().filter(|before| row.time <= before.time) {
-            return Err(file.error(record, format!("time = {}: expected one after {} s", row.time, before.time)));
-        }
-        rows.push(row);
-    }
-    Ok(rows)
-}
-
-fn number(file: &CsvFile, record: &Record, column: usize) -> Result<f64, CsvError> {
-    let text = &record.fields[column];
-    let finite = text.parse().ok().filter(|number: &f64| number.is_finite());
-    finite.ok_or_else(|| file.error(record, format!("{} = {text:?}: expected a number", file.names()[column])))
 }

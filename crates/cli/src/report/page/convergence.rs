@@ -6,14 +6,14 @@ use asperity::scene::{Extrapolation, Scene};
 use asperity_study::robustness::DISPLACEMENT;
 use quick_xml::escape::escape;
 
-use super::{NOTHING, count, errors, grouped, head, method, number, per_cent, reason, seconds, short};
+use super::{NOTHING, count, errors, grouped, head, number, per_cent, reason, seconds, short};
 use crate::cli::Report;
 use crate::figure::{Ladder, LadderPanel, Ladders, Rung, Stroke};
-use crate::html::{Cell, fill, table};
-use crate::report::convergence::{CommunicationRow, PATIENCE, PROGRAM, Timed, ToleranceRow};
-use crate::report::reference::{Comparison, Reference};
-use crate::report::run::{MasterInputs, RunFigures};
-use crate::report::trace::{Errors, QUANTITIES, WINDOWS};
+use asperity_study::html::{Cell, fill, table};
+use asperity_study::report::{
+    CommunicationRow, Comparison, Errors, MasterInputs, PATIENCE, PROGRAM, QUANTITIES, Reference, RunFigures, Timed,
+    ToleranceRow, WINDOWS, method,
+};
 
 const TOLERANCES: &str = include_str!("tolerances.html");
 /// The errors that a user may settle for.
@@ -161,7 +161,7 @@ fn runs(reference: &Reference, rows: &[ToleranceRow]) -> io::Result<String> {
         let mut cells = vec![row.name().into(), number(format!("{:e}", row.tolerance))];
         match &row.result {
             Ok(figures) => cells.extend(figure_cells(figures, reference)),
-            Err(why) => cells.push(reason(why, figures.len())),
+            Err(why) => cells.push(reason(&why.to_string(), figures.len())),
         }
         cells
     };
@@ -267,7 +267,7 @@ fn communication_cells(row: &CommunicationRow, reference: &Reference) -> Vec<Cel
             cells.extend(mean_squares.unwrap_or_default().into_iter().take(reference.shown()).map(short));
             cells.extend([seconds(figures.time), count(figures.steps), count(figures.events)]);
         }
-        Err(why) => cells.push(reason(why, communication_figures(reference).len())),
+        Err(why) => cells.push(reason(&why.to_string(), communication_figures(reference).len())),
     }
     cells
 }

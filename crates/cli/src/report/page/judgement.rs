@@ -7,8 +7,8 @@ use asperity_study::robustness::{KEPT, TIGHTER};
 use super::robustness::factors;
 use super::{NOTHING, grouped, head, number, short, three_digits};
 use crate::figure::{Ladder, LadderPanel, Ladders, Rung, Stroke};
-use crate::html::{Cell, fill, table};
-use crate::report::judgement::{Judgement, Ratios, Standing, median};
+use asperity_study::html::{Cell, fill, table};
+use asperity_study::report::{Judgement, Ratios, Standing, median};
 
 const TEMPLATE: &str = include_str!("judgement.html");
 /// A run's ratio, in the figure.
@@ -188,7 +188,7 @@ fn medians(runs: &[&Judgement], ratio: Ratio) -> Vec<Rung> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::run::Estimate;
+    use asperity_study::report::Estimate;
 
     fn run(method: &str, tolerance: f64, error: f64, standing: Standing) -> Judgement {
         let (method, estimate) = (method.into(), Estimate { error, warned: false });

@@ -6,14 +6,12 @@ mod robustness;
 
 use std::io;
 
-use asperity::scene::{Parameter, Scene};
+use asperity::scene::Scene;
 use asperity_study::summary::scene_rows;
 use quick_xml::escape::escape;
 
-use super::machine::{Machine, build};
-use super::reference::Reference;
-use super::trace::Errors;
-use crate::html::{Cell, fill, table};
+use asperity_study::html::{Cell, fill, table};
+use asperity_study::report::{Errors, Machine, Reference, build};
 
 pub(super) use convergence::{communication, communication_picture, tolerance_picture, tolerances};
 pub(super) use judgement::{SceneJudgements, judgement_picture, judgements};
@@ -52,11 +50,6 @@ fn whole(name: &str, description: &str, sections: String) -> String {
         ("sections", sections),
     ];
     fill(TEMPLATE, &fields)
-}
-
-/// The method in a word of the scene file.
-pub(super) fn method(scene: &Scene) -> String {
-    scene.parameter(Parameter::METHOD).to_string().replace('"', "")
 }
 
 /// The head of a table: names of text columns, then of columns of numbers.

@@ -6,10 +6,11 @@ use asperity::scene::Scene;
 use asperity_study::robustness::{KEPT, NOTABLE, Perturbation, ScaledQuantity, TIGHTER, Verdict, WRONG};
 use quick_xml::escape::escape;
 
-use super::{NOTHING, head, method, short};
-use crate::html::{Cell, fill, table};
-use crate::report::robustness::{BUDGET, COMMUNICATION_STEPS, MAX_COMMUNICATION_STEPS, Robustness, SHORT_STEPS, Trial};
-use crate::report::run::Counts;
+use super::{NOTHING, head, short};
+use asperity_study::html::{Cell, fill, table};
+use asperity_study::report::{
+    BUDGET, COMMUNICATION_STEPS, Counts, MAX_COMMUNICATION_STEPS, Robustness, SHORT_STEPS, Trial, method,
+};
 
 const TEMPLATE: &str = include_str!("robustness.html");
 const PAIRS: &str = include_str!("robustness-pairs.html");

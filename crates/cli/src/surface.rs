@@ -1,0 +1,223 @@
+//! `asperity surface`: analyses a profile or a map.
+
+use std::path::PathBuf;
+
+use asperity::scene::{self, PowerLaw, RoughnessSpectrum};
+use asperity_formats::Instruments;
+use asperity_study::surface::{
+    FinerWaves, MadePeriodic, MapAnalysis, Removed, SurfaceAnalysis, SurfaceOptions, TreatedSurface, matrix,
+    profile_columns, spectrum_columns,
+};
+
+use super::cli::{Reading, Surface};
+use super::figure::{Figure as _, ProfileCurves, ProfilePicture};
+use super::files::{self, FileError, check_outputs, ends_in, load_without_run, name_of, named, print_beside};
+use super::terminal::{LabelledLine, lines, note, warn};
+
+/// `asperity surface` failed.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum SurfaceError {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error("{}: a scene defines how its surface is read; these options are for profiles only", .path.display())]
+    SceneHasOptions { path: PathBuf },
+    #[error("{}: {error}", .path.display())]
+    Treated { path: PathBuf, error: asperity_study::surface::SurfaceError },
+    #[error(transparent)]
+    Split(asperity_study::surface::SurfaceError),
+    #[error("--spectrum: expected --split, or a map, whose isotropic spectrum is written")]
+    NoSpectrum,
+    #[error("cannot be written as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+}
+
+impl From<&Surface> for SurfaceOptions {
+    fn from(command: &Surface) -> Self {
+        Self {
+            smooth: command.smooth,
+            split: command.split,
+            periodic: match (command.mirror, command.taper) {
+                (true, _) => Some(MadePeriodic::Mirrored),
+                (_, true) => Some(MadePeriodic::Tapered),
+                _ => None,
+            },
+            line_alone: command.reading.line.is_some(),
+            wavelengths: command.wavelengths.clone(),
+        }
+    }
+}
+
+/// Reads the surface, prints the analysis, plots it and writes the profile.
+pub(crate) fn surface(command: &Surface) -> Result<(), SurfaceError> {
+    let (read, files) = read(command)?;
+    check_outputs(command.output.iter().chain(&command.write).chain(&command.spectrum), files)?;
+    let treated = TreatedSurface::new(read, &command.into()).map_err(|error| match error {
+        asperity_study::surface::SurfaceError::AlreadyPeriodic => {
+            SurfaceError::Treated { path: command.file.clone(), error }
+        }
+        error => SurfaceError::Split(error),
+    })?;
+    let TreatedSurface { surface, analysis, finer, .. } = &treated;
+    if command.spectrum.is_some() && finer.is_none() && analysis.map.is_none() {
+        return Err(SurfaceError::NoSpectrum);
+    }
+    let text = if command.json { serde_json::to_string(analysis)? + "\n" } else { summary(analysis) };
+    if let Some(expected) = surface.map_error() {
+        note(&format!("the line alone is analysed; a map would need {expected}"));
+    }
+    print_beside(&command.write, &text)?;
+    if let Some(path) = &command.output {
+        drawn(&treated, command).write(path)?;
+    }
+    write_surface(surface, command)?;
+    write_spectrum(finer.as_ref(), analysis.map.as_ref(), command)
+}
+
+/// Writes the profile; a map that was made periodic whole.
+fn write_surface(surface: &scene::Surface, command: &Surface) -> Result<(), SurfaceError> {
+    let Some(path) = &command.write else { return Ok(()) };
+    let periodic = if surface.is_periodic() { " with periodic = true" } else { "" };
+    if let Some(map) = surface.map().filter(|_| command.mirror) {
+        files::write(path, matrix(map))?;
+        let [dx, dy] = map.spacing();
+        let keys = format!("with spacing = [{dx:?}, {dy:?}] and periodic = true");
+        note(&format!("{} holds the map in m, for path = of a scene's surface {keys}", named(path)));
+    } else {
+        files::write(path, profile_columns(surface))?;
+        note(&format!("{} holds the profile in m, for path = of a scene's surface{periodic}", named(path)));
+    }
+    Ok(())
+}
+
+/// Writes the spectrum of the finer waves, or the isotropic one of a map.
+fn write_spectrum(
+    finer: Option<&RoughnessSpectrum>,
+    map: Option<&MapAnalysis>,
+    command: &Surface,
+) -> Result<(), SurfaceError> {
+    let Some(path) = &command.spectrum else { return Ok(()) };
+    if let Some(finer) = finer {
+        files::write(path, spectrum_columns(finer.points()))?;
+        let [longest, shortest] = finer.wavelengths();
+        note(&format!(
+            "{} holds their spectrum, for fine = {{ spectrum = \"{}\", longest = {longest:.6e}, shortest = {shortest:.6e} }}",
+            named(path),
+            name_of(path)
+        ));
+    } else if let Some(map) = map {
+        files::write(path, spectrum_columns(&map.spectrum))?;
+        note(&format!("{} holds the isotropic spectrum of the map", named(path)));
+    }
+    Ok(())
+}
+
+/// The surface, and the files that it was read from.
+fn read(command: &Surface) -> Result<(scene::Surface, Vec<PathBuf>), SurfaceError> {
+    let path = &command.file;
+    if ends_in(path, "toml") {
+        if command.reading != Reading::default() {
+            return Err(SurfaceError::SceneHasOptions { path: path.clone() });
+        }
+        let scene = load_without_run(path, &[], |_| false)?;
+        scene.notes.iter().filter(|read| !read.assumed).for_each(|read| note(&read.text));
+        let files = scene.sources(path);
+        return Ok((scene.surface, files));
+    }
+    let loaded = scene::Surface::load(path, &command.reading.options(), &Instruments).map_err(FileError::from)?;
+    loaded.warnings.iter().for_each(|warning| warn(warning));
+    loaded.notes.iter().for_each(|read| note(&read.text));
+    Ok((loaded.surface, vec![path.clone()]))
+}
+
+fn summary(analysis: &SurfaceAnalysis) -> String {
+    let numbers = &analysis.statistics;
+    let kind = if numbers.periodic { "periodic" } else { "natural" };
+    let [shortest, longest] = numbers.steps;
+    let steps = if numbers.is_even() {
+        format!("even steps of {:.4e} m", numbers.length / (numbers.points - 1) as f64)
+    } else {
+        format!("steps from {shortest:.4e} m to {longest:.4e} m")
+    };
+    let mut rows = vec![
+        ("Points", format!("{}, {steps}", numbers.points)),
+        ("Length", format!("{:.6e} m, {kind}", numbers.length)),
+        ("Heights", format!("rms {:.4e} m about the mean of {:.4e} m", numbers.rms_height, numbers.mean_height)),
+        ("", format!("rms {:.4e} m without the tilt of {:.4e}", numbers.rms_height_without_tilt, numbers.tilt)),
+        ("", format!("{:.4e} m peak to valley", numbers.peak_to_valley)),
+        ("Slopes", format!("rms {:.4}, largest {:.4}, of the spline", numbers.rms_slope, numbers.largest_slope)),
+    ];
+    rows.extend(analysis.removed.map(|Removed { cut_off, rms_slope }| {
+        ("Smoothed", format!("waves of {cut_off:.3e} m halved, shorter ones taken away: rms slope {rms_slope:.4}"))
+    }));
+    rows.extend(analysis.finer.map(|FinerWaves { wavelengths: [longest, shortest], rms_height, rms_gradient }| {
+        let range = format!("from {longest:.3e} m to {shortest:.3e} m");
+        ("Finer", format!("waves {range}: rms height {rms_height:.4e} m, rms gradient {rms_gradient:.4}"))
+    }));
+    rows.push(("Spectrum", format!("taken {}", analysis.taken)));
+    rows.extend(law_rows(analysis.law.as_ref()).into_iter().map(|row| ("", row)));
+    rows.extend(analysis.map.iter().flat_map(map_rows));
+    lines(&rows)
+}
+
+fn law_rows(law: Option<&PowerLaw>) -> Vec<String> {
+    let Some(law) = law else { return vec!["no power law over half a decade of wavelengths".into()] };
+    let [shortest, longest] = law.wavelengths;
+    let mut rows = vec![format!(
+        "Hurst exponent {:.3} ± {:.3}, from wavelengths of {shortest:.3e} m to {longest:.3e} m",
+        law.hurst, law.hurst_error
+    )];
+    rows.push(law.roll_off_wavelength.map_or_else(
+        || "no roll-off".into(),
+        |wavelength| format!("roll-off at a wavelength of {wavelength:.3e} m, constant above"),
+    ));
+    if law.ends {
+        rows.push("shorter wavelengths deviate from the law: a cut-off, a filter or noise".into());
+    }
+    if !(0.0..=1.0).contains(&law.hurst) {
+        rows.push("outside 0 to 1: the profile is not self-affine there".into());
+    }
+    rows
+}
+
+fn map_rows(map: &MapAnalysis) -> Vec<LabelledLine> {
+    let MapAnalysis { points, steps, lengths, tilt, .. } = map;
+    let hurst = |law: Option<PowerLaw>| {
+        law.map_or_else(|| "none".to_owned(), |law| format!("{:.3} ± {:.3}", law.hurst, law.hurst_error))
+    };
+    let [along_x, along_y] = map.laws.map(hurst);
+    let rows = [
+        format!("{} by {} points, {:.4e} m and {:.4e} m apart along x and y", points[0], points[1], steps[0], steps[1]),
+        format!("{:.6e} m by {:.6e} m", lengths[0], lengths[1]),
+        format!("heights: rms {:.4e} m about the mean of {:.4e} m", map.rms_height, map.mean_height),
+        format!("{:.4e} m peak to valley, tilts of {:.4e} and {:.4e}", map.peak_to_valley, tilt[0], tilt[1]),
+        format!("gradient: rms {:.4}, of splines along lines and columns", map.rms_gradient),
+        format!("Hurst exponent along x {along_x}, along y {along_y}"),
+    ];
+    rows.into_iter().enumerate().map(|(i, row)| (if i == 0 { "Map" } else { "" }, row)).collect()
+}
+
+fn curves(surface: &scene::Surface, analysis: &SurfaceAnalysis) -> ProfileCurves {
+    ProfileCurves {
+        heights: surface.x().iter().copied().zip(surface.z().iter().copied()).collect(),
+        spectrum: analysis.spectrum.iter().map(|band| (band.wave_number, band.density)).collect(),
+    }
+}
+
+/// The profile and its spectrum, before smoothing too.
+fn drawn(treated: &TreatedSurface, command: &Surface) -> ProfilePicture {
+    let TreatedSurface { read, surface, analysis, .. } = treated;
+    let before = analysis.removed.is_some().then(|| SurfaceAnalysis::of(read, command.wavelengths.as_ref()));
+    let law = analysis.law.as_ref().map_or_else(Vec::new, |law| {
+        let shortest = law.wavelengths[0];
+        let shown = analysis.spectrum.iter().map(|band| band.wave_number);
+        let covered = shown.filter(|q| q * shortest <= std::f64::consts::TAU * (1.0 + 1e-9));
+        covered.map(|q| (q, law.density(q))).collect()
+    });
+    let hurst = analysis.law.map(|law| format!(", Hurst exponent {:.2}", law.hurst)).unwrap_or_default();
+    ProfilePicture {
+        title: format!("{}: rms height {:.3e} m{hurst}", name_of(&command.file), analysis.statistics.rms_height),
+        read: before.map(|before| curves(read, &before)),
+        used: curves(surface, analysis),
+        law,
+    }
+}

@@ -1,0 +1,227 @@
+//! The course of a calibration: a first fit by the theory, the fit by steady sliding, what to measure next.
+
+use std::ops::ControlFlow;
+use std::sync::{Mutex, PoisonError};
+
+use asperity::element::OperatingPoint;
+use asperity::scene::Scene;
+
+use super::calibrated::Calibration;
+use super::candidates::candidates;
+use super::error::{CalibrationError, ModelError};
+use super::fit::{Fitted, Tolerance, minimise, starts_by_theory};
+use super::free_scene::FreeScene;
+use super::layer_model::LayerModel;
+use super::measurements::Measurements;
+use super::memo::{Memo, NewOutcome};
+use super::model::{FrictionModel, Outcome, Task};
+use super::options::{CalibrationOptions, CandidateOptions};
+use super::plan::{Plan, plan};
+use super::problem::{FrictionMeasurement, Linearised, Problem};
+use super::scene_text::calibrated_text;
+use super::space_mapping::map_space;
+use super::statistics::{Statistics, chi_square_per_degree};
+use super::steady_model::SteadyModel;
+use super::theory_model::TheoryModel;
+use crate::files::parse_scene;
+use crate::sweep::Method;
+
+/// What a calibration does now.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CalibrationStage {
+    /// It fits, and has come to this χ² per degree of freedom.
+    Fitting(f64),
+    /// It looks for what to measure next.
+    Planning,
+}
+
+/// What a calibration is made with.
+#[derive(Clone, Copy)]
+pub struct Calibrator<'a> {
+    free: &'a FreeScene<'a>,
+    theory: &'a TheoryModel<'a>,
+    model: &'a Memo<'a>,
+    /// Told what is done now.
+    progress: &'a dyn Fn(CalibrationStage),
+}
+
+impl std::fmt::Debug for Calibrator<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Calibrator").field("free", self.free).field("model", self.model).finish_non_exhaustive()
+    }
+}
+
+impl FreeScene<'_> {
+    /// Does `work` with the models of the scene, of which the expensive one has `known` points and hands new ones to
+    /// `found`, which says whether to go on; `progress` is told what is done.
+    pub fn with_models<T>(
+        &self,
+        known: Vec<(Task, Outcome)>,
+        found: &NewOutcome<'_>,
+        progress: &dyn Fn(CalibrationStage),
+        work: impl FnOnce(Calibrator<'_>) -> T,
+    ) -> T {
+        let sliding = self.options.sliding;
+        let scene_at = |values: &[f64]| self.at(values);
+        let grid_of = |scene: &Scene| match sliding.choose(scene)? {
+            (Method::Steady(grid), _) => Ok(grid),
+            (Method::Layer, of_method) => Err(ModelError::Layer(of_method)),
+        };
+        let theory = TheoryModel::new(&scene_at);
+        let steady = SteadyModel::new(&scene_at, &grid_of);
+        let layer = LayerModel { scene_at: &scene_at, area: self.area, bounds: sliding.bounds() };
+        let model: &dyn FrictionModel = if self.is_solved() { &steady } else { &layer };
+        let model = Memo::new(model, known, found);
+        work(Calibrator { free: self, theory: &theory, model: &model, progress })
+    }
+}
+
+/// How many measurements a plan proposes.
+const PLANNED: usize = 3;
+/// How many of the fits by the theory are tried as starts.
+const TRIED: usize = 4;
+/// The layer's friction is known to some 0.5 %.
+const OF_LAYER: Tolerance = Tolerance { chi_square: 1e-3, places: 3e-3, steps: 12 };
+
+impl Calibrator<'_> {
+    /// The fit, without the points that do not slide steadily where it leads.
+    ///
+    /// # Errors
+    /// Where the models fail, too few points are left, or it is stopped.
+    pub fn calibrate(&self, measurements: &Measurements) -> Result<Calibration, ModelError> {
+        let whole = Problem::new(self.free.parameters.clone(), measurements);
+        let (mut problem, mut left_out) = (whole, Vec::new());
+        loop {
+            match self.fit(&problem) {
+                Ok((fitted, linearised, way)) => {
+                    let statistics = Statistics::new(&problem, &fitted.places, &linearised);
+                    let frictions = problem.frictions(self.model, std::slice::from_ref(&fitted.places))?.remove(0);
+                    return Ok(Calibration {
+                        own: self.free.own.clone(),
+                        measurements: measurements.clone(),
+                        problem,
+                        fitted,
+                        linearised,
+                        statistics,
+                        frictions,
+                        left_out,
+                        way,
+                    });
+                }
+                Err(ModelError::NotSteady(failed)) => {
+                    let points: Vec<OperatingPoint> = failed.iter().map(|(point, _)| *point).collect();
+                    problem = problem.without(&points);
+                    left_out.extend(failed);
+                }
+                Err(error) => return Err(error),
+            }
+        }
+    }
+
+    /// A fit of all points: where it ended, what friction does there, and how it came there.
+    fn fit(&self, problem: &Problem) -> Result<(Fitted, Linearised, String), ModelError> {
+        let start = self.start(problem)?;
+        let progress = |chi_square: f64| {
+            let degrees = problem.rows.len().saturating_sub(problem.parameters.len());
+            (self.progress)(CalibrationStage::Fitting(chi_square_per_degree(chi_square, degrees)));
+        };
+        if self.free.is_solved() {
+            let fitted = minimise(problem, self.model, &start, Tolerance::USUAL, &progress)?;
+            let linearised = problem.linearised_to_both_sides(self.model, &fitted.places)?;
+            return Ok((fitted, linearised, "steady sliding itself, from a first fit by Persson's theory".to_owned()));
+        }
+        let mapped = map_space(problem, self.theory, self.model, &start, &progress)?;
+        if let Some(mapped) = mapped.as_ref().filter(|mapped| mapped.fitted.has_converged) {
+            let way = format!("space mapping: Persson's theory corrected by the layer in {} rounds", mapped.rounds);
+            return Ok((mapped.fitted.clone(), mapped.linearised.clone(), way));
+        }
+        let start = mapped.map_or(start, |mapped| mapped.fitted.places);
+        let fitted = minimise(problem, self.model, &start, OF_LAYER, &progress)?;
+        let linearised = problem.linearised(self.model, &fitted.places)?;
+        Ok((fitted, linearised, "differences of the layer itself: its friction and the theory's part".to_owned()))
+    }
+
+    /// The best start of the expensive model among the fits by the theory and the scene's own values; of the layer, which is
+    /// too expensive to be tried at several, the best fit by the theory.
+    fn start(&self, problem: &Problem) -> Result<Vec<f64>, ModelError> {
+        let own = problem.places(&self.free.own);
+        let fits = starts_by_theory(problem, self.theory, &own, Tolerance::ROUGH)?;
+        if let (Method::Layer, Some(best)) = (&self.free.method, fits.first()) {
+            return Ok(best.places.clone());
+        }
+        let mut starts = vec![own];
+        starts.extend(fits.into_iter().take(TRIED).map(|fit| fit.places));
+        let outcomes = problem.outcomes(self.model, &starts)?;
+        // Those at which most points slide steadily, and of these the one with the least square.
+        let worth = |outcomes: &Vec<Outcome>| {
+            let residual = |row: &FrictionMeasurement| {
+                let friction = outcomes[row.point].as_ref().ok()?.friction();
+                Some(((friction - row.friction) / row.sigma).powi(2))
+            };
+            let failed = outcomes.iter().filter(|outcome| outcome.is_err()).count();
+            (failed, problem.rows.iter().filter_map(residual).sum::<f64>())
+        };
+        let order = |a: &(usize, f64), b: &(usize, f64)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1));
+        let best = outcomes.iter().map(worth).zip(&starts).min_by(|a, b| order(&a.0, &b.0));
+        Ok(best.map(|(_, places)| places.clone()).unwrap_or_default())
+    }
+
+    /// Friction before and after at `points`; of a layer, which is too expensive, at the measured points alone.
+    ///
+    /// # Errors
+    /// Where the model fails, or it is stopped.
+    pub fn curves(
+        &self,
+        calibration: &Calibration,
+        points: Vec<OperatingPoint>,
+    ) -> Result<[Vec<(OperatingPoint, f64)>; 2], ModelError> {
+        let points = if self.free.is_solved() { points } else { calibration.problem.points.clone() };
+        let after = calibration.problem.values(&calibration.fitted.places);
+        Ok([self.frictions(&self.free.own, &points)?, self.frictions(&after, &points)?])
+    }
+
+    /// Friction at those of some points that slide steadily.
+    fn frictions(&self, values: &[f64], points: &[OperatingPoint]) -> Result<Vec<(OperatingPoint, f64)>, ModelError> {
+        let task = |&point: &OperatingPoint| Task { parameters: values.to_vec(), point };
+        let tasks: Vec<Task> = points.iter().map(task).collect();
+        let found = Mutex::new(Vec::new());
+        self.model.evaluate(&tasks, &|index, outcome| {
+            let point = outcome.ok().map(|parts| (tasks[index].point, parts.friction()));
+            found.lock().unwrap_or_else(PoisonError::into_inner).extend(point);
+            Ok(())
+        })?;
+        Ok(found.into_inner().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// What to measure next, among the points that are asked for.
+    ///
+    /// # Errors
+    /// Where the model fails, or it is stopped.
+    pub fn plan(&self, calibration: &Calibration, asked: &CandidateOptions) -> Result<Plan, ModelError> {
+        (self.progress)(CalibrationStage::Planning);
+        let Calibration { problem, fitted, linearised, statistics, .. } = calibration;
+        let candidates = candidates(self.free.scene(), &problem.points, asked);
+        // The layer is too expensive for a grid.
+        let model: &dyn FrictionModel = if self.free.is_solved() { self.model } else { self.theory };
+        plan(problem, model, (&fitted.places, linearised, statistics), &candidates, PLANNED)
+    }
+}
+
+/// Fits numbers of a scene, of which this is the `text`, to measured friction: what it found, and the text of the scene
+/// with the numbers. `found` is called for every point that was found, and says whether to go on.
+///
+/// # Errors
+/// Where the scene, the parameters or the measurements are refused, and where `found` says to stop.
+pub fn calibrate_scene(
+    text: &str,
+    options: &CalibrationOptions,
+    found: impl Fn() -> ControlFlow<()> + Sync,
+) -> Result<(Calibration, String), CalibrationError> {
+    let scene = parse_scene(text, &options.scene, &options.set)?;
+    let free = FreeScene::new(options, text, scene)?;
+    let measurements = free.measurements()?;
+    let calibrate = |calibrator: Calibrator<'_>| calibrator.calibrate(&measurements);
+    let calibration = free.with_models(Vec::new(), &|_, _| found(), &|_| (), calibrate)?;
+    let text = calibrated_text(&free, &calibration)?;
+    Ok((calibration, text))
+}

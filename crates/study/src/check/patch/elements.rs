@@ -1,0 +1,186 @@
+//! The elements of a tilted face as a patch of their own, and along the motion to and fro beside their layers.
+
+use asperity::outputs::{Output, Variable, variable};
+use asperity::patch::{MotionError, Patch, PatchMotion, PatchOutput, PatchRun, PatchStart, PatchVariable};
+use asperity::scene::PatchGroup;
+use rayon::prelude::*;
+
+use super::check::{PatchCheck, point};
+use super::tilt::{TiltedElement, TiltedFace};
+use super::wrench::{COMPONENTS, Wrench, WrenchSeries, extent, wrench};
+use crate::check::drag::ToAndFro;
+use crate::check::error::{CheckError, NotCompared};
+use crate::csv::text;
+use crate::decimals::real;
+use crate::progress::{Counter, Stopped, Watch};
+use crate::sweep::Swept;
+
+/// What is taken of a layer.
+const LAYER: [Output; 2] = [Output::ForceX, Output::ForceZ];
+
+/// A run of a patch in the pose of a tilted face, along x.
+pub(super) struct Drag {
+    pub(super) run: PatchRun,
+    /// The speed of the tread, m/s.
+    transport_speed: f64,
+    temperature: f64,
+}
+
+impl Drag {
+    /// At a speed along x (m/s), the tread standing still.
+    pub(super) fn new(patch: &Patch, face: &TiltedFace, speed: f64) -> Result<Self, MotionError> {
+        Self::rolling(patch, face, speed, 0.0)
+    }
+
+    /// At a speed along x (m/s), the tread running at `transport_speed` (m/s).
+    pub(super) fn rolling(
+        patch: &Patch,
+        face: &TiltedFace,
+        speed: f64,
+        transport_speed: f64,
+    ) -> Result<Self, MotionError> {
+        let (rates, temperature) = (along_x(speed), patch.temperature());
+        let start = PatchStart { pose: face.pose, rates, transport_speed, temperature, ..PatchStart::default() };
+        Ok(Self { run: PatchRun::new(patch, &start)?, transport_speed, temperature })
+    }
+
+    /// For a duration (s) at a speed (m/s).
+    pub(super) fn advance(&mut self, (duration, speed): (f64, f64)) -> Result<(), MotionError> {
+        let Self { transport_speed, temperature, .. } = *self;
+        self.run.advance(&PatchMotion { duration, rates: along_x(speed), transport_speed, temperature })
+    }
+}
+
+fn along_x(speed: f64) -> [f64; 6] {
+    [speed, 0.0, 0.0, 0.0, 0.0, 0.0]
+}
+
+/// The elements of a face alone, dragged.
+pub(super) struct Elements<'a> {
+    tilted_elements: &'a [TiltedElement],
+    drag: Drag,
+    variables: Vec<PatchVariable>,
+    values: Vec<f64>,
+}
+
+impl<'a> Elements<'a> {
+    pub(super) fn new(patch: &Patch, face: &'a TiltedFace, speed: f64) -> Result<Self, MotionError> {
+        let patch = patch.with_elements(face.tilted_elements.iter().map(|tilted| tilted.element));
+        let patch = patch.with_groups(vec![PatchGroup::Elements]);
+        let (variables, drag) = (patch.variables(), Drag::new(&patch, face, speed)?);
+        Ok(Self { tilted_elements: &face.tilted_elements, values: vec![0.0; variables.len()], variables, drag })
+    }
+
+    pub(super) fn advance(&mut self, step: (f64, f64)) -> Result<(), MotionError> {
+        self.drag.advance(step)
+    }
+
+    /// The ground's forces on them, N.
+    pub(super) fn forces(&mut self) -> Vec<[f64; 3]> {
+        self.drag.run.evaluate(&self.variables, &mut self.values);
+        let mut forces = vec![[0.0; 3]; self.tilted_elements.len()];
+        for (variable, value) in self.variables.iter().zip(&self.values) {
+            match variable.output {
+                PatchOutput::ElementTraction(i, axis) => forces[i][axis] = value * self.tilted_elements[i].element.area,
+                PatchOutput::ElementPressure(i) => forces[i][2] = value * self.tilted_elements[i].element.area,
+                _ => (),
+            }
+        }
+        forces
+    }
+}
+
+/// The elements and their layers along the motion to and fro.
+#[derive(Debug)]
+pub struct Dragged {
+    motion: ToAndFro,
+    /// Layers, elements.
+    pair: WrenchSeries,
+}
+
+impl Dragged {
+    /// Drags both; says why they are not compared where a layer cannot be dragged.
+    ///
+    /// # Errors
+    /// Where the patch cannot be moved, or `watch` stops it.
+    pub fn run(check: &PatchCheck, watch: &Watch<'_>) -> Result<Result<Self, NotCompared>, CheckError> {
+        let (face, motion) = (check.middle(), check.motion);
+        if matches!(check.swept, Swept::Solved { .. }) {
+            return Ok(Err(NotCompared::AnotherModel));
+        }
+        if motion.length <= 0.0 {
+            return Ok(Err(NotCompared::NothingSticks));
+        }
+        let mut elements = Elements::new(&check.patch, face, 0.0)?;
+        let sum = |forces: Vec<[f64; 3]>| wrench(face.tilted_elements.iter().map(|tilted| tilted.arm).zip(forces)).0;
+        let mut other = vec![sum(elements.forces())];
+        for step in motion.steps() {
+            elements.advance(step)?;
+            other.push(sum(elements.forces()));
+        }
+        let layers = match layers(check, face, watch) {
+            Ok(layers) => layers,
+            Err(NotDragged::Layer(why)) => return Ok(Err(why)),
+            Err(NotDragged::Stopped(stopped)) => return Err(stopped.into()),
+        };
+        let (reference, sizes): (Vec<_>, Vec<_>) = layers.into_iter().unzip();
+        Ok(Ok(Self { motion, pair: WrenchSeries::new(reference, other, &sizes, check.lever) }))
+    }
+
+    /// Layers and elements, row by row, at these times, s.
+    pub fn rows(&self) -> (Vec<f64>, &WrenchSeries) {
+        (self.motion.carriers(0.0).iter().map(|carrier| carrier.time).collect(), &self.pair)
+    }
+
+    /// The tables of the layers and of the elements.
+    pub fn tables(&self) -> [String; 2] {
+        [&self.pair.reference, &self.pair.other].map(|rows| table(self.motion, rows))
+    }
+
+    /// The largest and the root mean square differences.
+    pub fn summary(&self) -> [String; 2] {
+        extent(&self.motion.describe(), &self.pair)
+    }
+}
+
+/// Why the layers were not dragged.
+enum NotDragged {
+    Layer(NotCompared),
+    Stopped(Stopped),
+}
+
+/// The wrench of the layers and the sums of magnitudes, row by row.
+fn layers(check: &PatchCheck, face: &TiltedFace, watch: &Watch<'_>) -> Result<Vec<(Wrench, Wrench)>, NotDragged> {
+    let variables: Vec<Variable> = LAYER.into_iter().filter_map(variable).collect();
+    let (table, temperature) = (check.patch.table(), point(&check.patch, face.speed).temperature);
+    let counter = Counter::new(watch, "of the layers to and fro", face.tilted_elements.len());
+    let drag = |tilted: &TiltedElement| {
+        let w = tilted.separation - table.rest_separation;
+        let rows = check.motion.layer::<{ LAYER.len() }>(&check.scene, temperature, w, &variables);
+        counter.step().map_err(NotDragged::Stopped)?;
+        rows.map_err(|source| {
+            let number = tilted.element.index + 1;
+            NotDragged::Layer(NotCompared::LayerOf { number, source: Box::new(source) })
+        })
+    };
+    let rows: Vec<_> = face.tilted_elements.par_iter().with_max_len(1).map(drag).collect::<Result<_, NotDragged>>()?;
+    let sum = |row: usize| {
+        let force = |(tilted, rows): (&TiltedElement, &Vec<[f64; 2]>)| {
+            let ([along, up], share) = (rows[row], tilted.element.area / check.patch.nominal_area());
+            (tilted.arm, [share * along, 0.0, share * up])
+        };
+        wrench(face.tilted_elements.iter().zip(&rows).map(force))
+    };
+    Ok((0..rows.first().map_or(0, Vec::len)).map(sum).collect())
+}
+
+/// The table of a series along the motion to and fro.
+pub(super) fn table(motion: ToAndFro, rows: &[Wrench]) -> String {
+    let names = ["time", "x"].into_iter().chain(COMPONENTS.iter().map(|(name, _)| *name));
+    let carriers = motion.carriers(0.0);
+    let fields = carriers
+        .iter()
+        .zip(rows)
+        .map(|(carrier, row)| [carrier.time, carrier.u].iter().chain(row).map(|&value| real(value)).collect());
+    text(names, fields)
+}

@@ -1,0 +1,152 @@
+//! The curves of a sweep beside measured friction.
+
+use std::path::{Path, PathBuf};
+
+use asperity::element::{Load, OperatingPoint, PointStatus, Quantity};
+
+use crate::calibration::{CurveGrid, Measured, MeasuredFrictionError, Measurements};
+use crate::steady::SlideProblem;
+use crate::sweep::SweepTable;
+
+/// A table cannot be compared with measurements.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what they are")]
+pub enum ComparisonError {
+    #[error(transparent)]
+    Measured(#[from] MeasuredFrictionError),
+    #[error("{}: a table over forces: expected one over pressures, as `asperity sweep --pressures` makes", .0.display())]
+    OverForces(PathBuf),
+}
+
+/// Measurements and the friction of a table there.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// How the table of measurements was read.
+    pub notes: Vec<String>,
+    /// The measurements that the table reaches, and its friction there.
+    pub within: Vec<(Measured, f64)>,
+    /// The other ones.
+    pub beyond: Vec<Measured>,
+    /// The curves that the measurements make.
+    pub grid: CurveGrid,
+    /// Friction of the table along these curves, and at the measurements.
+    pub swept: Vec<(OperatingPoint, f64)>,
+}
+
+/// Points of a curve.
+const CURVE: u32 = 60;
+
+impl Comparison {
+    /// Of the `table` at `path` and the measurements in the file `data`.
+    ///
+    /// # Errors
+    /// Where the table is over forces, or the measurements cannot be read.
+    pub fn new(table: &SweepTable, path: &Path, data: &Path) -> Result<Self, ComparisonError> {
+        let Load::Pressure { area } = table.header.load else {
+            return Err(ComparisonError::OverForces(path.to_owned()));
+        };
+        let mut measurements = Measurements::read(data, area)?;
+        if let [only] = table.header.grid.temperatures[..] {
+            measurements.rows.iter_mut().for_each(|row| {
+                let _ = row.point.temperature.get_or_insert(only);
+            });
+        }
+        let curves = SweptFriction { table };
+        let (mut within, mut beyond): (Vec<(Measured, f64)>, Vec<Measured>) = (Vec::new(), Vec::new());
+        for &row in &measurements.rows {
+            match curves.at(&row.point) {
+                Some(friction) => within.push((row, friction)),
+                None => beyond.push(row),
+            }
+        }
+        let grid = CurveGrid::new(within.iter().map(|(row, _)| &row.point));
+        let mut points = grid.points(CURVE);
+        points.extend(within.iter().map(|(row, _)| row.point));
+        let swept = points.into_iter().filter_map(|point| Some((point, curves.at(&point)?))).collect();
+        Ok(Self { notes: measurements.notes, within, beyond, grid, swept })
+    }
+
+    /// Sum of the squared deviations of the table from the measurements.
+    pub fn chi_square(&self) -> f64 {
+        self.within.iter().map(|pair| deviation(pair).powi(2)).sum()
+    }
+
+    /// Measurement, friction of the table and its deviation over the standard deviation, the worst first.
+    pub fn worst_first(&self) -> Vec<(Measured, f64, f64)> {
+        let mut all: Vec<(Measured, f64, f64)> =
+            self.within.iter().map(|pair| (pair.0, pair.1, deviation(pair))).collect();
+        all.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
+        all
+    }
+}
+
+/// How far a table is off, over the standard deviation.
+fn deviation((row, friction): &(Measured, f64)) -> f64 {
+    (friction - row.friction) / row.sigma_or_assumed()
+}
+
+/// Friction of a table between its points: linear in the logarithms of speed and pressure, and in the temperature.
+#[derive(Debug)]
+struct SweptFriction<'a> {
+    table: &'a SweepTable,
+}
+
+/// The values beside one on an axis, and how far it is between them; alone where it is on one. `None` beyond.
+fn beside(axis: &[f64], value: f64, scale: fn(f64) -> f64) -> Option<Vec<(f64, f64)>> {
+    /// What a number that was written and read with a unit may be off.
+    const ROUNDING: f64 = 1e-9;
+    if let Some(on) = axis.iter().find(|on| (*on - value).abs() <= ROUNDING * value.abs()) {
+        return Some(vec![(*on, 1.0)]);
+    }
+    let above = axis.iter().position(|on| *on > value).filter(|above| *above > 0)?;
+    let (low, high) = (axis[above - 1], axis[above]);
+    let part = (scale(value) - scale(low)) / (scale(high) - scale(low));
+    Some(vec![(low, 1.0 - part), (high, part)])
+}
+
+impl SweptFriction<'_> {
+    /// Friction at a point; `None` beyond the table, or beside a point of it that is not steady.
+    fn at(&self, point: &OperatingPoint) -> Option<f64> {
+        let grid = &self.table.header.grid;
+        let speeds = beside(&grid.speeds, point.speed, f64::ln)?;
+        let loads = beside(&grid.loads, point.load, f64::ln)?;
+        let temperatures: Vec<(Option<f64>, f64)> = match point.temperature {
+            Some(kelvin) if !grid.temperatures.is_empty() => {
+                let found = beside(&grid.temperatures, kelvin, |value| value)?;
+                found.into_iter().map(|(kelvin, weight)| (Some(kelvin), weight)).collect()
+            }
+            None if grid.temperatures.is_empty() => vec![(None, 1.0)],
+            _ => return None,
+        };
+        let mut friction = 0.0;
+        for &(temperature, of_temperature) in &temperatures {
+            for &(load, of_load) in &loads {
+                for &(speed, of_speed) in &speeds {
+                    let corner = OperatingPoint { speed, load, temperature };
+                    friction += of_temperature * of_load * of_speed * self.on_grid(&corner)?;
+                }
+            }
+        }
+        Some(friction)
+    }
+
+    fn on_grid(&self, point: &OperatingPoint) -> Option<f64> {
+        let found = self.table.rows.iter().find(|stored| stored.row.point == *point)?;
+        let has_friction =
+            found.row.is_steady() || found.row.status == PointStatus::new(Some(SlideProblem::FullContact));
+        found.row.value(Quantity::Friction).filter(|_| has_friction)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn between_two_values_the_nearer_counts_more() {
+        assert_eq!(beside(&[1.0, 2.0], 2.0 * (1.0 + 1e-12), f64::ln), Some(vec![(2.0, 1.0)]));
+        let found = beside(&[1.0, 100.0], 10.0, f64::ln).unwrap();
+        assert!((found[0].1 - 0.5).abs() < 1e-12 && found[1].0 == 100.0);
+        assert_eq!((beside(&[1.0, 2.0], 0.5, f64::ln), beside(&[1.0, 2.0], 3.0, f64::ln)), (None, None));
+    }
+}

@@ -1,0 +1,299 @@
+//! modelDescription.xml of FMI 2.0 for co-simulation.
+
+use std::collections::BTreeSet;
+use std::io;
+
+use asperity::scene::{DependencyList, Unit, Value};
+use asperity_fmi::{CAPABILITIES, Category, Experiment, FmuModel, Kind, Role, VariableRef, VariableTable};
+use quick_xml::Writer;
+use quick_xml::events::{BytesDecl, Event};
+
+use crate::decimals::decimal;
+
+type Xml = Writer<Vec<u8>>;
+
+/// Writes the description of a model with these variables.
+pub(super) fn write(model: &dyn FmuModel, variables: &VariableTable, guid: &str) -> io::Result<Vec<u8>> {
+    let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
+    xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
+    let description = clean(&model.description());
+    let root = xml
+        .create_element("fmiModelDescription")
+        .with_attribute(("fmiVersion", "2.0"))
+        .with_attribute(("modelName", clean(&model.name()).as_str()))
+        .with_attribute(("guid", guid))
+        .with_attributes(Some(("description", description.as_str())).filter(|_| !description.is_empty()))
+        .with_attribute(("generationTool", concat!("asperity ", env!("CARGO_PKG_VERSION"))))
+        .with_attribute(("variableNamingConvention", "structured"))
+        .with_attribute(("numberOfEventIndicators", "0"));
+    root.write_inner_content(|xml| content(xml, model, variables))?;
+    let mut bytes = xml.into_inner();
+    bytes.push(b'\n');
+    Ok(bytes)
+}
+
+/// Text for an attribute: XML does not allow control characters.
+pub(super) fn clean(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+}
+
+fn content(xml: &mut Xml, model: &dyn FmuModel, variables: &VariableTable) -> io::Result<()> {
+    co_simulation(xml, model)?;
+    unit_definitions(xml, variables)?;
+    log_categories(xml)?;
+    default_experiment(xml, model)?;
+    model_variables(xml, variables)?;
+    model_structure(xml, variables, lists_dependencies(model))
+}
+
+fn lists_dependencies(model: &dyn FmuModel) -> bool {
+    model.options().dependencies == DependencyList::Direct
+}
+
+fn co_simulation(xml: &mut Xml, model: &dyn FmuModel) -> io::Result<()> {
+    let without = if lists_dependencies(model) { "" } else { "providesDirectionalDerivative" };
+    xml.create_element("CoSimulation")
+        .with_attribute(("modelIdentifier", model.identifier().as_str()))
+        .with_attributes(CAPABILITIES.into_iter().filter(|(name, _)| *name != without))
+        .write_empty()?;
+    Ok(())
+}
+
+fn log_categories(xml: &mut Xml) -> io::Result<()> {
+    xml.create_element("LogCategories").write_inner_content(|xml| {
+        Category::ALL.into_iter().try_for_each(|category| {
+            let element = xml.create_element("Category").with_attribute(("name", category.name()));
+            element.with_attribute(("description", category.description())).write_empty().map(drop)
+        })
+    })?;
+    Ok(())
+}
+
+fn default_experiment(xml: &mut Xml, model: &dyn FmuModel) -> io::Result<()> {
+    let Some(Experiment { stop, tolerance, step }) = model.default_experiment() else { return Ok(()) };
+    let start = stop.map(|_| "0".to_owned());
+    let numbers = [
+        ("startTime", start),
+        ("stopTime", stop.map(real)),
+        ("tolerance", tolerance.map(real)),
+        ("stepSize", Some(real(round_down(step)))),
+    ];
+    let given = numbers.iter().filter_map(|(name, number)| Some((*name, number.as_deref()?)));
+    xml.create_element("DefaultExperiment").with_attributes(given).write_empty().map(drop)
+}
+
+/// The largest of 1, 2 and 5 times a power of ten that is at most `step`.
+fn round_down(step: f64) -> f64 {
+    let exponent = step.log10().floor();
+    let mantissa = step / 10_f64.powf(exponent);
+    let digit = [5.0, 2.0].into_iter().find(|digit| mantissa >= *digit).unwrap_or(1.0);
+    // Through a decimal: a product with a power of ten would be rounded.
+    format!("{digit}e{exponent}").parse().unwrap_or(step)
+}
+
+/// A Real: the shortest decimal that reads back as the same.
+fn real(value: f64) -> String {
+    decimal(value, 1e-3..1e9)
+}
+
+/// Writes `UnitDefinitions`: the units of the variables, by their exponents of SI base units.
+fn unit_definitions(xml: &mut Xml, variables: &VariableTable) -> io::Result<()> {
+    let reals = variables.entries().filter(|(_, variable)| variable.kind == Kind::Real);
+    let used: BTreeSet<Unit> = reals.map(|(_, variable)| variable.unit).collect();
+    xml.create_element("UnitDefinitions")
+        .write_inner_content(|xml| used.into_iter().try_for_each(|unit| unit_definition(xml, unit)))?;
+    Ok(())
+}
+
+fn unit_definition(xml: &mut Xml, unit: Unit) -> io::Result<()> {
+    let radian = [("rad", unit.exponent_of_radian())];
+    let exponents = ["kg", "m", "s", "K"].into_iter().zip(unit.exponents()).chain(radian);
+    let exponents = exponents.filter(|(_, exponent)| *exponent != 0);
+    let texts: Vec<_> = exponents.map(|(base, exponent)| (base, exponent.to_string())).collect();
+    xml.create_element("Unit").with_attribute(("name", unit.name())).write_inner_content(|xml| {
+        let attributes = texts.iter().map(|(base, exponent)| (*base, exponent.as_str()));
+        xml.create_element("BaseUnit").with_attributes(attributes).write_empty()?;
+        Ok(())
+    })?;
+    Ok(())
+}
+
+/// The causality as the standard calls it.
+pub(super) fn causality(variable: &VariableRef) -> &'static str {
+    match variable.role {
+        Role::Input(_) => "input",
+        Role::Output { .. } => "output",
+        Role::Local(_) => "local",
+        Role::Parameter(_) => "parameter",
+    }
+}
+
+/// The start value; calculated variables have none.
+pub(super) fn start(variable: &VariableRef) -> Option<String> {
+    variable.start.as_ref().map(|value| match value {
+        Value::Real(value) => real(*value),
+        Value::Integer(value) => value.to_string(),
+        Value::Text(value) => value.clone(),
+    })
+}
+
+/// Writes `ModelVariables`: inputs, outputs and parameters in the order of their value references.
+fn model_variables(xml: &mut Xml, variables: &VariableTable) -> io::Result<()> {
+    xml.create_element("ModelVariables").write_inner_content(|xml| {
+        variables.entries().try_for_each(|(reference, variable)| scalar_variable(xml, reference, variable))
+    })?;
+    Ok(())
+}
+
+fn scalar_variable(xml: &mut Xml, reference: u32, variable: &VariableRef) -> io::Result<()> {
+    xml.create_element("ScalarVariable")
+        .with_attribute(("name", variable.name.as_str()))
+        .with_attribute(("valueReference", reference.to_string().as_str()))
+        .with_attribute(("description", clean(&variable.description).as_str()))
+        .with_attribute(("causality", causality(variable)))
+        .with_attribute(("variability", variability(variable)))
+        .with_attributes(initial(variable).map(|initial| ("initial", initial)))
+        .write_inner_content(|xml| typed(xml, variable))?;
+    Ok(())
+}
+
+fn variability(variable: &VariableRef) -> &'static str {
+    match variable.role {
+        Role::Parameter(_) => "fixed",
+        _ if variable.kind == Kind::Real => "continuous",
+        _ => "discrete",
+    }
+}
+
+/// Inputs must not have it.
+fn initial(variable: &VariableRef) -> Option<&'static str> {
+    match variable.role {
+        Role::Input(_) => None,
+        Role::Output { .. } | Role::Local(_) => Some("calculated"),
+        Role::Parameter(_) => Some("exact"),
+    }
+}
+
+fn typed(xml: &mut Xml, variable: &VariableRef) -> io::Result<()> {
+    let unit = Some(variable.unit.name()).filter(|_| variable.kind == Kind::Real);
+    xml.create_element(variable.kind.to_string())
+        .with_attributes(unit.map(|unit| ("unit", unit)))
+        .with_attributes(start(variable).as_deref().map(|start| ("start", start)))
+        .write_empty()
+        .map(drop)
+}
+
+/// An output without dependencies depends on nothing, which the standard has an empty list for.
+fn model_structure(xml: &mut Xml, variables: &VariableTable, lists_dependencies: bool) -> io::Result<()> {
+    let unknowns: Vec<_> = variables
+        .entries()
+        .filter_map(|(reference, variable)| match &variable.role {
+            Role::Output { dependencies, .. } => {
+                Some((reference, indices(variables, if lists_dependencies { dependencies } else { &[] })))
+            }
+            _ => None,
+        })
+        .collect();
+    let structure = xml.create_element("ModelStructure");
+    if unknowns.is_empty() {
+        return structure.write_empty().map(drop);
+    }
+    structure.write_inner_content(|xml| {
+        xml.create_element("Outputs").write_inner_content(|xml| {
+            unknowns.iter().try_for_each(|(reference, inputs)| unknown(xml, *reference, Some(inputs.as_str())))
+        })?;
+        // Without dependencies: at the start everything may depend on all inputs and parameters.
+        xml.create_element("InitialUnknowns")
+            .write_inner_content(|xml| unknowns.iter().try_for_each(|(reference, _)| unknown(xml, *reference, None)))?;
+        Ok(())
+    })?;
+    Ok(())
+}
+
+/// The indices of the inputs in these slots.
+fn indices(variables: &VariableTable, slots: &[usize]) -> String {
+    let is_among = |variable: &VariableRef| matches!(variable.role, Role::Input(slot) if slots.contains(&slot));
+    let inputs = variables.entries().filter(|(_, variable)| is_among(variable));
+    inputs.map(|(reference, _)| index(reference)).collect::<Vec<_>>().join(" ")
+}
+
+/// The standard counts the variables from 1 here; value references count them from 0.
+fn index(reference: u32) -> String {
+    (reference + 1).to_string()
+}
+
+fn unknown(xml: &mut Xml, reference: u32, dependencies: Option<&str>) -> io::Result<()> {
+    let unknown = xml.create_element("Unknown").with_attribute(("index", index(reference).as_str()));
+    unknown.with_attributes(dependencies.map(|inputs| ("dependencies", inputs))).write_empty().map(drop)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use asperity::element::{PointContact, Table};
+    use asperity::patch::Patch;
+    use asperity::scene::Scene;
+    use asperity_fmi::{Definition, Sources, guid};
+
+    use super::*;
+
+    /// The description of the default scene is kept in the repository, so that a change is seen. To accept an
+    /// intended one: `BLESS=1 cargo test -p asperity-study golden`.
+    #[test]
+    fn the_default_scene_has_the_golden_description() {
+        let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
+        let path = root.join("scenes/tread-block/tread-block.toml");
+        let model = Definition::from(Scene::load(&path).unwrap());
+        let variables = model.variables();
+        let guid = guid(&Sources::new(&path, &*model).unwrap(), &variables);
+        let written = String::from_utf8(write(&*model, &variables, &guid).unwrap()).unwrap();
+        let golden = root.join("modelDescription/modelDescription.xml");
+        if std::env::var_os("BLESS").is_some() {
+            std::fs::write(&golden, &written).unwrap();
+        }
+        assert!(written == std::fs::read_to_string(&golden).unwrap(), "BLESS=1 accepts the new description");
+    }
+
+    fn description_of(model: &Definition) -> String {
+        String::from_utf8(write(&**model, &model.variables(), "{}").unwrap()).unwrap()
+    }
+
+    #[test]
+    fn dependencies_are_left_out_on_request() {
+        let scene = "name = 'a'\nlayer = { masses = 1, spacing = 1.0, mass = 1.0, vertical = { stiffness = 1.0 } }\n\
+                     surface = { kind = 'flat' }\n[fmu]\n";
+        let of = |fmu: &str| {
+            description_of(&Scene::parse(&format!("{scene}{fmu}"), Path::new("scene.toml")).unwrap().into())
+        };
+        let (listed, none) = (of(""), of("dependencies = 'none'"));
+        assert!(listed.contains("dependencies=\"2\"") && listed.contains("providesDirectionalDerivative"));
+        assert!(!none.contains("dependencies=\"2\"") && !none.contains("providesDirectionalDerivative"));
+        assert_eq!(none.matches("dependencies=\"\"").count(), listed.matches("dependencies=").count());
+    }
+
+    #[test]
+    fn elements_and_patches_have_a_default_step() {
+        let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("tests/reference/patch");
+        let table = Table::load(&folder.join("block.table.csv")).unwrap();
+        assert!(description_of(&PointContact::new(table).into()).contains("<DefaultExperiment stepSize=\""));
+        let text = "name = 'pad'\ntable = { path = 'block.table.csv' }\n[patch]\nshape = 'flat'\nlength = 0.01\n\
+                    width = 0.01\nnx = 1\nny = 1";
+        let patch = Patch::parse(text, &folder.join("patch.toml")).unwrap();
+        assert!(description_of(&patch.into()).contains("<DefaultExperiment stepSize=\""));
+    }
+
+    #[test]
+    fn the_default_step_is_a_round_number() {
+        assert_eq!([round_down(5.2e-6), round_down(2.6e-6), round_down(1.0)], [5e-6, 2e-6, 1.0]);
+        assert_eq!(real(round_down(5.2e-6)), "5e-6");
+    }
+
+    #[test]
+    fn a_sum_of_decimals_is_written_without_its_roundings() {
+        let scene = "name = 'sum'\nlayer = { masses = 1, spacing = 1.0, mass = 1.0 }\nsurface = { kind = 'flat' }\n\
+                     excitation = [{ duration = 1e-2 }, { duration = 1e-3 }, { duration = 3e-3 }]";
+        let model = Definition::from(Scene::parse(scene, Path::new("scene.toml")).unwrap());
+        assert_eq!(model.default_experiment().unwrap().stop.map(real).as_deref(), Some("0.014"));
+    }
+}

@@ -1,0 +1,105 @@
+//! What goes into an FMU.
+
+use std::io;
+use std::path::{Component, Path};
+
+use asperity::element::Basis;
+use asperity_fmi::{Definition, Sources, guid};
+
+use super::archive::{ArchiveEntry, zip};
+use super::error::PackError;
+use super::library::Library;
+use super::{description, documentation};
+use crate::files::{ReadError, bytes};
+use crate::labelled::LabelledLine;
+use crate::summary::{patch_rows, scene_rows, table_rows};
+
+/// An FMU before it is packed.
+#[derive(Debug)]
+pub struct Fmu<'a> {
+    /// What it computes.
+    pub definition: &'a Definition,
+    /// The file that this was read from.
+    pub path: &'a Path,
+    /// What computes it, one a platform.
+    pub libraries: &'a [Library],
+    /// What its documentation says of it, as [`summary`] does, or more.
+    pub summary: &'a [LabelledLine],
+    /// model.png, a picture of it as a PNG file; without one it has none.
+    pub picture: Option<Vec<u8>>,
+}
+
+impl Fmu<'_> {
+    /// The archive: the same FMU has the same bytes.
+    ///
+    /// # Errors
+    /// Where a file cannot be read, or does not lie where an FMU can carry it.
+    pub fn pack(&self) -> Result<Vec<u8>, PackError> {
+        let identifier = self.definition.identifier();
+        let binary = |library: &Library| ArchiveEntry::executable(library.place(&identifier), library.bytes.clone());
+        let mut entries: Vec<ArchiveEntry> = self.libraries.iter().map(binary).collect();
+        entries.extend(self.resources()?);
+        entries.extend(self.documents()?);
+        entries.extend(self.picture.clone().map(|picture| ArchiveEntry::new("model.png", picture)));
+        Ok(zip(entries)?)
+    }
+
+    /// The scene or the table, under a fixed name, and the files that a scene reads.
+    fn resources(&self) -> Result<Vec<ArchiveEntry>, PackError> {
+        let Self { definition, path, .. } = *self;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut entries = vec![ArchiveEntry::new(format!("resources/{}", definition.file_name()), bytes(path)?)];
+        for file in definition.files() {
+            let carried = definition.carried(folder, file).map_err(unread(&folder.join(file)))?;
+            entries.push(ArchiveEntry::new(format!("resources/{}", archive_path(file)?), carried));
+        }
+        Ok(entries)
+    }
+
+    /// The description of the model and the documentation.
+    fn documents(&self) -> Result<Vec<ArchiveEntry>, PackError> {
+        let Self { definition, path, .. } = *self;
+        let document = |document, source| PackError::Document { document, source };
+        let variables = definition.variables();
+        let guid = guid(&Sources::new(path, &**definition).map_err(unread(path))?, &variables);
+        let description = description::write(&**definition, &variables, &guid);
+        let description = description.map_err(|error| document("modelDescription.xml", error))?;
+        let index = documentation::write(definition, &variables, self.summary);
+        let index = index.map_err(|error| document("documentation/index.html", error))?;
+        let written = [("modelDescription.xml", description), ("documentation/index.html", index)];
+        let fixed = documentation::FILES.iter().map(|&(name, text)| ArchiveEntry::new(name, text));
+        Ok(written.into_iter().map(|(name, bytes)| ArchiveEntry::new(name, bytes)).chain(fixed).collect())
+    }
+}
+
+/// For `map_err`: the file at `path` cannot be read.
+fn unread(path: &Path) -> impl FnOnce(io::Error) -> ReadError + use<> {
+    let path = path.to_owned();
+    move |source| ReadError::Io { path, source }
+}
+
+/// `file` with forward slashes. It must lie below the scene's folder: the FMU is unpacked elsewhere.
+fn archive_path(file: &Path) -> Result<String, PackError> {
+    let parts = file.components().filter(|part| *part != Component::CurDir).map(|part| match part {
+        Component::Normal(name) => Ok(name.to_string_lossy()),
+        _ => Err(PackError::Outside { path: file.to_owned() }),
+    });
+    Ok(parts.collect::<Result<Vec<_>, _>>()?.join("/"))
+}
+
+/// What there is in the scene, in the table or in the patch.
+pub fn summary(definition: &Definition) -> Vec<LabelledLine> {
+    match definition {
+        Definition::Layer(scene) => scene_rows(scene),
+        Definition::Element(contact) => table_rows(contact.table()),
+        Definition::Patch(patch) => [patch_rows(patch), table_rows(patch.table())].concat(),
+    }
+}
+
+/// A warning of a table of links that stand for a material, where it does not say that its numbers no longer depend on
+/// the spacing.
+pub fn not_converged(basis: &Basis) -> Option<String> {
+    let foundation = basis.foundation.as_ref().filter(|_| !basis.is_converged())?;
+    let found = basis.convergence.as_deref().unwrap_or("no study of it: see asperity converge");
+    Some(format!("the table (foundation {foundation}) is not known to be converged: {found}"))
+}

@@ -1,0 +1,12 @@
+//! FMUs: a scene, the table of a sweep or a patch, and shared libraries, as one archive.
+
+mod archive;
+mod description;
+mod documentation;
+mod error;
+mod fmu;
+mod library;
+
+pub use error::PackError;
+pub use fmu::{Fmu, not_converged, summary};
+pub use library::{Library, LibraryFile, Platform};

@@ -1,0 +1,14 @@
+//! Surfaces: their numbers, spectra and power laws; smoothed, split and made periodic.
+
+mod analysis;
+mod files;
+mod map;
+mod periodic;
+mod profile;
+mod treated;
+
+pub use analysis::{FinerWaves, Removed, SurfaceAnalysis};
+pub use files::{matrix, profile_columns, spectrum_columns};
+pub use map::MapAnalysis;
+pub use profile::ProfileStatistics;
+pub use treated::{MadePeriodic, SurfaceError, SurfaceOptions, TreatedSurface};

@@ -1,0 +1,40 @@
+//! FMUs, written at once.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::{fs, io, process};
+
+use asperity_fmi::Definition;
+use asperity_study::files::reason;
+use asperity_study::pack::{Fmu, Library, LibraryFile, summary};
+use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::prelude::*;
+
+use crate::errors::Raise as _;
+
+/// Writes the FMU of a `definition`, which was read from the file at `path`, with these shared libraries, each as
+/// `asperity pack --library` takes it: what is at `output` is what was there before, or the whole FMU.
+pub(crate) fn pack(definition: &Definition, path: &Path, libraries: &[OsString], output: &Path) -> PyResult<()> {
+    let files: Vec<LibraryFile> = libraries.iter().map(|text| LibraryFile::named(text)).collect();
+    let mut read: Vec<PathBuf> = definition.sources(path);
+    read.extend(files.iter().map(|file| file.path().to_owned()));
+    let place = output.canonicalize().ok();
+    if place.is_some() && read.iter().any(|file| file.canonicalize().ok() == place) {
+        return Err(PyValueError::new_err(format!("will not write {}: it is read here", output.display())));
+    }
+    let libraries = Library::read_all(&files).map_err(|error| error.raise())?;
+    let summary = summary(definition);
+    let fmu = Fmu { definition, path, libraries: &libraries, summary: &summary, picture: None };
+    write(output, &fmu.pack().map_err(|error| error.raise())?)
+}
+
+/// Writes a file beside its place, and puts it there.
+fn write(output: &Path, bytes: &[u8]) -> PyResult<()> {
+    let name = output.file_name().unwrap_or_default().to_string_lossy();
+    let draft = output.with_file_name(format!(".{name}.{}", process::id()));
+    let written = fs::write(&draft, bytes).and_then(|()| fs::rename(&draft, output));
+    written.map_err(|error: io::Error| {
+        drop(fs::remove_file(&draft));
+        PyOSError::new_err(format!("cannot write {}: {}", output.display(), reason(output, &error)))
+    })
+}

@@ -1,0 +1,189 @@
+//! What the lines of a text are: rows of numbers, comments, words.
+
+use std::borrow::Cow;
+
+use super::numbers::{is_missing, number};
+use super::text::{fields, unquoted};
+
+/// A line of a text, with its number from 1.
+pub type Line<'a> = (usize, &'a str);
+
+/// What parts the fields of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Separator {
+    /// A letter; an empty field stands between two of them.
+    Letter(char),
+    /// Any number of tabs and blanks.
+    Blanks,
+}
+
+impl Separator {
+    pub(super) const ALL: [Self; 4] = [Self::Letter(';'), Self::Letter('\t'), Self::Letter(','), Self::Blanks];
+
+    /// The fields of a line.
+    pub fn split(self, line: &str) -> Vec<Cow<'_, str>> {
+        match self {
+            Self::Letter(letter) => fields(line, letter).collect(),
+            Self::Blanks => line.split_whitespace().map(unquoted).collect(),
+        }
+    }
+
+    /// Whether a comma in a number stands before its decimals.
+    pub fn allows_decimal_comma(self) -> bool {
+        self != Self::Letter(',')
+    }
+}
+
+/// What a line is.
+pub(super) enum Kind {
+    Blank,
+    Comment,
+    /// `gaps`: some of its fields are empty.
+    Data {
+        separator: Separator,
+        columns: usize,
+        gaps: bool,
+    },
+    Other,
+}
+
+/// Without blanks around it; but a tab at the end may stand before an empty column.
+pub(super) fn trimmed(line: &str) -> &str {
+    line.trim_start_matches([' ', '\r', '\u{feff}']).trim_end_matches([' ', '\r', '\n'])
+}
+
+pub(super) fn is_comment(line: &str) -> bool {
+    line.starts_with(['#', '%', '!']) || line.starts_with("//")
+}
+
+pub(super) fn without_sign(line: &str) -> &str {
+    line.trim_start_matches(['#', '%', '!', '/', ' '])
+}
+
+/// How many plain decimals a line has with a `letter` between them, if it has nothing else: digits, with or without a
+/// sign `-`, a point and an exponent. Nearly all lines of a long table are such ones, and are told at a glance.
+fn plain_decimals(line: &str, letter: char) -> Option<usize> {
+    let bytes = line.as_bytes();
+    let digits = |from: usize| bytes[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
+    let has = |at: usize, signs: &[u8]| bytes.get(at).is_some_and(|byte| signs.contains(byte));
+    let (mut at, mut count) = (0, 0);
+    loop {
+        at += usize::from(has(at, b"-"));
+        let whole = digits(at);
+        at += whole;
+        if has(at, b".") {
+            at += 1 + digits(at + 1);
+        }
+        if has(at, b"eE") {
+            let exponent = at + 1 + usize::from(has(at + 1, b"+-"));
+            at = exponent + digits(exponent);
+            if at == exponent {
+                return None;
+            }
+        }
+        count += 1;
+        match bytes.get(at) {
+            _ if whole == 0 => return None,
+            None => return Some(count),
+            Some(&byte) if char::from(byte) == letter => at += 1,
+            Some(_) => return None,
+        }
+    }
+}
+
+/// What a line is; one that can belong to the open block is tried with the separator and the columns of that first.
+pub(super) fn kind(line: &str, open: Option<(Separator, usize)>) -> Kind {
+    if let Some((Separator::Letter(letter), columns)) = open
+        && plain_decimals(line, letter) == Some(columns)
+    {
+        return Kind::Data { separator: Separator::Letter(letter), columns, gaps: false };
+    }
+    let bare = line.trim();
+    if bare.is_empty() {
+        return Kind::Blank;
+    }
+    if is_comment(bare) {
+        return Kind::Comment;
+    }
+    if let Some((separator, columns)) = open {
+        let row = Shape::read(line, separator);
+        // The last fields of a row may be left out. What begins with a number is a row, though words stand in it.
+        let ragged = matches!(separator, Separator::Letter(_)) && (2..columns).contains(&row.columns);
+        let fits = row.columns == columns || (ragged && row.is_data());
+        if fits && (row.is_data() || (row.begins_with_number && row.columns > 1)) {
+            return Kind::Data { separator, columns, gaps: row.has_gaps() };
+        }
+    }
+    let rows = || {
+        let shows = |separator: &Separator| match separator {
+            Separator::Letter(letter) => line.contains(*letter),
+            Separator::Blanks => true,
+        };
+        Separator::ALL.into_iter().filter(shows).map(|separator| (separator, Shape::read(line, separator)))
+    };
+    // Numbers alone first: `0,5 1,5` are two, and not 0, `5 1` and 5.
+    let found =
+        rows().find(|(_, row)| row.is_data() && row.words == 0).or_else(|| rows().find(|(_, row)| row.is_data()));
+    found.map_or(Kind::Other, |(separator, row)| Kind::Data { separator, columns: row.columns, gaps: row.has_gaps() })
+}
+
+/// What the fields of a line are.
+#[derive(Clone, Copy, Debug, Default)]
+struct Shape {
+    columns: usize,
+    numbers: usize,
+    words: usize,
+    begins_with_number: bool,
+}
+
+impl Shape {
+    fn read(line: &str, separator: Separator) -> Self {
+        let decimal_comma = separator.allows_decimal_comma();
+        let (mut row, mut count, mut last) = (Self::default(), 0, 0);
+        let mut add = |field: &str| {
+            count += 1;
+            if !field.is_empty() {
+                last = count;
+            }
+            if number(field, decimal_comma).is_some() {
+                row.numbers += 1;
+                row.begins_with_number |= count == 1;
+            } else if !is_missing(field) {
+                row.words += 1;
+            }
+        };
+        match separator {
+            Separator::Letter(letter) => fields(line, letter).for_each(|field| add(&field)),
+            Separator::Blanks => line.split_whitespace().for_each(|field| add(&unquoted(field))),
+        }
+        // `x;z;` has two columns, and `x;` has a height that is missing.
+        row.columns = last.max(count.min(2));
+        row
+    }
+
+    /// Numbers alone, more numbers than words, or a number and behind it a word that may be a mistake.
+    fn is_data(&self) -> bool {
+        let mixed = self.numbers >= 2 && self.numbers > self.words;
+        let mistaken = self.begins_with_number && self.words == 1 && self.columns == 2;
+        self.numbers > 0 && (self.words == 0 || mixed || mistaken)
+    }
+
+    fn has_gaps(&self) -> bool {
+        self.numbers + self.words < self.columns
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plain_decimals_are_told_at_a_glance() {
+        for (line, count) in [("0,-1.5", 2), ("1.", 1), ("1e-05,-6.04E+3,7", 3)] {
+            assert_eq!(plain_decimals(line, ','), Some(count), "{line}");
+        }
+        for line in ["", ",", "1,", "1,,2", "1e,2", "+1", "1.2.3", "nan", ".5", "-", "1;2", "1, 2", "1 "] {
+            assert_eq!(plain_decimals(line, ','), None, "{line}");
+        }
+    }
+}
