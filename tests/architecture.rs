@@ -47,7 +47,7 @@ fn collect(src: &Path, folder: &Path, found: &mut Vec<Source>) {
             let text = fs::read_to_string(&path).unwrap();
             let lines = text.lines().map(|line| line.split_once("//").map_or(line, |(code, _)| code));
             let code = lines.collect::<Vec<_>>().join("\n");
-            let code = code.split("#[cfg(test)]\nmod tests {").next().unwrap().to_owned();
+            let code = code.split("\nmod tests {").next().unwrap().to_owned();
             found.push(Source { path: path.strip_prefix(src).unwrap().to_string_lossy().replace('\\', "/"), code });
         }
     }
@@ -57,19 +57,16 @@ fn collect(src: &Path, folder: &Path, found: &mut Vec<Source>) {
 /// each may use those above it.
 fn modules(package: &str) -> Vec<(String, Vec<String>)> {
     let text = fs::read_to_string(root().join(package).join("src/lib.rs")).unwrap();
-    let lines: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("//! |")).collect();
-    let start = lines.iter().position(|line| line.starts_with("---")).unwrap_or_else(|| panic!("{package}: no table"));
-    let has_uses = lines[start].matches("---").count() == 3;
+    let lines: Vec<&str> = text.lines().map(|line| line.strip_prefix("//! |").unwrap_or_default()).collect();
+    let start = lines.iter().position(|line| line.starts_with("--")).unwrap_or_else(|| panic!("{package}: no table"));
+    let has_uses = lines[start].matches('|').count() == 3;
     let names = |cell: &str| -> Vec<String> {
         let name = |word: &str| word.trim().trim_matches(['[', ']', '`']).to_owned();
         cell.split(',').map(name).filter(|name| !name.is_empty()).collect()
     };
     let mut rows: Vec<(String, Vec<String>)> = Vec::new();
-    for line in lines[start + 1..].iter().take_while(|line| line.starts_with([' ', '`'])) {
+    for line in lines[start + 1..].iter().take_while(|line| !line.is_empty()) {
         let cells: Vec<&str> = line.split('|').collect();
-        if has_uses && cells.len() < 4 {
-            break;
-        }
         for module in names(cells[0]) {
             let above = || rows.iter().map(|(module, _)| module.clone()).collect();
             let uses = if has_uses { names(cells[1]) } else { above() };

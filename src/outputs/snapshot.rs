@@ -2,7 +2,6 @@
 
 use std::cell::{Cell, OnceCell, RefCell};
 
-use super::carrier_shift::CarrierShift;
 use super::{Counters, Energies, Monitored, Variable};
 use crate::integrator::InterpolatedLayer;
 use crate::model::{
@@ -147,15 +146,6 @@ impl<'a> Snapshot<'a> {
         let now = Evaluation::new(self);
         for (variable, value) in variables.iter().zip(values) {
             *value = variable.row.value(&now, variable.mass);
-        }
-    }
-
-    /// Writes into `values` the derivatives of `variables`, in their order, with the carrier shifted along x and z by
-    /// `direction` (m per unit) and all states frozen.
-    pub fn differentiate(&self, variables: &[Variable], direction: (f64, f64), values: &mut [f64]) {
-        let (now, shift) = (Evaluation::new(self), CarrierShift::new(self.model, direction));
-        for (variable, value) in variables.iter().zip(values) {
-            *value = variable.row.derivative(&now, variable.mass, &shift);
         }
     }
 

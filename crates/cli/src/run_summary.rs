@@ -8,8 +8,7 @@ use asperity::scene::Scene;
 use asperity::simulation::Simulation;
 
 use super::terminal::{LabelledLine, labelled};
-use asperity_study::decimals::rounded;
-use asperity_study::decimals::with_prefix;
+use asperity_study::decimals::{rounded, with_prefix};
 use asperity_study::run_figures::{RunCost, RunFigures, Saving};
 
 /// Follows the rows of a run.
