@@ -23,7 +23,9 @@
 //! | [`steady`] | | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
 //! | [`sweep`] | decimals, files, progress, steady | friction over speed, load and temperature, as a table |
 //! | [`contact`] | steady, sweep | the contact of a surface in steady sliding |
-//! | [`calibration`] | steady | free numbers of a scene from measured friction: models, least squares, errors, plans |
+//! | [`converge`] | decimals, files, settings, steady, sweep | whether area and friction of a scene depend on its spacing, its length or on chance |
+//! | [`calibration`] | decimals, files, settings, steady, sweep | free numbers of a scene from measured friction: models, least squares, errors, plans |
+//! | [`comparison`] | calibration, steady, sweep | the curves of a sweep beside measured friction |
 //! | [`fit`] | decimals, files | Prony series and shift factors from measured moduli |
 //! | [`summary`] | decimals, labelled, steady | what there is in a scene, a patch or a table, in lines |
 //! | [`pack`] | decimals, files, html, labelled, summary | scenes, tables and patches as FMUs |
