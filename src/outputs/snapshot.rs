@@ -94,7 +94,7 @@ pub(super) struct ContactSums {
 }
 
 impl<'a, 's> Evaluation<'a, 's> {
-    fn new(at: &'a Snapshot<'s>) -> Self {
+    pub(super) fn new(at: &'a Snapshot<'s>) -> Self {
         let (kinetic_energy, elastic_energy) = (OnceCell::new(), OnceCell::new());
         Self { at, contact_sums: OnceCell::new(), kinetic_energy, elastic_energy }
     }
