@@ -15,17 +15,12 @@
 //! | [`tables`] | | tables of text as people and instruments write them: dialect, headings, units, the columns that a client wants |
 //! | [`scene`] | math, tables | a scene as data: reading TOML, profiles and materials; parameters; checks and warnings |
 //! | [`model`] | math, scene | the mechanical model: links and their forces, contact laws, state, energies, stiffness scales, reduction |
-//! | `steady` | math, scene, model | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
 //! | [`integrator`] | math, model | implicit Runge-Kutta steps, with modes held or set-valued friction: stages, dense output, error, sensitivities |
 //! | [`contact`] | math, scene, model, integrator | the rules of mode changes and the impact, event location, the end-of-step correction |
 //! | [`outputs`] | math, scene, model, integrator | the table of the outputs: names, units, values, derivatives, dependencies |
 //! | [`simulation`] | math, scene, model, integrator, contact, outputs | a run: its state, the steps of both methods and their lengths, local regions, the reference run |
-//! | `robustness` | scene, simulation | catalogue of perturbations of a scene and the judge of their runs, for reports and tests |
 //! | [`element`] | math, tables, scene, model, outputs, simulation | a point-contact element: the forces of a layer, looked up in a table of a sweep |
-//! | `calibration` | math, tables, scene, model, steady, element | a scene's free numbers from measured friction: models, least squares, errors, plans |
 //! | [`patch`] | math, scene, model, outputs, element | a contact patch: many point-contact elements on a rigid face, in three dimensions |
-//! | [`fmi`] | math, scene, model, integrator, contact, outputs, simulation, element, patch | the FMI 2.0 co-simulation interface |
-//! | `program` | math, tables, scene, model, steady, outputs, simulation, robustness, element, calibration, patch, fmi | the commands simulate, sweep, calibrate, converge, fit, pack, report, plot, and what they compute |
 //!
 //! ```
 //! use asperity::outputs::variables;

@@ -32,7 +32,7 @@
 //! | [`surface`] | decimals | numbers, spectra and power laws of a surface; smoothed, split and made periodic |
 //! | [`summary`] | decimals, labelled, steady | what there is in a scene, a patch or a table, in lines |
 //! | [`pack`] | decimals, files, html, labelled, summary | scenes, tables and patches as FMUs |
-//! | [`patch`] | csv | the motion that a patch is moved along |
+//! | [`patch`] | csv, files | the motion that a patch is moved along |
 //! | [`check`] | csv, decimals, labelled, progress, runner, sweep | elements and patches against what was swept |
 //! | [`robustness`] | | a catalogue of perturbations of a scene, and the judge of perturbed runs |
 //! | [`report`] | csv, decimals, progress, robustness, runner | what the runs of a scene cost and how accurate they are |

@@ -3,7 +3,8 @@
 use asperity::scene::Wlf;
 use asperity::tables::{Block, ContentError, decode, shortened};
 
-use super::columns::{EXPECTED, GivenUnits};
+use super::columns::EXPECTED;
+use super::reading::{MeasuredPoint, Reading};
 use super::sample::{Sample, Test};
 use super::table::Table;
 
@@ -18,32 +19,6 @@ pub(super) struct MeasuredModuli {
     pub(super) reduced: bool,
     /// How the table was read, and what was assumed.
     pub(super) notes: Vec<String>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct MeasuredPoint {
-    /// Line number in the file.
-    pub(super) line: usize,
-    pub(super) sample: Sample,
-    /// K.
-    pub(super) temperature: Option<f64>,
-    /// a_T as the table has it.
-    pub(super) shift: Option<f64>,
-    /// The measurement that it belongs to, where the table numbers them.
-    pub(super) set: Option<f64>,
-}
-
-/// How a table is read beside what it says.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Reading<'a> {
-    pub(super) ignored: &'a [String],
-    pub(super) units: &'a GivenUnits,
-    /// The frequency of a table without one, rad/s.
-    pub(super) frequency: Option<f64>,
-    /// Of moduli of shear.
-    pub(super) poisson_ratio: f64,
-    /// "Storage modulus" without a letter is G'.
-    pub(super) shear: bool,
 }
 
 impl MeasuredModuli {

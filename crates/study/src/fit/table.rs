@@ -6,7 +6,7 @@ use asperity::scene::Wlf;
 use asperity::tables::{ABOVE_ZERO, Block, ContentError, Line, NumberStyle, POSITIVE, Row, words};
 
 use super::columns::{self, Column, Columns, Quantity, with_unit};
-use super::measured::{MeasuredPoint, Reading};
+use super::reading::{MeasuredPoint, Reading};
 use super::sample::{Sample, Test};
 use super::stated_temperature::{Setting, setting, temperatures_above};
 
