@@ -4,8 +4,9 @@ use asperity::tables::ContentError;
 use asperity_formats::workbook;
 
 use super::error::FitError;
-use super::measured::{MeasuredModuli, Reading};
+use super::measured::MeasuredModuli;
 use super::options::FitOptions;
+use super::reading::Reading;
 use crate::files::{self, name_of};
 
 /// What is wrong in the file of the moduli.

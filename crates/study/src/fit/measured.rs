@@ -3,9 +3,10 @@
 use asperity::scene::Wlf;
 use asperity::tables::{Block, ContentError, decode, shortened};
 
-use super::columns::{EXPECTED, GivenUnits};
+use super::columns::EXPECTED;
+use super::reading::{MeasuredPoint, Reading};
 use super::sample::{Sample, Test};
-use super::table::Table;
+use super::table::ModuliTable;
 
 /// Measured moduli of tension, in SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,32 +21,6 @@ pub(super) struct MeasuredModuli {
     pub(super) notes: Vec<String>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct MeasuredPoint {
-    /// Line number in the file.
-    pub(super) line: usize,
-    pub(super) sample: Sample,
-    /// K.
-    pub(super) temperature: Option<f64>,
-    /// a_T as the table has it.
-    pub(super) shift: Option<f64>,
-    /// The measurement that it belongs to, where the table numbers them.
-    pub(super) set: Option<f64>,
-}
-
-/// How a table is read beside what it says.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Reading<'a> {
-    pub(super) ignored: &'a [String],
-    pub(super) units: &'a GivenUnits,
-    /// The frequency of a table without one, rad/s.
-    pub(super) frequency: Option<f64>,
-    /// Of moduli of shear.
-    pub(super) poisson_ratio: f64,
-    /// "Storage modulus" without a letter is G'.
-    pub(super) shear: bool,
-}
-
 impl MeasuredModuli {
     /// Reads all tables of moduli in the bytes of a file.
     pub(super) fn parse(bytes: &[u8], reading: &Reading<'_>) -> Result<Self, ContentError> {
@@ -55,10 +30,10 @@ impl MeasuredModuli {
     /// The same from text.
     pub(super) fn parse_text(text: &str, reading: &Reading<'_>) -> Result<Self, ContentError> {
         let blocks = Block::all(text, true);
-        let mut tables: Vec<Table<'_>> = Vec::new();
+        let mut tables: Vec<ModuliTable<'_>> = Vec::new();
         let (mut notes, mut errors) = (Vec::new(), Vec::new());
         for block in &blocks {
-            match Table::read(block, tables.last(), reading) {
+            match ModuliTable::read(block, tables.last(), reading) {
                 Ok(Some(table)) => tables.push(table),
                 Ok(None) if block.rows > 1 => notes.push(format!(
                     "lines {} to {}: numbers without names of moduli above them are left out",

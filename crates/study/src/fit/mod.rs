@@ -13,6 +13,7 @@ mod measured;
 mod nnls;
 mod options;
 mod prony_problem;
+mod reading;
 mod sample;
 mod search;
 mod shift;
