@@ -14,8 +14,8 @@
 # which are fetched from PyPI into target/.
 #
 # With --wheel the Python package asperity is built in place of an FMU, by maturin, which is fetched from PyPI into
-# target/: a wheel with the program and the shared library of the FMUs, and a source distribution, in target/wheels. With --all-platforms
-# there is a wheel for Linux from glibc 2.17 on, on x86-64 and on aarch64, and one for Windows, all linked by zig; that
+# target/: a wheel with the program and the shared library of the FMUs, and a source distribution, in target/wheels. With
+# --all-platforms there is a wheel for Linux from glibc 2.17 on, on x86-64 and on aarch64, and one for Windows, all linked by zig; that
 # takes the targets of Rust that rustup adds.
 set -euo pipefail
 
@@ -66,21 +66,20 @@ output=${output:-$target/$name.fmu}
 # Other platforms have folders of their own.
 options=(--manifest-path "$root/Cargo.toml" --locked --release)
 
-build_library() {
-    cargo build "${options[@]}" -p asperity-fmu --target-dir "$target"
+# What the machine itself runs: the program, and with `-p asperity-fmu` the shared library.
+build() {
+    if ! [ -e "$target/release/asperity" ]; then
+        echo "Building asperity: some two minutes on two cores where nothing is built yet; packages come from the network." >&2
+    fi
+    cargo build "${options[@]}" -p asperity-cli "$@" --target-dir "$target"
+    local prefix=lib suffix=.so ending=''
     case $(uname -s) in
-        Darwin) libraries=("$target/release/libasperity_fmu.dylib") ;;
-        MINGW* | MSYS* | CYGWIN*) libraries=("$target/release/asperity_fmu.dll") ;;
-        *) libraries=("$target/release/libasperity_fmu.so") ;;
+        Darwin) suffix=.dylib platform=darwin64 ;;
+        MINGW* | MSYS* | CYGWIN*) prefix='' suffix=.dll ending=.exe platform=win64 ;;
+        *) platform=linux64 ;;
     esac
-}
-
-build_program() {
-    cargo build "${options[@]}" --bin asperity --target-dir "$target"
-    asperity=$target/release/asperity
-    case $(uname -s) in
-        MINGW* | MSYS* | CYGWIN*) asperity=$asperity.exe ;;
-    esac
+    asperity=$target/release/asperity$ending
+    library=$target/release/${prefix}asperity_fmu$suffix
 }
 
 # Packages by zig's linker, which knows the symbols of every glibc: a target, with the version of glibc behind it, a
@@ -132,6 +131,7 @@ check_tools() {
 simulate() {
     local python base
     base=${output%.fmu}
+    [ -x "$target/venv/bin/python" ] || echo "Installing fmpy and matplotlib into target/venv ..." >&2
     python=$("$root/tests/python/environment.sh" "$target/venv")
     "$asperity" simulate "$scene" -o "$base.csv" --points 200
     "$python" "$root/tests/python/drive.py" "$output" "$base.csv" -o "$base.fmu.csv"
@@ -165,7 +165,7 @@ build_wheel_by_zig() {
 
 # The licences of what a wheel brings are collected from the packages themselves.
 build_wheels() {
-    local python platform
+    local python
     python=$("$root/tests/python/environment.sh" "$target/wheel" wheel.txt)
     mkdir -p "$root/python/licenses"
     cp "$root"/LICENSE-* "$root/python/licenses/"
@@ -179,14 +179,8 @@ build_wheels() {
         build_wheel_by_zig win64 x86_64-pc-windows-gnu '' asperity.exe asperity_fmu.dll --features pyo3/generate-import-lib \
             --interpreter 3.10
     else
-        build_library
-        build_program
-        case $(uname -s) in
-            Darwin) platform=darwin64 ;;
-            MINGW* | MSYS* | CYGWIN*) platform=win64 ;;
-            *) platform=linux64 ;;
-        esac
-        build_wheel "$platform" "$asperity" "${libraries[0]}" --target-dir "$target"
+        build -p asperity-fmu
+        build_wheel "$platform" "$asperity" "$library" --target-dir "$target"
     fi
     PATH=$target/wheel/bin:$target/wheel/packages/bin:$PATH \
         maturin sdist --manifest-path "$root/python/Cargo.toml" --out "$target/wheels"
@@ -201,10 +195,11 @@ if $all_platforms; then
     check_tools
     build_linux64
     build_win64
+    build
 else
-    build_library
+    build -p asperity-fmu
+    libraries=("$library")
 fi
-build_program
 "$asperity" pack ${kind[@]+"${kind[@]}"} "$scene" -o "$output" "${libraries[@]/#/--library=}"
 echo "$output"
 if $simulate; then simulate; fi

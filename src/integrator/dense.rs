@@ -84,7 +84,7 @@ impl<'a> DenseOutput<'a> {
 
     /// Writes the state at the fraction `theta` of the step.
     pub fn state_at(&self, theta: f64, workspace: &mut DenseWorkspace, state: &mut State) {
-        workspace.set_weights(self, theta);
+        self.set_weights(workspace, theta);
         state.surface.copy_from_slice(&self.start.surface[self.masses.clone()]);
         match self.interpolation().velocities() {
             Velocities::Polynomial => self.write_polynomials(theta, workspace, state),
@@ -185,7 +185,7 @@ impl<'a> DenseOutput<'a> {
         tolerance: &Tolerance,
     ) -> f64 {
         let (carrier, h) = (self.carrier.at(self.span.at(theta)), self.span.length);
-        workspace.set_accelerations(self, theta, &carrier);
+        self.set_accelerations(workspace, theta, &carrier);
         // What Newton's first correction would make of a difference of accelerations, over the tolerances.
         let inertial = inertial_fraction(self.model, theta * h);
         let missed = |of_forces: f64, of_interpolant: f64, velocity: f64, inertial: f64| {
@@ -252,7 +252,7 @@ impl<'a> DenseOutput<'a> {
     /// The sums of the elongations and of the velocities of all masses at the fraction `theta`, from the `sums` of the
     /// step.
     pub(super) fn summed_motion(&self, theta: f64, sums: &CarrierSums, workspace: &mut DenseWorkspace) -> LinkState {
-        workspace.set_weights(self, theta);
+        self.set_weights(workspace, theta);
         match self.interpolation().velocities() {
             Velocities::Polynomial => self.summed_polynomials(theta, sums, workspace),
             Velocities::BrokenLine => self.summed_parabolas(theta, sums, workspace),
@@ -368,7 +368,7 @@ impl<'a> DenseOutput<'a> {
     /// The contact forces of mass `i`, in contact, at the fraction `theta`: the same as in the state there, for this
     /// mass alone.
     pub fn contact(&self, i: usize, theta: f64, workspace: &mut DenseWorkspace) -> ContactForces {
-        workspace.set_weights(self, theta);
+        self.set_weights(workspace, theta);
         let carrier = self.carrier_at(theta, workspace);
         let here = self.mass_at(i, &carrier, workspace);
         let to_carrier = LinkState { velocity: here.links.velocity - carrier.now.rates(), ..here.links };
@@ -390,7 +390,7 @@ impl<'a> DenseOutput<'a> {
 
     /// The forces along x and z of the lateral links between mass `i` and the next at the fraction `theta`, N.
     pub fn lateral_forces(&self, i: usize, theta: f64, workspace: &mut DenseWorkspace) -> [f64; 2] {
-        workspace.set_weights(self, theta);
+        self.set_weights(workspace, theta);
         let carrier = self.carrier_at(theta, workspace);
         let (here, there) = (self.mass_at(i, &carrier, workspace), self.mass_at(i + 1, &carrier, workspace));
         let between = LinkState::between(&here.links, &there.links, 1.0);
@@ -401,7 +401,7 @@ impl<'a> DenseOutput<'a> {
     /// Elongations of the links of mass `i` to the carrier (m) and its velocities (m/s), along x and z, at the fraction
     /// `theta`.
     pub fn motion(&self, i: usize, theta: f64, workspace: &mut DenseWorkspace) -> [ByAxis<f64>; 2] {
-        workspace.set_weights(self, theta);
+        self.set_weights(workspace, theta);
         let carrier = self.carrier_at(theta, workspace);
         let LinkState { elongation, velocity } = self.mass_at(i, &carrier, workspace).links;
         [elongation, velocity]

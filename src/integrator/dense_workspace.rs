@@ -1,26 +1,24 @@
-//! The weights with which the stages of a step enter the values within it (docs/theory.md, section 5).
+//! Where the weights are kept with which the stages of a step enter the values within it.
 
-use super::dense::DenseOutput;
-use super::interpolation::Velocities;
 use super::maxwell::ElementWeights;
 use super::scheme::Scheme;
 use super::tableau::Weights;
 use crate::math::Relaxation;
-use crate::model::{ByLink, CarrierPoint, MaxwellRow, Model};
+use crate::model::{ByLink, MaxwellRow, Model};
 
-/// Workspace of [`DenseOutput`]: the weights of the stages at one fraction of a step.
+/// Workspace of [`DenseOutput`](super::DenseOutput): the weights of the stages at one fraction of a step.
 #[derive(Clone, Debug)]
 pub struct DenseWorkspace {
     /// The scheme and the length of the step and its fraction for which the weights are set; `None` where they are not.
-    at: Option<(Scheme, f64, f64)>,
+    pub(super) at: Option<(Scheme, f64, f64)>,
     /// Of the stages' values in a value.
     pub(super) values: Weights,
     /// Of the stages' rates in a value's change since the start, s.
     pub(super) integral: Weights,
     /// By relaxation time.
-    elements: Vec<ElementWeights>,
+    pub(super) elements: Vec<ElementWeights>,
     /// By relaxation time: the exact solution over the whole step.
-    whole: Vec<Relaxation>,
+    pub(super) whole: Vec<Relaxation>,
     /// By kind of link: of the stages' elongation rates in the force of all Maxwell elements, N s/m.
     pub(super) of_rate: ByLink<Weights>,
     /// Of the masses that are meant: their accelerations in the defect, x and v_x in sums.
@@ -41,7 +39,7 @@ impl DenseWorkspace {
         }
     }
 
-    /// Workspace for single masses alone, not for [`DenseOutput::defect`] nor for sums over the layer.
+    /// Workspace for single masses alone, not for [`DenseOutput::defect`](super::DenseOutput::defect) nor for sums over the layer.
     pub fn for_single_masses(model: &Model) -> Self {
         Self { of_masses: [Vec::new(), Vec::new()], ..Self::new(model) }
     }
@@ -54,67 +52,5 @@ impl DenseWorkspace {
     /// The weights of the elements of one row at the fraction for which the weights are set.
     pub(super) fn element_weights(&self, row: &MaxwellRow) -> &ElementWeights {
         &self.elements[row.time_index]
-    }
-
-    /// Sets the weights at the fraction `theta` of `step`, unless they are there already.
-    pub(super) fn set_weights(&mut self, step: &DenseOutput<'_>, theta: f64) {
-        let at = (step.method.scheme, step.span.length, theta);
-        if self.at == Some(at) {
-            return;
-        }
-        let (h, interpolation) = (step.span.length, step.interpolation());
-        self.values = interpolation.values(theta);
-        self.integral = interpolation.integral(theta).map(|weight| h * weight);
-        match interpolation.velocities() {
-            Velocities::Polynomial => self.set_relaxing_elements(step, theta),
-            Velocities::BrokenLine => self.set_linear_elements(step),
-        }
-        self.of_rate = ByLink::default();
-        for row in &step.model.rows {
-            let rates = self.elements[row.time_index].rates;
-            for (weight, rate) in self.of_rate[row.kind].iter_mut().zip(rates) {
-                *weight += row.stiffness * rate;
-            }
-        }
-        self.at = Some(at);
-    }
-
-    /// Lets the elements follow the interpolated rate exactly, less the linear share of the difference at the step's
-    /// own end.
-    fn set_relaxing_elements(&mut self, step: &DenseOutput<'_>, theta: f64) {
-        let h = step.span.length;
-        let is_other_step = self.at.is_none_or(|(scheme, length, _)| (scheme, length) != (step.method.scheme, h));
-        let relaxations = self.elements.iter_mut().zip(&mut self.whole).zip(&step.model.relaxation_times);
-        for ((elements, whole), tau) in relaxations {
-            if is_other_step {
-                *whole = Relaxation::new(h / tau, 1.0);
-            }
-            let here = if theta == 1.0 { *whole } else { Relaxation::new(h / tau, theta) };
-            let driven = std::array::from_fn(|power| h * (here.driven[power] - theta * whole.driven[power]));
-            elements.ends = [here.decay - theta * whole.decay, theta];
-            elements.rates = step.interpolation().combined(&driven);
-        }
-    }
-
-    /// Puts the elements on the broken lines through their elongations at the start, at the first implicit stage and at
-    /// the end.
-    fn set_linear_elements(&mut self, step: &DenseOutput<'_>) {
-        let [of_start, of_first, of_end, ..] = self.values;
-        for (time_index, elements) in self.elements.iter_mut().enumerate() {
-            *elements = step.method.maxwell.weights_between(time_index, 1, [of_start, of_first, of_end]);
-        }
-    }
-
-    /// Computes the accelerations of the interpolant along x and z (m/s²) at the fraction `theta` of `step`, with the
-    /// carrier there.
-    pub(super) fn set_accelerations(&mut self, step: &DenseOutput<'_>, theta: f64, carrier: &CarrierPoint) {
-        let slope = step.interpolation().slope(theta).map(|weight| weight / step.span.length);
-        let missing = |of_carrier: f64, rate: fn(&CarrierPoint) -> f64| {
-            of_carrier - slope.iter().zip(step.carriers()).map(|(weight, at)| weight * rate(at)).sum::<f64>()
-        };
-        let [x, z] = self.of_masses.each_mut().map(|values| &mut values[..step.masses.len()]);
-        let missing_x = missing(carrier.x.acceleration, |at| at.x.speed);
-        step.combine(x, &slope, None, |stage| &stage.velocity_x, missing_x);
-        step.combine(z, &slope, None, |stage| &stage.velocity_z, missing(carrier.z.acceleration, |at| at.z.speed));
     }
 }

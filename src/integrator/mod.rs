@@ -8,6 +8,7 @@
 
 mod carrier_sums;
 mod dense;
+mod dense_weights;
 mod dense_workspace;
 mod energy;
 mod error;

@@ -246,7 +246,8 @@ impl<'a> Snapshot<'a> {
     /// The surface pushes a mass with F_N n - F_T t, n = (-s, 1)/q, t = (1, s)/q (6), (7).
     fn contact_sums(&self) -> ContactSums {
         let mut sums = ContactSums::default();
-        for contact in (0..self.model.masses()).filter_map(|i| self.contact(i)) {
+        let layer = self.layer.get();
+        for contact in (0..self.model.masses()).filter_map(|i| self.contact_in(layer, i)) {
             let ContactForces { normal, q, .. } = contact.forces;
             let friction = contact.friction(self.model);
             let fine = contact.fine(self.model);
@@ -263,14 +264,18 @@ impl<'a> Snapshot<'a> {
 
     /// The contact at mass `i`; `None` where it is free.
     pub(super) fn contact(&self, i: usize) -> Option<MassContact> {
-        let state = self.state();
+        self.contact_in(self.layer.get(), i)
+    }
+
+    #[inline(always)]
+    fn contact_in(&self, (state, forces): (&State, &Forces), i: usize) -> Option<MassContact> {
         let (mode, velocity, surface) = (state.mode[i], state.velocity_x[i], &state.surface[i]);
         mode.in_contact().then(|| MassContact {
             mode,
             velocity,
             slope: surface.slope,
             flash: state.flash(i),
-            forces: self.forces().contact(self.model, i, velocity, surface),
+            forces: forces.contact(self.model, i, velocity, surface),
         })
     }
 

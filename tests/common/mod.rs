@@ -84,15 +84,15 @@ pub fn fmpy(arguments: &[&str]) -> String {
     run(Command::new(python()).args(["-m", "fmpy"]).args(arguments))
 }
 
-/// The shared library of the FMU, built as build-fmu.sh builds it.
+/// The shared library of the FMU, built of what the tests are built of.
 pub fn library() -> &'static Path {
     static LIBRARY: OnceLock<PathBuf> = OnceLock::new();
     LIBRARY.get_or_init(|| {
         let mut cargo = Command::new(env!("CARGO"));
-        cargo.current_dir(root()).args(["build", "--release", "-p", "asperity-fmu", "--target-dir"]);
+        cargo.current_dir(root()).args(["build", "--locked", "-p", "asperity-fmu", "--target-dir"]);
         run(cargo.arg(target()));
         let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-        target().join(format!("release/{prefix}asperity_fmu{suffix}"))
+        target().join(format!("debug/{prefix}asperity_fmu{suffix}"))
     })
 }
 

@@ -8,7 +8,7 @@ use asperity::scene::Scene;
 
 use super::draft::Draft;
 pub(crate) use super::draft::{print, write};
-pub use super::output::FileError;
+pub(crate) use super::output::FileError;
 pub(crate) use super::output::{is_standard_output, named};
 use super::terminal::{LabelledLine, labelled, note, warn};
 use asperity_study::files;

@@ -1,6 +1,41 @@
-//! The commands of the program, one module each, and what they share.
+//! The command line program `asperity`: arguments, what is printed, pictures, and files written safely. What its commands
+//! compute is in `asperity-study`.
 //!
-//! [`execute`] is the program. What its commands compute is in `asperity-study`.
+//! # Modules
+//!
+//! Each module uses only those named beside it, which stand before it.
+//!
+//! | module | uses | contents |
+//! |---|---|---|
+//! | `terminal` | | text for the terminal: aligned lines, warnings, the progress bar |
+//! | `flags` | | options of the study's messages as flags of the command line |
+//! | `npz` | | archives of arrays for numpy |
+//! | `output` | | outputs by their names, and errors of files |
+//! | `interrupt` | output, terminal | what is left to do where the program is stopped |
+//! | `draft` | interrupt, output | files that take their places whole |
+//! | `files` | draft, output, terminal | scenes and other files that commands read and write |
+//! | `lock` | interrupt, output, terminal | a table that one process writes at a time |
+//! | `resumable_table` | files, lock | tables that a stopped command goes on with |
+//! | `result_file` | draft, files | results of runs, row by row |
+//! | `cli` | files | the command line: commands and their options |
+//! | `figure` | cli, files, terminal | charts, maps and moments, drawn with plotters |
+//! | `measured_friction` | figure | measured friction beside that of a model |
+//! | `elements` | files, npz | the masses of a run as arrays and as a page |
+//! | `run_summary` | terminal | the lines that a run ends with |
+//! | `simulate` | cli, elements, figure, files, result_file, run_summary, terminal | `simulate` of a scene |
+//! | `patch` | cli, figure, files, result_file, terminal | `simulate` of a patch |
+//! | `describe` | cli, figure, files, terminal | `describe` |
+//! | `contact` | cli, figure, files, npz, terminal | `contact` |
+//! | `sweep` | cli, draft, figure, files, flags, interrupt, lock, resumable_table, terminal | `sweep` |
+//! | `converge` | cli, draft, figure, files, flags, interrupt, resumable_table, terminal | `converge` |
+//! | `fit` | cli, figure, files, flags, terminal | `fit` |
+//! | `calibrate` | cli, figure, files, interrupt, measured_friction, resumable_table, terminal | `calibrate` |
+//! | `compare` | cli, figure, files, measured_friction, terminal | `compare` |
+//! | `material` | cli, figure, files, terminal | `material` |
+//! | `surface` | cli, figure, files, terminal | `surface` |
+//! | `pack` | cli, figure, files, terminal | `pack` |
+//! | `report` | cli, figure, files, terminal | `report` |
+//! | `reference` | cli, files | the reference page, completions and manual pages |
 
 mod calibrate;
 mod cli;
@@ -37,7 +72,6 @@ use std::ffi::OsString;
 
 use clap::Parser as _;
 use cli::{Arguments, Command};
-pub use files::FileError;
 
 /// Exit status of a command that did what was asked for.
 const SUCCESS: u8 = 0;

@@ -21,8 +21,7 @@ pub(crate) fn named(path: &Path) -> String {
 
 /// A file cannot be read or written, or its scene is invalid.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say what they are")]
-pub enum FileError {
+pub(crate) enum FileError {
     #[error(transparent)]
     Read(ReadError),
     #[error("--set: {0}")]

@@ -8,7 +8,7 @@ use asperity::patch::{self, PatchKind, PatchOutputEntry};
 use asperity::scene::{Absent, KeyEntry, Unit, patch_keys, scene_keys};
 use clap::{Arg, Command, CommandFactory as _};
 
-use super::Arguments;
+use super::cli::Arguments;
 use super::cli::{Completions, Manual};
 use super::files::{FileError, print};
 

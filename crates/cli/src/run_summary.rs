@@ -3,56 +3,30 @@
 
 use std::time::Instant;
 
-use asperity::model::Model;
 use asperity::outputs::{Accounts, Output, Snapshot, Variable, variable};
-use asperity::scene::{Method, Scene};
+use asperity::scene::Scene;
 use asperity::simulation::Simulation;
 
 use super::terminal::{LabelledLine, labelled};
 use asperity_study::decimals::rounded;
 use asperity_study::decimals::with_prefix;
+use asperity_study::run_figures::{RunCost, RunFigures, Saving};
 
 /// Follows the rows of a run.
 #[derive(Debug)]
 pub(super) struct RunSummary {
     began: Instant,
-    /// u (m) and F_x, F_z (N) of the last row.
-    last: Option<[f64; 3]>,
-    /// Lowest and highest F_x and F_z of the rows, N.
-    ranges: [(f64, f64); 2],
-    slide: Slide,
-}
-
-/// Sums over the way along x, by the trapezoidal rule from row to row.
-#[derive(Clone, Copy, Debug, Default)]
-struct Slide {
-    /// m.
-    way: f64,
-    /// ∫ F_x du, J.
-    work: f64,
-    /// ∫ F_z |du|, N m.
-    load: f64,
+    figures: RunFigures,
 }
 
 impl RunSummary {
     pub(super) fn new() -> Self {
-        const NONE: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
-        Self { began: Instant::now(), last: None, ranges: [NONE; 2], slide: Slide::default() }
+        Self { began: Instant::now(), figures: RunFigures::default() }
     }
 
     /// Takes in a row.
     pub(super) fn add(&mut self, snapshot: &Snapshot<'_>) {
-        let now @ [u, f_x, f_z] = [snapshot.displacement.x, snapshot.on_carrier.x, snapshot.on_carrier.z];
-        if let Some([last_u, last_x, last_z]) = self.last {
-            let way = u - last_u;
-            self.slide.way += way.abs();
-            self.slide.work += 0.5 * (f_x + last_x) * way;
-            self.slide.load += 0.5 * (f_z + last_z) * way.abs();
-        }
-        for ((low, high), force) in self.ranges.iter_mut().zip([f_x, f_z]) {
-            (*low, *high) = (low.min(force), high.max(force));
-        }
-        self.last = Some(now);
+        self.figures.add(snapshot);
     }
 
     /// The lines of a run of `scene` that is over.
@@ -79,14 +53,12 @@ impl RunSummary {
                 |force: f64| with_prefix(if force.abs() < ROUNDING * largest { 0.0 } else { force }, largest, "N");
             format!("{name} {} at the end, {} to {} on the way", newtons(now), newtons(low), newtons(high))
         };
-        let [x, z] = self.ranges;
+        let [x, z] = self.figures.ranges;
         format!("{}; {}", force("F_x", snapshot.on_carrier.x, x), force("F_z", snapshot.on_carrier.z, z))
     }
 
-    /// Friction as the work along the way over that of the load.
     fn friction(&self) -> Option<String> {
-        let Slide { way, work, load } = self.slide;
-        let coefficient = (load > 0.0).then(|| rounded(work.abs() / load, 4))?;
+        let (coefficient, way) = (rounded(self.figures.friction()?, 4), self.figures.way);
         Some(format!("{coefficient} in the mean over {} along x, from row to row", with_prefix(way, way, "m")))
     }
 
@@ -109,20 +81,15 @@ impl RunSummary {
     /// What the run cost and what would make it cheaper.
     pub(super) fn statistics(&self, scene: &Scene, simulation: &mut Simulation) -> Vec<LabelledLine> {
         let (masses, time) = (scene.layer.masses, self.began.elapsed().as_secs_f64());
-        let (newton, counters) = (simulation.newton_iterations(), simulation.snapshot().counters);
-        let variables = Model::new(scene).maxwell_variables();
-        let tried = (counters.steps + counters.rejected).max(1) as f64;
+        let found = RunCost::new(scene, simulation);
+        let (unknowns, variables) = (found.unknowns, found.maxwell_variables);
         let cost = [
-            format!("{masses} masses, {} unknowns, {variables} of them of Maxwell elements", 4 * masses + variables),
-            format!("{} a step, {:.1} Newton iterations a step", seconds(time / tried), newton as f64 / tried),
-            format!(
-                "{:.3} events a step, {:.2} events a mass",
-                counters.events as f64 / tried,
-                counters.events as f64 / masses as f64
-            ),
+            format!("{masses} masses, {unknowns} unknowns, {variables} of them of Maxwell elements"),
+            format!("{} a step, {:.1} Newton iterations a step", seconds(time / found.tried), found.iterations),
+            format!("{:.3} events a step, {:.2} events a mass", found.events, found.events_per_mass),
         ];
-        let [events, rejected] = [counters.events, counters.rejected].map(|count| count as f64 / tried);
-        let mut advice = cheaper(scene, events, rejected, variables);
+        let savings = found.savings(scene);
+        let mut advice: Vec<String> = savings.iter().map(|saving| in_words(saving, scene, variables)).collect();
         if advice.is_empty() {
             advice.push("nothing that stands out".to_owned());
         }
@@ -130,49 +97,27 @@ impl RunSummary {
     }
 }
 
-/// What would make a run of the scene with so many events and rejected steps a step and Maxwell variables cheaper, the
-/// largest first.
-fn cheaper(scene: &Scene, events: f64, rejected: f64, variables: usize) -> Vec<String> {
-    /// An event ends a step; with fewer than this share of them the events are not what costs.
-    const FEW_EVENTS: f64 = 0.3;
-    /// Relative change of a link's force that most uses stand.
-    const REDUCE: f64 = 1e-3;
-    /// A reduction to be worth a line leaves less than this share of the variables.
-    const WORTH: f64 = 0.9;
-    /// Tolerances above do not gain much by a looser one, with events and without.
-    const LOOSE: f64 = 1e-4;
-    const LOOSE_WITHOUT_EVENTS: f64 = 1e-2;
-    /// So many rejected steps are a part of the cost that a reader should know.
-    const MANY_REJECTED: f64 = 0.2;
-    let solver = &scene.solver;
-    let mut advice = Vec::new();
-    if Accounts::new(scene).solver {
-        advice
-            .push("leaving the output group \"solver\" out: its error estimate is a second, more accurate run".into());
+/// What would make a run of the scene, which has so many Maxwell variables, cheaper.
+fn in_words(saving: &Saving, scene: &Scene, variables: usize) -> String {
+    match saving {
+        Saving::NoErrorEstimate => {
+            "leaving the output group \"solver\" out: its error estimate is a second, more accurate run".into()
+        }
+        Saving::TimeStepping => {
+            "solver.method = \"step\" with relative_tolerance = 1e-3: its steps do not end at events".into()
+        }
+        Saving::Tolerance { loose, rejected } => {
+            let rejected = rejected.map(|share| format!("; {:.0} % of the steps were rejected", 100.0 * share));
+            let (now, rejected) = (scene.solver.relative_tolerance, rejected.unwrap_or_default());
+            format!("solver.relative_tolerance up to {loose:e}, from {now:e}{rejected}")
+        }
+        Saving::Reduction { reduce, left } => {
+            format!("solver.reduce = {reduce}: {left} of {variables} Maxwell variables are left")
+        }
+        Saving::FewerMasses => {
+            "fewer masses: `asperity converge --method layer` tells how friction depends on the spacing".into()
+        }
     }
-    if solver.method == Method::Event && events > FEW_EVENTS {
-        advice.push("solver.method = \"step\" with relative_tolerance = 1e-3: its steps do not end at events".into());
-    }
-    let loose = if solver.method == Method::Event { LOOSE } else { LOOSE_WITHOUT_EVENTS };
-    if solver.relative_tolerance < loose {
-        let rejected = match rejected > MANY_REJECTED {
-            true => format!("; {:.0} % of the steps were rejected", 100.0 * rejected),
-            false => String::new(),
-        };
-        advice
-            .push(format!("solver.relative_tolerance up to {loose:e}, from {:e}{rejected}", solver.relative_tolerance));
-    }
-    let mut reduced = scene.clone();
-    reduced.solver.reduce = REDUCE;
-    let left = Model::new(&reduced).maxwell_variables();
-    if solver.reduce < REDUCE && (left as f64) < WORTH * variables as f64 {
-        advice.push(format!("solver.reduce = {REDUCE}: {left} of {variables} Maxwell variables are left"));
-    }
-    if scene.layer.masses > 1 && !scene.has_coarse_spacing() {
-        advice
-            .push("fewer masses: `asperity converge --method layer` tells how friction depends on the spacing".into());
-    }
-    advice
 }
 
 fn contact(snapshot: &Snapshot<'_>) -> String {

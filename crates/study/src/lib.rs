@@ -53,6 +53,7 @@ pub mod patch;
 pub mod progress;
 pub mod report;
 pub mod robustness;
+pub mod run_figures;
 pub mod runner;
 pub mod settings;
 pub mod steady;

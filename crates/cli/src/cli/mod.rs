@@ -1,5 +1,6 @@
 //! The command line: the arguments of every command. [`values`] parses and checks single values.
 
+pub(crate) mod sweep_values;
 mod values;
 
 use std::ffi::OsString;
@@ -12,10 +13,10 @@ use asperity_study::fit::WlfConstants;
 use clap::{ArgGroup, Args, Parser, Subcommand};
 
 use super::files::default_output;
-use super::sweep::values::{Shard, Values};
 use asperity_study::csv::Head;
 use asperity_study::settings::Setting;
 use asperity_study::sweep::SweepMethod;
+use sweep_values::{Shard, Values};
 pub(crate) use values::{Condition, PlotAxis};
 use values::{
     Frequencies, Tolerances, animation, arrays, column_unit, count, fit_error, free_parameter, frequency,

@@ -2,7 +2,7 @@
 
 use super::axis::{Axis, Fit};
 use super::chart::{Chart, Curve, Stroke};
-use super::plot::{PlotError, Selection};
+use super::selection::{PlotError, Selection};
 use crate::cli::Plot;
 use crate::terminal::{LabelledLine, labelled};
 use asperity_study::decimals::{decimal, rounded};

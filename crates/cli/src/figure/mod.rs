@@ -12,6 +12,7 @@ mod patch;
 mod plot;
 mod raster;
 mod row;
+mod selection;
 mod surface_maps;
 
 use std::convert::Infallible;

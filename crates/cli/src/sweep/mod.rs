@@ -3,7 +3,6 @@
 mod plot;
 mod printed;
 mod table_file;
-pub(super) mod values;
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -11,7 +10,9 @@ use std::path::{Path, PathBuf};
 use asperity::element::OperatingPoint;
 use asperity::scene::{Scene, Wlf};
 use asperity_study::progress::Stop;
-use asperity_study::sweep::{Loads, SlidingOptions, SweepError, SweepOptions, SweepPlan, SweepTable, verdict};
+use asperity_study::sweep::{
+    Loads, NotAStudy, SlidingOptions, SweepError, SweepOptions, SweepPlan, SweepTable, verdict,
+};
 
 use super::cli::{Sliding, Sweep};
 use super::draft::TablePlace;
@@ -21,8 +22,8 @@ use super::files::{
 use super::flags::with_flags;
 use super::interrupt::Farewell;
 use super::terminal::{self, lines, warn};
+use crate::cli::sweep_values::Values;
 use table_file::{TableFile, TableFileError};
-use values::Values;
 
 /// `asperity sweep` failed, or not all of its points are steady.
 #[derive(Debug, thiserror::Error)]
@@ -38,7 +39,7 @@ pub(crate) enum SweepCommandError {
     #[error("--master: the scene has no material.wlf, by whose factors speeds would be shifted")]
     NoMaster,
     #[error("{}: not a study of this scene's convergence: {problem}", .path.display())]
-    NotAStudy { path: PathBuf, problem: String },
+    NotAStudy { path: PathBuf, problem: NotAStudy },
     #[error("{failed} of {total} points are not steady or failed: the column status in {} says why", named(.path))]
     NotSteady { failed: usize, total: usize, path: PathBuf },
 }

@@ -18,7 +18,7 @@ mod swept;
 mod table;
 mod window;
 
-pub use convergence::verdict;
+pub use convergence::{NotAStudy, verdict};
 pub use error::SweepError;
 pub use load_search::separation_at_rest;
 pub use method::{Method, MethodError, SlidingOptions, SweepMethod};

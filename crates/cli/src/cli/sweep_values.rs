@@ -119,7 +119,7 @@ impl Shard {
     }
 
     /// Whether the point of this index is in it: every `count`th is, so that all shards have slow and quick points.
-    pub(super) fn has(self, index: usize) -> bool {
+    pub(crate) fn has(self, index: usize) -> bool {
         index % self.count == self.index - 1
     }
 }
