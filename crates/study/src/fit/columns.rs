@@ -2,6 +2,8 @@
 
 use asperity::tables::{Block, ContentError, Dimension, Header, Heading, HeadingUnit, Unit, UnitRule, Words, words};
 
+use super::reading::GivenUnits;
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
     /// Cycles or radians per second; reduced: times a_T already.
@@ -147,9 +149,6 @@ pub(super) fn is_reduced(column: &Column) -> bool {
     let says_so = |word: &String| ["reduced", "at", "a", "shifted"].contains(&word.as_str());
     column.quantity == Quantity::Frequency && words(&column.text).iter().any(says_so)
 }
-
-/// Units given on the command line, by the names of columns.
-pub(super) type GivenUnits = [(String, Unit)];
 
 /// What a block has: the columns that are known, and those left out.
 #[derive(Debug)]

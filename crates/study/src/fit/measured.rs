@@ -6,7 +6,7 @@ use asperity::tables::{Block, ContentError, decode, shortened};
 use super::columns::EXPECTED;
 use super::reading::{MeasuredPoint, Reading};
 use super::sample::{Sample, Test};
-use super::table::Table;
+use super::table::ModuliTable;
 
 /// Measured moduli of tension, in SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,10 +30,10 @@ impl MeasuredModuli {
     /// The same from text.
     pub(super) fn parse_text(text: &str, reading: &Reading<'_>) -> Result<Self, ContentError> {
         let blocks = Block::all(text, true);
-        let mut tables: Vec<Table<'_>> = Vec::new();
+        let mut tables: Vec<ModuliTable<'_>> = Vec::new();
         let (mut notes, mut errors) = (Vec::new(), Vec::new());
         for block in &blocks {
-            match Table::read(block, tables.last(), reading) {
+            match ModuliTable::read(block, tables.last(), reading) {
                 Ok(Some(table)) => tables.push(table),
                 Ok(None) if block.rows > 1 => notes.push(format!(
                     "lines {} to {}: numbers without names of moduli above them are left out",

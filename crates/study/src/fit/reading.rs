@@ -1,9 +1,13 @@
-//! What a table of moduli is read with, and what a row of it gives.
+//! How tables of moduli are read, and what a row says.
 
-use super::columns::GivenUnits;
+use asperity::tables::Unit;
+
 use super::sample::Sample;
 
-/// A row of measured moduli.
+/// Units given on the command line, by the names of columns.
+pub(super) type GivenUnits = [(String, Unit)];
+
+/// What a row of a table says of one curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct MeasuredPoint {
     /// Line number in the file.

@@ -3,7 +3,7 @@
 use asperity::scene::Wlf;
 use asperity::tables::{Block, ContentError, Dimension, Unit, find_quantity, number, words};
 
-use super::columns::GivenUnits;
+use super::reading::GivenUnits;
 
 /// The temperature in a text, K.
 fn temperature(text: &str) -> Option<f64> {

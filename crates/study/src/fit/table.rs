@@ -25,7 +25,7 @@ struct Curve {
 
 /// A table of moduli in a file.
 #[derive(Debug)]
-pub(super) struct Table<'a> {
+pub(super) struct ModuliTable<'a> {
     block: Block<'a>,
     /// The line of its names.
     pub(super) line: usize,
@@ -42,7 +42,7 @@ pub(super) struct Table<'a> {
     columns: Columns,
 }
 
-impl<'a> Table<'a> {
+impl<'a> ModuliTable<'a> {
     /// The table in a block, with the header of the one before it where it has none of its own; `None` where its
     /// columns are none of moduli.
     pub(super) fn read(
