@@ -1,5 +1,5 @@
 //! The architecture, held against the sources: which package and which module uses which, and where unsafe code may be.
-#![allow(missing_docs, clippy::unwrap_used, reason = "tests may fail")]
+#![allow(missing_docs, clippy::unwrap_used, clippy::panic, reason = "tests may fail")]
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

@@ -77,7 +77,7 @@ pub fn minimise(
     if let Some(error) = fitter.error {
         return Err(error);
     }
-    let status = status.map_err(|error| ModelError::LeastSquares(error))?;
+    let status = status.map_err(ModelError::LeastSquares)?;
     let has_converged = status.success != MPSuccess::MaxIter;
     let chi_square = sum_of_squares(&problem.residuals(model, &places)?);
     Ok(Fitted { places, chi_square, has_converged })
