@@ -168,7 +168,7 @@ pub struct Peers {
 }
 
 /// Reads the rows of the scene with one of these `names` whose times are those of whole processes. The file has the
-/// columns of [`MEASURED`], and perhaps [`TIMED`], [`SPREAD`] and [`TIMINGS`]; others are ignored.
+/// columns of `MEASURED`, and perhaps `TIMED`, `SPREAD` and `TIMINGS`; others are ignored.
 ///
 /// # Errors
 /// Where the file cannot be read, a column is missing, or a field is no number.

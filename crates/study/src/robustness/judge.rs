@@ -66,7 +66,7 @@ pub fn larger(a: f64, b: f64) -> f64 {
 pub enum Accuracy {
     /// It differs so much from the tight run.
     Error(Difference),
-    /// It does, but a tight run from a start moved by [`DISPLACEMENT`] differs about as much.
+    /// It does, but a tight run from a start moved by `DISPLACEMENT` differs about as much.
     Sensitive {
         /// The difference from the tight run.
         error: Difference,
@@ -78,7 +78,7 @@ pub enum Accuracy {
 }
 
 impl Accuracy {
-    /// Judges a run of `scene` by a tight run. `moved` repeats the tight run from a start moved by [`DISPLACEMENT`]; it
+    /// Judges a run of `scene` by a tight run. `moved` repeats the tight run from a start moved by `DISPLACEMENT`; it
     /// is called only where the error is notable.
     pub fn judge(
         scene: &Scene,
