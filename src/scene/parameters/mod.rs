@@ -2,31 +2,35 @@
 //!
 //! Which there are, and where their values are in a scene, says the table of keys.
 
+mod key_path;
 #[cfg(test)]
 mod tests;
-
-use std::sync::LazyLock;
 
 use super::error::{ParameterError, Problem};
 use super::keys::{self, At, Key, KeyRow};
 use super::values::Value;
 use super::{Foundation, Scene, Unit};
+use key_path::KeyPath;
 
 /// One settable number or word of a scene, an element or a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Parameter {
     /// The path of its key, `[]` behind a list.
-    key: &'static str,
+    key: KeyPath,
     /// The element of the list, counted from 0.
     index: usize,
 }
 
-/// The parameters of scenes, in their order, each list having one element.
-static OF_SCENES: LazyLock<Vec<KeyRow>> =
-    LazyLock::new(|| keys::fields().into_iter().filter(|row| row.key.is_parameter).collect());
+/// The parameters of scenes, in their order, each list having one element. Not kept: a shared library that is unloaded
+/// would leave them behind.
+fn of_scenes() -> Vec<KeyRow> {
+    keys::fields().into_iter().filter(|row| row.key.is_parameter).collect()
+}
 
 /// The keys of a patch, some of which are parameters of elements and patches.
-static OF_PATCHES: LazyLock<Vec<KeyRow>> = LazyLock::new(|| keys::rows(keys::PATCH_ROOT));
+fn of_patches() -> Vec<KeyRow> {
+    keys::rows(keys::PATCH_ROOT)
+}
 
 impl Parameter {
     /// How the dashpots start.
@@ -46,21 +50,22 @@ impl Parameter {
 
     /// The parameter whose key has this path, which is in no list.
     pub(crate) const fn new(key: &'static str) -> Self {
-        Self { key, index: 0 }
+        Self { key: KeyPath::new(key), index: 0 }
     }
 
     /// The path of its key, `[]` behind a list: `layer.vertical.maxwell[].stiffness`.
-    pub fn path(self) -> &'static str {
-        self.key
+    pub fn path(&self) -> &str {
+        self.key.as_str()
     }
 
     /// The path of its key, elements of lists counted from 1: `layer.vertical.maxwell[1].stiffness`.
     pub fn name(self) -> String {
-        self.key.replace("[]", &format!("[{}]", self.index + 1))
+        self.path().replace("[]", &format!("[{}]", self.index + 1))
     }
 
-    fn row(self) -> Option<&'static KeyRow> {
-        OF_SCENES.iter().chain(OF_PATCHES.iter()).find(|row| row.path == self.key)
+    fn row(self) -> Option<KeyRow> {
+        let is_own = |row: &KeyRow| row.path == self.path();
+        of_scenes().into_iter().find(is_own).or_else(|| of_patches().into_iter().find(is_own))
     }
 
     fn key(self) -> &'static Key {
@@ -105,14 +110,14 @@ impl Scene {
     pub fn parameters(&self) -> Vec<Parameter> {
         let mut parameters = Vec::new();
         let list = |row: &KeyRow| row.path.split_once("[]").map(|(list, _)| list.to_owned());
-        for rows in OF_SCENES.chunk_by(|one, next| list(one).is_some() && list(one) == list(next)) {
+        for rows in of_scenes().chunk_by(|one, next| list(one).is_some() && list(one) == list(next)) {
             let in_list = rows.first().and_then(list).is_some();
             for index in 0.. {
                 let has = |row: &&KeyRow| {
                     row.key.field.is_some_and(|field| (field.get)(self, row.at.element(index)).is_some())
                 };
                 let before = parameters.len();
-                parameters.extend(rows.iter().filter(has).map(|row| Parameter { key: &row.path, index }));
+                parameters.extend(rows.iter().filter(has).map(|row| Parameter { key: KeyPath::new(&row.path), index }));
                 if !in_list || parameters.len() == before {
                     break;
                 }

@@ -224,7 +224,7 @@ fn random(state: &mut u64) -> f64 {
 /// tolerances of events. The number of steps tried in one communication step is limited all the same.
 #[test]
 fn inputs_that_jump_wildly_cost_limited_work() {
-    let mut scene = Scene::load(std::path::Path::new("tests/reference/rough-coulomb.toml")).unwrap();
+    let mut scene = Scene::load(&crate::common::root().join("tests/reference/rough-coulomb.toml")).unwrap();
     scene.solver.relative_tolerance = 1e-9;
     let wanted = [Output::Steps, Output::Rejected];
     let counts: Vec<_> = variables(&scene).into_iter().filter(|one| wanted.contains(&one.output)).collect();
