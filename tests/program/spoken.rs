@@ -93,7 +93,7 @@ fn a_sweep_ends_with_its_table() {
     let output = spoken(&[&["sweep", &road, "-o", "table.csv"][..], &loads].concat(), &folder);
     let table = Table::read(&folder.join("table.csv"));
     let printed: Vec<Vec<&str>> = text(&output.stdout).lines().map(|line| line.split_whitespace().collect()).collect();
-    assert_eq!(printed[0], ["Friction", "293.15", "K", "0.1", "MPa", "0.3", "MPa"]);
+    assert_eq!(printed[0], ["Friction", "293.15", "K", "100", "kPa", "300", "kPa"]);
     for (line, speed, words) in [(1, 1e-3, ["1", "mm/s"]), (2, 1.0, ["1", "m/s"])] {
         assert_eq!(printed[line][..2], words);
         for (column, pressure) in [(2, 1e5), (3, 3e5)] {
