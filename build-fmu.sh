@@ -15,8 +15,8 @@
 #
 # With --wheel the Python package asperity is built in place of an FMU, by maturin, which is fetched from PyPI into
 # target/: a wheel with the program and the shared library of the FMUs, and a source distribution, in target/wheels. With
-# --all-platforms there is a wheel for Linux from glibc 2.17 on, on x86-64 and on aarch64, and one for Windows, all linked by zig; that
-# takes the targets of Rust that rustup adds.
+# --all-platforms there is a wheel for Linux from glibc 2.17 on, on x86-64 and on aarch64, and one for Windows, all
+# linked by zig; that takes the targets of Rust that rustup adds.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
