@@ -20,15 +20,23 @@ pub(in crate::scene) struct KeyRow {
 /// The keys of the layer's roughness, which are those of the surface.
 const ROUGHNESS: &str = "layer.roughness.";
 
-/// The key at the end of a path such as `layer.vertical.maxwell[1].stiffness`.
-pub(in crate::scene) fn at(path: &str) -> Option<&'static Key> {
-    let (mut keys, mut found) = (ROOT, None);
-    for part in path.split('.') {
-        let name = part.split_once('[').map_or(part, |(name, _)| name);
-        let key = keys.iter().find(|key| key.name == name)?;
-        (keys, found) = (key.keys(), Some(key));
+/// The key at the end of a path in a file with these keys, and which of several equal tables it is in; lists are written
+/// as `maxwell[]` or `maxwell[1]`.
+pub(in crate::scene) fn find(root: &'static [Key], path: &str) -> Option<(&'static Key, At)> {
+    find_below(root, At::FIRST, path)
+}
+
+fn find_below(keys: &'static [Key], at: At, path: &str) -> Option<(&'static Key, At)> {
+    let (part, rest) = path.split_once('.').map_or((path, None), |(part, rest)| (part, Some(rest)));
+    let name = part.split_once('[').map_or(part, |(name, _)| name);
+    let key = keys.iter().find(|key| key.name == name)?;
+    let at = key.at.unwrap_or(at);
+    let Some(rest) = rest else { return Some((key, at)) };
+    match key.allowed {
+        Allowed::Table(keys) | Allowed::Tables(keys, _) => find_below(keys, at, rest),
+        Allowed::Kinds(_, kinds) => kinds().into_iter().find_map(|(_, keys)| find_below(keys, at, rest)),
+        _ => None,
     }
-    found
 }
 
 /// The paths of other keys of a scene and of a patch that look like `given`, or end with it; elements of lists as
@@ -133,5 +141,5 @@ fn of_kinds(kinds: &[KindKeys], rows_of: impl Fn(&'static [Key]) -> Vec<KeyRow>)
 
 /// The range of the number at a path; positive numbers where there is none.
 pub(in crate::scene) fn range_of(path: &str) -> NumberRange {
-    at(path).and_then(Key::range).unwrap_or(POSITIVE)
+    find(ROOT, path).and_then(|(key, _)| key.range()).unwrap_or(POSITIVE)
 }

@@ -21,17 +21,6 @@ pub struct Parameter {
     index: usize,
 }
 
-/// The parameters of scenes, in their order, each list having one element. Not kept: a shared library that is unloaded
-/// would leave them behind.
-fn of_scenes() -> Vec<KeyRow> {
-    keys::fields().into_iter().filter(|row| row.key.is_parameter).collect()
-}
-
-/// The keys of a patch, some of which are parameters of elements and patches.
-fn of_patches() -> Vec<KeyRow> {
-    keys::rows(keys::PATCH_ROOT)
-}
-
 impl Parameter {
     /// How the dashpots start.
     pub const INITIAL: Self = Self::new("layer.initial");
@@ -63,17 +52,19 @@ impl Parameter {
         self.path().replace("[]", &format!("[{}]", self.index + 1))
     }
 
-    fn row(self) -> Option<KeyRow> {
-        let is_own = |row: &KeyRow| row.path == self.path();
-        of_scenes().into_iter().find(is_own).or_else(|| of_patches().into_iter().find(is_own))
+    /// Its key, and which of several equal tables this is in: of scenes, or of patches and elements.
+    fn found(self) -> (&'static Key, At) {
+        let of_scenes = keys::find(keys::ROOT, self.path()).filter(|(key, _)| key.is_parameter && key.field.is_some());
+        let found = of_scenes.or_else(|| keys::find(keys::PATCH_ROOT, self.path()));
+        found.unwrap_or((&keys::NONE, At::FIRST))
     }
 
     fn key(self) -> &'static Key {
-        self.row().map_or(&keys::NONE, |row| row.key)
+        self.found().0
     }
 
     fn at(self) -> At {
-        self.row().map_or(At::FIRST, |row| row.at).element(self.index)
+        self.found().1.element(self.index)
     }
 
     /// What it may hold, in words.
@@ -109,8 +100,11 @@ impl Scene {
     /// The parameters that this scene has, in the order of the scene's keys.
     pub fn parameters(&self) -> Vec<Parameter> {
         let mut parameters = Vec::new();
+        // Each list has one element here.
+        let mut of_scenes = keys::fields();
+        of_scenes.retain(|row| row.key.is_parameter);
         let list = |row: &KeyRow| row.path.split_once("[]").map(|(list, _)| list.to_owned());
-        for rows in of_scenes().chunk_by(|one, next| list(one).is_some() && list(one) == list(next)) {
+        for rows in of_scenes.chunk_by(|one, next| list(one).is_some() && list(one) == list(next)) {
             let in_list = rows.first().and_then(list).is_some();
             for index in 0.. {
                 let has = |row: &&KeyRow| {
