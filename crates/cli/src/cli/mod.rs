@@ -26,7 +26,7 @@ use values::{
 
 /// Simulates rubber on a rough surface and packs the simulation as an FMU.
 #[derive(Debug, Parser)]
-#[command(version)]
+#[command(name = "asperity", version)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -681,6 +681,11 @@ mod tests {
     use clap::CommandFactory;
 
     use super::*;
+
+    #[test]
+    fn the_program_says_its_own_name() {
+        assert_eq!(Arguments::command().render_version(), concat!("asperity ", env!("CARGO_PKG_VERSION"), "\n"));
+    }
 
     #[test]
     fn the_command_line_is_well_formed() {
