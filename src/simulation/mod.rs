@@ -17,6 +17,7 @@ mod derivative_tests;
 mod event_driven;
 mod interrupt;
 mod local_regions;
+mod memory;
 mod motion;
 mod reference_run;
 mod run;
@@ -71,10 +72,11 @@ impl Simulation {
     ///
     /// # Errors
     /// [`SimulationError::OutOfRange`] where `start` is not finite, [`SimulationError::Scene`] where parameters set one
-    /// by one do not go together.
+    /// by one do not go together, [`SimulationError::Memory`] where the machine does not have it.
     pub fn new(scene: &Scene, start: &Start) -> Result<Self, SimulationError> {
         start.check()?;
         scene.check()?;
+        memory::check(scene)?;
         scene.check_equilibrium(start.load)?;
         let Some(wlf) = scene.material.as_ref().and_then(|material| material.wlf).filter(|_| scene.temperature_input)
         else {
@@ -83,6 +85,11 @@ impl Simulation {
         let temperature = start.temperature.unwrap_or(wlf.temperature);
         let start = Start { temperature: Some(temperature), ..*start };
         Ok(Self::started(&scene.at_temperature(temperature)?, &start))
+    }
+
+    /// Memory in bytes that a run of `scene` takes. It is an upper bound that tests hold against what runs allocate.
+    pub fn memory(scene: &Scene) -> usize {
+        memory::of_run(scene)
     }
 
     fn started(scene: &Scene, start: &Start) -> Self {

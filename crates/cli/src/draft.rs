@@ -1,5 +1,6 @@
 //! Outputs as they are being written: beside their places, which they take whole.
 
+use std::ffi::OsStr;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Stdout, Write};
 use std::path::{Path, PathBuf};
@@ -83,11 +84,14 @@ impl Target {
         let mut prefix = std::ffi::OsString::from(".");
         prefix.push(place.file_name().unwrap_or_default());
         prefix.push(".");
+        remove_abandoned(folder, &prefix);
         let mut builder = Builder::new();
-        builder.prefix(&prefix).suffix(".part");
+        builder.prefix(&prefix).suffix(ENDING);
         #[cfg(unix)]
         builder.permissions(permissions(before.as_ref()));
         let file = builder.tempfile_in(folder)?;
+        // Held until the file has its place or its writer has ended; some file systems have no locks.
+        drop(file.as_file().try_lock());
         let leftover = Leftover::new(file.path());
         Ok(Self::Beside { file, place, leftover })
     }
@@ -121,6 +125,32 @@ impl Write for Target {
     fn flush(&mut self) -> io::Result<()> {
         self.stream().flush()
     }
+}
+
+/// How the names of drafts end.
+const ENDING: &str = ".part";
+
+/// Removes drafts of an output that begin with `prefix` and whose writers were killed: nobody holds their locks. One that
+/// is empty may just have been made.
+fn remove_abandoned(folder: &Path, prefix: &OsStr) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    let is_draft = |name: &OsStr| {
+        let name = name.to_string_lossy();
+        name.strip_prefix(&*prefix.to_string_lossy()).and_then(|rest| rest.strip_suffix(ENDING)).is_some_and(is_random)
+    };
+    for entry in entries.flatten().filter(|entry| is_draft(&entry.file_name())) {
+        let abandoned = File::open(entry.path()).is_ok_and(|file| {
+            file.metadata().is_ok_and(|found| found.is_file() && found.len() > 0) && file.try_lock().is_ok()
+        });
+        if abandoned {
+            drop(fs::remove_file(entry.path()));
+        }
+    }
+}
+
+/// Whether a part of a name is what makes drafts differ.
+fn is_random(part: &str) -> bool {
+    !part.is_empty() && part.chars().all(|letter| letter.is_ascii_alphanumeric())
 }
 
 /// Those of the file that was there, else those of any new file.
@@ -161,5 +191,26 @@ impl TablePlace {
     /// Prints the whole table where it is for standard output.
     pub(crate) fn finish(self) -> Result<(), FileError> {
         if self.folder.is_some() { print(&String::from_utf8_lossy(&files::bytes(&self.path)?)) } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn drafts_of_writers_that_were_killed_are_removed_and_no_others() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let (abandoned, other, named_alike) =
+            (at(".t.csv.Ab12Cd.part"), at(".u.csv.Ab12Cd.part"), at(".t.csv.x.y.part"));
+        [&abandoned, &other, &named_alike].into_iter().for_each(|path| fs::write(path, "1,2").unwrap());
+        let mut running = Draft::create(&at("t.csv")).unwrap();
+        running.write_all(&[b'1'; 1 << 16]).unwrap();
+        assert!(!abandoned.exists() && other.exists() && named_alike.exists());
+        write(&at("t.csv"), "whole").unwrap();
+        running.finish().unwrap();
+        assert_eq!(fs::read(at("t.csv")).unwrap().len(), 1 << 16);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
     }
 }

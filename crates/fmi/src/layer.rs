@@ -77,17 +77,10 @@ impl FmuModel for Arc<Scene> {
     }
 
     fn memory(&self) -> usize {
-        /// Of a mass; of its variables, five with their names in two places; of each of its elements.
-        const MASS: usize = 2048;
+        /// Of a mass's variables, five with their names in two places.
         const VARIABLES: usize = 5 * 512;
-        const ELEMENT: usize = 512;
-        /// For each input that derivatives are taken by, this part more.
-        const TANGENT: f64 = 0.5;
-        let asks = |group| self.outputs.contains(&group);
-        let tangents = if asks(OutputGroup::Tangent) { Scene::inputs(self).len() } else { 0 };
-        let run = (MASS + ELEMENT * elements(self)) as f64 * (1.0 + TANGENT * tangents as f64);
-        let variables = if asks(OutputGroup::Elements) { VARIABLES } else { 0 };
-        (1 << 20) + self.layer.masses * (runs(self) * run as usize + variables)
+        let variables = if self.outputs.contains(&OutputGroup::Elements) { VARIABLES } else { 0 };
+        (1 << 20) + self.layer.masses * variables + Simulation::memory(self)
     }
 
     fn state_memory(&self) -> usize {

@@ -3,7 +3,7 @@
 use asperity::scene::Scene;
 
 use crate::steady::{SlideProblem, SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
-use crate::sweep::{Method, MethodError, SlidingOptions, SweepMethod};
+use crate::sweep::{Method, MethodError, NotPossible, SlidingOptions, SweepMethod};
 
 /// The contact of a scene cannot be solved for.
 #[derive(Debug, thiserror::Error)]
@@ -11,6 +11,8 @@ use crate::sweep::{Method, MethodError, SlidingOptions, SweepMethod};
 pub enum ContactError {
     #[error(transparent)]
     Method(#[from] MethodError),
+    #[error(transparent)]
+    Range(#[from] NotPossible),
     #[error("the scene has no material or layer.width, so its contact has no pressure")]
     NoMaterial,
 }
@@ -57,8 +59,10 @@ pub struct ContactOptions {
 /// Solves for steady sliding of a scene.
 ///
 /// # Errors
-/// Where the scene cannot be solved for.
+/// Where the scene cannot be solved for, or there is no such state.
 pub fn solve_contact(scene: &Scene, options: &ContactOptions) -> Result<SolvedContact, ContactError> {
+    NotPossible::check("speed", "m/s", &[options.speed])?;
+    NotPossible::check("pressure", "Pa", &[options.pressure])?;
     let sliding =
         SlidingOptions { method: Some(SweepMethod::Steady), points: options.points, ..SlidingOptions::default() };
     // What is asked for is chosen or refused.

@@ -3,11 +3,12 @@
 use std::ops::ControlFlow;
 
 use asperity::element::{Basis, Load, OperatingPoint, SweepGrid, TableHeader, TableRow};
+use asperity::math::check_memory;
 use asperity::scene::{FineRoughness, Scene};
 use asperity::simulation::Interrupt;
 use rayon::prelude::*;
 
-use super::error::SweepError;
+use super::error::{NotPossible, SweepError};
 use super::load_search::separation_at_rest;
 use super::method::{Method, SlidingOptions};
 use super::point;
@@ -59,6 +60,7 @@ impl SweepPlan {
         if scene.carrier.x.is_some() {
             return Err(SweepError::BodyAlongX);
         }
+        check(options)?;
         let (load, loads) = loads(&options.loads, &scene)?;
         let (method, of_method) = options.sliding.choose(&scene)?;
         let warning = if matches!(method, Method::Layer) { hard_pressure(&scene, load, &loads) } else { None };
@@ -130,6 +132,21 @@ impl SweepPlan {
     pub fn few_points<'a>(&self, rows: impl Iterator<Item = &'a TableRow>) -> Option<String> {
         self.solved.as_ref()?.few_points(rows, &self.header)
     }
+}
+
+/// Checks that there are such states of sliding, and no more of them than the memory holds rows.
+fn check(options: &SweepOptions) -> Result<(), SweepError> {
+    /// Of a row.
+    const BYTES: u64 = 1024;
+    NotPossible::check("speeds", "m/s", &options.speeds)?;
+    let loads = match &options.loads {
+        Loads::Pressures(pressures) => NotPossible::check("pressures", "Pa", pressures).map(|()| pressures.len()),
+        Loads::Forces(forces) => NotPossible::check("forces", "N", forces).map(|()| forces.len()),
+    }?;
+    let temperatures = options.temperatures.as_deref().unwrap_or(&[0.0]).len();
+    let points = [options.speeds.len(), loads, temperatures].map(|count| count as u64);
+    let points = points.into_iter().fold(1, u64::saturating_mul);
+    Ok(check_memory(points.saturating_mul(BYTES), || format!("{points} points of the sweep"))?)
 }
 
 /// What the table rests on, for those who use it.
