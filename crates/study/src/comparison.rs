@@ -14,6 +14,11 @@ use crate::sweep::SweepTable;
 pub enum ComparisonError {
     #[error(transparent)]
     Measured(#[from] MeasuredFrictionError),
+    #[error(
+        "{}: no temperatures: expected a column temperature [°C], for the table has several; or a table of one temperature",
+        .0.display()
+    )]
+    NoTemperature(PathBuf),
     #[error("{}: a table over forces: expected one over pressures, as `asperity sweep --pressures` makes", .0.display())]
     OverForces(PathBuf),
 }
@@ -46,7 +51,14 @@ impl Comparison {
             return Err(ComparisonError::OverForces(path.to_owned()));
         };
         let mut measurements = Measurements::read(data, area)?;
-        if let [only] = table.header.grid.temperatures[..] {
+        let temperatures = &table.header.grid.temperatures;
+        if temperatures.len() > 1 && !measurements.has_temperature() {
+            return Err(ComparisonError::NoTemperature(data.to_owned()));
+        }
+        if temperatures.is_empty() && measurements.has_temperature() {
+            measurements.notes.push(without_temperature(&measurements.rows));
+        }
+        if let [only] = temperatures[..] {
             measurements.rows.iter_mut().for_each(|row| {
                 let _ = row.point.temperature.get_or_insert(only);
             });
@@ -80,6 +92,14 @@ impl Comparison {
     }
 }
 
+/// The note that a table without temperatures is compared with measurements that have some.
+fn without_temperature(rows: &[Measured]) -> String {
+    let kelvins = || rows.iter().filter_map(|row| row.point.temperature);
+    let (low, high) = (kelvins().fold(f64::INFINITY, f64::min), kelvins().fold(0.0, f64::max));
+    let range = if low == high { format!("{low} K") } else { format!("{low} to {high} K") };
+    format!("the table has no temperatures, as its scene has no material.wlf: it is compared with those at {range}")
+}
+
 /// How far a table is off, over the standard deviation.
 fn deviation((row, friction): &(Measured, f64)) -> f64 {
     (friction - row.friction) / row.sigma_or_assumed()
@@ -93,8 +113,15 @@ struct SweptFriction<'a> {
 
 /// The values beside one on an axis, and how far it is between them; alone where it is on one. `None` beyond.
 fn beside(axis: &[f64], value: f64, scale: fn(f64) -> f64) -> Option<Vec<(f64, f64)>> {
-    /// What a number that was written and read with a unit may be off.
+    /// What a number that was written and read with a unit may be off; of one beyond an end, what was rounded before.
     const ROUNDING: f64 = 1e-9;
+    const ROUNDING_OF_END: f64 = 1e-6;
+    let (first, last) = (*axis.first()?, *axis.last()?);
+    let is_beyond = |end: &&f64| (**end == first && value < first) || (**end == last && value > last);
+    let ends = [first, last];
+    if let Some(end) = ends.iter().filter(is_beyond).find(|end| (value - **end).abs() <= ROUNDING_OF_END * end.abs()) {
+        return Some(vec![(*end, 1.0)]);
+    }
     if let Some(on) = axis.iter().find(|on| (*on - value).abs() <= ROUNDING * value.abs()) {
         return Some(vec![(*on, 1.0)]);
     }
@@ -115,7 +142,8 @@ impl SweptFriction<'_> {
                 let found = beside(&grid.temperatures, kelvin, |value| value)?;
                 found.into_iter().map(|(kelvin, weight)| (Some(kelvin), weight)).collect()
             }
-            None if grid.temperatures.is_empty() => vec![(None, 1.0)],
+            // One without temperatures holds at all of them.
+            _ if grid.temperatures.is_empty() => vec![(None, 1.0)],
             _ => return None,
         };
         let mut friction = 0.0;
@@ -145,6 +173,10 @@ mod tests {
     #[test]
     fn between_two_values_the_nearer_counts_more() {
         assert_eq!(beside(&[1.0, 2.0], 2.0 * (1.0 + 1e-12), f64::ln), Some(vec![(2.0, 1.0)]));
+        for (value, end) in [(1.0 - 0.9e-6, 1.0), (2.0 + 1.8e-6, 2.0)] {
+            assert_eq!(beside(&[1.0, 2.0], value, f64::ln), Some(vec![(end, 1.0)]));
+        }
+        assert_eq!(beside(&[1.0, 2.0], 2.0 + 2.2e-6, f64::ln), None);
         let found = beside(&[1.0, 100.0], 10.0, f64::ln).unwrap();
         assert!((found[0].1 - 0.5).abs() < 1e-12 && found[1].0 == 100.0);
         assert_eq!((beside(&[1.0, 2.0], 0.5, f64::ln), beside(&[1.0, 2.0], 3.0, f64::ln)), (None, None));

@@ -20,6 +20,8 @@ pub struct Areal {
     pub x_unit: Option<Unit>,
     /// The unit of the heights that the file names.
     pub unit: Option<Unit>,
+    /// Whether its heights grow downwards, as far as the file tells.
+    is_depth: bool,
     /// How it was read.
     pub notes: Vec<ReadingNote>,
 }
@@ -28,12 +30,21 @@ impl Areal {
     /// `size` points along x and lines along y at even `spacing`, m.
     pub fn even(kind: &'static str, size: [usize; 2], spacing: [f64; 2], heights: Vec<f64>) -> Self {
         let positions = |axis: usize| (0..size[axis]).map(|i| spacing[axis] * i as f64).collect();
-        Self { kind, x: positions(0), y: positions(1), heights, x_unit: None, unit: None, notes: Vec::new() }
+        Self {
+            kind,
+            x: positions(0),
+            y: positions(1),
+            heights,
+            x_unit: None,
+            unit: None,
+            is_depth: false,
+            notes: Vec::new(),
+        }
     }
 
     /// Lines at these positions along y with points at these along x.
     pub fn at(kind: &'static str, x: Vec<f64>, y: Vec<f64>, heights: Vec<f64>) -> Self {
-        Self { kind, x, y, heights, x_unit: None, unit: None, notes: Vec::new() }
+        Self { kind, x, y, heights, x_unit: None, unit: None, is_depth: false, notes: Vec::new() }
     }
 
     /// Points on a grid in any order of lines; each line with all its points, one after the other along x or along y.
@@ -51,7 +62,16 @@ impl Areal {
             heights[at(&y_values, *y) * x_values.len() + at(&x_values, *x)] = *z;
         }
         let [x_unit, unit] = raw.units;
-        Ok(Self { kind: "a map of points", x: x_values, y: y_values, heights, x_unit, unit, notes: raw.notes })
+        Ok(Self {
+            kind: "a map of points",
+            x: x_values,
+            y: y_values,
+            heights,
+            x_unit,
+            unit,
+            is_depth: raw.is_depth,
+            notes: raw.notes,
+        })
     }
 
     /// The line that `options` choose, and the map, or why there is none; no map of a single line.
@@ -90,7 +110,8 @@ impl Areal {
         }
         let units = [self.x_unit, self.unit];
         let is_spaced = !options.spacing.is_empty();
-        let raw = MeasuredPoints { x, z, units, is_spaced, notes, ..MeasuredPoints::default() };
+        let raw =
+            MeasuredPoints { x, z, units, is_spaced, is_depth: self.is_depth, notes, ..MeasuredPoints::default() };
         match raw.z.iter().position(|z| z.is_nan()).filter(|_| options.missing == Missing::Refuse) {
             Some(i) => Err(raw.refuse(i, "z", "missing", "a height, or missing = \"fill\" where heights are missing")),
             None => Ok(raw),
@@ -111,7 +132,8 @@ impl Areal {
             return Err(MapError::TooLarge { nx, ny });
         }
         let mut heights = self.known_heights(options.missing)?;
-        heights.iter_mut().for_each(|z| *z = z_unit.to_si(*z));
+        let sign = if options.turns_over(self.is_depth) { -1.0 } else { 1.0 };
+        heights.iter_mut().for_each(|z| *z = sign * z_unit.to_si(*z));
         // Lines follow each other in +y.
         if spacing[1] < 0.0 {
             heights = heights.chunks_exact(nx).rev().flatten().copied().collect();

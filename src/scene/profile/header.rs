@@ -128,13 +128,13 @@ impl<'a> Header<'a> {
                 ReadingNote { text, assumed: true }
             }
         });
-        if words(self.table.names.get(z_column).map_or("", |name| name))
-            .iter()
-            .any(|word| word == "depth" || word == "tiefe")
-        {
-            raw.notes.push(ReadingNote { text: "depths are taken as heights, upwards".into(), assumed: true });
-        }
         Ok(units)
+    }
+
+    /// Whether a column is called depth.
+    pub(super) fn says_depth(&self, column: usize) -> bool {
+        let name = self.table.names.get(column).map_or("", |name| name);
+        words(name).iter().any(|word| ["depth", "depths", "tiefe", "profondeur"].contains(&word.as_str()))
     }
 }
 

@@ -18,7 +18,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 pub use areal::{Areal, line_note};
-pub use options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
+pub use options::{Depth, LengthUnit, MeasuredPoints, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
 
 use super::error::SceneError;
 use super::regular_file::read_file;
@@ -146,7 +146,7 @@ fn parse(
             map => map.line(options)?,
         },
     };
-    let text = text::write(&raw.x, &raw.z);
+    let text = text::write(&raw);
     let parsed = finish(raw, options)?;
     Ok(Parsed { extract: Some(text), surface: parsed.surface.with_map(map), ..parsed })
 }
@@ -196,6 +196,9 @@ impl SurfaceFormats for TextAlone {
 /// Converts to metres, fills gaps, removes the tilt and checks the points.
 fn finish(mut raw: MeasuredPoints, options: &ProfileOptions) -> Result<Parsed, ContentError> {
     sentinels::take_out(&mut raw, options.missing)?;
+    if options.turns_over(raw.is_depth) {
+        raw.z.iter_mut().for_each(|z| *z = -*z);
+    }
     let [x_unit, z_unit] = raw.units;
     if !raw.is_spaced {
         to_metres(&mut raw.x, options.x_unit.map(LengthUnit::unit).or(x_unit));

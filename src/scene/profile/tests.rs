@@ -222,7 +222,8 @@ fn a_line_is_of_areal_measurements_alone() {
 fn what_is_written_is_read_again() {
     let x: Vec<f64> = (0..500).map(|i| f64::from(i) * 1.0e-7 / 3.0).collect();
     let z: Vec<f64> = x.iter().map(|x| (x * 1e6).sin() * 1e-6).collect();
-    assert_eq!(points(&text::write(&x, &z)), x.into_iter().zip(z).collect::<Vec<_>>());
+    let raw = MeasuredPoints { x: x.clone(), z: z.clone(), ..MeasuredPoints::default() };
+    assert_eq!(points(&text::write(&raw)), x.into_iter().zip(z).collect::<Vec<_>>());
 }
 
 #[test]
@@ -339,6 +340,23 @@ fn what_was_assumed_is_said() {
     assert_eq!(assumed("x,z\n0,1\n1,2"), 1);
     assert_eq!(assumed("0,1\n1,2"), 2, "names and units");
     assert_eq!(assumed("x [mm],depth [mm]\n0,1\n1,2"), 1);
+}
+
+#[test]
+fn depths_grow_downwards() {
+    let heights = |name: &str, numbers: [f64; 3], depth: Option<Depth>| {
+        let rows: String = numbers.iter().enumerate().map(|(i, z)| format!("{i},{z}\n")).collect();
+        let options = ProfileOptions { depth, ..options() };
+        surface(&format!("x [m],{name} [m]\n{rows}"), &options).z().to_vec()
+    };
+    let (grooves, below) = ([0.0, 0.5, 0.0], [0.0, -0.5, -0.25]);
+    assert_eq!(heights("Depth", grooves, None), [0.0, -0.5, 0.0]);
+    assert_eq!(heights("profile depth", grooves, Some(Depth::Up)), grooves);
+    assert_eq!(heights("height", grooves, Some(Depth::Down)), [0.0, -0.5, 0.0]);
+    assert_eq!((heights("Tiefe", below, None), heights("height", grooves, None)), (below.to_vec(), grooves.to_vec()));
+    let map = "x [m],y [m],depth [m]\n0,0,1\n1,0,0\n0,1,0\n1,1,2\n";
+    let whole = surface(map, &options());
+    assert_eq!((whole.z(), whole.map().map(HeightMap::heights)), (&[-1.0, 0.0][..], Some(&[-1.0, 0.0, 0.0, -2.0][..])));
 }
 
 fn surface(text: &str, options: &ProfileOptions) -> Surface {

@@ -65,10 +65,10 @@ fn decimal_column<'a>(block: &Block<'a>) -> Option<Block<'a>> {
     (is_name && two).then(|| block.as_column())
 }
 
-/// Two columns, x and z in m, that are read again as the same numbers.
-pub(super) fn write(x: &[f64], z: &[f64]) -> String {
-    let mut text = String::from("x [m],z [m]\n");
-    for (x, z) in x.iter().zip(z) {
+/// Two columns, x and z in m, that are read again as the same numbers, up or down.
+pub(super) fn write(raw: &MeasuredPoints) -> String {
+    let mut text = format!("x [m],{} [m]\n", if raw.is_depth { "depth" } else { "z" });
+    for (x, z) in raw.x.iter().zip(&raw.z) {
         // Writing to a string does not fail.
         let _ = writeln!(text, "{x:?},{z:?}");
     }
@@ -177,6 +177,7 @@ impl<'a, 'b> PointsReader<'a, 'b> {
         for line in self.block.lines(text).chain(meant.iter().copied()) {
             self.add(line)?;
         }
+        self.tell_depths(header.says_depth(self.roles.z));
         // Words and results.
         self.raw.notes.extend(footer.first().map(|(line, _)| behind_note(*line, footer.len())));
         if self.y.windows(2).any(|pair| pair[0] != pair[1]) {
@@ -188,6 +189,25 @@ impl<'a, 'b> PointsReader<'a, 'b> {
             self.raw.notes.push(ReadingNote { text, assumed: true });
         }
         Ok(Content::Profile(self.raw))
+    }
+
+    /// Notes which way the numbers are taken to grow where their column `is_called` depth. Depths below a datum are
+    /// mostly above 0; where most are below, they are heights.
+    fn tell_depths(&mut self, is_called: bool) {
+        let count = |is_it: fn(&f64) -> bool| self.raw.z.iter().filter(|z| is_it(z)).count();
+        self.raw.is_depth = is_called && count(|z| *z > 0.0) >= count(|z| *z < 0.0);
+        if is_called && self.options.depth.is_none() {
+            let text = match self.raw.is_depth {
+                true => {
+                    "the column is called depth, so its numbers grow downwards, z = -depth: depth = \"up\" where they do not"
+                }
+                false => {
+                    "the column is called depth, but most of its numbers are below 0 and taken as heights: depth = \"down\" \
+                     turns them over"
+                }
+            };
+            self.raw.notes.push(ReadingNote { text: text.to_owned(), assumed: true });
+        }
     }
 
     /// Whether a line behind the block is meant as one of its rows: it begins with a number.

@@ -185,6 +185,7 @@ fn read_options(table: &mut TableReader<'_>) -> Result<ProfileOptions> {
         z_unit: table.optional_choice("z_unit")?.or(unit),
         missing: table.optional_choice("missing")?.unwrap_or_default(),
         tilt: table.optional_choice("tilt")?.unwrap_or_default(),
+        depth: table.optional_choice("depth")?,
         third_column: table.optional_choice("third_column")?,
         columns: read_columns(table)?,
         spacing: read_spacing(table)?,

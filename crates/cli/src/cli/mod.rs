@@ -7,7 +7,7 @@ use std::ffi::OsString;
 use std::ops::{Deref, RangeInclusive};
 use std::path::{Path, PathBuf};
 
-use asperity::scene::{LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt};
+use asperity::scene::{Depth, LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt};
 use asperity_study::calibration::FreeParameter;
 use asperity_study::fit::WlfConstants;
 use clap::{ArgGroup, Args, Parser, Subcommand};
@@ -427,6 +427,10 @@ pub(crate) struct Reading {
     /// Tilt: keep it, or remove the least squares line. Default: keep.
     #[arg(long, value_name = "keep|remove")]
     pub(crate) tilt: Option<Tilt>,
+    /// Whether numbers of z are heights or depths, which grow downwards: z is minus them. Default: by the name of their
+    /// column, depth or not.
+    #[arg(long, value_name = "up|down")]
+    pub(crate) depth: Option<Depth>,
     /// What the third column marks: invalid points, valid points, or nothing (ignore). Default: taken from its header.
     #[arg(long, value_name = "invalid|valid|ignore")]
     pub(crate) third_column: Option<ThirdColumn>,
@@ -452,6 +456,7 @@ impl Reading {
             z_unit: self.z_unit.or(self.unit),
             missing: self.missing.unwrap_or_default(),
             tilt: self.tilt.unwrap_or_default(),
+            depth: self.depth,
             third_column: self.third_column,
             columns: self.columns.clone(),
             spacing: self.spacing.clone(),
