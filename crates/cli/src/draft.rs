@@ -9,7 +9,7 @@ use asperity_study::files;
 use tempfile::{Builder, NamedTempFile, TempDir};
 
 use super::interrupt::Leftover;
-use super::output::{FileError, STANDARD_OUTPUT, is_standard_output};
+use super::output::{FileError, STANDARD_OUTPUT, is_standard_output, is_stream};
 
 /// An output as it is being written. It takes its place when it is [finished](Self::finish); where the run ends before,
 /// whatever was there is still there.
@@ -171,26 +171,29 @@ pub(crate) fn print(text: &str) -> Result<(), FileError> {
     write(Path::new(STANDARD_OUTPUT), text)
 }
 
-/// Where a table is that is continued: in its place or, for standard output, in a folder of its own until it is whole.
+/// Where a table is that is continued: in its place or, for standard output and other streams, in a folder of its own until it is whole.
 #[derive(Debug)]
 pub(crate) struct TablePlace {
     pub(crate) path: PathBuf,
-    folder: Option<(TempDir, Leftover)>,
+    stream: Option<(PathBuf, TempDir, Leftover)>,
 }
 
 impl TablePlace {
     pub(crate) fn new(output: &Path) -> Result<Self, FileError> {
-        if !is_standard_output(output) {
-            return Ok(Self { path: output.to_owned(), folder: None });
+        if !is_stream(output) {
+            return Ok(Self { path: output.to_owned(), stream: None });
         }
         let folder = tempfile::tempdir().map_err(FileError::io("write", &std::env::temp_dir()))?;
         let leftover = Leftover::new(folder.path());
-        Ok(Self { path: folder.path().join("table.csv"), folder: Some((folder, leftover)) })
+        Ok(Self { path: folder.path().join("table.csv"), stream: Some((output.to_owned(), folder, leftover)) })
     }
 
-    /// Prints the whole table where it is for standard output.
+    /// Writes the whole table where it is for a stream.
     pub(crate) fn finish(self) -> Result<(), FileError> {
-        if self.folder.is_some() { print(&String::from_utf8_lossy(&files::bytes(&self.path)?)) } else { Ok(()) }
+        match &self.stream {
+            Some((output, ..)) => write(output, files::bytes(&self.path)?),
+            None => Ok(()),
+        }
     }
 }
 

@@ -14,7 +14,7 @@ use super::figure::{Figure as _, LayerPicture, TimeHistory, write_row};
 use super::files::{FileError, check_outputs, ends_in, load, named, print_beside};
 use super::result_file::ResultWriter;
 use super::run_summary::RunSummary;
-use super::terminal::{LabelledLine, bar, is_quiet, is_verbose, lines, note, warn};
+use super::terminal::{LabelledLine, bar, is_verbose, lines, note, warn};
 use asperity_study::elements::{ElementHistory, Span};
 use asperity_study::runner::{InputSample, Rows, Runner};
 
@@ -61,7 +61,7 @@ pub(crate) fn simulate(command: &Simulate, path: &Path) -> Result<(), SimulateEr
         write_elements(&elements, command)?;
     }
     summary.push(("Written", written(command, &output)));
-    if is_quiet() && !command.stats { Ok(()) } else { Ok(print_beside([&output], &lines(&summary))?) }
+    Ok(print_beside([&output], &lines(&summary))?)
 }
 
 /// Whether what shows the masses is asked for.

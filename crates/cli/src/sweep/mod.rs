@@ -174,12 +174,10 @@ fn finish(
 ) -> Result<(), SweepCommandError> {
     picture.map_or(Ok(()), |path| plot::draw(path, table))?;
     master.map_or(Ok(()), |(path, wlf)| plot::draw_master(path, table, &wlf))?;
-    let mut summary = if terminal::is_quiet() { Vec::new() } else { printed::lines(table) };
+    let mut summary = printed::lines(table);
     summary.extend(table.header.low_end.iter().map(|low_end| ("Low end", low_end.clone())));
-    if !terminal::is_quiet() {
-        let files = [output.as_path()].into_iter().chain(picture).chain(master.map(|(path, _)| path)).map(named);
-        summary.push(("Written", files.collect::<Vec<_>>().join(", ")));
-    }
+    let files = [output.as_path()].into_iter().chain(picture).chain(master.map(|(path, _)| path)).map(named);
+    summary.push(("Written", files.collect::<Vec<_>>().join(", ")));
     print_beside([output], &lines(&summary))?;
     let (failed, total) = (table.rows.iter().filter(|stored| !stored.row.is_steady()).count(), table.rows.len());
     if failed == 0 { Ok(()) } else { Err(SweepCommandError::NotSteady { failed, total, path: output.to_owned() }) }
