@@ -316,7 +316,7 @@ mod tests {
     #[test]
     fn units_as_people_write_them() {
         use Dimension::{
-            Frequency, Length, LineSpectrum, Pressure, Rate, SurfaceSpectrum, Temperature, Time, WaveNumber,
+            Frequency, Length, LineSpectrum, Pressure, Rate, Speed, SurfaceSpectrum, Temperature, Time, WaveNumber,
         };
         let cases = [
             ("mm", Length, 1e-3),
