@@ -386,6 +386,13 @@ impl Totals {
 }
 
 impl PatchState {
+    /// Copies `other`; of the same patch without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.totals = other.totals;
+        self.springs.clone_from(&other.springs);
+        self.tangents.clone_from(&other.tangents);
+    }
+
     /// Refuses numbers that no run can have reached.
     pub(super) fn check(&self, patch: &Patch) -> Result<(), PatchRestoreError> {
         let Springs { x, y, stiffness, mode, heat } = &self.springs;

@@ -3,7 +3,7 @@
 use std::slice;
 
 use super::error::{Error, RestoreError};
-use super::inputs::{CommunicationStep, Inputs, MAX_INPUTS};
+use super::inputs::{CommunicationStep, InputKind, InputScales, Inputs, MAX_INPUTS};
 use super::log::Message;
 use super::model::{Experiment, FmuModel, FmuRun, RunState};
 use super::resources::TABLE_FILE;
@@ -53,6 +53,10 @@ impl FmuModel for PointContact {
         self.extrapolation
     }
 
+    fn input_scales(&self) -> InputScales {
+        InputScales::new([Input::U, Input::W].map(|input| (input as usize, InputKind::Length)), 0.0)
+    }
+
     fn memory(&self) -> usize {
         /// Of a point of the table, in the law that a run makes of it; and of all else.
         const POINT: usize = 512;
@@ -83,14 +87,13 @@ impl FmuModel for PointContact {
 /// A run of the element.
 #[derive(Debug)]
 struct ElementRun {
-    contact: PointContact,
     variables: Vec<Variable>,
     element: Element,
 }
 
 impl ElementRun {
     fn new(contact: &PointContact, element: Element) -> Self {
-        Self { contact: contact.clone(), variables: contact.variables(), element }
+        Self { variables: contact.variables(), element }
     }
 }
 
@@ -128,7 +131,7 @@ impl FmuRun for ElementRun {
 
     fn set_state(&mut self, state: &RunState) -> Result<(), RestoreError> {
         let RunState::Element(state) = state else { return Err(RestoreError::OTHER_MODEL) };
-        self.element = Element::restore(&self.contact, state)?;
+        self.element.continue_from(state);
         Ok(())
     }
 
