@@ -85,7 +85,12 @@ pub(crate) fn sweep(
 
 /// Packs the table of a sweep as an FMU, a point-contact element.
 #[pyfunction]
-pub(crate) fn pack_table(table: PathBuf, output: PathBuf, libraries: Vec<OsString>) -> PyResult<()> {
+pub(crate) fn pack_table(
+    table: PathBuf,
+    output: PathBuf,
+    libraries: Vec<OsString>,
+    flat_names: bool,
+) -> PyResult<Option<String>> {
     let read = Table::load(&table).map_err(|error| PyValueError::new_err(error.to_string()))?;
-    pack(&PointContact::new(read).into(), &table, &libraries, &output)
+    pack(&PointContact::new(read).into(), &table, &libraries, (&output, flat_names))
 }

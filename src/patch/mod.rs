@@ -19,6 +19,7 @@
 //! | `step_sums` | what the blocks of a step add up to |
 //! | `block_contacts` | elements of a block at an instant, with their law |
 //! | `block` | a step of a block of elements |
+//! | `work` | what the elements of a step go through, counted and limited |
 //! | `worker_pool` | a step of all blocks, by several threads |
 //! | `definition` | a patch: face, table, parameters |
 //! | `state` | motions, errors, what a run holds |
@@ -44,6 +45,7 @@ mod segments;
 mod state;
 mod step_sums;
 mod variables;
+mod work;
 mod worker_pool;
 
 pub use definition::{Patch, PatchElement, PatchError};

@@ -27,10 +27,11 @@ impl FmuModel for PointContact {
     }
 
     fn inputs(&self) -> Vec<VariableRef> {
-        let input =
-            |(input, text): (Input, &str)| VariableRef::input(input as usize, input.name(), input.unit(), text, 0.0);
-        let texts = ["Displacement of the carrier along x", "Displacement of the carrier along z, negative presses"];
-        [Input::U, Input::W].into_iter().zip(texts).map(input).collect()
+        let input = |input: Input, text: &str, start: f64| {
+            VariableRef::input(input as usize, input.name(), input.unit(), text, start)
+        };
+        let w = "Displacement of the carrier along z, negative presses; starts just above the touch";
+        vec![input(Input::U, "Displacement of the carrier along x", 0.0), input(Input::W, w, self.clear_displacement())]
     }
 
     fn calculated(&self) -> Vec<VariableRef> {

@@ -137,6 +137,7 @@ impl Error {
             Self::Element(ElementError::Pressure { within: true, .. }) => Status::Discard,
             Self::Motion(
                 MotionError::TooManySubsteps { .. }
+                | MotionError::TooMuchWork { .. }
                 | MotionError::BeyondTable { within: true, .. }
                 | MotionError::ElementTooWarm { within: true, .. },
             ) => Status::Discard,

@@ -105,6 +105,11 @@ pub trait FmuModel: Debug {
     /// How it is simulated where nothing else is said; `None` where there is no default.
     fn default_experiment(&self) -> Option<Experiment>;
 
+    /// Why no run begins at the start values of the inputs; `None` where one does.
+    fn start_problem(&self) -> Option<String> {
+        self.start(&self.variables().start_inputs(), 0.0).err().map(|error| error.to_string())
+    }
+
     /// A run that starts from `inputs` at `time` (s).
     #[doc(hidden)]
     fn start(&self, inputs: &Inputs, time: f64) -> Result<Box<dyn FmuRun>, Error>;

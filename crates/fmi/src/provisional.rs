@@ -82,8 +82,11 @@ impl Stepper {
         let Some(last) = &self.last else { return Ok(()) };
         run.set_state(&last.run)?;
         let step = last.step.step();
-        run.advance(corrected, &step)
-            .map_err(|source| Error::Repetition { time: step.time, h: step.h, source: Box::new(source) })?;
+        run.advance(corrected, &step).map_err(|source| Error::Repetition {
+            time: step.time,
+            h: step.h,
+            source: Box::new(source),
+        })?;
         run.count_repetition();
         Ok(())
     }

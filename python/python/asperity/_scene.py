@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from . import _native
 from ._arguments import Floats, Progress, axis, columns_of, numbers, positive, shown, table_text, to_toml
 from ._library import options as library_options
+from ._library import warn_of_start
 
 if TYPE_CHECKING:
     from ._calibration import Calibration
@@ -479,12 +480,19 @@ class Scene:
         settings = {one["key"]: to_toml(one["value"]) for one in found["parameters"]}
         return Calibration._of(found, self._changed(settings))
 
-    def pack(self, path: str | PathLike[str], libraries: Sequence[str | PathLike[str]] | None = None) -> Path:
+    def pack(
+        self,
+        path: str | PathLike[str],
+        libraries: Sequence[str | PathLike[str]] | None = None,
+        *,
+        flat_names: bool = False,
+    ) -> Path:
         """Packs the scene as an FMI 2.0 co-simulation FMU, and returns its path.
 
         Args:
             path: The FMU to write.
             libraries: Shared libraries, as ``asperity pack --library`` takes them; None: those of this package.
+            flat_names: Gives variables names without structure, such as ``transport_speed``.
 
         Raises:
             SceneError: Where a key was set that stands in a file which the scene names: an FMU carries the text.
@@ -497,7 +505,7 @@ class Scene:
             raise SceneError(
                 "a key is set that stands in a file which the scene names: expected it in the text to pack"
             )
-        packed._native.pack(Path(path), given)
+        warn_of_start(packed._native.pack(Path(path), given, flat_names))
         return Path(path)
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from . import _native
 from ._arguments import Floats
 from ._library import options as library_options
+from ._library import warn_of_start
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -130,18 +131,25 @@ class Table:
         ]
         return swept(f"{column} [{self.units[column]}]", curves)
 
-    def pack(self, path: str | PathLike[str], libraries: Sequence[str | PathLike[str]] | None = None) -> Path:
+    def pack(
+        self,
+        path: str | PathLike[str],
+        libraries: Sequence[str | PathLike[str]] | None = None,
+        *,
+        flat_names: bool = False,
+    ) -> Path:
         """Packs the table as an FMU, a point-contact element, and returns its path.
 
         Args:
             path: The FMU to write.
             libraries: As for :meth:`Scene.pack`.
+            flat_names: As for :meth:`Scene.pack`.
         """
         given = library_options() if libraries is None else [str(library) for library in libraries]
         with tempfile.TemporaryDirectory(prefix="asperity-") as folder:
             file = Path(folder) / "table.csv"
             self.to_csv(file)
-            _native.pack_table(file, Path(path), given)
+            warn_of_start(_native.pack_table(file, Path(path), given, flat_names))
         return Path(path)
 
     def __reduce__(self) -> tuple[type[Table], tuple[str]]:
