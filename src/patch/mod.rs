@@ -15,11 +15,11 @@
 //! | `segments` | an element whose pressure changes much in a substep |
 //! | `lanes` | elements of a block, side by side |
 //! | `heat` | elements that slip warms |
+//! | `work` | what the elements of a step go through, counted and limited |
 //! | `face_motion` | motion of the face through a step |
 //! | `step_sums` | what the blocks of a step add up to |
 //! | `block_contacts` | elements of a block at an instant, with their law |
 //! | `block` | a step of a block of elements |
-//! | `work` | what the elements of a step go through, counted and limited |
 //! | `worker_pool` | a step of all blocks, by several threads |
 //! | `definition` | a patch: face, table, parameters |
 //! | `state` | motions, errors, what a run holds |
