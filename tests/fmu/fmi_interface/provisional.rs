@@ -115,7 +115,10 @@ fn values_alone_give_the_forces_and_losses_of_rates() {
     for (name, motion) in [("held", slid_and_held as Motion), ("to and fro", to_and_fro_with_stops), ("ramped", ramped)]
     {
         for h in [1e-3, 5e-4, 1e-4] {
-            let [rates, values] = [Given::Rates, Given::Values].map(|given| driven(FLAT, motion, (h, 0.06), given));
+            // Where rates vary within steps, those of long steps are no better than the values.
+            let fine = if name == "ramped" { 1e-5 } else { h };
+            let rates = driven(FLAT, motion, (fine, 0.06), Given::Rates);
+            let values = driven(FLAT, motion, (h, 0.06), Given::Values);
             for output in ["F_x", "F_z", "E_diss", "dissipation.E_friction"] {
                 let (right, found) = (rates.real(output), values.real(output));
                 assert!((found - right).abs() <= 0.02 * right.abs(), "{name}, {h}: {output} {found} for {right}");
@@ -192,7 +195,7 @@ fn a_patch_stops_where_its_body_does() {
                 move_pad(&fmu, time, given);
                 assert_eq!(fmu.step(time, h), OK, "{:?}", fmu.messages());
             }
-            ["F_x", "F_z", "M_z", "E_diss"].map(|name| fmu.real(name))
+            ["force.x", "force.z", "moment.z", "E_diss"].map(|name| fmu.real(name))
         };
         let (right, found) = (wrench(Given::Rates), wrench(Given::Values));
         for (right, found) in right.into_iter().zip(found) {
@@ -259,7 +262,7 @@ spacing = 1.0e-4
 mass = 1.0e-7
 clearance = -5e-6
 vertical = { stiffness = 1e3, damping = 1e-2 }
-horizontal = { stiffness = 1e3, damping = 1e-2, maxwell = [{ stiffness = 2e3, relaxation_time = 2e-2 }] }
+horizontal = { stiffness = 1e3, damping = 30.0, maxwell = [{ stiffness = 2e3, relaxation_time = 2e-2 }] }
 [surface]
 kind = "flat"
 [friction]
@@ -272,8 +275,8 @@ outputs = ["forces", "solver"]
 
 /// To and fro by a sine, then held.
 fn waved(time: f64) -> ([f64; 2], [f64; 2]) {
-    let phase = (2.0 * PI * 50.0 * time).min(2.25 * PI);
-    let rate = if phase < 2.25 * PI { 1e-6 * 2.0 * PI * 50.0 * phase.cos() } else { 0.0 };
+    let phase = (2.0 * PI * 50.0 * time).min(2.4 * PI);
+    let rate = if phase < 2.4 * PI { 1e-6 * 2.0 * PI * 50.0 * phase.cos() } else { 0.0 };
     ([1e-6 * phase.sin(), 0.0], [rate, 0.0])
 }
 
@@ -426,8 +429,9 @@ fn a_repetition_is_logged() {
         give(&fmu, slid_and_held, time, Given::Values);
         assert_eq!(fmu.step(time, 1e-3), OK);
     }
-    let said =
-        |message: &&super::master::Message| message.text.contains("t = 0.01 s: the step from here is done again");
+    let said = |message: &&super::master::Message| {
+        message.text.starts_with("t = 0.01") && message.text.contains("the step from here is done again")
+    };
     let messages = fmu.messages();
     let categories: Vec<_> = messages.iter().filter(said).map(|message| message.category.as_str()).collect();
     assert_eq!(categories, ["logEvents", "logSolver"]);
@@ -437,13 +441,14 @@ fn a_repetition_is_logged() {
 #[test]
 fn start_values_initialise() {
     let warm = Grid { temperatures: vec![290.0, 300.0, 310.0], ..Grid::plain() };
-    for fmu in [Fmu::of_table(&Grid::plain().text(), false), Fmu::of_table(&warm.text(), false), pad()] {
+    let elements = [Grid::plain().text(), warm.text()].map(|table| (Fmu::of_table(&table, false), "F_x", "F_z"));
+    for (fmu, along, across) in elements.into_iter().chain([(pad(), "force.x", "force.z")]) {
         assert_eq!((fmu.setup(0.0), fmu.enter(), fmu.exit()), (OK, OK, OK), "{:?}", fmu.messages());
-        assert_eq!((fmu.real("F_x"), fmu.real("F_z")), (0.0, 0.0));
+        assert_eq!((fmu.real(along), fmu.real(across)), (0.0, 0.0));
         for step in 0..10 {
             assert_eq!(fmu.step(1e-3 * f64::from(step), 1e-3), OK);
         }
-        assert_eq!(fmu.real("F_z"), 0.0);
+        assert_eq!(fmu.real(across), 0.0);
     }
     // A little lower it bears.
     let fmu = Fmu::of_table(&Grid::plain().text(), false);
