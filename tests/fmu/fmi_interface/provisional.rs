@@ -170,9 +170,9 @@ fn pose(fmu: &Fmu, time: f64) -> [(f64, f64); 6] {
     let still = (0.0, 0.0);
     let top = fmu.variables.entries().find(|(_, entry)| entry.name == "z").unwrap().1.start.clone();
     let Some(asperity::scene::Value::Real(top)) = top else { panic!("z has a start") };
-    let (down, rate) = legs(time, &[(0.0, 0.0), (0.005, -2e-5)]);
+    let down = legs(time, &[(0.0, top), (0.005, -1e-5)]);
     let x = legs(time, &[(0.0, 0.0), (0.01, 0.0), (0.03, 4e-4), (0.035, 4e-4), (0.045, 2e-4)]);
-    [x, still, (top + down, rate), still, still, legs(time, &[(0.0, 0.0), (0.02, 0.0), (0.04, 0.01)])]
+    [x, still, down, still, still, legs(time, &[(0.0, 0.0), (0.02, 0.0), (0.04, 0.01)])]
 }
 
 fn move_pad(fmu: &Fmu, time: f64, given: Given) {
