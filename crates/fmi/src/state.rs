@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::definition::{Definition, Parameters};
 use super::error::{Error, Status};
-use super::inputs::{CommunicationStep, Inputs};
+use super::inputs::{CommunicationStep, InputScales, Inputs};
 use super::lifecycle::LifecycleState;
 use super::memory;
 use super::model::{FmuRun, RunState};
@@ -27,6 +27,8 @@ pub(super) struct InstanceState {
     /// The run. Before it begins, one that would start from the parameters and inputs set, once outputs were asked for.
     pub(super) run: Option<Box<dyn FmuRun>>,
     stepper: Stepper,
+    /// Of the parameters set, from the first step on.
+    scales: Option<InputScales>,
     /// When the last step began that was done again, s, until it is taken.
     pub(super) repeated_from: Option<f64>,
 }
@@ -56,6 +58,7 @@ impl InstanceState {
             last_step: Status::Ok,
             run: None,
             stepper: Stepper::default(),
+            scales: None,
             repeated_from: None,
         }
     }
@@ -101,7 +104,8 @@ impl InstanceState {
 
     fn advance(&mut self, clock: Clock, h: f64) -> Result<(), Error> {
         let definition = self.parameters.definition();
-        let (extrapolation, scales) = (definition.extrapolation(), definition.input_scales());
+        let extrapolation = definition.extrapolation();
+        let scales = *self.scales.get_or_insert_with(|| definition.input_scales());
         let step = CommunicationStep { time: self.clock.time, h, extrapolation };
         let run = self.run.as_mut().ok_or(Error::NoRun)?.as_mut();
         let repeated = self.stepper.last().map(|last| last.step.step().time);
@@ -165,6 +169,7 @@ impl InstanceState {
             (None, run) => *run = None,
         }
         self.stepper.set_last(state.last.as_ref());
+        self.scales = None;
         self.lifecycle = state.lifecycle;
         self.parameters = Arc::clone(&state.parameters);
         self.inputs = state.inputs;
