@@ -104,8 +104,8 @@ impl Surface {
     fn too_short_for(&self, travel: Reach) -> bool {
         let reach = self.reach();
         let rounding = ROUNDING * (reach.high - reach.low);
-        let level = || self.z().windows(2).all(|pair| pair[0] == pair[1]);
-        !self.is_periodic() && (travel.low < reach.low - rounding || reach.high + rounding < travel.high) && !level()
+        let is_short = travel.low < reach.low - rounding || reach.high + rounding < travel.high;
+        !self.is_periodic() && is_short && !self.is_level()
     }
 }
 

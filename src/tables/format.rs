@@ -191,6 +191,9 @@ impl<Q: Copy + PartialEq, const N: usize> Format<Q, N> {
             notes.push(column.note(wanted.meaning));
             *place = Some(column);
         }
+        for column in columns.iter().flatten() {
+            column.check_beside(columns.iter().flatten(), header.line)?;
+        }
         Ok(columns)
     }
 

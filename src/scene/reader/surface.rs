@@ -4,7 +4,7 @@ use std::path::{Component, Path as FilePath, PathBuf};
 
 use super::table::{Entry, Result, TableReader};
 use crate::scene::keys::{PATH, SurfaceKind};
-use crate::scene::profile::{self, Extract, ProfileOptions, ReadFailure, Tilt};
+use crate::scene::profile::{self, Extract, ProfileOptions, ReadFailure};
 use crate::scene::surface::{Coordinate, check_points};
 use crate::scene::{Layer, MOST_HEIGHTS, SelfAffine, Surface, read_file as read_bytes, warnings};
 use crate::tables::{ContentError, ReadingNote};
@@ -180,7 +180,7 @@ fn read_file(table: &mut TableReader<'_>, found: &mut Findings) -> Result<Surfac
 
 fn read_options(table: &mut TableReader<'_>) -> Result<ProfileOptions> {
     let unit = table.optional_choice("unit")?;
-    let options = ProfileOptions {
+    Ok(ProfileOptions {
         x_unit: table.optional_choice("x_unit")?.or(unit),
         z_unit: table.optional_choice("z_unit")?.or(unit),
         missing: table.optional_choice("missing")?.unwrap_or_default(),
@@ -190,11 +190,7 @@ fn read_options(table: &mut TableReader<'_>) -> Result<ProfileOptions> {
         spacing: read_spacing(table)?,
         line: table.optional_whole("line")?.and_then(|line| usize::try_from(line).ok()),
         periodic: table.flag("periodic")?,
-    };
-    match table.entry("tilt").filter(|_| options.periodic && options.tilt == Tilt::Remove) {
-        Some(entry) => Err(entry.refuse("\"keep\" for a periodic profile, whose ends meet as they are")),
-        None => Ok(options),
-    }
+    })
 }
 
 /// The names of columns: x and z, or z alone.

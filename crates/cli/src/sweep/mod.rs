@@ -181,7 +181,7 @@ fn finish(
         summary.push(("Written", files.collect::<Vec<_>>().join(", ")));
     }
     print_beside([output], &lines(&summary))?;
-    let (failed, total) = (table.rows.iter().filter(|stored| !stored.row.is_steady()).count(), table.rows.len());
+    let (failed, total) = (table.rows.iter().filter(|stored| !stored.row.is_result()).count(), table.rows.len());
     if failed == 0 { Ok(()) } else { Err(SweepCommandError::NotSteady { failed, total, path: output.to_owned() }) }
 }
 

@@ -113,6 +113,10 @@ impl Calibrator<'_> {
                     problem = problem.without(&points);
                     left_out.extend(failed);
                 }
+                Err(ModelError::TooFew { rows, parameters, .. }) => {
+                    let left_out = measurements.left_out_in_words(&left_out);
+                    return Err(ModelError::TooFew { rows, parameters, left_out });
+                }
                 Err(error) => return Err(error),
             }
         }

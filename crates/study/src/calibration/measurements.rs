@@ -8,7 +8,8 @@ use asperity::tables::{
     decode,
 };
 
-use super::error::MeasuredFrictionError;
+use super::curve_grid::left_out_in_words;
+use super::error::{MeasuredFrictionError, NoSliding};
 use crate::files;
 
 /// A measured friction coefficient.
@@ -147,6 +148,14 @@ impl Measurements {
     pub fn read(path: &Path, area: f64) -> Result<Self, MeasuredFrictionError> {
         let refused = |error| MeasuredFrictionError::Content { path: path.to_owned(), error };
         Self::parse(&files::bytes(path)?, area).map_err(refused)
+    }
+
+    /// How many rows are left out with the points that have no result, which, and why; `None` where none is.
+    pub(super) fn left_out_in_words(&self, points: &[(OperatingPoint, NoSliding)]) -> Option<String> {
+        let lines = |point: &OperatingPoint| {
+            self.rows.iter().filter(|row| row.point == *point).map(|row| row.line).collect::<Vec<_>>()
+        };
+        left_out_in_words(points.iter().map(|(point, why)| (lines(point), *point, why)), self.rows.len())
     }
 
     /// Whether the standard deviations were measured.

@@ -53,7 +53,7 @@ fn point(line: &str, parameters: usize) -> Option<(Task, Outcome)> {
     let temperature = if fields[parameters + 2].is_empty() { None } else { Some(number(parameters + 2)?) };
     let point = OperatingPoint { speed: number(parameters)?, load: number(parameters + 1)?, temperature };
     let outcome = match PointStatus::read(&fields[parameters + 3]) {
-        PointStatus::Steady => Ok(FrictionParts {
+        PointStatus::Steady | PointStatus::FullContact => Ok(FrictionParts {
             profile: number(parameters + 4)?,
             fine: number(parameters + 5)?,
             shear: number(parameters + 6)?,
