@@ -124,7 +124,7 @@ mod tests {
         let wave = |phase: f64| std::f64::consts::TAU * phase;
         let cut = |x: f64, y: f64| wave(x / 64.0).cos() * wave(y / 16.0).cos();
         assert_eq!(axes(&map(32, 16, cut)), [("x", true)]);
-        assert_eq!(axes(&map(32, 16, |x, y| cut(y, x) + 0.1 * wave(x / 32.0 + 0.1).sin())), [("y", true)]);
+        assert_eq!(axes(&map(16, 32, |x, y| cut(y, x) + 0.1 * wave(x / 16.0 + 0.1).sin())), [("y", true)]);
         assert_eq!(axes(&map(8, 8, |x, y| 0.1 * x + wave(y / 8.0).sin())), [("x", false)]);
     }
 

@@ -17,7 +17,7 @@ pub struct Words<Q: 'static> {
     pub quantity: Q,
     /// What its unit measures.
     pub dimension: Dimension,
-    /// One of these must be there.
+    /// One of these must be there; those of `s+mu` both.
     pub key_words: &'static str,
     /// These may stand beside it.
     pub other_words: &'static str,
@@ -109,10 +109,13 @@ fn readings<'v, Q: Copy>(
 ) -> impl Iterator<Item = (&'v Words<Q>, HeadingUnit)> {
     let found = words(name);
     vocabulary.iter().filter_map(move |words| {
-        let is_one_of = |words: &str, word: &String| words.split(' ').any(|known| known == word);
-        let is_key = |word: &String| is_one_of(words.key_words, word);
-        let is_known = |word: &String| is_key(word) || is_one_of(words.other_words, word);
-        let is_named = found.iter().any(is_key) && found.iter().all(is_known);
+        let is_there = |part: &str| found.iter().any(|word| word == part);
+        let mut keys = words.key_words.split(' ').filter(|key| key.split('+').all(is_there)).peekable();
+        let has_key = keys.peek().is_some();
+        let keys: Vec<&str> = keys.flat_map(|key| key.split('+')).collect();
+        let is_known =
+            |word: &String| keys.contains(&word.as_str()) || words.other_words.split(' ').any(|known| known == word);
+        let is_named = has_key && found.iter().all(is_known);
         if is_named { unit_of(place, words.dimension).map(|unit| (words, unit)) } else { None }
     })
 }

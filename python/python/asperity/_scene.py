@@ -441,6 +441,8 @@ class Scene:
         from ._contact import Contact
 
         found = _native.contact(self._native, positive("pressure", pressure), positive("speed", speed), points)
+        for warning in found.pop("warnings"):
+            warnings.warn(warning, stacklevel=2)
         return Contact._of(found)
 
     def calibrate(

@@ -449,6 +449,6 @@ fn the_tilt_of_a_periodic_map_is_that_of_the_map() {
     let found = surface(&text, &ProfileOptions { tilt: Tilt::Remove, line: Some(3), ..kept });
     let map = found.map().unwrap_or_else(|| unreachable!("{:?}", found.map_error()));
     // Its plane takes some of the waves with it.
-    assert!(map.tilt().iter().all(|slope| slope.abs() < 1e-9) && (map.rms_height() - 0.8).abs() < 0.1);
+    assert!(map.tilt().iter().all(|slope| slope.abs() < 1e-6) && (0.5..1.0).contains(&map.rms_height()));
     assert_eq!((found.z()[..32].to_vec(), found.z()[32]), (map.line(2).to_vec(), map.line(2)[0]));
 }

@@ -30,6 +30,8 @@ pub struct Calibration {
     pub frictions: Vec<FrictionParts>,
     /// The points that cannot be simulated, and why.
     pub left_out: Vec<(OperatingPoint, NoSliding)>,
+    /// What of it no rubber has, and why.
+    pub implausible: Vec<String>,
     /// How it was fitted.
     pub way: String,
 }
@@ -93,6 +95,7 @@ impl Calibration {
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         warnings.extend(self.measurements.left_out_in_words(&self.left_out));
+        warnings.extend(self.implausible.iter().cloned());
         if !self.fitted.has_converged {
             warnings.push("the fit has not converged: other bounds or fewer parameters may help".to_owned());
         }

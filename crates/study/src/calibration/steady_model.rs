@@ -70,6 +70,7 @@ fn outcome(slide: &SteadySlide) -> Outcome {
             profile: slide.profile_hysteresis,
             fine: slide.fine_hysteresis.unwrap_or(0.0),
             shear: slide.adhesion,
+            area: slide.real_area.unwrap_or(slide.area),
         }),
     }
 }

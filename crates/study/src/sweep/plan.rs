@@ -15,6 +15,7 @@ use super::scenes::{relevant, scene_at};
 use super::search::StopBounds;
 use super::solved::SolvedPoints;
 use super::table;
+use crate::implausible::{FoundFriction, implausible};
 use crate::progress::Stop;
 
 /// Mean loads to sweep over, rising.
@@ -126,9 +127,11 @@ impl SweepPlan {
         })
     }
 
-    /// The warning where some of the rows have few points of the surface in contact.
-    pub fn few_points<'a>(&self, rows: impl Iterator<Item = &'a TableRow>) -> Option<String> {
-        self.solved.as_ref()?.few_points(rows, &self.header)
+    /// What to look at in the rows: few points of the surface in contact, and friction that no rubber has.
+    pub fn warnings<'a>(&self, rows: impl Iterator<Item = &'a TableRow> + Clone) -> Vec<String> {
+        let few = self.solved.as_ref().and_then(|solved| solved.few_points(rows.clone(), &self.header));
+        let found = rows.filter_map(|row| FoundFriction::of_row(row, self.header.load));
+        few.into_iter().chain(implausible(&self.scene, found)).collect()
     }
 }
 
