@@ -132,7 +132,7 @@ pub(super) fn obstacle(phase: &Phase, carrier: &CarrierBodies, temperature: Opti
         (phase.w.rate != 0.0 && is_free(body_z), "no change of w with [carrier.z] that has no drive"),
         (
             phase.temperature.is_some_and(|kelvin| !fits(kelvin)),
-            "no temperature without temperature = true in [input], nor one beyond the pole of WLF's equation",
+            "no temperature without temperature = true in [input], nor one beyond the pole of WLF's equation; temperatures are in K, 20 °C being 293.15 K",
         ),
     ];
     obstacles.into_iter().find_map(|(is_there, expected)| is_there.then_some(expected))

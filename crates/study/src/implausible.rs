@@ -133,7 +133,10 @@ mod tests {
     fn the_missing_key_is_named() {
         let shear = "shear_strength = 5e6";
         let rough = said(SINE, shear, &[(8.0, 0.3), (9.0, 0.2), (1.0, 0.5)]);
-        assert!(rough.len() == 1 && rough[0].starts_with("friction is 9 at 1 m/s and at one more point, more"), "{rough:?}");
+        assert!(
+            rough.len() == 1 && rough[0].starts_with("friction is 9 at 1 m/s and at one more point, more"),
+            "{rough:?}"
+        );
         assert!(rough[0].contains("give surface.fine the waves"), "{rough:?}");
         let pressed = said(SINE, shear, &[(1.0, 1.0)]);
         assert!(pressed.len() == 1 && pressed[0].contains("without surface.fine"), "{pressed:?}");

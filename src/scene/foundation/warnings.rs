@@ -109,6 +109,12 @@ impl Scene {
     pub fn hard_pressure(&self, name: &str, pressure: f64) -> Option<String> {
         self.foundation.as_ref()?;
         let modulus = self.material.as_ref()?.plane_modulus(self.material.as_ref()?.equilibrium_modulus);
+        if pressure > modulus {
+            return Some(format!(
+                "pressed too hard: {name} = {pressure:?} Pa is more than the plane modulus at rest, {modulus:.3e} Pa: is one of \
+                 them in another unit than Pa?"
+            ));
+        }
         (pressure > HARD * modulus).then(|| {
             format!(
                 "pressed too hard: {name} = {pressure:?} Pa is more than a tenth of the plane modulus at rest, \

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use asperity::element::{Basis, Load, OperatingPoint, SweepGrid, TableHeader, TableRow};
-use asperity::scene::{FineRoughness, Scene};
+use asperity::scene::{FineRoughness, Scene, Wlf};
 use asperity::simulation::Interrupt;
 use rayon::prelude::*;
 
@@ -62,7 +62,9 @@ impl SweepPlan {
         }
         let (load, loads) = loads(&options.loads, &scene)?;
         let (method, of_method) = options.sliding.choose(&scene)?;
-        let warning = if matches!(method, Method::Layer) { hard_pressure(&scene, load, &loads) } else { None };
+        let pressed = if matches!(method, Method::Layer) { hard_pressure(&scene, load, &loads) } else { None };
+        let cold = options.temperatures.as_deref().and_then(Wlf::meant_in_celsius);
+        let warning = pressed.or_else(|| cold.map(|cold| format!("`temperatures`: {cold}")));
         let temperatures = temperatures(options.temperatures.as_deref(), &scene)?;
         let grid = SweepGrid { speeds: options.speeds.clone(), loads, temperatures };
         method.check(&scene)?;
@@ -89,7 +91,8 @@ impl SweepPlan {
         &self.header
     }
 
-    /// What to look at before the points are found: a load that presses the layer harder than its links stand for.
+    /// What to look at before the points are found: a load that presses the layer harder than its links stand for, or
+    /// temperatures that are probably meant in °C.
     pub fn warning(&self) -> Option<&str> {
         self.warning.as_deref()
     }
