@@ -6,6 +6,9 @@ use super::HeightMap;
 const ROUGH: f64 = 2.5;
 /// A seam with a difference of more than so many times the largest inside is none of a periodic surface.
 const STEEPEST: f64 = 10.0;
+/// What makes a period of a surface whose ends do not meet.
+const WAYS: &str =
+    "asperity surface --mirror makes a period of a surface that ends; tilt = \"remove\" takes out the tilt of a map";
 /// Differences that are rounding beside the heights: this part of what lies between the highest and the lowest.
 const ROUNDING: f64 = 1e-9;
 
@@ -77,13 +80,23 @@ impl Seam {
         (is_rough && within.count > 1).then_some(Self { axis, largest: [seam.largest, within.largest] })
     }
 
-    /// Whether it is too large for any surface that is periodic.
-    pub(super) fn is_too_large(&self) -> bool {
+    /// Warnings of seams, unless one is too large for any surface that is periodic.
+    ///
+    /// # Errors
+    /// What is expected in place of `periodic = true`.
+    pub(super) fn check(seams: &[Self]) -> Result<Vec<String>, String> {
+        match seams.iter().find(|seam| seam.is_too_large()) {
+            Some(seam) => Err(format!("false, for {}: {WAYS}", seam.text())),
+            None => Ok(seams.iter().map(|seam| format!("{}; {WAYS}", seam.text())).collect()),
+        }
+    }
+
+    fn is_too_large(&self) -> bool {
         self.largest[0] > STEEPEST * self.largest[1]
     }
 
     /// What is wrong with it.
-    pub(super) fn text(&self) -> String {
+    fn text(&self) -> String {
         let [over, inside] = self.largest;
         let times = if inside > 0.0 { over / inside } else { f64::INFINITY };
         format!(
@@ -92,10 +105,6 @@ impl Seam {
             self.axis
         )
     }
-
-    /// What makes a period of a surface whose ends do not meet.
-    pub(super) const WAYS: &str = "asperity surface --mirror makes a period of a surface that ends; tilt = \"remove\" \
-                                   takes out the tilt of a map";
 }
 
 #[cfg(test)]

@@ -219,7 +219,7 @@ impl<Q: Copy> Column<Q> {
         }
     }
 
-    /// Refuses to assume a unit of length or area beside `others` that name one of these, other than m and m².
+    /// Refuses to assume a unit beside `others` of the same quantity, lengths and areas being one, that name another one.
     ///
     /// # Errors
     /// [`ContentError`] in the line of the `names`.
@@ -231,9 +231,10 @@ impl<Q: Copy> Column<Q> {
     where
         Q: 'c,
     {
-        let is_of_length = |unit: &Unit| matches!(unit.dimension, Dimension::Length | Dimension::Area);
-        let Some(assumed) = self.assumed_unit().filter(is_of_length) else { return Ok(()) };
-        let is_other = |other: &&Self| other.names_unit && is_of_length(&other.unit) && !other.unit.is_si();
+        let quantity = |unit: &Unit| if unit.dimension == Dimension::Area { Dimension::Length } else { unit.dimension };
+        let Some(assumed) = self.assumed_unit() else { return Ok(()) };
+        let is_other =
+            |other: &&Self| other.names_unit && quantity(&other.unit) == quantity(&assumed) && !other.unit.is_si();
         let Some(other) = others.into_iter().find(is_other) else { return Ok(()) };
         let expected = format!(
             "the unit beside its name, as in {} [{assumed}], for {} names {}",

@@ -140,7 +140,7 @@ fn five_parameters_are_found_again() {
 fn sine(folder: &Path) -> PathBuf {
     let text = "name = 'sine'\nlayer = { foundation = 'half_space', masses = 16, spacing = 6.25e-5, width = 1e-2 }\n\
         material = { density = 1e3, poisson_ratio = 0.5, equilibrium_modulus = 3e6, prony = [] }\n\
-        [surface]\nkind = 'sinusoid'\namplitude = 1e-5\nwavelength = 1e-3\npoints_per_wavelength = 64\n\
+        [surface]\nkind = 'sinusoid'\namplitude = 1e-5\nwavelength = 1e-3\npoints_per_wavelength = 512\n\
         fine = { rms_slope = 1.0, modulus = 4e7 } # fine\n[friction]\nshear_strength = 6.5e6\ncoulomb = 0.1\n";
     let path = folder.join("sine.toml");
     fs::write(&path, text).unwrap();

@@ -38,3 +38,4 @@ mod sweep;
 #[path = "../common/sweeps.rs"]
 #[allow(dead_code, reason = "shared by several tests")]
 mod sweeps;
+mod told;

@@ -26,6 +26,7 @@ impl Scene {
         let mut found = self.link_warnings();
         found.extend(self.foundation.as_ref().and_then(steep_slopes));
         found.extend(self.far_springs());
+        found.extend(self.foundation.as_ref().and_then(|foundation| foundation.no_support(self.layer.masses)));
         found
     }
 
@@ -139,6 +140,18 @@ impl Scene {
         let roll_off = self.surface.roll_off_wavelength()?;
         (length < ROLL_OFFS * roll_off).then(|| {
             format!("short layer: {length:.3e} m are less than two roll-off wavelengths of {roll_off:.3e} m: {end}")
+        })
+    }
+}
+
+impl Foundation {
+    /// Over waves of a narrow band the fit may leave nothing between the carrier and the masses.
+    fn no_support(&self, masses: usize) -> Option<String> {
+        (self.normal.alpha == 0.0).then(|| {
+            format!(
+                "no vertical links: fitted over the waves that {masses} masses resolve, α is 0, so that nothing bears the \
+                 carrier: more masses, or foundation = \"springs\""
+            )
         })
     }
 }

@@ -187,11 +187,8 @@ fn with_seams(mut parsed: Parsed, options: &ProfileOptions) -> Result<Parsed, Co
         Some(map) => Seam::of_map(map),
         None => Vec::from_iter(Seam::of_profile(surface.x(), surface.z())),
     };
-    if let Some(seam) = seams.iter().find(|seam| seam.is_too_large()) {
-        let expected = format!("false, for {}: {}", seam.text(), Seam::WAYS);
-        return Err(ContentError::value(None, "periodic", "true", &expected));
-    }
-    parsed.warnings.extend(seams.iter().map(|seam| format!("{}; {}", seam.text(), Seam::WAYS)));
+    let warnings = Seam::check(&seams).map_err(|expected| ContentError::value(None, "periodic", "true", &expected))?;
+    parsed.warnings.extend(warnings);
     Ok(parsed)
 }
 

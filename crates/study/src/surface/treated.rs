@@ -38,7 +38,7 @@ pub enum SurfaceError {
     #[error("`mirror` and `taper` make a profile periodic, and it is")]
     AlreadyPeriodic,
     /// It is no longer than the waves that are to be taken away.
-    #[error("`smooth` {smooth:?}: expected less than {length:?} m, the length of the profile; lengths are in m")]
+    #[error("`smooth` {smooth:?}: expected at most {length:?} m, the length of the profile; lengths are in m")]
     Smooth {
         /// The wavelength asked for, m.
         smooth: f64,
@@ -78,7 +78,7 @@ impl TreatedSurface {
             return Err(SurfaceError::AlreadyPeriodic);
         }
         let length = read.x()[read.x().len() - 1] - read.x()[0];
-        if let Some(smooth) = options.smooth.filter(|smooth| *smooth >= length) {
+        if let Some(smooth) = options.smooth.filter(|smooth| *smooth > length) {
             return Err(SurfaceError::Smooth { smooth, length });
         }
         let split = |split: f64| read.split(split).map_err(|expected| SurfaceError::Split { split, expected });
