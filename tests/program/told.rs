@@ -46,10 +46,9 @@ fn a_thickness_means_a_layer_and_springs_are_told() {
         assert!(warned.contains(expected), "{command:?} {warned}");
     }
     // An element needs a stiffness.
-    let packed = text(&told(&["pack", "t.csv", "-o", "t.fmu"], &folder).stderr);
-    let refused = told(&["sweep", "seal.toml", "--speeds", "1", "--pressures", "1e6,2e6", "-o", "e.csv"], &folder);
-    let packed = packed + &text(&told(&["pack", "e.csv", "-o", "e.fmu"], &folder).stderr);
-    assert!(refused.status.success() && packed.contains("is in full contact, which has no stiffness"), "{packed}");
+    let swept = told(&["sweep", "seal.toml", "--speeds", "1", "--pressures", "1e6,2e6", "-o", "e.csv"], &folder);
+    let packed = text(&told(&["pack", "--table", "e.csv", "-o", "e.fmu"], &folder).stderr);
+    assert!(swept.status.success() && packed.contains("is in full contact, which has no stiffness"), "{packed}");
 }
 
 /// At 0.3 Pa, meant as MPa, a single point touches, which is no contact.
@@ -68,7 +67,7 @@ fn points_without_a_result_are_counted_and_named() {
     let some = calibrate("some.csv");
     let expected = "1 of 3 measurements are left out: line 2 (0.1 m/s, 0.0001 Pa): no stiffness";
     assert!(some.status.success() && text(&some.stderr).contains(expected), "{}", text(&some.stderr));
-    assert!(text(&some.stdout).contains("0.2047"), "{}", text(&some.stdout));
+    assert!(text(&some.stdout).contains("0.2038"), "{}", text(&some.stdout));
     let loads = ["--speeds", "0.1,1", "--pressures", "1e-4,1e6", "-o", "t.csv"];
     assert_eq!(told(&[&["sweep", "seal.toml"][..], &loads].concat(), &folder).status.code(), Some(1));
     let compared = told(&["compare", "t.csv", "--data", "some.csv"], &folder);
@@ -89,10 +88,10 @@ fn friction_that_no_rubber_has_is_told_with_the_key_that_is_missing() {
         &["calibrate", "seal.toml", "--data", "mu.csv", "--free", "friction.shear_strength=4e6..1e7"],
     ] {
         let warned = text(&told(command, &folder).stderr);
-        assert!(
-            warned.contains("friction is ") && warned.contains("give surface.fine the waves"),
-            "{command:?} {warned}"
-        );
-        assert!(warned.contains("without surface.fine the profile counts as smooth"), "{command:?} {warned}");
+        // The run presses so hard that shear is little of the load.
+        let expected =
+            if command[0] == "simulate" { "the whole nominal area touches over the run" } else { "friction is " };
+        assert!(warned.contains(expected), "{command:?} {warned}");
+        assert!(warned.contains("give surface.fine the waves that the profile lacks"), "{command:?} {warned}");
     }
 }

@@ -47,7 +47,9 @@ pub fn implausible(scene: &Scene, found: impl IntoIterator<Item = FoundFriction>
         let why = why(scene);
         format!("friction is {friction} {place}{}, more than that of any rubber: {why}", more(rubbing.len()))
     });
-    let touching = whole.first().map(|first| {
+    // One key is missing for both.
+    let is_said = largest.is_some() && scene.fine.is_none();
+    let touching = whole.first().filter(|_| !is_said).map(|first| {
         let place = format!("{}{}", first.place, more(whole.len()));
         match scene.fine {
             None => format!("the whole nominal area touches {place}: {NO_FINE}"),

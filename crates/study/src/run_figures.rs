@@ -64,7 +64,7 @@ pub fn implausible_run(scene: &Scene, figures: &RunFigures, simulation: &mut Sim
         (Some(_), Some(nominal)) => value(Output::RealArea).map(|area| area / nominal),
         _ => value(Output::ContactCount).map(|count| count / scene.layer.masses as f64),
     };
-    let place = "in the mean over the way".to_owned();
+    let place = "over the run".to_owned();
     implausible(scene, [FoundFriction { place, friction, area }])
 }
 
