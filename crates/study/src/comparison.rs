@@ -62,7 +62,7 @@ impl Comparison {
             });
         }
         let curves = SweptFriction { table };
-        let (mut within, mut left_out): (Vec<(Measured, f64)>, Vec<(Measured, NoFriction)>) = (Vec::new(), Vec::new());
+        let (mut within, mut left_out) = (Vec::<(Measured, f64)>::new(), Vec::<(Measured, NoFriction)>::new());
         for &row in &measurements.rows {
             match curves.at(&row.point) {
                 Ok(friction) => within.push((row, friction)),
