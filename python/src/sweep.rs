@@ -73,8 +73,8 @@ pub(crate) fn sweep(
     let found = in_background(py, progress, move |task| {
         let plan = SweepPlan::new((*scene).clone(), &options, None)?;
         Ok(find(&plan, task).map(|table| {
-            let few = plan.few_points(table.rows.iter().map(|stored| &stored.row));
-            let warnings = plan.warning().map(str::to_owned).into_iter().chain(few).collect();
+            let found = plan.warnings(table.rows.iter().map(|stored| &stored.row));
+            let warnings = plan.warning().map(str::to_owned).into_iter().chain(found).collect();
             (table.text(), warnings)
         }))
     })?;

@@ -419,7 +419,7 @@ class Scene:
         for warning in said:
             warnings.warn(warning, stacklevel=2)
         table = Table(text)
-        failed = [status for status in table.status.ravel() if status != "steady"]
+        failed = [status for status in table.status.ravel() if status not in ("steady", "full contact")]
         if failed:
             text = f"{len(failed)} of {table.status.size} points are not steady or failed, the first: {failed[0]}"
             warnings.warn(f"{text}; Table.status says which", stacklevel=2)
@@ -442,6 +442,8 @@ class Scene:
         from ._contact import Contact
 
         found = _native.contact(self._native, positive("pressure", pressure), positive("speed", speed), points)
+        for warning in found.pop("warnings"):
+            warnings.warn(warning, stacklevel=2)
         return Contact._of(found)
 
     def calibrate(

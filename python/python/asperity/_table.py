@@ -34,7 +34,8 @@ class Table:
         loads: Mean pressures, Pa, or forces, N, shape (np,).
         temperatures: Temperatures, K, shape (nT,); one that is nan where the scene has none.
         units: Units of the columns.
-        status: "steady", or why the values cannot be relied on; shape (nv, np, nT), "" of points not found yet.
+        status: "steady"; "full contact", where friction and area are a result, but nothing gives way; or why the values
+            cannot be relied on; shape (nv, np, nT), "" of points not found yet.
     """
 
     def __init__(self, text: str) -> None:
@@ -124,8 +125,9 @@ class Table:
         from ._plots import swept
 
         unit = "Pa" if self.load == "pressure" else "N"
+        found = np.isin(self.status, ("steady", "full contact"))
         curves = [
-            (_label(load, unit, kelvin), self.speeds, self[column][:, j, k], self.status[:, j, k] == "steady")
+            (_label(load, unit, kelvin), self.speeds, self[column][:, j, k], found[:, j, k])
             for k, kelvin in enumerate(self.temperatures)
             for j, load in enumerate(self.loads)
         ]

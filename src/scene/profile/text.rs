@@ -180,7 +180,8 @@ impl<'a, 'b> PointsReader<'a, 'b> {
         // Words and results.
         self.raw.notes.extend(footer.first().map(|(line, _)| behind_note(*line, footer.len())));
         if self.y.windows(2).any(|pair| pair[0] != pair[1]) {
-            return Areal::of_points(self.raw, &self.y).map(Content::Map);
+            let y_unit = self.roles.y.map(|column| header.unit_of_y(column, self.options)).transpose()?.flatten();
+            return Areal::of_points(self.raw, &self.y, y_unit).map(Content::Map);
         }
         self.raw.is_spaced = self.roles.x.is_none();
         if header.table.names.is_empty() && self.roles.x.is_some() {
