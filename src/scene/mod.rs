@@ -24,6 +24,7 @@ mod profile;
 mod prony_file;
 mod reader;
 mod regular_file;
+mod seam;
 mod self_affine;
 mod spectrum;
 mod surface;

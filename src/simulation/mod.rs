@@ -117,6 +117,16 @@ impl Simulation {
         SimulationState { run: self.run.context.state.clone(), reference_run }
     }
 
+    /// As [`state`](Self::state), into a state that there is; allocates nothing where that is of the same scene.
+    pub fn save_into(&self, state: &mut SimulationState) {
+        state.copy_runs(self.runs().map(|run| &run.context.state));
+    }
+
+    /// Counts a communication step of a master that was done again from its start.
+    pub fn count_repetition(&mut self) {
+        self.run.context.state.counters.repeated += 1;
+    }
+
     /// A simulation of `scene` in `state`: it goes on bit for bit as the one whose state this is.
     ///
     /// # Errors
@@ -138,6 +148,15 @@ impl Simulation {
         for (run, state) in self.runs().zip(state.states()) {
             state.check(&run.context.state, &run.context.model, &run.context.settings)?;
         }
+        Ok(self.continue_from(state)?)
+    }
+
+    /// Continues from `state`, which a run of the same scene has saved, or which was checked when it was read; allocates
+    /// nothing.
+    ///
+    /// # Errors
+    /// [`ParameterError`] where the scene has no model at the state's temperature, which none of its runs reaches.
+    pub fn continue_from(&mut self, state: &SimulationState) -> Result<(), ParameterError> {
         if state.run.start != self.run.context.state.start {
             self.freeze_dashpots(state.run.start);
         }

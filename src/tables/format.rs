@@ -215,6 +215,9 @@ impl<Q: Copy + PartialEq, const N: usize> Format<Q, N> {
             notes.push(column.note(wanted.meaning));
             *place = Some(column);
         }
+        for column in columns.iter().flatten() {
+            column.check_beside(columns.iter().flatten(), header.line)?;
+        }
         Ok(columns)
     }
 
@@ -371,6 +374,21 @@ mod tests {
         let longest = Format { others: Others::Tables, ..LOADS };
         let table = longest.read(two).unwrap_or_else(|error| unreachable!("{error}"));
         assert_eq!(table.notes[0].text, "lines 6 to 6, another table, are left out");
+    }
+
+    /// Beside a column in another unit SI is no guess.
+    #[test]
+    fn a_unit_is_not_assumed_beside_another_one() {
+        const POINTS: Format<u8, 2> = Format::new(
+            &[Words::new(0, Dimension::Length, "x", ""), Words::new(1, Dimension::Area, "area", "")],
+            [Wanted::new(&[0], "x", "positions"), Wanted::new(&[1], "area", "areas")],
+            "x,area",
+        );
+        let refused = POINTS.read("x [mm],area\n1,2\n").map_or_else(|error| error.to_string(), |_| String::new());
+        let expected = "unit of column 2 (area): expected the unit beside its name, as in area [m²], for column 1 (x [mm]) \
+                        names mm";
+        assert_eq!(refused, expected);
+        assert!(POINTS.read("x [m],area\n1,2\n").is_ok() && POINTS.read("x,area\n1,2\n").is_ok());
     }
 
     #[test]

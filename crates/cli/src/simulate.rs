@@ -141,6 +141,7 @@ fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<Vec
         return Err(SimulateError::Run { source, time: recorder.time, output: recorder.output.clone() });
     }
     let shown = recorder.shown(scene);
+    recorder.summary.warnings(shown, runner.simulation()).iter().for_each(|warning| warn(warning));
     let mut summary = recorder.summary.lines(shown, runner.simulation());
     if command.stats {
         summary.extend(recorder.summary.statistics(shown, runner.simulation()));

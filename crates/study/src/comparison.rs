@@ -2,10 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::element::{Load, OperatingPoint, PointStatus, Quantity};
+use asperity::element::{Load, OperatingPoint, Quantity};
 
-use crate::calibration::{CurveGrid, Measured, MeasuredFrictionError, Measurements};
-use crate::steady::SlideProblem;
+use crate::calibration::{CurveGrid, Measured, MeasuredFrictionError, Measurements, left_out_in_words};
 use crate::sweep::SweepTable;
 
 /// A table cannot be compared with measurements.
@@ -30,12 +29,23 @@ pub struct Comparison {
     pub notes: Vec<String>,
     /// The measurements that the table reaches, and its friction there.
     pub within: Vec<(Measured, f64)>,
-    /// The other ones.
-    pub beyond: Vec<Measured>,
+    /// The other ones, and why the table has no friction there.
+    pub left_out: Vec<(Measured, NoFriction)>,
     /// The curves that the measurements make.
     pub grid: CurveGrid,
     /// Friction of the table along these curves, and at the measurements.
     pub swept: Vec<(OperatingPoint, f64)>,
+}
+
+/// Why a table has no friction at a point.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoFriction {
+    /// It lies beyond its points.
+    #[error("the table does not reach there")]
+    Beyond,
+    /// A point beside it has no result, but this status.
+    #[error("the table has no result beside it: {0}")]
+    Failed(String),
 }
 
 /// Points of a curve.
@@ -64,23 +74,29 @@ impl Comparison {
             });
         }
         let curves = SweptFriction { table };
-        let (mut within, mut beyond): (Vec<(Measured, f64)>, Vec<Measured>) = (Vec::new(), Vec::new());
+        let (mut within, mut left_out) = (Vec::<(Measured, f64)>::new(), Vec::<(Measured, NoFriction)>::new());
         for &row in &measurements.rows {
             match curves.at(&row.point) {
-                Some(friction) => within.push((row, friction)),
-                None => beyond.push(row),
+                Ok(friction) => within.push((row, friction)),
+                Err(why) => left_out.push((row, why)),
             }
         }
         let grid = CurveGrid::new(within.iter().map(|(row, _)| &row.point));
         let mut points = grid.points(CURVE);
         points.extend(within.iter().map(|(row, _)| row.point));
-        let swept = points.into_iter().filter_map(|point| Some((point, curves.at(&point)?))).collect();
-        Ok(Self { notes: measurements.notes, within, beyond, grid, swept })
+        let swept = points.into_iter().filter_map(|point| Some((point, curves.at(&point).ok()?))).collect();
+        Ok(Self { notes: measurements.notes, within, left_out, grid, swept })
     }
 
     /// Sum of the squared deviations of the table from the measurements.
     pub fn chi_square(&self) -> f64 {
         self.within.iter().map(|pair| deviation(pair).powi(2)).sum()
+    }
+
+    /// How many measurements are left out, which, and why; `None` where none is.
+    pub fn left_out_in_words(&self) -> Option<String> {
+        let left_out = self.left_out.iter().map(|(row, why)| (vec![row.line], row.point, why));
+        left_out_in_words(left_out, self.within.len() + self.left_out.len())
     }
 
     /// Measurement, friction of the table and its deviation over the standard deviation, the worst first.
@@ -132,19 +148,19 @@ fn beside(axis: &[f64], value: f64, scale: fn(f64) -> f64) -> Option<Vec<(f64, f
 }
 
 impl SweptFriction<'_> {
-    /// Friction at a point; `None` beyond the table, or beside a point of it that is not steady.
-    fn at(&self, point: &OperatingPoint) -> Option<f64> {
+    /// Friction at a point, unless it is beyond the table or beside a point of it without a result.
+    fn at(&self, point: &OperatingPoint) -> Result<f64, NoFriction> {
         let grid = &self.table.header.grid;
-        let speeds = beside(&grid.speeds, point.speed, f64::ln)?;
-        let loads = beside(&grid.loads, point.load, f64::ln)?;
+        let speeds = beside(&grid.speeds, point.speed, f64::ln).ok_or(NoFriction::Beyond)?;
+        let loads = beside(&grid.loads, point.load, f64::ln).ok_or(NoFriction::Beyond)?;
         let temperatures: Vec<(Option<f64>, f64)> = match point.temperature {
             Some(kelvin) if !grid.temperatures.is_empty() => {
-                let found = beside(&grid.temperatures, kelvin, |value| value)?;
+                let found = beside(&grid.temperatures, kelvin, |value| value).ok_or(NoFriction::Beyond)?;
                 found.into_iter().map(|(kelvin, weight)| (Some(kelvin), weight)).collect()
             }
             // One without temperatures holds at all of them.
             _ if grid.temperatures.is_empty() => vec![(None, 1.0)],
-            _ => return None,
+            _ => return Err(NoFriction::Beyond),
         };
         let mut friction = 0.0;
         for &(temperature, of_temperature) in &temperatures {
@@ -155,14 +171,13 @@ impl SweptFriction<'_> {
                 }
             }
         }
-        Some(friction)
+        Ok(friction)
     }
 
-    fn on_grid(&self, point: &OperatingPoint) -> Option<f64> {
-        let found = self.table.rows.iter().find(|stored| stored.row.point == *point)?;
-        let has_friction =
-            found.row.is_steady() || found.row.status == PointStatus::new(Some(SlideProblem::FullContact));
-        found.row.value(Quantity::Friction).filter(|_| has_friction)
+    fn on_grid(&self, point: &OperatingPoint) -> Result<f64, NoFriction> {
+        let found = self.table.rows.iter().find(|stored| stored.row.point == *point).ok_or(NoFriction::Beyond)?;
+        let friction = found.row.value(Quantity::Friction).filter(|_| found.row.is_result());
+        friction.ok_or_else(|| NoFriction::Failed(found.row.status.text().to_owned()))
     }
 }
 

@@ -2,6 +2,7 @@
 
 use asperity::scene::Scene;
 
+use crate::implausible::{FoundFriction, implausible};
 use crate::steady::{SlideProblem, SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 use crate::sweep::{Method, MethodError, NotPossible, SlidingOptions, SweepMethod};
 
@@ -43,6 +44,8 @@ pub struct SolvedContact {
     pub fields: ContactFields,
     /// Why not all of the values can be relied on; `None` where they can.
     pub problem: Option<SlideProblem>,
+    /// What of it no rubber has, and why.
+    pub warnings: Vec<String>,
 }
 
 /// One state of steady sliding, and on how many points it is solved for.
@@ -72,7 +75,10 @@ pub fn solve_contact(scene: &Scene, options: &ContactOptions) -> Result<SolvedCo
     let slide = solver.slide(&rubber, options.speed, options.pressure);
     let surface = solver.surface().clone();
     let (fields, problem) = (ContactFields::new(&surface, &slide), slide.problem());
-    Ok(SolvedContact { surface, slide, fields, problem })
+    let place = format!("at {} m/s, {} Pa", options.speed, options.pressure);
+    let area = slide.real_area.unwrap_or(slide.area);
+    let warnings = implausible(scene, [FoundFriction { place, friction: slide.friction(), area: Some(area) }]);
+    Ok(SolvedContact { surface, slide, fields, problem, warnings })
 }
 
 impl ContactFields {

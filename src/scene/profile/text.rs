@@ -65,10 +65,10 @@ fn decimal_column<'a>(block: &Block<'a>) -> Option<Block<'a>> {
     (is_name && two).then(|| block.as_column())
 }
 
-/// Two columns, x and z in m, that are read again as the same numbers, up or down.
-pub(super) fn write(raw: &MeasuredPoints) -> String {
-    let mut text = format!("x [m],{} [m]\n", if raw.is_depth { "depth" } else { "z" });
-    for (x, z) in raw.x.iter().zip(&raw.z) {
+/// Two columns, x and z in m, that are read again as the same numbers.
+pub(super) fn write(x: &[f64], z: &[f64]) -> String {
+    let mut text = String::from("x [m],z [m]\n");
+    for (x, z) in x.iter().zip(z) {
         // Writing to a string does not fail.
         let _ = writeln!(text, "{x:?},{z:?}");
     }
@@ -181,7 +181,8 @@ impl<'a, 'b> PointsReader<'a, 'b> {
         // Words and results.
         self.raw.notes.extend(footer.first().map(|(line, _)| behind_note(*line, footer.len())));
         if self.y.windows(2).any(|pair| pair[0] != pair[1]) {
-            return Areal::of_points(self.raw, &self.y).map(Content::Map);
+            let y_unit = self.roles.y.map(|column| header.unit_of_y(column, self.options)).transpose()?.flatten();
+            return Areal::of_points(self.raw, &self.y, y_unit).map(Content::Map);
         }
         self.raw.is_spaced = self.roles.x.is_none();
         if header.table.names.is_empty() && self.roles.x.is_some() {

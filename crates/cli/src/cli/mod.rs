@@ -256,6 +256,10 @@ pub(crate) struct Pack {
     /// The FMU to write.
     #[arg(short, long, value_name = "OUT.fmu")]
     pub(crate) output: PathBuf,
+    /// Gives variables names without structure, as transport_speed for transport.speed, for tools that make buses or
+    /// folders of points and brackets in names.
+    #[arg(long)]
+    pub(crate) flat_names: bool,
     /// A shared library; for this platform unless linux64, win64 or darwin64 is given, as in win64=PATH. May be
     /// repeated. Default: the library beside this program.
     #[arg(long, value_name = "[PLATFORM=]PATH")]

@@ -83,8 +83,8 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
     let mut table =
         SweepTable { header: plan.header().clone(), ..SweepTable::read(&place.path).map_err(TableFileError::from)? };
     table.sort();
-    let few = plan.few_points(table.rows.iter().map(|stored| &stored.row));
-    few.iter().for_each(|warning| warn(&with_flags(warning)));
+    let found = plan.warnings(table.rows.iter().map(|stored| &stored.row));
+    found.iter().for_each(|warning| warn(&with_flags(warning)));
     table.find_low_end(&output);
     write(&place.path, table.text())?;
     drop(file);
@@ -179,7 +179,7 @@ fn finish(
     let files = [output.as_path()].into_iter().chain(picture).chain(master.map(|(path, _)| path)).map(named);
     summary.push(("Written", files.collect::<Vec<_>>().join(", ")));
     print_beside([output], &lines(&summary))?;
-    let (failed, total) = (table.rows.iter().filter(|stored| !stored.row.is_steady()).count(), table.rows.len());
+    let (failed, total) = (table.rows.iter().filter(|stored| !stored.row.is_result()).count(), table.rows.len());
     if failed == 0 { Ok(()) } else { Err(SweepCommandError::NotSteady { failed, total, path: output.to_owned() }) }
 }
 

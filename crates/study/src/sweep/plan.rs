@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use asperity::element::{Basis, Load, OperatingPoint, SweepGrid, TableHeader, TableRow};
 use asperity::math::check_memory;
-use asperity::scene::{FineRoughness, Scene};
+use asperity::scene::{FineRoughness, Scene, Wlf};
 use asperity::simulation::Interrupt;
 use rayon::prelude::*;
 
@@ -16,6 +16,7 @@ use super::scenes::{relevant, scene_at};
 use super::search::StopBounds;
 use super::solved::SolvedPoints;
 use super::table;
+use crate::implausible::{FoundFriction, implausible};
 use crate::progress::Stop;
 
 /// Mean loads to sweep over, rising.
@@ -63,7 +64,9 @@ impl SweepPlan {
         check(options)?;
         let (load, loads) = loads(&options.loads, &scene)?;
         let (method, of_method) = options.sliding.choose(&scene)?;
-        let warning = if matches!(method, Method::Layer) { hard_pressure(&scene, load, &loads) } else { None };
+        let pressed = if matches!(method, Method::Layer) { hard_pressure(&scene, load, &loads) } else { None };
+        let cold = options.temperatures.as_deref().and_then(Wlf::meant_in_celsius);
+        let warning = pressed.or_else(|| cold.map(|cold| format!("`temperatures`: {cold}")));
         let temperatures = temperatures(options.temperatures.as_deref(), &scene)?;
         let grid = SweepGrid { speeds: options.speeds.clone(), loads, temperatures };
         method.check(&scene)?;
@@ -90,7 +93,8 @@ impl SweepPlan {
         &self.header
     }
 
-    /// What to look at before the points are found: a load that presses the layer harder than its links stand for.
+    /// What to look at before the points are found: a load that presses the layer harder than its links stand for, or
+    /// temperatures that are probably meant in °C.
     pub fn warning(&self) -> Option<&str> {
         self.warning.as_deref()
     }
@@ -128,9 +132,11 @@ impl SweepPlan {
         })
     }
 
-    /// The warning where some of the rows have few points of the surface in contact.
-    pub fn few_points<'a>(&self, rows: impl Iterator<Item = &'a TableRow>) -> Option<String> {
-        self.solved.as_ref()?.few_points(rows, &self.header)
+    /// What to look at in the rows: few points of the surface in contact, and friction that no rubber has.
+    pub fn warnings<'a>(&self, rows: impl Iterator<Item = &'a TableRow> + Clone) -> Vec<String> {
+        let few = self.solved.as_ref().and_then(|solved| solved.few_points(rows.clone(), &self.header));
+        let found = rows.filter_map(|row| FoundFriction::of_row(row, self.header.load));
+        few.into_iter().chain(implausible(&self.scene, found)).collect()
     }
 }
 
