@@ -36,9 +36,9 @@ pub(crate) fn compare(command: &Compare) -> Result<(), CompareError> {
     let table = SweepTable::read(&command.table)?;
     let comparison = Comparison::new(&table, &command.table, &command.data)?;
     comparison.notes.iter().for_each(|text| note(text));
-    comparison.beyond.iter().for_each(|row| {
-        warn(&format!("left out: line {} ({}): the table does not reach there", row.line, in_words(&row.point)));
-    });
+    if let Some(text) = left_out(&comparison.beyond) {
+        warn(&text);
+    }
     if comparison.within.is_empty() {
         return Err(CompareError::NoneWithin(command.data.clone()));
     }
@@ -46,6 +46,15 @@ pub(crate) fn compare(command: &Compare) -> Result<(), CompareError> {
     let swept = ModelCurves { name: "swept", stroke: Stroke::Line, points: comparison.swept.clone() };
     measured_friction::picture(&table.header.scene, &comparison.grid, &rows, &[swept]).write(&picture)?;
     Ok(print_beside([&picture], &summary(command, &comparison, &picture))?)
+}
+
+/// The measurements that the table does not reach, in one sentence.
+fn left_out(beyond: &[Measured]) -> Option<String> {
+    let named: Vec<String> =
+        beyond.iter().take(WORST).map(|row| format!("line {} ({})", row.line, in_words(&row.point))).collect();
+    let more = if beyond.len() > WORST { format!(" and {} more", beyond.len() - WORST) } else { String::new() };
+    let text = || format!("left out: {}{more}: the table does not reach there", named.join(", "));
+    (!beyond.is_empty()).then(text)
 }
 
 fn summary(command: &Compare, comparison: &Comparison, picture: &Path) -> String {
