@@ -111,3 +111,5 @@ pub mod patch;
 pub mod scene;
 pub mod simulation;
 pub mod tables;
+#[cfg(test)]
+mod testing;

@@ -11,6 +11,7 @@ use crate::model::Mode;
 use crate::outputs::{Output, variable};
 use crate::scene::{Parameter, Value};
 use crate::simulation::Start;
+use crate::testing::assert_relative;
 use sweeps::{AREA, Grid, REST, WARM, friction, logarithmic, separation, stiffness};
 
 fn table(grid: &Grid) -> Table {
@@ -40,10 +41,6 @@ fn forces(element: &Element) -> (f64, f64) {
     (get(element, Output::ForceX), get(element, Output::ForceZ))
 }
 
-fn close(found: f64, expected: f64, share: f64) {
-    assert!((found - expected).abs() <= share * expected.abs(), "{found}, expected {expected}");
-}
-
 /// V = G²/(2K).
 fn stored(element: &Element) -> f64 {
     let spring = &element.spring;
@@ -59,13 +56,13 @@ fn at_the_points_of_the_table_it_is_the_table() {
             element.advance(1e-2 / v, v, 0.0).unwrap();
             let (x, z) = forces(&element);
             // The separations are summed up from differences, 1e-16 m of a fall of 6e-6 m.
-            close(z, p * AREA, 1e-9);
-            close(x, -friction(v, p, WARM) * p * AREA, 1e-9);
-            close(element.spring.stiffness, stiffness(p), 1e-9);
-            close(get(&element, Output::DissipatedPower), -x * v, 1e-12);
-            close(get(&element, Output::Hysteresis), 0.4 * x, 1e-9);
-            close(get(&element, Output::Adhesion), 0.6 * x, 1e-9);
-            close(get(&element, Output::ContactRatio), 0.1 * (p / 1e5).powf(0.8), 1e-9);
+            assert_relative(z, p * AREA, 1e-9);
+            assert_relative(x, -friction(v, p, WARM) * p * AREA, 1e-9);
+            assert_relative(element.spring.stiffness, stiffness(p), 1e-9);
+            assert_relative(get(&element, Output::DissipatedPower), -x * v, 1e-12);
+            assert_relative(get(&element, Output::Hysteresis), 0.4 * x, 1e-9);
+            assert_relative(get(&element, Output::Adhesion), 0.6 * x, 1e-9);
+            assert_relative(get(&element, Output::ContactRatio), 0.1 * (p / 1e5).powf(0.8), 1e-9);
         }
     }
 }
@@ -108,8 +105,8 @@ fn between_temperatures_it_is_the_law_in_between() {
         element.advance(1.0, v, 0.0).unwrap();
         let (x, z) = forces(&element);
         // Steps of 10 K are half a decade of speed, and the hump is a decade and a half wide.
-        close(-x / z, friction(v, p, t), 0.02);
-        close(z, p * AREA, 0.01);
+        assert_relative(-x / z, friction(v, p, t), 0.02);
+        assert_relative(z, p * AREA, 0.01);
     }
     let refused = contact.set_parameter(Parameter::TEMPERATURE, Value::Real(279.0)).unwrap_err().to_string();
     let expected =
@@ -145,16 +142,19 @@ fn a_hysteresis_loop_is_that_of_a_jenkins_element() {
         -forces(element).0
     };
     // At rest the law is that of the least speed; at v the spring starts afresh, as it holds nothing.
-    close(go(&mut element, 1e-5), k * 1e-5, 1e-9);
-    close(go(&mut element, amplitude), limit, 1e-9);
+    assert_relative(go(&mut element, 1e-5), k * 1e-5, 1e-9);
+    assert_relative(go(&mut element, amplitude), limit, 1e-9);
     let start = get(&element, Output::DissipatedEnergy);
-    close(go(&mut element, -1e-5), limit - k * 1e-5, 1e-9);
-    close(go(&mut element, 1e-5 - amplitude), -limit, 1e-9);
-    close(go(&mut element, amplitude), limit, 1e-9);
+    assert_relative(go(&mut element, -1e-5), limit - k * 1e-5, 1e-9);
+    assert_relative(go(&mut element, 1e-5 - amplitude), -limit, 1e-9);
+    assert_relative(go(&mut element, amplitude), limit, 1e-9);
     let lost = get(&element, Output::DissipatedEnergy) - start;
-    close(lost, 2.0 * limit * (amplitude - 2.0 * limit / k), 1e-9);
+    assert_relative(lost, 2.0 * limit * (amplitude - 2.0 * limit / k), 1e-9);
     let channels = [Output::DamperEnergy, Output::MaxwellEnergy, Output::FrictionEnergy].map(|of| get(&element, of));
-    channels.iter().zip([0.1, 0.3, 0.6]).for_each(|(found, share)| close(*found, share * (start + lost), 1e-9));
+    channels
+        .iter()
+        .zip([0.1, 0.3, 0.6])
+        .for_each(|(found, share)| assert_relative(*found, share * (start + lost), 1e-9));
 }
 
 /// Straight motions that press, lift, reverse, rest, leave the contact and come back.
@@ -289,9 +289,9 @@ fn beyond_the_table_motions_are_refused_or_extrapolated() {
     let slope = held.contact().normal.slope;
     held.advance(1.0, 100.0, -1e-5).unwrap();
     let (x, z) = forces(&held);
-    close(z, 8e5 * AREA + slope * 1e-5, 1e-12);
-    close(-x, friction(10.0, 8e5, WARM) * z, 1e-9);
-    close(held.spring.stiffness, stiffness(8e5), 1e-9);
+    assert_relative(z, 8e5 * AREA + slope * 1e-5, 1e-12);
+    assert_relative(-x, friction(10.0, 8e5, WARM) * z, 1e-9);
+    assert_relative(held.spring.stiffness, stiffness(8e5), 1e-9);
 }
 
 /// Through standstill the law is that of the least speed, without a jump.

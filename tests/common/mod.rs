@@ -1,8 +1,10 @@
 //! What the suites share: the commands, the environment of Python, and the kit in the files beside this one.
 
+pub mod near;
 pub mod random;
 pub mod runs;
 pub mod scenes;
+pub mod sweeps;
 pub mod table;
 
 use std::fs;

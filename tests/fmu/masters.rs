@@ -208,7 +208,7 @@ fn a_container_of_two_gives_what_the_library_gives_for_each() {
     case.compare_outputs(&found, "second.", &second);
 }
 
-/// By hand, for it first builds fmi-sim, which needs libclang: `cargo test --test fmu -- --ignored`.
+/// By hand, for it first builds fmi-sim, which needs libclang: `cargo test --test suites fmu:: -- --ignored`.
 #[test]
 #[ignore = "builds fmi-sim, which takes minutes"]
 fn fmi_sim_gives_what_the_library_gives() {

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::scene::{LinkKind, Scene};
 
+use crate::common::near::assert_relative;
 use crate::common::{Table, asperity, root, run, scratch, simulate};
 
 const CASES: [&str; 3] = ["sine", "rough", "layer"];
@@ -35,11 +36,6 @@ fn write(name: &str, text: &str, folder: &Path) -> PathBuf {
     path
 }
 
-#[track_caller]
-fn near(what: &str, found: f64, expected: f64, tolerance: f64) {
-    assert!((found / expected - 1.0).abs() <= tolerance, "{what}: {found:e} for {expected:e}");
-}
-
 /// α, β, what the fit misses and the mass, at the spacing of each case, half and a quarter of it.
 #[test]
 fn the_links_are_those_of_the_independent_fit() {
@@ -59,7 +55,7 @@ fn the_links_are_those_of_the_independent_fit() {
             let found = [fit.alpha, fit.beta, quality.rms, quality.least, quality.largest, scene.mass()];
             for (i, found) in found.into_iter().enumerate() {
                 // The files have nine digits; the rms of a sine is the small difference of r to 1.
-                near(&format!("{name} {line}: column {}", i + 3), found, number(i + 3), 1e-7);
+                assert_relative(&format!("{name} {line}: column {}", i + 3), found, number(i + 3), 1e-7);
             }
         }
     }
@@ -93,7 +89,7 @@ fn static_areas_are_those_of_the_body() {
         for (pressure, ratio) in pressures.into_iter().zip(ratios) {
             for (finer, tolerance) in [(2, 0.17), (4, 0.14)] {
                 let found = area_ratio(name, finer, pressure, &folder);
-                near(&format!("{name} by {finer} at {pressure:e} Pa"), found, ratio, tolerance);
+                assert_relative(&format!("{name} by {finer} at {pressure:e} Pa"), found, ratio, tolerance);
             }
         }
     }
@@ -121,8 +117,8 @@ fn slides(name: &str, speeds: &str) {
         let [pressure, speed] = ["pressure", "speed"].map(|name| found.number(row, name));
         let i = (0..pressures.len()).find(|&i| pressures[i] == pressure && of_speeds[i] == speed).unwrap();
         let what = |quantity: &str| format!("{quantity} of {name} at {pressure:e} Pa, {speed:e} m/s");
-        near(&what("friction"), found.number(row, "friction"), frictions[i], 0.13);
-        near(&what("area"), found.number(row, "contact_ratio"), areas[i], 0.17);
+        assert_relative(&what("friction"), found.number(row, "friction"), frictions[i], 0.13);
+        assert_relative(&what("area"), found.number(row, "contact_ratio"), areas[i], 0.17);
     }
 }
 
@@ -176,9 +172,9 @@ fn the_tread_block_in_rubber_is_converged() {
     let [friction, area] = block(&[], &folder);
     let [coarse_friction, coarse_area] = block(&coarse, &folder);
     // By less than a tenth of this; where masses stick and slip by themselves by twenty times it.
-    near("friction", friction, coarse_friction, 0.005);
+    assert_relative("friction", friction, coarse_friction, 0.005);
     // Of first order in the spacing: 9.6 %, and 4 % with the next halving.
-    near("area", area, coarse_area, 0.1);
+    assert_relative("area", area, coarse_area, 0.1);
     let [loose_friction, _] = block(&[("relative_tolerance = 1.0e-3", "relative_tolerance = 1.0e-2")], &folder);
-    near("friction at 1e-2", loose_friction, friction, 1e-3);
+    assert_relative("friction at 1e-2", loose_friction, friction, 1e-3);
 }

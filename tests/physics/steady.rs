@@ -8,6 +8,7 @@ use asperity::math::SplitMix64;
 use asperity::scene::Scene;
 use asperity_study::steady::{GridSize, SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 
+use crate::common::near::assert_relative;
 use crate::common::{Table, root};
 
 fn reference(file: &str) -> PathBuf {
@@ -39,11 +40,6 @@ fn scene_of_map(case: &str) -> (Scene, SurfaceGrid) {
     (scene, SurfaceGrid::new(GridSize { nx: 128, ny: 128 }, length, length, heights))
 }
 
-#[track_caller]
-fn near(what: &str, found: f64, expected: f64, tolerance: f64) {
-    assert!((found - expected).abs() <= tolerance * expected.abs(), "{what}: {found:e}, expected {expected:e}");
-}
-
 /// Area within 0.5 % and a point, friction within 1e-3 of itself, the separation within 1e-3 of the rms height.
 fn same_grid(case: &str, scene: &Scene, surface: SurfaceGrid) {
     let rubber = SlidingRubber::new(scene).unwrap();
@@ -58,7 +54,7 @@ fn same_grid(case: &str, scene: &Scene, surface: SurfaceGrid) {
         let area = number("area_ratio [1]");
         assert_eq!(found.contact.left_over, 0);
         assert!((found.area - area).abs() <= 5e-3 * area + 1.0 / points, "{}", what("area"));
-        near(&what("friction"), found.friction(), number("friction [1]"), 1e-3);
+        assert_relative(&what("friction"), found.friction(), number("friction [1]"), 1e-3);
         let off = found.contact.separation - number("separation [m]");
         assert!(off.abs() <= 1e-3 * rms, "{}: {off:e}", what("separation"));
     }
@@ -95,11 +91,11 @@ fn a_road_that_is_rough_below_its_map_rubs_as_an_independent_program_says() {
         let (pressure, speed) = (number("pressure [Pa]"), number("speed [m/s]"));
         let found = solver.slide(&warm, speed, pressure);
         assert!(found.heat_converged, "{speed}");
-        near("friction", found.friction(), number("friction [1]"), 1e-2);
-        near("flash", found.flash_mean.unwrap(), number("flash_mean [K]"), 2e-2);
-        near("of the profile", found.profile_hysteresis, number("of the profile [1]"), 1e-3);
-        near("area", found.area, number("area_ratio [1]"), 5e-3);
-        near("cold", solver.slide(&cold, speed, pressure).friction(), number("friction cold [1]"), 1e-3);
+        assert_relative("friction", found.friction(), number("friction [1]"), 1e-2);
+        assert_relative("flash", found.flash_mean.unwrap(), number("flash_mean [K]"), 2e-2);
+        assert_relative("of the profile", found.profile_hysteresis, number("of the profile [1]"), 1e-3);
+        assert_relative("area", found.area, number("area_ratio [1]"), 5e-3);
+        assert_relative("cold", solver.slide(&cold, speed, pressure).friction(), number("friction cold [1]"), 1e-3);
     }
 }
 
@@ -116,8 +112,8 @@ fn profiles_on_a_half_plane_slide_as_two_independent_programs_say() {
             let (pressure, speed) = (number("pressure [Pa]"), number("speed [m/s]"));
             let found = solver.slide(&rubber, speed, pressure);
             let what = |quantity: &str| format!("{quantity} of {case} at {pressure:e} Pa, {speed:e} m/s");
-            near(&what("friction"), found.friction(), number("friction [1]"), 2e-3);
-            near(&what("area"), found.area, number("area_ratio [1]"), 1e-2);
+            assert_relative(&what("friction"), found.friction(), number("friction [1]"), 2e-3);
+            assert_relative(&what("area"), found.area, number("area_ratio [1]"), 1e-2);
         }
     }
 }
@@ -173,7 +169,12 @@ fn full_contact_has_a_closed_form() {
         let found = slide(&rubber(TERM, 0.49), sine(64, a), speed, p);
         assert!(found.contact.is_full && found.tangential_stiffness.is_none());
         assert_eq!((found.area, found.contact.separation), (1.0, 0.0));
-        near("sine", found.friction(), (q * a).powi(2) * plane_modulus(q * speed, 0.49)[1] / (4.0 * p), 1e-9);
+        assert_relative(
+            "sine",
+            found.friction(),
+            (q * a).powi(2) * plane_modulus(q * speed, 0.49)[1] / (4.0 * p),
+            1e-9,
+        );
     }
     // Some waves of a map, q = 2π (m, n)/L, with a difference between q_x and |q|.
     let waves = [(1.0, 0.0, 2e-6, 0.3), (2.0, 3.0, 1e-6, 1.1), (5.0, -2.0, 4e-7, 2.0), (0.0, 4.0, 5e-7, 0.1)];
@@ -192,7 +193,7 @@ fn full_contact_has_a_closed_form() {
         along * 0.5 * a * a * 0.5 * whole * plane_modulus(along * 2.0, 0.3)[1]
     };
     assert!(found.contact.is_full);
-    near("map", found.friction(), waves.iter().map(loss).sum::<f64>() / p, 1e-9);
+    assert_relative("map", found.friction(), waves.iter().map(loss).sum::<f64>() / p, 1e-9);
 }
 
 /// H. Hertz's sphere, in a square period of eight radii of the contact: radius and approach within 2 %, with the term of the
@@ -209,16 +210,16 @@ fn a_sphere_touches_as_hertz_says() {
     let surface = SurfaceGrid::new(GridSize { nx: n, ny: n }, length, length, heights);
     let highest = surface.heights.iter().copied().fold(f64::MIN, f64::max);
     let found = slide(&rubber("", 0.49), surface, 1.0, force / (length * length));
-    near("radius", (found.area * length * length / PI).sqrt(), a, 2e-2);
+    assert_relative("radius", (found.area * length * length / PI).sqrt(), a, 2e-2);
     let approach = highest - found.contact.separation + 3.9 * force / (PI * modulus * length);
-    near("approach", approach, a * a / radius, 2e-2);
+    assert_relative("approach", approach, a * a / radius, 2e-2);
     assert!(found.friction().abs() < 1e-6, "elastic and symmetric: {}", found.friction());
     // Hertz's dF/dδ = 2 M a, and the images' compliance in series; along the surface Mindlin's factor of it.
     let alone = 2.0 * modulus * a / (length * length);
     let whole = 1.0 / (1.0 / alone - 3.9 * length / (PI * modulus));
-    near("stiffness", found.normal_stiffness.unwrap(), whole, 3e-2);
+    assert_relative("stiffness", found.normal_stiffness.unwrap(), whole, 3e-2);
     let factor = found.tangential_stiffness.unwrap() / found.normal_stiffness.unwrap();
-    near("Mindlin's factor", factor, 2.0 * 0.51 / 1.51, 1e-12);
+    assert_relative("Mindlin's factor", factor, 2.0 * 0.51 / 1.51, 1e-12);
 }
 
 /// A self-affine map: rms slope 0.1, waves from a roll-off to L/16, as many `points` to the shortest.
@@ -278,7 +279,7 @@ fn the_mirrored_surface_slid_over_backwards_is_the_same() {
     mirrored.heights[1..].reverse();
     let one = SteadySolver::new(surface).slide(&rubber, 0.1, 3e5);
     let other = SteadySolver::new(mirrored).slide(&rubber, -0.1, 3e5);
-    near("friction", other.friction(), -one.friction(), 1e-6);
+    assert_relative("friction", other.friction(), -one.friction(), 1e-6);
     assert_eq!(other.area, one.area);
 }
 

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::common::scenes::SceneText;
+use crate::common::sweeps::{Grid, REST, WARM, separation};
 use crate::common::{Table, asperity, drive, fmpy, largest, library, python, run, scratch};
-use crate::sweeps::{Grid, REST, WARM, separation};
 use asperity::element::{Element, PointContact, Table as Sweep};
 use asperity::simulation::Start;
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use crate::common::{Table, asperity, largest, library, python, run, scratch};
-use crate::element::waves;
+use crate::program::element::waves;
 
 /// Speeds of the table, m/s.
 const SPEEDS: &str = "0.02..0.5/4";

@@ -5,6 +5,7 @@ use std::fs;
 use std::io::{Cursor, Read as _, Write as _};
 use std::path::Path;
 
+use crate::common::near::assert_relative;
 use crate::common::scenes::SceneText;
 use crate::common::{asperity, root, run, scratch};
 use asperity::scene::Scene;
@@ -48,8 +49,7 @@ fn findings(file: &Path, options: &[&str]) -> Value {
 }
 
 fn near(found: &Value, expected: f64, tolerance: f64) {
-    let found = found.as_f64().unwrap();
-    assert!((found / expected - 1.0).abs() < tolerance, "{found:e} for {expected:e}");
+    assert_relative("surface", found.as_f64().unwrap(), expected, tolerance);
 }
 
 fn failure(arguments: &[&str]) -> String {

@@ -62,3 +62,6 @@ pub mod steady;
 pub mod summary;
 pub mod surface;
 pub mod sweep;
+#[cfg(test)]
+#[path = "../../../src/testing.rs"]
+mod testing;

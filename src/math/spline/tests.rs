@@ -5,13 +5,10 @@ use std::f64::consts::PI;
 use nalgebra::{DMatrix, DVector};
 
 use super::{BLOCK, Spline, floor};
+use crate::testing::assert_within;
 
 const UNEVEN: [f64; 9] = [-1.0, -0.97, -0.2, -0.19, 0.4, 1.3, 1.31, 1.7, 3.0];
 const HEIGHTS: [f64; 9] = [0.3, 0.1, -0.4, -0.38, 0.9, 0.2, 0.25, -0.7, 0.3];
-
-fn assert_close(found: f64, expected: f64, tolerance: f64) {
-    assert!((found - expected).abs() <= tolerance, "found {found}, expected {expected} within {tolerance}");
-}
 
 fn even(from: f64, to: f64, intervals: usize) -> Vec<f64> {
     (0..=intervals).map(|i| from + (to - from) * i as f64 / intervals as f64).collect()
@@ -49,7 +46,7 @@ fn dense_curvatures(x: &[f64], z: &[f64], periodic: bool) -> Vec<f64> {
 fn passes_through_its_points() {
     for spline in both() {
         for (&x, &z) in UNEVEN.iter().zip(&HEIGHTS) {
-            assert_close(spline.evaluate(x).0, z, 1e-13);
+            assert_within(spline.evaluate(x).0, z, 1e-13);
         }
     }
 }
@@ -64,7 +61,7 @@ fn curvatures_agree_with_a_dense_solution() {
             let expected = dense_curvatures(x, &z, periodic);
             let scale = expected.iter().fold(1.0_f64, |most, value| most.max(value.abs()));
             for (&x, &curvature) in x.iter().zip(&expected) {
-                assert_close(spline.evaluate(x).2, curvature, 1e-12 * scale);
+                assert_within(spline.evaluate(x).2, curvature, 1e-12 * scale);
             }
         }
     }
@@ -81,9 +78,9 @@ fn is_twice_continuously_differentiable_at_the_points() {
 
 fn assert_joined(spline: &Spline, left: (f64, f64, f64, f64), right: (f64, f64, f64, f64)) {
     let bounds = spline.bounds();
-    assert_close(left.0, right.0, 1e-13);
-    assert_close(left.1, right.1, 1e-13 * bounds.slope_max_abs);
-    assert_close(left.2, right.2, 1e-13 * bounds.curvature_max_abs);
+    assert_within(left.0, right.0, 1e-13);
+    assert_within(left.1, right.1, 1e-13 * bounds.slope_max_abs);
+    assert_within(left.2, right.2, 1e-13 * bounds.curvature_max_abs);
 }
 
 #[test]
@@ -99,9 +96,9 @@ fn derivatives_agree_with_differences() {
     for spline in both() {
         for x in [-3.3, -0.5, 0.1, 1.0, 2.2, 7.7] {
             let (before, here, after) = (spline.evaluate(x - step), spline.evaluate(x), spline.evaluate(x + step));
-            assert_close((after.0 - before.0) / (2.0 * step), here.1, 1e-7);
-            assert_close((after.1 - before.1) / (2.0 * step), here.2, 1e-7);
-            assert_close((after.2 - before.2) / (2.0 * step), here.3, 1e-7);
+            assert_within((after.0 - before.0) / (2.0 * step), here.1, 1e-7);
+            assert_within((after.1 - before.1) / (2.0 * step), here.2, 1e-7);
+            assert_within((after.2 - before.2) / (2.0 * step), here.3, 1e-7);
         }
     }
 }
@@ -111,7 +108,7 @@ fn natural_ends_are_straight_and_go_on_along_their_tangents() {
     let spline = Spline::natural(&UNEVEN, &HEIGHTS);
     for (end, outside) in [(-1.0, -4.0), (3.0, 8.0)] {
         let (z, slope, curvature, _) = spline.evaluate(end);
-        assert_close(curvature, 0.0, 1e-12);
+        assert_within(curvature, 0.0, 1e-12);
         assert_eq!(spline.evaluate(outside), (z + slope * (outside - end), slope, 0.0, 0.0));
     }
     assert_eq!((spline.period(), spline.reduce(8.0)), (None, 8.0));
@@ -125,10 +122,10 @@ fn reproduces_a_straight_line() {
         let spline = Spline::natural(x, &z);
         for place in [-5.0, -0.99, -0.6, 0.5, 2.0, 11.0] {
             let (z, slope, curvature, third) = spline.evaluate(place);
-            assert_close(z, 0.5 - 0.25 * place, 1e-13);
-            assert_close(slope, -0.25, 1e-13);
-            assert_close(curvature, 0.0, 1e-11);
-            assert_close(third, 0.0, 1e-8);
+            assert_within(z, 0.5 - 0.25 * place, 1e-13);
+            assert_within(slope, -0.25, 1e-13);
+            assert_within(curvature, 0.0, 1e-11);
+            assert_within(third, 0.0, 1e-8);
         }
     }
 }
@@ -161,8 +158,8 @@ fn repeats_far_away() {
     assert_eq!(spline.period(), Some(4.0));
     for x in [-0.98, 0.0, 1.305, 2.5] {
         for periods in [-1e9_f64, -3.0, -1.0, 1.0, 2.0, 1e6, 1e9] {
-            assert_close(spline.reduce(x + 4.0 * periods), x, 1e-15 * (4.0 * periods).abs().max(10.0));
-            assert_close(spline.evaluate(x + 4.0 * periods).0, spline.evaluate(x).0, 1e-14 * periods.abs());
+            assert_within(spline.reduce(x + 4.0 * periods), x, 1e-15 * (4.0 * periods).abs().max(10.0));
+            assert_within(spline.evaluate(x + 4.0 * periods).0, spline.evaluate(x).0, 1e-14 * periods.abs());
         }
         assert_eq!(spline.reduce(x), x);
     }
@@ -243,9 +240,9 @@ fn sampled(spline: &Spline, low: f64, high: f64) -> [f64; 3] {
 fn assert_bounds(spline: &Spline, bounds: super::Bounds, low: f64, high: f64) {
     let scale = spline.bounds();
     let [z, slope, curvature] = sampled(spline, low, high);
-    assert_close(bounds.z_max, z, 1e-5);
-    assert_close(bounds.slope_max_abs, slope, 1e-3 * scale.slope_max_abs);
-    assert_close(bounds.curvature_max_abs, curvature, 1e-3 * scale.curvature_max_abs);
+    assert_within(bounds.z_max, z, 1e-5);
+    assert_within(bounds.slope_max_abs, slope, 1e-3 * scale.slope_max_abs);
+    assert_within(bounds.curvature_max_abs, curvature, 1e-3 * scale.curvature_max_abs);
     assert!(bounds.z_max >= z - 1e-12 && bounds.slope_max_abs >= slope - 1e-12);
 }
 

@@ -61,14 +61,10 @@ fn tangential_numerator(a: f64, kappa: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::assert_relative;
 
     fn bonded(thickness: f64, poisson_ratio: f64) -> ElasticBody {
         ElasticBody::Bonded { thickness, poisson_ratio }
-    }
-
-    #[track_caller]
-    fn near(found: f64, exact: f64, tolerance: f64) {
-        assert!((found / exact - 1.0).abs() < tolerance, "{found:e} for {exact:e}");
     }
 
     #[test]
@@ -76,8 +72,8 @@ mod tests {
         for poisson_ratio in [0.0, 0.3, 0.5] {
             let body = bonded(1.0, poisson_ratio);
             // What is left of the base is e^(-2a).
-            near(body.normal(40.0), ElasticBody::HalfPlane.normal(40.0), 1e-15);
-            near(body.tangential(1e4), ElasticBody::HalfPlane.tangential(1e4), 1e-15);
+            assert_relative(body.normal(40.0), ElasticBody::HalfPlane.normal(40.0), 1e-15);
+            assert_relative(body.tangential(1e4), ElasticBody::HalfPlane.tangential(1e4), 1e-15);
         }
     }
 
@@ -87,12 +83,12 @@ mod tests {
         for nu in [0.0, 0.3, 0.48] {
             let body = bonded(h, nu);
             // The next term is of the order a²/(1-2ν)².
-            near(body.normal(1e-3 / h), (1.0 - nu) * (1.0 - nu) / ((1.0 - 2.0 * nu) * h), 1e-3);
-            near(body.tangential(1e-3 / h), (1.0 - nu) / (2.0 * h), 1e-2);
+            assert_relative(body.normal(1e-3 / h), (1.0 - nu) * (1.0 - nu) / ((1.0 - 2.0 * nu) * h), 1e-3);
+            assert_relative(body.tangential(1e-3 / h), (1.0 - nu) / (2.0 * h), 1e-2);
         }
         let q = 1e-3 / h;
         // Incompressible: the next term is of the order a².
-        near(bonded(h, 0.5).normal(q), 3.0 / (4.0 * q * q * h.powi(3)), 1e-5);
+        assert_relative(bonded(h, 0.5).normal(q), 3.0 / (4.0 * q * q * h.powi(3)), 1e-5);
     }
 
     #[test]
@@ -110,8 +106,8 @@ mod tests {
         for (a, nu) in [(0.05, 0.3), (0.5, 0.3), (1.0, 0.45), (2.0, 0.0), (4.0, 0.48), (1.0, 0.5 - 1e-9)] {
             let body = bonded(1.0, nu);
             // Fourth order with 4000 steps: far below 1e-6.
-            near(body.normal(a), navier(a, nu, [0.0, 1.0]), 1e-6);
-            near(body.tangential(a), navier(a, nu, [1.0, 0.0]), 1e-6);
+            assert_relative(body.normal(a), navier(a, nu, [0.0, 1.0]), 1e-6);
+            assert_relative(body.tangential(a), navier(a, nu, [1.0, 0.0]), 1e-6);
         }
     }
 

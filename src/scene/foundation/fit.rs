@@ -52,6 +52,7 @@ mod tests {
 
     use super::*;
     use crate::scene::Scene;
+    use crate::testing::assert_relative;
 
     fn waves(masses: usize, spacing: f64, surface: &str) -> Waves {
         let text = format!(
@@ -65,19 +66,14 @@ mod tests {
                          roll_off_wavelength = 2e-3, cut_off_wavelength = 5e-5, seed = 3";
     const SINE: &str = "kind = 'sinusoid', amplitude = 1e-5, wavelength = 1e-3, points_per_wavelength = 1024";
 
-    #[track_caller]
-    fn near(found: f64, exact: f64, tolerance: f64) {
-        assert!((found / exact - 1.0).abs() < tolerance, "{found:e} for {exact:e}");
-    }
-
     #[test]
     fn links_fitted_to_themselves_are_themselves() {
         for surface in [ROUGH, SINE, "kind = 'flat'"] {
             let waves = waves(200, 5e-5, surface);
             for (alpha, beta) in [(1e3, 2e-5), (1e6, 1e-6), (10.0, 1e-3)] {
                 let fit = Stiffness::fitted(&waves, |q| alpha + beta * waves.difference_square(q));
-                near(fit.alpha, alpha, 1e-9);
-                near(fit.beta, beta, 1e-9);
+                assert_relative(fit.alpha, alpha, 1e-9);
+                assert_relative(fit.beta, beta, 1e-9);
             }
         }
     }
@@ -87,8 +83,8 @@ mod tests {
     fn a_sine_on_a_half_plane_has_its_known_shares() {
         let q = TAU / 1e-3;
         let fit = Stiffness::fitted(&waves(4096, 1e-3 / 1024.0, SINE), |q| 0.5 * q);
-        near(fit.alpha, 0.837 * 0.5 * q, 1e-2);
-        near(fit.beta, 0.174 * 0.5 / q, 1e-2);
+        assert_relative(fit.alpha, 0.837 * 0.5 * q, 1e-2);
+        assert_relative(fit.beta, 0.174 * 0.5 / q, 1e-2);
     }
 
     #[test]
@@ -97,8 +93,8 @@ mod tests {
         let waves = waves(8, 1e-3 / 2.0, "kind = 'sinusoid', amplitude = 1e-5, wavelength = 1e-3");
         let q = TAU / 1e-3;
         let fit = Stiffness::fitted(&waves, |q| 0.5 * q);
-        near(fit.alpha, 0.25 * q, 1e-12);
-        near(fit.beta, 0.25 * q / waves.difference_square(q), 1e-12);
+        assert_relative(fit.alpha, 0.25 * q, 1e-12);
+        assert_relative(fit.beta, 0.25 * q / waves.difference_square(q), 1e-12);
     }
 
     #[test]
@@ -114,8 +110,8 @@ mod tests {
     fn the_unit_of_length_scales_both() {
         let (one, other) = (waves(200, 5e-5, ROUGH), waves(200, 5e-2, &thousandfold()));
         let (one, other) = (Stiffness::fitted(&one, |q| 0.5 * q), Stiffness::fitted(&other, |q| 0.5 * q));
-        near(other.alpha, one.alpha / 1e3, 1e-9);
-        near(other.beta, one.beta * 1e3, 1e-9);
+        assert_relative(other.alpha, one.alpha / 1e3, 1e-9);
+        assert_relative(other.beta, one.beta * 1e3, 1e-9);
     }
 
     fn thousandfold() -> String {

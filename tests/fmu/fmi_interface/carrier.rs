@@ -4,7 +4,7 @@
 use asperity_fmi::{Role, VariableRef};
 
 use crate::common::scenes::SceneText;
-use crate::fmi_interface::master::{ERROR, Fmu, OK};
+use crate::fmu::fmi_interface::master::{ERROR, Fmu, OK};
 
 /// Bodies along both axes, pulled by a spring along x, pressed by a load along z.
 fn bodies() -> SceneText {

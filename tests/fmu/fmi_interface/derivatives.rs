@@ -4,7 +4,7 @@ use std::ptr;
 
 use asperity_fmi::{Kind, Role, fmi2GetDirectionalDerivative, fmi2GetRealOutputDerivatives};
 
-use crate::fmi_interface::master::{DISCARD, ERROR, EVERYTHING, Fmu, OK};
+use crate::fmu::fmi_interface::master::{DISCARD, ERROR, EVERYTHING, Fmu, OK};
 
 /// c + Σ c_j of the vertical and the horizontal links of [`EVERYTHING`], N/m.
 const STIFFNESS: (f64, f64) = (3e3, 1.5e3);

@@ -2,7 +2,7 @@
 
 use asperity_fmi::{Kind, Role, VariableRef};
 
-use crate::fmi_interface::master::{DISCARD, ERROR, EVERYTHING, Fmu, Message, OK};
+use crate::fmu::fmi_interface::master::{DISCARD, ERROR, EVERYTHING, Fmu, Message, OK};
 
 /// The outputs and the time, which a failed step must not change.
 fn seen(fmu: &Fmu) -> (Vec<u64>, f64) {

@@ -7,7 +7,7 @@ use asperity_fmi::Kind;
 use asperity_fmi::bindings::fmi2Status;
 
 use crate::common::root;
-use crate::fmi_interface::master::{DISCARD, ERROR, EVERYTHING, Fmu, OK, SCENE};
+use crate::fmu::fmi_interface::master::{DISCARD, ERROR, EVERYTHING, Fmu, OK, SCENE};
 
 #[test]
 fn a_tolerance_of_0_is_none_and_one_that_is_too_loose_is_the_loosest() {
@@ -147,7 +147,7 @@ mod memory {
 
     use asperity_fmi::bindings::fmi2Type_fmi2CoSimulation;
 
-    use crate::fmi_interface::master::{Folder, Messages, Request, SCENE, callbacks};
+    use crate::fmu::fmi_interface::master::{Folder, Messages, Request, SCENE, callbacks};
 
     /// What each of the tests below runs in a process of its own.
     const LIMITED: &str = "ASPERITY_TEST_LIMITED";

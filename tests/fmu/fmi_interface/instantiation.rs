@@ -6,7 +6,7 @@ use std::{fs, ptr};
 use asperity_fmi::bindings::*;
 use asperity_fmi::{fmi2FreeInstance, fmi2GetTypesPlatform, fmi2GetVersion};
 
-use crate::fmi_interface::master::{ERROR, Folder, Messages, Request, SCENE, callbacks};
+use crate::fmu::fmi_interface::master::{ERROR, Folder, Messages, Request, SCENE, callbacks};
 
 #[test]
 fn version_and_platform_are_the_standards() {

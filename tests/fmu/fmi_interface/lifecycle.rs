@@ -8,7 +8,7 @@ use asperity_fmi::bindings::*;
 use asperity_fmi::*;
 
 use crate::common::{library, run};
-use crate::fmi_interface::master::{DISCARD, ERROR, Fmu, OK};
+use crate::fmu::fmi_interface::master::{DISCARD, ERROR, Fmu, OK};
 
 /// The states that calls can lead to, by the letters of the table below.
 pub const STATES: [(char, fn() -> Fmu); 6] =

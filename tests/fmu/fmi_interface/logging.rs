@@ -2,7 +2,7 @@
 
 use std::ffi::CStr;
 
-use crate::fmi_interface::master::{ERROR, Fmu, Message, OK, SCENE};
+use crate::fmu::fmi_interface::master::{ERROR, Fmu, Message, OK, SCENE};
 
 #[test]
 fn messages_escape_format_characters() {

@@ -5,7 +5,7 @@ use std::process::Command;
 use std::{fs, thread};
 
 use crate::common::scratch;
-use crate::fmi_interface::master::{EVERYTHING, Fmu, OK};
+use crate::fmu::fmi_interface::master::{EVERYTHING, Fmu, OK};
 
 /// Variable with the folder of a test in a process of its own; without it such a test does nothing.
 pub const FOLDER: &str = "ASPERITY_TEST_FOLDER";

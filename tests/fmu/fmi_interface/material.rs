@@ -6,7 +6,7 @@ use std::fs;
 use nalgebra::{DMatrix, DVector};
 
 use crate::common::scenes::SceneText;
-use crate::fmi_interface::master::*;
+use crate::fmu::fmi_interface::master::*;
 
 /// Two masses over the wave.
 fn rubber() -> SceneText {

@@ -6,8 +6,8 @@ use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchRun, PatchStart, Pos
 use asperity_fmi::bindings::fmi2Status;
 
 use crate::common::root;
-use crate::fmi_interface::lifecycle::try_all;
-use crate::fmi_interface::master::{DISCARD, ERROR, Fmu, OK};
+use crate::fmu::fmi_interface::lifecycle::try_all;
+use crate::fmu::fmi_interface::master::{DISCARD, ERROR, Fmu, OK};
 
 const WHEEL: &str = r#"
 name = "wheel"

@@ -6,9 +6,9 @@ use std::{env, fs, ptr};
 use asperity_fmi::*;
 
 use crate::common::scratch;
-use crate::fmi_interface::lifecycle::STATES;
-use crate::fmi_interface::many::{FOLDER, run_alone};
-use crate::fmi_interface::master::{ERROR, EVERYTHING, Fmu, OK, SCENE};
+use crate::fmu::fmi_interface::lifecycle::STATES;
+use crate::fmu::fmi_interface::many::{FOLDER, run_alone};
+use crate::fmu::fmi_interface::master::{ERROR, EVERYTHING, Fmu, OK, SCENE};
 
 /// Three steps with values and rates; the outputs after each.
 pub fn three_steps(fmu: &Fmu, start: f64) -> Vec<Vec<u64>> {

@@ -6,7 +6,7 @@ use asperity::outputs::{Output, variables};
 use asperity::scene::{Path, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
-use crate::fmi_interface::master::{DISCARD, ERROR, EVERYTHING, Fmu, Folder, OK};
+use crate::fmu::fmi_interface::master::{DISCARD, ERROR, EVERYTHING, Fmu, Folder, OK};
 
 #[test]
 fn the_start_may_be_any_time_and_the_stop_time_holds() {

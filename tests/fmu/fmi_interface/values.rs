@@ -4,7 +4,7 @@ use std::ptr;
 
 use asperity_fmi::*;
 
-use crate::fmi_interface::master::{ERROR, Fmu, OK};
+use crate::fmu::fmi_interface::master::{ERROR, Fmu, OK};
 
 #[test]
 fn value_references_count_inputs_outputs_parameters() {

@@ -6,7 +6,7 @@ use asperity::simulation::{Motion, Start};
 use crate::common::largest;
 use crate::common::random::Random;
 use crate::common::scenes::SceneText;
-use crate::exact::run::{Run, rate, sine, steps};
+use crate::physics::exact::run::{Run, rate, sine, steps};
 
 const CHANNELS: [&str; 5] =
     ["energy.residual", "energy.input", "E_diss", "dissipation.E_friction", "dissipation.E_impact"];

@@ -10,7 +10,7 @@ use crate::common::random::Random;
 use crate::common::runs::even_times;
 use crate::common::scenes::{Law, SceneText};
 use crate::common::{difference, largest};
-use crate::exact::run::Run;
+use crate::physics::exact::run::Run;
 
 const MASS: f64 = 1.0e-7;
 const SPACING: f64 = 1.0e-4;

@@ -4,8 +4,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use asperity::simulation::{ModeChange, Start};
 
+use crate::common::near::assert_near;
 use crate::common::scenes::{Law, SceneText};
-use crate::exact::run::{REST, Run, assert_near, rate, sine, uneven_layer};
+use crate::physics::exact::run::{REST, Run, rate, sine, uneven_layer};
 
 const MASS: f64 = 1.0e-7;
 const STIFFNESS: f64 = 2.0e3;

@@ -4,8 +4,9 @@ use std::f64::consts::TAU;
 
 use asperity::simulation::{Motion, Start};
 
+use crate::common::near::assert_near;
 use crate::common::scenes::{Law, SceneText};
-use crate::exact::run::{REST, Run, assert_near, mean, rate, steps};
+use crate::physics::exact::run::{REST, Run, mean, rate, steps};
 
 const WAVELENGTH: f64 = 1.0e-3;
 const AMPLITUDE: f64 = 1.0e-5;

@@ -5,9 +5,10 @@ use std::f64::consts::TAU;
 use asperity::scene::{Link, LinkKind, Material, MaxwellElement, Scene};
 use asperity::simulation::{Motion, Start};
 
+use crate::common::near::assert_near;
 use crate::common::scenes::{Law, SceneText};
 use crate::common::{difference, largest};
-use crate::exact::run::{REST, Run, assert_near, mean, rate, steps};
+use crate::physics::exact::run::{REST, Run, mean, rate, steps};
 
 /// The reference temperature is 300 K; at 400 K log10 a_T = -2·100/200 = -1.
 const WLF: [f64; 3] = [2.0, 100.0, 300.0];

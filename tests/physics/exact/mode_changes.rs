@@ -4,8 +4,9 @@
 use asperity::scene::LinkKind;
 use asperity::simulation::{ModeChange, Start};
 
+use crate::common::near::assert_near;
 use crate::common::scenes::{Law, SceneText};
-use crate::exact::run::{REST, Run, assert_near, rate, root};
+use crate::physics::exact::run::{REST, Run, rate, root};
 
 const MASS: f64 = 1.0e-7;
 /// c of the vertical spring.

@@ -5,8 +5,9 @@ use std::f64::consts::{PI, TAU};
 use asperity::simulation::{Motion, Start};
 use nalgebra::{Matrix3, Vector3};
 
+use crate::common::near::assert_near;
 use crate::common::scenes::{Law, SceneText};
-use crate::exact::run::{REST, Run, assert_near, sine, steps};
+use crate::physics::exact::run::{REST, Run, sine, steps};
 
 const MASSES: usize = 3;
 const PRESSED: f64 = 2.0e-5;

@@ -5,10 +5,11 @@ use std::path::Path as FilePath;
 use asperity::scene::{Method, OutputGroup, Path, Scene};
 use asperity::simulation::{Motion, Start};
 
+use crate::common::near::assert_near;
 use crate::common::runs::even_times;
 use crate::common::scenes::{Law, SceneText};
 use crate::common::{difference, largest};
-use crate::exact::run::{REST, Run, assert_near, rate, steps, uneven_layer};
+use crate::physics::exact::run::{REST, Run, rate, steps, uneven_layer};
 
 const MASS: f64 = 1.0e-7;
 const STIFFNESS: f64 = 2.0e3;

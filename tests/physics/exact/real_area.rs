@@ -2,8 +2,9 @@
 
 use asperity::simulation::Start;
 
+use crate::common::near::assert_near;
 use crate::common::scenes::SceneText;
-use crate::exact::run::{REST, Run, assert_near, rate};
+use crate::physics::exact::run::{REST, Run, rate};
 
 const MASSES: f64 = 4.0;
 /// m²

@@ -115,13 +115,6 @@ pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Fails where `found` is not within `tolerance` times `scale` of `expected`.
-#[track_caller]
-pub(crate) fn assert_near(what: &str, found: f64, expected: f64, allowed: f64) {
-    let error = (found - expected).abs();
-    assert!(error <= allowed, "{what}: {found:e}, not {expected:e}: off by {error:e}, allowed {allowed:e}");
-}
-
 /// The root of `f` between `a` and `b`, where `f` differs in sign, by bisection.
 pub(crate) fn root(f: impl Fn(f64) -> f64, (mut a, mut b): (f64, f64)) -> f64 {
     let rises = f(a) < 0.0;

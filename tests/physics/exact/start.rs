@@ -5,8 +5,9 @@ use std::f64::consts::{FRAC_1_PI, TAU};
 
 use asperity::simulation::Start;
 
+use crate::common::near::assert_near;
 use crate::common::scenes::{Law, SceneText};
-use crate::exact::run::{REST, Run, assert_near, rate};
+use crate::physics::exact::run::{REST, Run, rate};
 
 const MASS: f64 = 1.0e-7;
 const STIFFNESS: f64 = 2.0e3;

@@ -7,7 +7,7 @@ use crate::common::random::Random;
 use crate::common::runs::even_times;
 use crate::common::scenes::SceneText;
 use crate::common::{difference, largest};
-use crate::exact::run::{REST, Run, mean, rate, sine, steps};
+use crate::physics::exact::run::{REST, Run, mean, rate, sine, steps};
 
 const MASSES: usize = 4;
 const SPACING: f64 = 1.0 / 8192.0;

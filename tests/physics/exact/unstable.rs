@@ -6,8 +6,9 @@ use std::path::Path as FilePath;
 use asperity::scene::{Path, Scene};
 use asperity::simulation::{Motion, Simulation, SimulationError, Start};
 
+use crate::common::near::assert_near;
 use crate::common::scenes::SceneText;
-use crate::exact::run::{REST, Run, assert_near, rate};
+use crate::physics::exact::run::{REST, Run, rate};
 
 const MASS: f64 = 1.0e-7;
 const STIFFNESS: f64 = 2.0e3;

@@ -4,10 +4,10 @@ use asperity::outputs::Output;
 use asperity::scene::Method;
 use proptest::prelude::*;
 
-use crate::invariants::case::{Case, Record};
-use crate::invariants::check::check;
-use crate::invariants::random::cases;
-use crate::invariants::trust::Units;
+use crate::physics::invariants::case::{Case, Record};
+use crate::physics::invariants::check::check;
+use crate::physics::invariants::random::cases;
+use crate::physics::invariants::trust::Units;
 
 /// One row of a run, and the scene's numbers.
 struct Row<'a> {

@@ -5,10 +5,10 @@ use asperity::scene::{Method, OutputGroup, Path};
 use asperity::simulation::Motion;
 use proptest::prelude::*;
 
-use crate::invariants::case::{Case, Record};
-use crate::invariants::check::check;
-use crate::invariants::random::{cases, cases_by, cases_with_bodies};
-use crate::invariants::trust::{Units, largest_energy};
+use crate::physics::invariants::case::{Case, Record};
+use crate::physics::invariants::check::check;
+use crate::physics::invariants::random::{cases, cases_by, cases_with_bodies};
+use crate::physics::invariants::trust::{Units, largest_energy};
 
 /// What the balance may miss, in units of the error that one step may make of the largest energy.
 const ALLOWED: f64 = 10.0;

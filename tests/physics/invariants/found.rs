@@ -4,8 +4,8 @@ use asperity::outputs::Output;
 use asperity::simulation::{Simulation, Start};
 
 use crate::common::scenes::SceneText;
-use crate::invariants::case::Case;
-use crate::invariants::trust::{Units, largest_energy};
+use crate::physics::invariants::case::Case;
+use crate::physics::invariants::trust::{Units, largest_energy};
 
 /// One heavy mass off the end of a fine profile, flung into it: it touches at 6 m/s on bends of some 10 µm, and what
 /// the rest of the step did to its speed was counted twice, a tenth of all energy.

@@ -15,7 +15,7 @@ use proptest::collection::vec;
 use proptest::option;
 use proptest::prelude::*;
 
-use crate::invariants::case::{Case, GROUPS};
+use crate::physics::invariants::case::{Case, GROUPS};
 
 /// The steps that one motion may take: some ten times what the longest random one needs.
 const MAX_STEPS: u64 = 1_000_000;

@@ -4,10 +4,10 @@ use asperity::scene::OutputGroup;
 use asperity::simulation::{Motion, Simulation, SimulationError, SimulationState};
 use proptest::prelude::*;
 
-use crate::invariants::case::{Case, Record};
-use crate::invariants::check::check;
-use crate::invariants::random::{cases, cases_with_bodies};
-use crate::invariants::trust::{Compared, Trusted};
+use crate::physics::invariants::case::{Case, Record};
+use crate::physics::invariants::check::check;
+use crate::physics::invariants::random::{cases, cases_with_bodies};
+use crate::physics::invariants::trust::{Compared, Trusted};
 
 /// How a run is interrupted.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,9 +4,9 @@ use asperity::scene::{CarrierBody, Force, Link, Path, Surface, Unit};
 use asperity::simulation::{Motion, Start};
 use proptest::prelude::*;
 
-use crate::invariants::case::Case;
-use crate::invariants::check::check;
-use crate::invariants::random::{cases, cases_with_bodies};
+use crate::physics::invariants::case::Case;
+use crate::physics::invariants::check::check;
+use crate::physics::invariants::random::{cases, cases_with_bodies};
 
 /// Below this, in any unit, a number is what is left of a decay.
 const TINY: f64 = 1e-250;

@@ -3,9 +3,9 @@
 use asperity::scene::{Link, Scene};
 use proptest::prelude::*;
 
-use crate::invariants::case::{Case, Record};
-use crate::invariants::check::check;
-use crate::invariants::random::cases;
+use crate::physics::invariants::case::{Case, Record};
+use crate::physics::invariants::check::check;
+use crate::physics::invariants::random::cases;
 
 /// A scene written as TOML reads back as itself, in whichever order its keys stand.
 #[test]

@@ -5,10 +5,10 @@ use asperity::simulation::{Motion, SimulationError};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-use crate::invariants::case::{Case, Record};
-use crate::invariants::check::check;
-use crate::invariants::random::cases;
-use crate::invariants::trust::{Compared, Trusted};
+use crate::physics::invariants::case::{Case, Record};
+use crate::physics::invariants::check::check;
+use crate::physics::invariants::random::cases;
+use crate::physics::invariants::trust::{Compared, Trusted};
 
 /// The case with straight motions alone: these can be taken up in the middle.
 pub(crate) fn straight(case: &Case) -> Case {

@@ -4,10 +4,10 @@ use asperity::scene::Path;
 use asperity::simulation::{Motion, Start};
 use proptest::prelude::*;
 
-use crate::invariants::case::{Case, Record};
-use crate::invariants::check::check;
-use crate::invariants::random::cases;
-use crate::invariants::trust::Series;
+use crate::physics::invariants::case::{Case, Record};
+use crate::physics::invariants::check::check;
+use crate::physics::invariants::random::cases;
+use crate::physics::invariants::trust::Series;
 
 /// By how many units of one step a free chain may be off in the end: the errors of some thousand steps, of both signs.
 const ALLOWED: f64 = 30.0;

@@ -5,10 +5,10 @@ use asperity::scene::{Path, Surface};
 use asperity::simulation::{Motion, Start};
 use proptest::prelude::*;
 
-use crate::invariants::case::Case;
-use crate::invariants::check::check;
-use crate::invariants::random::{cases, cases_with_bodies};
-use crate::invariants::trust::{Compared, Series, Trusted};
+use crate::physics::invariants::case::Case;
+use crate::physics::invariants::check::check;
+use crate::physics::invariants::random::{cases, cases_with_bodies};
+use crate::physics::invariants::trust::{Compared, Series, Trusted};
 
 /// The case seen in a mirror, x → -x.
 fn mirrored(case: &Case) -> Case {

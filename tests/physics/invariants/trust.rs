@@ -14,7 +14,7 @@ use asperity::simulation::SimulationError;
 use proptest::test_runner::{TestCaseError, TestCaseResult};
 
 use crate::common::largest;
-use crate::invariants::case::{Case, Record};
+use crate::physics::invariants::case::{Case, Record};
 
 /// By how many units two runs of the same motion may differ: errors of single steps, of the tolerance each, add up.
 const AGREE: f64 = 30.0;

@@ -4,8 +4,8 @@ use asperity::model::{Mode, Model, State};
 use asperity::scene::{Path, RateShear};
 use nalgebra::{DMatrix, DVector, Vector2};
 
-use crate::kernels::layer::{Layer, Method, SEVEN_STAGES, Stepper, at_rate, last_order, link, points};
-use crate::kernels::matrices::Matrices;
+use crate::physics::kernels::layer::{Layer, Method, SEVEN_STAGES, Stepper, at_rate, last_order, link, points};
+use crate::physics::kernels::matrices::Matrices;
 
 /// Three masses far above the surface, a different number of Maxwell elements on every kind of link.
 pub fn chain() -> Layer {

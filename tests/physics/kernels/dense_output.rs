@@ -5,9 +5,9 @@ use asperity::model::{ByAxis, Forces, State};
 use nalgebra::Vector2;
 
 use crate::common::random::Random;
-use crate::kernels::convergence::{Exact, PATHS, chain, differences, displaced, slider, sliding};
-use crate::kernels::equations::{random_layer, random_state};
-use crate::kernels::layer::{Layer, Method, SEVEN_STAGES, Stepper, at_rate, last_order, link, one_mass};
+use crate::physics::kernels::convergence::{Exact, PATHS, chain, differences, displaced, slider, sliding};
+use crate::physics::kernels::equations::{random_layer, random_state};
+use crate::physics::kernels::layer::{Layer, Method, SEVEN_STAGES, Stepper, at_rate, last_order, link, one_mass};
 
 const THETAS: [f64; 6] = [0.0, 0.13, 0.37, 0.5, 0.81, 1.0];
 

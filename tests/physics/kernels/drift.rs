@@ -4,7 +4,7 @@ use asperity::scene::{Path, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
 use crate::common::runs::value;
-use crate::kernels::layer::{Layer, at_rate, link};
+use crate::physics::kernels::layer::{Layer, at_rate, link};
 
 const SINE: &str = "surface = { kind = 'sinusoid', amplitude = 0.02, wavelength = 0.5 }";
 

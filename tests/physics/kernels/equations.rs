@@ -8,8 +8,8 @@ use nalgebra::{DVector, Vector2};
 
 use crate::common::largest;
 use crate::common::random::Random;
-use crate::kernels::layer::{Layer, Stepper, link, points};
-use crate::kernels::matrices::Matrices;
+use crate::physics::kernels::layer::{Layer, Stepper, link, points};
+use crate::physics::kernels::matrices::Matrices;
 
 /// A layer with every kind of link or some, each with its own number of Maxwell elements, over a curved profile.
 pub fn random_layer(random: &mut Random, masses: usize) -> Layer {

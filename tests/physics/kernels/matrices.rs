@@ -13,7 +13,7 @@ use asperity::scene::RateShear;
 use nalgebra::{DMatrix, DVector, Vector2};
 
 use crate::common::scenes::Law;
-use crate::kernels::layer::{Layer, strength};
+use crate::physics::kernels::layer::{Layer, strength};
 
 /// M = m 1 and the other matrices.
 #[derive(Clone, Debug)]

@@ -5,7 +5,7 @@ use asperity::scene::{Path, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
 use crate::common::runs::value;
-use crate::kernels::layer::{Layer, at_rate, link, points};
+use crate::physics::kernels::layer::{Layer, at_rate, link, points};
 
 const NANOMETRE: f64 = 1e-9;
 

@@ -4,7 +4,7 @@ use asperity::scene::{Path, Scene};
 use asperity::simulation::{ModeChange, Motion, Simulation, SimulationError, Start};
 
 use crate::common::runs::bits;
-use crate::kernels::layer::{Layer, at_rate, link};
+use crate::physics::kernels::layer::{Layer, at_rate, link};
 
 /// Two masses that rattle over a sinusoid: impacts, lifts, stops and breaks in milliseconds.
 fn rattling(max_steps: u32) -> Scene {

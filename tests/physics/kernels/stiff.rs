@@ -2,8 +2,8 @@
 
 use asperity::model::{State, elastic_energy, kinetic_energy};
 
-use crate::kernels::convergence::{Exact, PATHS, differences, slider, sliding};
-use crate::kernels::layer::{Layer, Method, SEVEN_STAGES, Stepper, at_rate, link, one_mass};
+use crate::physics::kernels::convergence::{Exact, PATHS, differences, slider, sliding};
+use crate::physics::kernels::layer::{Layer, Method, SEVEN_STAGES, Stepper, at_rate, link, one_mass};
 
 /// One mass with a spring and one Maxwell element along either axis.
 pub fn oscillator(relaxation_time: f64) -> Layer {

@@ -3,9 +3,9 @@
 use asperity::integrator::SDIRK2;
 use asperity::model::State;
 
-use crate::kernels::convergence::{Exact, PATHS, chain, differences, displaced, slipping_errors};
-use crate::kernels::layer::{Layer, Stepper, last_order};
-use crate::kernels::stiff::{falls_onto_its_slow_manifold, never_gains_energy, stops_within_a_step};
+use crate::physics::kernels::convergence::{Exact, PATHS, chain, differences, displaced, slipping_errors};
+use crate::physics::kernels::layer::{Layer, Stepper, last_order};
+use crate::physics::kernels::stiff::{falls_onto_its_slow_manifold, never_gains_energy, stops_within_a_step};
 
 fn stepper(layer: &Layer, start: &State) -> Stepper {
     Stepper::new(layer.model(), PATHS, start.clone(), 1e-12).by_two_stages()

@@ -10,7 +10,7 @@ use proptest::option;
 use proptest::prelude::*;
 
 use crate::common::{root, scratch};
-use crate::invariants::check::check;
+use crate::physics::invariants::check::check;
 
 /// Points of a random patch: x, y, z (m) and area (m²).
 type Points = Vec<[f64; 4]>;

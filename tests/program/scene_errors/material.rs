@@ -4,7 +4,7 @@ use std::fs;
 
 use asperity::scene::Scene;
 
-use crate::scene_errors::{Folder, PATH, assert_refusals};
+use crate::program::scene_errors::{Folder, PATH, assert_refusals};
 
 /// A scene without fault in the material form; each case replaces one of its lines.
 const BASE: [&str; 22] = [

@@ -1,6 +1,6 @@
 //! Points and files that are no profile.
 
-use crate::scene_errors::{BASE, Folder, PATH, assert_refusals, with_line};
+use crate::program::scene_errors::{BASE, Folder, PATH, assert_refusals, with_line};
 
 #[test]
 fn points_that_are_no_profile() {

@@ -2,7 +2,7 @@
 
 use asperity::scene::Scene;
 
-use crate::scene_errors::{BASE, assert_refusals};
+use crate::program::scene_errors::{BASE, assert_refusals};
 
 #[test]
 fn wrong_types() {

@@ -231,6 +231,7 @@ mod tests {
     use asperity::scene::PronyTerm;
 
     use super::*;
+    use crate::testing::assert_relative;
 
     fn rubber(prony: Vec<PronyTerm>) -> Material {
         let (density, poisson_ratio, equilibrium_modulus) = (1e3, 0.5, 3e6);
@@ -239,11 +240,6 @@ mod tests {
 
     fn viscoelastic() -> Material {
         rubber(vec![PronyTerm { modulus: 2e7, relaxation_time: 1e-4 }])
-    }
-
-    #[track_caller]
-    fn near(found: f64, exact: f64, tolerance: f64) {
-        assert!((found / exact - 1.0).abs() < tolerance, "{found:e} for {exact:e}");
     }
 
     /// A self-affine spectrum of 200 waves.
@@ -269,9 +265,9 @@ mod tests {
         let theory = on_half_plane(&wave, &material, pressure, Roughness::Ridges);
         let exact = (q * a).powi(2) * loss / (4.0 * pressure);
         // σ is some 5e5 Pa: erf is 1 to the last digit.
-        near(theory.area, 1.0, 1e-15);
-        near(theory.friction, exact, 1e-14);
-        near(theory.friction_reduced, exact, 1e-14);
+        assert_relative(theory.area, 1.0, 1e-15);
+        assert_relative(theory.friction, exact, 1e-14);
+        assert_relative(theory.friction_reduced, exact, 1e-14);
     }
 
     /// At low pressure erf x = 2x/√π: A/A_0 = √(8/π) p/(M h'), with h' the slope of the profile in one dimension and √2
@@ -283,8 +279,8 @@ mod tests {
         let (pressure, modulus) = (10.0, 3e6 / 0.75);
         let line = 2.0 * FRAC_2_PI.sqrt() * pressure / (modulus * slope);
         // erf x = 2x/√π (1 - x²/3), x some 1e-4.
-        near(on_half_plane(&waves, &material, pressure, Roughness::Ridges).area, line, 1e-6);
-        near(on_half_plane(&waves, &material, pressure, Roughness::Isotropic).area, line / SQRT_2, 1e-6);
+        assert_relative(on_half_plane(&waves, &material, pressure, Roughness::Ridges).area, line, 1e-6);
+        assert_relative(on_half_plane(&waves, &material, pressure, Roughness::Isotropic).area, line / SQRT_2, 1e-6);
     }
 
     /// At low pressure friction does not depend on it, and contacts that are small have S = ½.
@@ -293,8 +289,8 @@ mod tests {
         let (waves, material) = (rough(), viscoelastic());
         let at = |pressure: f64| on_half_plane(&waves, &material, pressure, Roughness::Isotropic);
         let (low, lower) = (at(10.0), at(1.0));
-        near(low.friction, lower.friction, 1e-4);
-        near(low.friction, 2.0 * low.friction_reduced, 1e-4);
+        assert_relative(low.friction, lower.friction, 1e-4);
+        assert_relative(low.friction, 2.0 * low.friction_reduced, 1e-4);
     }
 
     /// A dashpot alone, Im M = ωη': <|M|²> = <cos² φ> = ½ of that along the motion, and the same half of the loss.
@@ -303,12 +299,12 @@ mod tests {
         let material = Material { equilibrium_modulus: 1e-30, viscosity: Some(1e3), ..rubber(Vec::new()) };
         let (one, two) = (Roughness::Ridges.moduli(&material, 50.0), Roughness::Isotropic.moduli(&material, 50.0));
         // The rule of middles is exact for cos² φ.
-        near(two.square, 0.5 * one.square, 1e-14);
-        near(two.loss, 0.5 * one.loss, 1e-14);
+        assert_relative(two.square, 0.5 * one.square, 1e-14);
+        assert_relative(two.loss, 0.5 * one.loss, 1e-14);
         // In full contact twice the heights make up for it: a surface loses what its lines do.
         let waves = rough();
         let loss = |roughness| on_half_plane(&waves, &material, 1e9, roughness).friction;
-        near(loss(Roughness::Isotropic), loss(Roughness::Ridges), 1e-12);
+        assert_relative(loss(Roughness::Isotropic), loss(Roughness::Ridges), 1e-12);
     }
 
     #[test]
