@@ -11,9 +11,7 @@ folder=${1:-$root/target/guide}
 mkdir -p "$folder"
 
 asperity=$("$root/scenes/program")
-cp "$here"/*.{csv,txt,toml} "$root/scenes/road/road.toml" "$folder"
-cp "$root/scenes/road/compound.csv" "$folder/road-compound.csv"
-sed -i 's/"compound.csv"/"road-compound.csv"/' "$folder/road.toml"
+cp "$here"/*.{csv,txt,toml} "$folder"
 folder=$(cd "$folder" && pwd)
 cd "$folder"
 "$asperity" fit dma.csv -o compound.csv --wlf 7.52,119.75,293.15
@@ -36,8 +34,8 @@ fi
 "$asperity" sweep block.toml --speeds 1e-4..10/11 --pressures 1e5,2e5,4e5 -o block.sweep.csv --plot sweep.svg
 "$asperity" converge "$root/tests/reference/half-plane/rough.toml" --pressure 1e5 --speed 0.1 --points 128 \
     -o rough.converge.csv --plot converge.svg
-"$asperity" calibrate road.toml --data measured.csv --set friction.rate_shear.strength=3e6 \
+"$asperity" calibrate measured.toml --data measured.csv --set friction.rate_shear.strength=3e6 \
     --set friction.rate_shear.reference_speed=5e-3 --set friction.rate_shear.sharpness=0.2 \
     --set surface.fine.shortest=1e-5 --free friction.rate_shear.strength=1e6..2e7 \
     --free friction.rate_shear.reference_speed=1e-4..1 --free friction.rate_shear.sharpness=0.02..0.5 \
-    --free surface.fine.shortest=1e-6..1e-4 -o road.calibrated.toml --plot calibrate.svg
+    --free surface.fine.shortest=1e-6..1e-4 -o measured.calibrated.toml --plot calibrate.svg

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use asperity::tables::Unit;
-use asperity_study::fit::{FitOptions, FittedModuli, WlfConstants, fit_moduli};
+use asperity_study::fit::{FitOptions, FittedModuli, Vertical, Weight, WlfConstants, fit_moduli};
 use numpy::{IntoPyArray as _, PyArray1, PyArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -50,6 +50,15 @@ impl Fit {
     #[getter]
     fn wlf(&self) -> Option<(f64, f64, f64)> {
         self.0.wlf().map(|wlf| (wlf.c1, wlf.c2, wlf.reference_temperature))
+    }
+
+    /// How far E' and E'' are apart, the least error of any series, and by decades: from (rad/s), rows, E'' over that of
+    /// E', errors of E' and E''.
+    #[getter]
+    fn consistency(&self) -> Option<(f64, f64, Vec<(f64, usize, f64, f64, f64)>)> {
+        let found = self.0.consistency()?;
+        let decades = found.decades.iter().map(|of| (of.from, of.rows, of.ratio, of.storage, of.loss)).collect();
+        Some((found.apart(), found.nearest, decades))
     }
 
     /// Moduli and relaxation times.
@@ -99,6 +108,9 @@ pub(crate) fn fit(
     units: Vec<(String, String)>,
     sheet: Option<String>,
     ignored: Vec<String>,
+    weight: &str,
+    vertical: &str,
+    expansion: f64,
 ) -> PyResult<Fit> {
     let unit = |(column, unit): (String, String)| {
         let known = Unit::parse(&unit);
@@ -118,6 +130,22 @@ pub(crate) fn fit(
         wlf,
         shifts,
         reference,
+        weight: match weight {
+            "storage" => Weight::Storage,
+            "loss" => Weight::Loss,
+            "both" => Weight::Both,
+            _ => return Err(PyValueError::new_err(format!("weight = {weight:?}: expected storage, loss or both"))),
+        },
+        vertical: match vertical {
+            "divide" => Vertical::Divide,
+            "multiply" => Vertical::Multiply,
+            "density" => Vertical::Density(expansion),
+            "none" => Vertical::None,
+            _ => {
+                let expected = "expected divide, multiply, density or none";
+                return Err(PyValueError::new_err(format!("vertical = {vertical:?}: {expected}")));
+            }
+        },
     };
     let fitted = in_background(py, None, move |_| fit_moduli(&options))?;
     fitted.map(Fit).map_err(|error| error.raise())

@@ -4,9 +4,12 @@ use std::f64::consts::{LN_10, TAU};
 use std::path::{Path, PathBuf};
 
 use asperity_study::decimals::{percent, plain, rounded, short};
-use asperity_study::fit::{FitOptions, FittedModuli, RelativeError, Sample, ShiftedCurve, Test, fit_moduli};
+use asperity_study::fit::{
+    Consistency, DecadeConsistency, FitOptions, FittedModuli, RelativeError, Sample, ShiftedCurve, Test, Vertical,
+    Weight, fit_moduli,
+};
 
-use super::cli::Fit;
+use super::cli::{Fit, FitVertical, FitWeight};
 use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
 use super::files::{self, FileError, check_outputs, name_of, named, picture_beside, print_beside};
 use super::flags::with_flags;
@@ -20,8 +23,12 @@ pub(crate) enum FitError {
     File(#[from] FileError),
     #[error(transparent)]
     Fit(#[from] asperity_study::fit::FitError),
+    #[error("--expansion: expected --vertical density beside it")]
+    Expansion,
 }
 
+/// Of the volume of natural rubber, 1/K.
+const EXPANSION: f64 = 6.6e-4;
 /// Points per decade of a plotted curve.
 const POINTS_PER_DECADE: f64 = 20.0;
 
@@ -40,6 +47,17 @@ impl From<&Fit> for FitOptions {
             wlf: command.wlf,
             shifts: command.shifts.clone(),
             reference: command.reference,
+            weight: match command.weight {
+                FitWeight::Storage => Weight::Storage,
+                FitWeight::Loss => Weight::Loss,
+                FitWeight::Both => Weight::Both,
+            },
+            vertical: match command.vertical {
+                FitVertical::Divide => Vertical::Divide,
+                FitVertical::Multiply => Vertical::Multiply,
+                FitVertical::Density => Vertical::Density(command.expansion.unwrap_or(EXPANSION)),
+                FitVertical::None => Vertical::None,
+            },
         }
     }
 }
@@ -48,6 +66,9 @@ impl From<&Fit> for FitOptions {
 /// summary. Where the requested error cannot be reached, the best fit is written, with a warning and an exit status of
 /// its own.
 pub(crate) fn fit(command: &Fit) -> Result<u8, FitError> {
+    if command.expansion.is_some() && command.vertical != FitVertical::Density {
+        return Err(FitError::Expansion);
+    }
     let picture = picture_beside(&command.output, command.plot.as_ref());
     let read: Vec<PathBuf> = std::iter::once(&command.data).chain(&command.shifts).cloned().collect();
     check_outputs([&command.output].into_iter().chain(&picture), read)?;
@@ -70,12 +91,46 @@ pub(crate) fn fit(command: &Fit) -> Result<u8, FitError> {
 fn not_reached(fitted: &FittedModuli, command: &Fit) -> String {
     let (wanted, reached) = (percent(command.error, 3), percent(fitted.error(), 3));
     let scatter = || "the data scatter too much for less, and --error sets what is enough".to_owned();
-    let why = fitted.blame().map_or_else(scatter, with_flags);
+    let contradiction = || fitted.consistency().filter(|found| found.apart() > APART).map(contradiction);
+    let why = fitted.blame().map(|why| with_flags(&why)).or_else(contradiction).unwrap_or_else(scatter);
     format!(
         "the error asked for, {wanted}, cannot be reached: {reached} is about the smallest of any series with moduli of 0 \
          or more, and {} has such a series; {why}",
         command.output.display()
     )
+}
+
+/// E' and E'' whose means over decades differ by less do not contradict each other, 1.
+const APART: f64 = 0.03;
+
+fn contradiction(found: &Consistency) -> String {
+    format!(
+        "E' and E'' contradict each other: by the relations of Kramers and Kronig they are {} apart, and no sum of Maxwell \
+         elements comes nearer to both than {} rms; --weight storage or --weight loss fits one of them",
+        percent(found.apart(), 2),
+        percent(found.nearest, 3)
+    )
+}
+
+/// How far E' and E'' are apart: in a line, or by decades where that is more than the error asked for.
+fn consistency(fitted: &FittedModuli, requested: f64) -> Vec<LabelledLine> {
+    let Some(found) = fitted.consistency() else { return Vec::new() };
+    let apart = percent(found.apart(), 2);
+    let nearest = percent(found.nearest, 3);
+    let mut rows = vec![
+        ("Kramers-", format!("E'' is {apart} (rms of the means over decades) from what E' says it is")),
+        ("Kronig", format!("no sum of Maxwell elements comes nearer to both than {nearest} rms")),
+    ];
+    if found.apart().max(found.nearest) <= requested {
+        return rows;
+    }
+    rows.push(("", format!("{:<14}{:<7}{:<24}E', E'' off the nearest sum", "from", "rows", "E'' over that of E'")));
+    rows.extend(found.decades.iter().map(|decade| {
+        let DecadeConsistency { from, rows, ratio, storage, loss } = *decade;
+        let off = format!("{}, {}", percent(storage, 2), percent(loss, 2));
+        ("", format!("{:<14}{rows:<7}{ratio:<24.3}{off}", fitted.place(from)))
+    }));
+    rows
 }
 
 /// The printed summary, and the lines for a scene.
@@ -88,7 +143,8 @@ fn summary(fitted: &FittedModuli, command: &Fit, picture: Option<&Path>) -> Stri
     let glassy: f64 = fitted.terms().iter().map(|term| term.modulus).sum::<f64>() + modulus;
     rows.push(("Glassy", format!("{} Pa, the sum of all moduli", short(glassy, 4))));
     rows.push(("Terms", terms(fitted)));
-    rows.extend(errors(fitted, command.error));
+    rows.extend(errors(fitted, command));
+    rows.extend(consistency(fitted, command.error));
     rows.extend(shifts(fitted));
     let written = [Some(command.output.as_path()), picture].into_iter().flatten().map(named);
     rows.push(("Written", written.collect::<Vec<_>>().join(", ")));
@@ -108,12 +164,17 @@ fn terms(fitted: &FittedModuli) -> String {
 }
 
 /// A table of the errors.
-fn errors(fitted: &FittedModuli, requested: f64) -> Vec<LabelledLine> {
+fn errors(fitted: &FittedModuli, command: &Fit) -> Vec<LabelledLine> {
     let errors = fitted.errors();
-    let together = if fitted.test() == Test::Oscillation { "E' and E'' together" } else { "E(t)" };
-    let (rms, requested) = (percent(errors.both.rms, 3), percent(requested, 3));
+    let counted = match (fitted.test(), command.weight) {
+        (Test::Relaxation, _) => "E(t)",
+        (Test::Oscillation, FitWeight::Both) => "E' and E'' together",
+        (Test::Oscillation, FitWeight::Storage) => "E' alone",
+        (Test::Oscillation, FitWeight::Loss) => "E'' alone",
+    };
+    let (rms, requested) = (percent(fitted.error(), 3), percent(command.error, 3));
     let mut rows = vec![
-        ("Error", format!("{rms} rms of {together}; {requested} requested")),
+        ("Error", format!("{rms} rms of {counted}; {requested} requested")),
         ("", format!("{:<11}{:<11}{:<11}at", "", "rms", "largest")),
     ];
     let row = |name: &str, error: &RelativeError| {
@@ -189,7 +250,7 @@ fn drawn(fitted: &FittedModuli, data: &Path) -> Stacked {
         ]
     };
     let panel = |title: &str, curves: Vec<Curve>| Panel { title: title.into(), curves };
-    let panels = if fitted.test() == Test::Oscillation {
+    let mut panels = if fitted.test() == Test::Oscillation {
         let storage = curves("E'", 0, |sample| sample.storage, |(storage, _)| storage);
         let loss = curves("E''", 1, |sample| sample.loss, |(_, loss)| loss);
         let tangent = curves("tan δ", 2, |sample| sample.loss / sample.storage, |(storage, loss)| loss / storage);
@@ -198,8 +259,24 @@ fn drawn(fitted: &FittedModuli, data: &Path) -> Stacked {
         let relaxed = curves("E(t)", 0, |sample| sample.storage, |(storage, _)| storage);
         vec![panel("modulus in Pa", relaxed.to_vec())]
     };
+    panels.push(panel("rms error up to there, %", misfit(fitted, unit)));
     let title = format!("{}: {} terms, {} rms", name_of(data), fitted.terms().len(), percent(fitted.error(), 3));
     Stacked { title, x_title: x_title(fitted), panels }
+}
+
+/// How the errors add up to those of the fit, in per cent, over frequencies in `unit`.
+fn misfit(fitted: &FittedModuli, unit: f64) -> Vec<Curve> {
+    /// Of the whole: what is less is not drawn.
+    const LEAST: f64 = 0.01;
+    let sums = fitted.cumulative_errors();
+    let names: &[&str] = if fitted.test() == Test::Oscillation { &["E'", "E''"] } else { &["E(t)"] };
+    let curve = |(look, name): (usize, &&str)| {
+        let whole = sums.last().map_or(0.0, |sums| sums[1 + look]);
+        let seen = sums.iter().filter(|sums| sums[1 + look] > LEAST * whole);
+        let points = seen.map(|sums| (sums[0] / unit, 100.0 * sums[1 + look])).collect();
+        Curve { name: format!("{name} off the fit"), look, stroke: Stroke::Line, points }
+    };
+    names.iter().enumerate().map(curve).collect()
 }
 
 fn x_title(fitted: &FittedModuli) -> String {

@@ -1,5 +1,6 @@
 //! Text for the terminal: aligned lines, warnings, the progress bar.
 
+use std::fmt;
 use std::io::{self, IsTerminal as _, Write as _};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,7 +9,7 @@ use std::time::{Duration, Instant};
 
 pub(crate) use asperity_study::labelled::{LabelledLine, labelled};
 use asperity_study::progress::Progress;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle, TermLike};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle, TermLike};
 
 /// The lines as text, aligned after their labels, and broken between words where they are long.
 pub(crate) fn lines(lines: &[LabelledLine]) -> String {
@@ -69,7 +70,7 @@ pub(crate) fn is_verbose() -> bool {
 
 /// A progress bar of `length` positions; where standard error is no terminal a line every ten seconds.
 pub(crate) fn bar(length: u64) -> ProgressBar {
-    progress(Some(length), "{bar:40} {percent:>3} %  {msg}  {eta} left", "{percent} % done, {eta} left  {msg}")
+    progress(Some(length), "{bar:40} {percent:>3} %  {msg}{left}", "{percent} % done{left}  {msg}")
 }
 
 /// A count of `what` is done, where nobody knows of how many; shown as [`bar`] is.
@@ -135,8 +136,16 @@ fn progress(length: Option<u64>, for_terminals: &str, as_lines: &str) -> Progres
     };
     let bar = ProgressBar::with_draw_target(length, target);
     match ProgressStyle::with_template(template) {
-        Ok(style) => bar.with_style(style),
+        Ok(style) => bar.with_style(style.with_key("left", time_left)),
         Err(_) => bar,
+    }
+}
+
+/// The time left, once a step is done from which it can be told.
+fn time_left(state: &ProgressState, text: &mut dyn fmt::Write) {
+    if state.pos() > 0 && !state.eta().is_zero() {
+        // A text that cannot be written is not shown.
+        let _ = write!(text, ", {:#} left", HumanDuration(state.eta()));
     }
 }
 
@@ -222,6 +231,23 @@ mod tests {
         // A long word stays whole.
         let word = "x".repeat(300);
         assert!(lines(&[("Label", word.clone())]).contains(&word));
+    }
+
+    /// Nothing is known before the first step.
+    #[test]
+    fn the_time_left_is_not_guessed() {
+        let bar = ProgressBar::hidden();
+        bar.set_length(10);
+        let shown = |bar: &ProgressBar| {
+            let mut text = String::new();
+            bar.update(|state| time_left(state, &mut text));
+            text
+        };
+        assert_eq!(shown(&bar), "");
+        std::thread::sleep(Duration::from_millis(20));
+        bar.inc(1);
+        let text = shown(&bar);
+        assert!(text.is_empty() || text.ends_with(" left"), "{text}");
     }
 
     #[test]

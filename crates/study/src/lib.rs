@@ -50,6 +50,9 @@ pub mod files;
 pub mod fit;
 pub mod html;
 pub mod implausible;
+#[cfg(test)]
+#[path = "../../../src/in_tests.rs"]
+mod in_tests;
 pub mod labelled;
 pub mod material;
 pub mod pack;
@@ -64,6 +67,3 @@ pub mod steady;
 pub mod summary;
 pub mod surface;
 pub mod sweep;
-#[cfg(test)]
-#[path = "../../../src/testing.rs"]
-mod testing;

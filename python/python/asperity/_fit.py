@@ -55,6 +55,20 @@ class Fit:
         return self._native.wlf
 
     @property
+    def consistency(self) -> dict[str, Any] | None:
+        """How far E' and E'' are apart by the relations of Kramers and Kronig; None of relaxation.
+
+        ``apart`` is the root mean square over decades, ``nearest`` the error that no sum of Maxwell elements is below, and
+        ``decades`` an array of shape (n, 5): from (rad/s), rows, measured E'' over that of E', and the errors of E' and
+        E'' that the nearest sum leaves.
+        """
+        found = self._native.consistency
+        if found is None:
+            return None
+        apart, nearest, decades = found
+        return {"apart": apart, "nearest": nearest, "decades": np.array(decades, dtype=float).reshape(-1, 5)}
+
+    @property
     def notes(self) -> list[str]:
         """How the table was read, and what was assumed."""
         return self._native.notes
@@ -110,6 +124,9 @@ def fit(
     units: Mapping[str, str] | None = None,
     sheet: str | None = None,
     ignore: Sequence[str] = (),
+    weight: str = "both",
+    vertical: str = "divide",
+    expansion: float = 6.6e-4,
 ) -> Fit:
     """Fits a Prony series to measured moduli; those of several temperatures are put together first.
 
@@ -128,6 +145,10 @@ def fit(
         units: Units of columns whose names have none or another one.
         sheet: The sheet of a workbook.
         ignore: Columns to ignore.
+        weight: Which modulus the error counts, ``"storage"``, ``"loss"`` or ``"both"``.
+        vertical: What becomes of the moduli of other temperatures: ``"divide"`` by a column b_T where there is one,
+            ``"multiply"`` by it, ``"density"``: divided by ρT/(ρ0 T0), or ``"none"``.
+        expansion: Coefficient of expansion of the volume for ``"density"``, 1/K.
 
     Raises:
         ValueError: Where the table cannot be read, or its temperatures cannot be put together.
@@ -148,6 +169,9 @@ def fit(
             list((units or {}).items()),
             sheet,
             list(ignore),
+            weight,
+            vertical,
+            float(expansion),
         )
     for text in native.warnings:
         warnings.warn(text, stacklevel=2)

@@ -359,6 +359,8 @@ class Scene:
         scene = self if motion is None else self.with_motion(motion)
         if points < 1:
             raise ValueError(f"points = {points}: expected 1 or more")
+        if scene.duration <= 0.0:
+            raise ValueError(f"{self.name}: the scene has no excitation to run along; expected motion=, or [[excitation]]")
         also_at = numbers("times", times)
         if not np.all((also_at >= 0.0) & (also_at <= scene.duration)):
             raise ValueError(f"times: expected numbers from 0 to {scene.duration:g} s, the end of the run")

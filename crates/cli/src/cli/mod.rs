@@ -17,9 +17,9 @@ use asperity_study::csv::Head;
 use asperity_study::settings::Setting;
 use asperity_study::sweep::SweepMethod;
 use sweep_values::{Shard, Values};
-pub(crate) use values::{Condition, PlotAxis};
+pub(crate) use values::{Condition, FitVertical, FitWeight, PlotAxis};
 use values::{
-    Frequencies, Tolerances, animation, arrays, column_unit, count, fit_error, free_parameter, frequency,
+    Frequencies, Tolerances, animation, arrays, column_unit, count, expansion, fit_error, free_parameter, frequency,
     key_and_value, length, moment, picture, picture_or_table, poisson_ratio, powers, pressure, seconds, seeds, share,
     speed, sweep_method, table_or_arrays, temperature, wavelengths, wlf_constants,
 };
@@ -293,6 +293,16 @@ pub(crate) struct Fit {
     /// nearest. Default: 293.15.
     #[arg(long, value_name = "T", value_parser = temperature, conflicts_with = "wlf")]
     pub(crate) reference: Option<f64>,
+    /// Which modulus the error counts: E' alone, E'' alone (each where the other decides what it leaves open), or both.
+    #[arg(long, value_enum, default_value_t = FitWeight::Both)]
+    pub(crate) weight: FitWeight,
+    /// What becomes of the moduli of other temperatures. Default: divided by b_T where the table, or that of --shifts, has
+    /// such a column.
+    #[arg(long, value_enum, default_value_t = FitVertical::Divide)]
+    pub(crate) vertical: FitVertical,
+    /// The coefficient of expansion of the volume in 1/K, for --vertical density. Default: 6.6e-4, that of natural rubber.
+    #[arg(long, value_name = "A", value_parser = expansion)]
+    pub(crate) expansion: Option<f64>,
     /// The frequency of all rows, in rad/s or with its unit, where the table has no column of it.
     #[arg(long, value_name = "F", value_parser = frequency)]
     pub(crate) frequency: Option<f64>,

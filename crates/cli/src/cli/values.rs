@@ -148,6 +148,35 @@ pub(super) fn share(text: &str) -> Result<f64, String> {
     number(text, |share| *share > 0.0 && *share <= 1.0, "a share above 0, up to 1, such as 5e-3")
 }
 
+/// Which modulus the error of a fit counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum FitWeight {
+    /// E' alone
+    Storage,
+    /// E'' alone
+    Loss,
+    /// Both alike
+    Both,
+}
+
+/// What becomes of the moduli of other temperatures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum FitVertical {
+    /// Divided by a column b_T, where there is one
+    Divide,
+    /// Multiplied by a column b_T
+    Multiply,
+    /// Divided by ρT/(ρ0 T0)
+    Density,
+    /// Nothing, whatever columns there are
+    None,
+}
+
+/// A coefficient of expansion of the volume, 1/K.
+pub(super) fn expansion(text: &str) -> Result<f64, String> {
+    number(text, |value| (0.0..=2e-3).contains(value), "a number from 0 to 0.002, in 1/K")
+}
+
 pub(super) fn fit_error(text: &str) -> Result<f64, String> {
     number(text, |error| (1e-12..=0.5).contains(error), "a number from 1e-12 to 0.5, such as 0.02 for 2 %")
 }

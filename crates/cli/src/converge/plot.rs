@@ -10,9 +10,9 @@ type TheoryCurve = (&'static str, usize, fn(&Theory) -> f64);
 
 const FRICTIONS: [TheoryCurve; 4] = [
     ("Persson's hysteresis, ridges", 0, |theory| theory.friction),
-    ("reduced", 0, |theory| theory.friction_reduced),
+    ("the same with S = ½ + ½P²", 0, |theory| theory.friction_reduced),
     ("Persson's hysteresis, isotropic", 1, |theory| theory.friction),
-    ("reduced", 1, |theory| theory.friction_reduced),
+    ("the same, isotropic, with S = ½ + ½P²", 1, |theory| theory.friction_reduced),
 ];
 const AREAS: [TheoryCurve; 2] =
     [("Persson, ridges", 0, |theory| theory.area), ("Persson, isotropic", 1, |theory| theory.area)];
@@ -64,6 +64,6 @@ fn hysteresis(runs: &[RunRow]) -> Curve {
 fn theory_curve(runs: &[RunRow], (name, surface, value): TheoryCurve) -> Curve {
     let ladder = runs.iter().filter(|run| run.variant.is_of_ladder());
     let points = ladder.map(|run| (run.dimensions.spacing, value(&run.theories[surface]))).collect();
-    let stroke = if name == "reduced" { Stroke::Dotted } else { Stroke::Dashed };
+    let stroke = if name.starts_with("the same") { Stroke::Dotted } else { Stroke::Dashed };
     Curve { name: name.into(), look: 5 + surface, stroke, points }
 }

@@ -7,7 +7,7 @@ use super::selection::{PlotError, Selection};
 use super::{Backend, Canvas, DrawResult, Figure};
 use crate::cli::{Plot, PlotAxis};
 use crate::files::{check_outputs, named, print_beside};
-use crate::terminal::lines;
+use crate::terminal::{lines, note};
 
 /// Width of the figure and height of one chart, and of each of several, pixels.
 const WIDTH: u32 = 1000;
@@ -66,6 +66,8 @@ pub(crate) fn plot_files(command: &Plot) -> Result<(), PlotError> {
         let mut text = comparison.text();
         text.push(("Written", named(&command.output)));
         print_beside([&command.output], &lines(&text))?;
+    } else {
+        note(&format!("{} is written", named(&command.output)));
     }
     Ok(())
 }

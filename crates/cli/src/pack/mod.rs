@@ -12,8 +12,8 @@ use asperity_study::pack::{self, Fmu, Library, LibraryFile, flat_names, no_start
 use asperity_study::summary::missing_backing;
 
 use super::cli::Pack;
-use super::files::{self, FileError, check_outputs, print, write};
-use super::terminal::{LabelledLine, labelled, lines, warn};
+use super::files::{self, FileError, check_outputs, named, print, write};
+use super::terminal::{LabelledLine, labelled, lines, note, warn};
 
 /// `asperity pack` failed.
 #[derive(Debug, thiserror::Error)]
@@ -66,7 +66,9 @@ pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
     write(&command.output, fmu.pack()?)?;
     let needs = [names.into_iter().collect(), needs].concat();
     let shown = if matches!(definition, Definition::Layer(_)) { needs } else { [summary, needs].concat() };
-    Ok(print(&lines(&shown))?)
+    print(&lines(&shown))?;
+    note(&format!("{} is written", named(&command.output)));
+    Ok(())
 }
 
 /// The libraries that `--library` names; by default the one beside this program.

@@ -31,6 +31,8 @@ pub(super) enum Quantity {
     ShearRelaxation,
     /// a_T.
     ShiftFactor,
+    /// b_T.
+    VerticalFactor,
 }
 
 impl Quantity {
@@ -45,7 +47,7 @@ pub(super) const EXPECTED: &str = "columns by their names with units: f [Hz] or 
      or tan delta, or G' and G'', or |E*| and delta [°]; temperature [°C] if it varies; or time [s] and E(t) [MPa]";
 
 /// One word may name several quantities; the first is meant where no unit tells.
-const VOCABULARY: [Words<Quantity>; 18] = {
+const VOCABULARY: [Words<Quantity>; 19] = {
     use Dimension::{Angle, Frequency as Rate, Number, Pressure, Temperature as Kelvin, Time as Seconds};
     [
         Words::new(
@@ -99,6 +101,7 @@ const VOCABULARY: [Words<Quantity>; 18] = {
         ),
         Words::new(Quantity::Phase, Angle, "delta δ phase phasenwinkel", "angle lag delta δ shift"),
         Words::new(Quantity::ShiftFactor, Number, "at a shift", "T factor factors horizontal at a"),
+        Words::new(Quantity::VerticalFactor, Number, "bt b vertical", "T factor factors shift bt b"),
         Words::new(Quantity::Time, Seconds, "t time zeit", "step run test elapsed relaxation total"),
         Words::new(
             Quantity::Temperature,
@@ -234,7 +237,7 @@ mod tests {
     fn headings_as_people_and_instruments_write_them() {
         use Quantity::{
             AngularFrequency, Complex, Frequency, Loss, LossTangent, Phase, Relaxation, Set, SetTemperature, ShearLoss,
-            ShearRelaxation, ShearStorage, ShiftFactor, Storage, Temperature, Time,
+            ShearRelaxation, ShearStorage, ShiftFactor, Storage, Temperature, Time, VerticalFactor,
         };
         let cases = [
             ("frequency [Hz]", Frequency, Some("Hz")),
@@ -286,6 +289,9 @@ mod tests {
             ("a_T", ShiftFactor, None),
             ("log aT", ShiftFactor, None),
             ("Shift factor", ShiftFactor, None),
+            ("b_T", VerticalFactor, None),
+            ("log bT", VerticalFactor, None),
+            ("Vertical shift factor", VerticalFactor, None),
         ];
         for (header, quantity, unit) in cases {
             assert_eq!(read(header), Some((quantity, unit)), "{header}");

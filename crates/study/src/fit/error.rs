@@ -11,6 +11,8 @@ use crate::files::ReadError;
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say what they are")]
 pub enum FitError {
+    #[error("`weight` {0}: a relaxation has one modulus, which counts alone")]
+    Weight(&'static str),
     #[error(transparent)]
     Read(#[from] ReadError),
     #[error("{}", .error.within(.path))]

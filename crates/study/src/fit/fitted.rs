@@ -5,13 +5,15 @@ use std::f64::consts::TAU;
 use asperity::scene::PronyTerm;
 
 use super::compound::{Compound, FitErrors};
+use super::consistency::Consistency;
 use super::error::FitError;
 use super::file::{in_data, read_moduli};
 use super::measured::MeasuredModuli;
-use super::options::{FitOptions, WlfConstants};
+use super::options::{FitOptions, Vertical, Weight, WlfConstants};
 use super::sample::{Sample, Test};
 use super::search::{Target, search};
 use super::temperatures::{Shift, ShiftedCurve};
+use super::vertical::VerticalShift;
 use crate::decimals::{percent, plain, rounded, short};
 use crate::files::name_of;
 
@@ -20,10 +22,15 @@ use crate::files::name_of;
 /// # Errors
 /// Where the table cannot be read, or its temperatures cannot be put together.
 pub fn fit_moduli(options: &FitOptions) -> Result<FittedModuli, FitError> {
-    let measured = read_moduli(options)?;
+    let mut measured = read_moduli(options)?;
+    if measured.test == Test::Relaxation && options.weight != Weight::Both {
+        return Err(FitError::Weight(options.weight.word()));
+    }
+    let mut vertical = VerticalShift::apply(options, &mut measured)?;
     let shift = Shift::of(options, &measured)?;
+    vertical.finish(&mut measured, shift.reference());
     let samples = shift.samples(&measured).map_err(|error| in_data(options, error))?;
-    Ok(FittedModuli::new(options.clone(), measured, shift, samples))
+    Ok(FittedModuli::new(options.clone(), measured, (shift, vertical), samples))
 }
 
 /// A Prony series fitted to measured moduli.
@@ -32,19 +39,29 @@ pub struct FittedModuli {
     options: FitOptions,
     measured: MeasuredModuli,
     shift: Shift,
+    vertical: VerticalShift,
     /// At the reference temperature.
     samples: Vec<Sample>,
     compound: Compound,
     errors: FitErrors,
+    consistency: Option<Consistency>,
 }
 
 impl FittedModuli {
-    fn new(options: FitOptions, measured: MeasuredModuli, shift: Shift, samples: Vec<Sample>) -> Self {
+    fn new(
+        options: FitOptions,
+        measured: MeasuredModuli,
+        (shift, vertical): (Shift, VerticalShift),
+        samples: Vec<Sample>,
+    ) -> Self {
         let test = measured.test;
-        let exact = search(&samples, &Target { error: options.error, viscosity: options.viscosity, test });
+        let FitOptions { error, viscosity, weight, .. } = options;
+        let exact = search(&samples, &Target { error, viscosity, test, weight });
         let compound = exact.rounded(FitErrors::of(&exact, &samples, test).both.rms);
         let errors = FitErrors::of(&compound, &samples, test);
-        Self { options, measured, shift, samples, compound, errors }
+        let is_oscillation = test == Test::Oscillation;
+        let consistency = is_oscillation.then(|| Consistency::of(&samples, measured.in_hertz));
+        Self { options, measured, shift, vertical, samples, compound, errors, consistency }
     }
 
     /// How the table was read, and what was assumed.
@@ -54,7 +71,7 @@ impl FittedModuli {
 
     /// What to look at in how temperatures were put together.
     pub fn warnings(&self) -> Vec<String> {
-        self.shift.warnings()
+        self.shift.warnings().into_iter().chain(self.vertical.warning()).collect()
     }
 
     /// E_∞, Pa.
@@ -72,9 +89,13 @@ impl FittedModuli {
         &self.compound.terms
     }
 
-    /// Root mean square of the relative errors of all moduli, 1.
+    /// Root mean square of the relative errors of the moduli that count, 1.
     pub fn error(&self) -> f64 {
-        self.errors.both.rms
+        match self.options.weight {
+            Weight::Storage => self.errors.storage.rms,
+            Weight::Loss => self.errors.loss.rms,
+            Weight::Both => self.errors.both.rms,
+        }
     }
 
     /// The constants that put the temperatures together, where they are known.
@@ -100,6 +121,26 @@ impl FittedModuli {
     /// The relative errors of the series at the measured points.
     pub fn errors(&self) -> &FitErrors {
         &self.errors
+    }
+
+    /// How far E' and E'' are apart; `None` of relaxation.
+    pub fn consistency(&self) -> Option<&Consistency> {
+        self.consistency.as_ref()
+    }
+
+    /// How the errors add up over frequency (or time): places and the root mean square of all relative errors up to there
+    /// over the number of all points, of E' and of E''. The last ones are the errors of the fit.
+    pub fn cumulative_errors(&self) -> Vec<[f64; 3]> {
+        let mut sorted = self.samples.clone();
+        sorted.sort_by(|a, b| a.at.total_cmp(&b.at));
+        let (count, mut sums) = (sorted.len() as f64, [0.0; 2]);
+        let mut up_to = |sample: &Sample| {
+            let (storage, loss) = self.response(sample.at);
+            sums[0] += (storage / sample.storage - 1.0).powi(2);
+            sums[1] += if self.test() == Test::Oscillation { (loss / sample.loss - 1.0).powi(2) } else { 0.0 };
+            [sample.at, (sums[0] / count).sqrt(), (sums[1] / count).sqrt()]
+        };
+        sorted.iter().map(&mut up_to).collect()
     }
 
     /// The temperature of the master curve, K; `None` where no rows are shifted.
@@ -137,7 +178,7 @@ impl FittedModuli {
 
     fn facts(&self) -> Vec<(&'static str, String)> {
         let both = self.errors.both;
-        let (rms, largest) = (percent(both.rms, 3), percent(both.largest, 3));
+        let (rms, largest) = (percent(self.error(), 3), percent(both.largest, 3));
         let mut facts = vec![
             ("equilibrium_modulus", format!("{} Pa", plain(self.compound.equilibrium_modulus))),
             ("units", "relaxation_time in s, modulus in Pa".into()),
@@ -147,6 +188,12 @@ impl FittedModuli {
             ("error", format!("{rms} (root mean square of the relative errors of {} at all rows)", self.quantities())),
             ("largest_error", format!("{largest} at {}", self.place(both.at))),
         ];
+        if let Some(found) = &self.consistency {
+            let (apart, nearest) = (percent(found.apart(), 2), percent(found.nearest, 3));
+            let text =
+                format!("E'' is {apart} from what E' says it is; no sum of terms is nearer to both than {nearest} rms");
+            facts.push(("kramers_kronig", text));
+        }
         if self.options.viscosity {
             facts.insert(1, ("viscosity", format!("{} Pa s", plain(self.compound.viscosity))));
         }
@@ -154,7 +201,12 @@ impl FittedModuli {
     }
 
     fn quantities(&self) -> &'static str {
-        if self.measured.test == Test::Oscillation { "E' and E''" } else { "E(t)" }
+        match (self.measured.test, self.options.weight) {
+            (Test::Relaxation, _) => "E(t)",
+            (Test::Oscillation, Weight::Both) => "E' and E''",
+            (Test::Oscillation, Weight::Storage) => "E'",
+            (Test::Oscillation, Weight::Loss) => "E''",
+        }
     }
 
     /// How many rows there are, and their range.
@@ -183,6 +235,15 @@ impl FittedModuli {
         }
         if let Some(shifts) = &self.options.shifts {
             text += &format!(" `shifts` {}", name_of(shifts));
+        }
+        if self.options.weight != Weight::Both {
+            text += &format!(" `weight` {}", self.options.weight.word());
+        }
+        match self.options.vertical {
+            Vertical::Divide => (),
+            Vertical::Multiply => text += " `vertical` multiply",
+            Vertical::Density(expansion) => text += &format!(" `vertical` density `expansion` {}", plain(expansion)),
+            Vertical::None => text += " `vertical` none",
         }
         if let Some(frequency) = self.options.frequency {
             text += &format!(" `frequency` {}Hz", plain(frequency / TAU));

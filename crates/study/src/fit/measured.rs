@@ -372,7 +372,8 @@ mod tests {
 
     fn at(temperature: f64) -> MeasuredModuli {
         let sample = Sample { at: 3.0, storage: 2.0, loss: 1.0 };
-        let point = MeasuredPoint { line: 7, sample, temperature: Some(temperature), shift: None, set: None };
+        let point =
+            MeasuredPoint { line: 7, sample, temperature: Some(temperature), shift: None, vertical: None, set: None };
         MeasuredModuli {
             points: vec![point],
             test: Test::Oscillation,

@@ -6,6 +6,7 @@
 
 mod columns;
 mod compound;
+mod consistency;
 mod error;
 mod file;
 mod fitted;
@@ -21,11 +22,13 @@ mod shift_error;
 mod stated_temperature;
 mod table;
 mod temperatures;
+mod vertical;
 
 pub use compound::{FitErrors, RelativeError};
+pub use consistency::{Consistency, DecadeConsistency};
 pub use error::FitError;
 pub use fitted::{FittedModuli, fit_moduli};
-pub use options::{FitOptions, WlfConstants};
+pub use options::{FitOptions, Vertical, Weight, WlfConstants};
 pub use sample::{Sample, Test};
 pub use shift_error::ShiftError;
 pub use temperatures::ShiftedCurve;

@@ -24,6 +24,55 @@ impl WlfConstants {
     }
 }
 
+/// Which of both moduli a fit counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Weight {
+    /// E' alone: E'' decides what E' leaves open.
+    Storage,
+    /// E'' alone: E' decides what E'' leaves open, E_∞ among it.
+    Loss,
+    /// E' and E'' alike.
+    #[default]
+    Both,
+}
+
+impl Weight {
+    /// The weights of the relative errors of E' and of E''.
+    pub(super) fn factors(self) -> [f64; 2] {
+        /// So small that what one modulus says is not changed for the other by more than its digits, and large enough for
+        /// what it leaves open.
+        const LITTLE: f64 = 0.01;
+        match self {
+            Self::Storage => [1.0, LITTLE],
+            Self::Loss => [LITTLE, 1.0],
+            Self::Both => [1.0, 1.0],
+        }
+    }
+
+    /// The word for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Storage => "storage",
+            Self::Loss => "loss",
+            Self::Both => "both",
+        }
+    }
+}
+
+/// How moduli depend on temperature beside the shift in frequency.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Vertical {
+    /// By a column b_T, by which moduli are divided, where the table has one; else not at all.
+    #[default]
+    Divide,
+    /// By a column b_T, by which moduli are multiplied.
+    Multiply,
+    /// As those of an ideal network: b_T = ρT/(ρ_0 T_0), with this coefficient of expansion of the volume, 1/K.
+    Density(f64),
+    /// Not at all.
+    None,
+}
+
 /// How moduli are read and fitted.
 #[derive(Clone, Debug)]
 pub struct FitOptions {
@@ -51,6 +100,10 @@ pub struct FitOptions {
     pub shifts: Option<PathBuf>,
     /// Where the master curve is made without either, K.
     pub reference: Option<f64>,
+    /// Which modulus counts.
+    pub weight: Weight,
+    /// How moduli of other temperatures are scaled.
+    pub vertical: Vertical,
 }
 
 impl Default for FitOptions {
@@ -69,6 +122,8 @@ impl Default for FitOptions {
             wlf: None,
             shifts: None,
             reference: None,
+            weight: Weight::Both,
+            vertical: Vertical::Divide,
         }
     }
 }

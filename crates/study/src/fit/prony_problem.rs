@@ -11,6 +11,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::compound::Compound;
 use super::nnls::non_negative_least_squares;
+use super::options::Weight;
 use super::sample::{Sample, Test};
 
 /// Decades by which relaxation times may exceed the range of 1/ω of the data: there a term acts as a spring or a damper
@@ -80,20 +81,21 @@ pub(super) struct PronyProblem<'a> {
     samples: &'a [Sample],
     test: Test,
     viscosity: bool,
+    weight: Weight,
     /// Bounds of ln τ.
     low: f64,
     high: f64,
 }
 
 impl<'a> PronyProblem<'a> {
-    pub(super) fn new(samples: &'a [Sample], test: Test, viscosity: bool) -> Self {
+    pub(super) fn new(samples: &'a [Sample], test: Test, viscosity: bool, weight: Weight) -> Self {
         let places = || samples.iter().map(|sample| sample.at);
         let (least, most) = (places().fold(f64::MAX, f64::min), places().fold(0.0, f64::max));
         let (low, high) = match test {
             Test::Oscillation => (-most.ln(), -least.ln()),
             Test::Relaxation => (least.ln(), most.ln()),
         };
-        Self { samples, test, viscosity, low: low - MARGIN * LN_10, high: high + MARGIN * LN_10 }
+        Self { samples, test, viscosity, weight, low: low - MARGIN * LN_10, high: high + MARGIN * LN_10 }
     }
 
     /// ln τ of a grid with some points a decade.
@@ -111,11 +113,12 @@ impl<'a> PronyProblem<'a> {
     fn column(&self, parts: impl Fn(f64) -> (f64, f64)) -> DVector<f64> {
         let count = self.samples.len();
         let mut column = DVector::zeros(self.rows());
+        let [of_storage, of_loss] = self.weight.factors();
         for (i, sample) in self.samples.iter().enumerate() {
             let (storage, loss) = parts(sample.at);
-            column[i] = storage / sample.storage;
+            column[i] = of_storage * storage / sample.storage;
             if self.test == Test::Oscillation {
-                column[count + i] = loss / sample.loss;
+                column[count + i] = of_loss * loss / sample.loss;
             }
         }
         column
@@ -129,15 +132,22 @@ impl<'a> PronyProblem<'a> {
         DMatrix::from_columns(&constants.into_iter().chain(terms).collect::<Vec<_>>())
     }
 
-    fn ones(&self) -> DVector<f64> {
-        DVector::from_element(self.rows(), 1.0)
+    /// What is to be met: each measured modulus over itself, by its weight.
+    fn wanted(&self) -> DVector<f64> {
+        let [of_storage, of_loss] = self.weight.factors();
+        DVector::from_fn(self.rows(), |i, _| if i < self.samples.len() { of_storage } else { of_loss })
+    }
+
+    /// How many of the values count in full.
+    fn counted(&self) -> usize {
+        if self.weight == Weight::Both { self.rows() } else { self.samples.len() }
     }
 
     /// The moduli for the relaxation times `times` (ln τ).
     pub(super) fn solve(&self, times: &[f64]) -> Solution {
-        let (a, ones) = (self.matrix(times), self.ones());
-        let x = non_negative_least_squares(&a, &ones);
-        let error = (&a * &x - &ones).norm() / (ones.len() as f64).sqrt();
+        let (a, wanted) = (self.matrix(times), self.wanted());
+        let x = non_negative_least_squares(&a, &wanted);
+        let error = (&a * &x - &wanted).norm() / (self.counted() as f64).sqrt();
         let terms = times.iter().zip(x.iter().skip(2)).filter(|(_, modulus)| **modulus > 0.0);
         let (times, moduli) = terms.unzip();
         Solution { constants: [x[0], x[1]], times, moduli, error }
@@ -176,7 +186,7 @@ impl<'a> PronyProblem<'a> {
             return None;
         }
         let (a, x) = self.positive(solution);
-        let residual = self.ones() - &a * x;
+        let residual = self.wanted() - &a * x;
         let q = a.qr().q();
         let mut slopes = DMatrix::from_columns(&slopes);
         slopes -= &q * q.tr_mul(&slopes);
@@ -204,7 +214,7 @@ impl<'a> PronyProblem<'a> {
         groups: usize,
     ) -> (DMatrix<f64>, DVector<f64>) {
         let (a, x) = self.positive(solution);
-        let residual = self.ones() - &a * x;
+        let residual = self.wanted() - &a * x;
         let terms = solution.times.iter().zip(&solution.moduli);
         let whole =
             terms.fold(DVector::zeros(self.rows()), |sum, (time, modulus)| sum + self.slope(time.exp(), *modulus));

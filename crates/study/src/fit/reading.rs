@@ -17,6 +17,8 @@ pub(super) struct MeasuredPoint {
     pub(super) temperature: Option<f64>,
     /// a_T as the table has it.
     pub(super) shift: Option<f64>,
+    /// b_T as the table has it.
+    pub(super) vertical: Option<f64>,
     /// The measurement that it belongs to, where the table numbers them.
     pub(super) set: Option<f64>,
 }

@@ -26,4 +26,9 @@ impl Sample {
         let at = if test == Test::Oscillation { self.at * factor } else { self.at / factor };
         Self { at, ..*self }
     }
+
+    /// With its moduli times a factor.
+    pub(super) fn scaled(&self, factor: f64) -> Self {
+        Self { at: self.at, storage: factor * self.storage, loss: factor * self.loss }
+    }
 }

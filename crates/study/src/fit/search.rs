@@ -5,6 +5,7 @@
 //! relaxation times of the others are optimised.
 
 use super::compound::Compound;
+use super::options::Weight;
 use super::prony_problem::{PronyProblem, Solution};
 use super::sample::{Sample, Test};
 
@@ -24,12 +25,14 @@ pub(super) struct Target {
     pub(super) viscosity: bool,
     /// What the samples are.
     pub(super) test: Test,
+    /// Which modulus counts.
+    pub(super) weight: Weight,
 }
 
 /// The series with the fewest terms found within the target's error or, if it cannot be reached, within [`NEAR`] of the
 /// smallest error.
 pub(super) fn search(samples: &[Sample], target: &Target) -> Compound {
-    let problem = PronyProblem::new(samples, target.test, target.viscosity);
+    let problem = PronyProblem::new(samples, target.test, target.viscosity, target.weight);
     let fine = problem.solve(&problem.grid(PER_DECADE));
     let mut best = problem.refine(problem.solve(&fine.merged(PER_DECADE)));
     if best.error > target.error {
@@ -96,7 +99,8 @@ mod tests {
     }
 
     fn find(samples: &[Sample], error: f64) -> (Compound, FitErrors) {
-        let compound = search(samples, &Target { error, viscosity: false, test: Test::Oscillation });
+        let compound =
+            search(samples, &Target { error, viscosity: false, test: Test::Oscillation, weight: Weight::Both });
         let errors = FitErrors::of(&compound, samples, Test::Oscillation);
         (compound, errors)
     }
@@ -164,7 +168,7 @@ mod tests {
     #[test]
     fn viscosity_is_found_where_it_is_allowed() {
         let known = Compound { viscosity: 200.0, ..series(2e6, &[(1e-2, 3e6)]) };
-        let target = Target { error: 1e-3, viscosity: true, test: Test::Oscillation };
+        let target = Target { error: 1e-3, viscosity: true, test: Test::Oscillation, weight: Weight::Both };
         let found = search(&samples(&known, -1, 5), &target);
         assert_eq!(found.terms.len(), 1);
         assert!((found.viscosity / 200.0 - 1.0).abs() < 1e-9, "{found:?}");

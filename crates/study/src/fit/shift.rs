@@ -11,7 +11,7 @@ use std::f64::consts::LN_10;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::options::WlfConstants;
+use super::options::{Weight, WlfConstants};
 use super::prony_problem::{PronyProblem, Solution};
 use super::sample::{Sample, Test};
 
@@ -136,7 +136,7 @@ impl<'a> Curves<'a> {
     fn solve(&self, shifts: &[f64]) -> (Vec<Sample>, Solution) {
         let shifted = |(sample, group): (&Sample, &usize)| sample.shifted(shifts[*group].exp(), self.test);
         let samples: Vec<Sample> = self.samples.iter().zip(&self.group).map(shifted).collect();
-        let problem = PronyProblem::new(&samples, self.test, false);
+        let problem = PronyProblem::new(&samples, self.test, false, Weight::Both);
         let solution = problem.solve(&problem.grid(PER_DECADE));
         (samples, solution)
     }
@@ -149,7 +149,7 @@ impl<'a> Curves<'a> {
         slopes: &DMatrix<f64>,
         damping: f64,
     ) -> Option<(DVector<f64>, DVector<f64>)> {
-        let problem = PronyProblem::new(samples, self.test, false);
+        let problem = PronyProblem::new(samples, self.test, false, Weight::Both);
         let (by_shift, residual) = problem.shift_slopes(solution, &self.group, self.isotherms.len());
         let by_parameter = by_shift * slopes;
         let normal = by_parameter.tr_mul(&by_parameter);

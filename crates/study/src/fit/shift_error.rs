@@ -20,6 +20,10 @@ pub enum ShiftError {
     NoFactor { file: String, temperature: f64, within: f64 },
     #[error("the table has no temperatures to shift by `shifts`")]
     NoTemperatures,
+    #[error("`vertical` density: expected a temperature of each row, and frequencies that are not reduced")]
+    NoDensity,
+    #[error("`vertical` multiply: expected a column b_T in the table, or in that of `shifts`")]
+    NoVertical,
     #[error("a_T at {temperature:.2} K differs from row to row: {from} and {to}")]
     Factors { temperature: f64, from: f64, to: f64 },
 }

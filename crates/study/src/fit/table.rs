@@ -34,6 +34,7 @@ pub(super) struct ModuliTable<'a> {
     /// A temperature above it that has no unit, and its line.
     bare_temperature: Option<(usize, String)>,
     shift: Option<Column>,
+    vertical: Option<Column>,
     set: Option<Column>,
     /// A second column of frequencies, to compare.
     other_frequency: Option<Column>,
@@ -63,7 +64,7 @@ impl<'a> ModuliTable<'a> {
     }
 
     fn with_own_header(block: &Block<'a>, reading: &Reading<'_>) -> Result<Option<Self>, ContentError> {
-        use Quantity::{Loss, LossTangent, Set, SetTemperature, ShearLoss, ShiftFactor, Temperature};
+        use Quantity::{Loss, LossTangent, Set, SetTemperature, ShearLoss, ShiftFactor, Temperature, VerticalFactor};
         let Some(columns) = Columns::read(block, reading.ignored, reading.units)? else { return Ok(None) };
         let Some(mut chosen) = Chosen::of(&columns, reading)? else { return Ok(None) };
         let other_frequency = chosen.take_other_frequency();
@@ -78,6 +79,7 @@ impl<'a> ModuliTable<'a> {
             temperature: one(&[&[Temperature], &[SetTemperature]]),
             bare_temperature: None,
             shift: one(&[&[ShiftFactor]]),
+            vertical: one(&[&[VerticalFactor]]),
             set: one(&[&[Set]]),
             other_frequency,
             tangent,
@@ -254,8 +256,9 @@ impl<'a> ModuliTable<'a> {
             (None, temperature) => temperature,
         };
         let shift = self.shift.as_ref().map(|column| row.positive(column)).transpose()?;
+        let vertical = self.vertical.as_ref().map(|column| row.positive(column)).transpose()?;
         let set = self.set.as_ref().map(|column| row.number(column)).transpose()?.flatten();
-        Ok(Some(MeasuredPoint { line: row.row.line, sample, temperature, shift, set }))
+        Ok(Some(MeasuredPoint { line: row.row.line, sample, temperature, shift, vertical, set }))
     }
 
     /// A frequency in Hz and an angular one must be the same.

@@ -50,7 +50,7 @@ const NEAR: f64 = 1.0;
 /// The widest curve, K.
 const WIDEST: f64 = 3.0;
 /// 20 °C, K.
-const ROOM: f64 = 293.15;
+pub(super) const ROOM: f64 = 293.15;
 
 impl Shift {
     /// What the options and the table say.
@@ -329,7 +329,7 @@ fn factors_of(measured: &MeasuredModuli, isotherms: &[Isotherm]) -> Result<Vec<F
 fn given(path: &Path, options: &FitOptions, isotherms: Vec<Isotherm>) -> Result<Shift, FitError> {
     let bytes = files::bytes(path)?;
     let in_file = |error: ContentError| FitError::Moduli { path: path.to_owned(), error };
-    let table = shift_table(&bytes, options).map_err(in_file)?;
+    let table = shift_table(&bytes, options, Quantity::ShiftFactor).map_err(in_file)?;
     let factor = |isotherm: &Isotherm| {
         let distance = |(kelvin, _): &&(f64, f64)| (kelvin - isotherm.temperature).abs();
         let nearest = table.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
@@ -347,15 +347,34 @@ fn given(path: &Path, options: &FitOptions, isotherms: Vec<Isotherm>) -> Result<
     Ok(Shift::with_factors(factors, isotherms, options.reference))
 }
 
-/// Temperatures in K and their factors.
-fn shift_table(bytes: &[u8], options: &FitOptions) -> Result<Vec<(f64, f64)>, ContentError> {
+/// The b_T of all points from a table of shift factors; `None` where it has none.
+pub(super) fn given_factors(
+    path: &Path,
+    options: &FitOptions,
+    measured: &MeasuredModuli,
+) -> Result<Option<Vec<f64>>, FitError> {
+    let bytes = files::bytes(path)?;
+    let table = shift_table(&bytes, options, Quantity::VerticalFactor);
+    let table = table.map_err(|error| FitError::Moduli { path: path.to_owned(), error })?;
+    let of_point = |point: &MeasuredPoint| {
+        let distance = |(kelvin, _): &&(f64, f64)| (kelvin - point.temperature.unwrap_or(0.0)).abs();
+        table.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).map(|(_, factor)| *factor)
+    };
+    Ok(measured.points.iter().map(of_point).collect())
+}
+
+/// Temperatures in K and their factors of a kind; none where there is no column of vertical ones.
+fn shift_table(bytes: &[u8], options: &FitOptions, kind: Quantity) -> Result<Vec<(f64, f64)>, ContentError> {
     let text = decode(bytes)?;
     let missing = |line| ContentError::value(Some(line), "", "", "columns temperature [°C] and a_T, or log a_T");
     let blocks = Block::all(&text, false);
     let block = blocks.iter().max_by_key(|block| block.rows).ok_or_else(|| missing(1))?;
     let columns = Columns::read(block, &[], &options.units)?.ok_or_else(|| missing(block.first))?;
     let of = |quantity| columns.all(&[quantity]);
-    let (&[temperature], &[factor]) = (&of(Quantity::Temperature)[..], &of(Quantity::ShiftFactor)[..]) else {
+    if kind == Quantity::VerticalFactor && of(kind).is_empty() {
+        return Ok(Vec::new());
+    }
+    let (&[temperature], &[factor]) = (&of(Quantity::Temperature)[..], &of(kind)[..]) else {
         return Err(missing(block.first));
     };
     let mut style = block.style();
