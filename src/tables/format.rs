@@ -85,30 +85,6 @@ pub struct Table<'a, Q, const N: usize> {
     pub above: Vec<Line<'a>>,
 }
 
-impl<Q: Copy, const N: usize> Table<'_, Q, N> {
-    /// Refuses lengths and areas that name no unit beside others that do and are not in SI units: they are hardly in m.
-    ///
-    /// # Errors
-    /// [`ContentError`] with the first column without a unit.
-    pub fn check_units(&self) -> Result<(), ContentError> {
-        let of_size = || {
-            let is_size = |column: &&Column<Q>| matches!(column.unit.dimension, Dimension::Length | Dimension::Area);
-            self.columns.iter().flatten().filter(is_size)
-        };
-        let (unnamed, named) = (
-            of_size().find(|column| !column.names_unit),
-            of_size().find(|column| column.names_unit && !column.unit.is_si()),
-        );
-        match (unnamed, named) {
-            (Some(column), Some(other)) => {
-                let expected = format!("it beside the name, as {} names {}", other.label(), other.unit);
-                Err(ContentError::value(self.line, &format!("unit of {}", column.label()), "", &expected))
-            }
-            _ => Ok(()),
-        }
-    }
-}
-
 impl<Q> Wanted<Q> {
     /// A column that must be there, with any number, in SI units where it names none.
     pub const fn new(quantities: &'static [Q], name: &'static str, meaning: &'static str) -> Self {

@@ -91,7 +91,6 @@ impl MotionFile {
         let bytes = bytes(path)?;
         let text = decode(&bytes).map_err(|error| CsvError::content(path, error))?;
         let table = format.read(&text).map_err(|error: ContentError| CsvError::content(path, error))?;
-        table.check_units().map_err(|error| CsvError::content(path, error))?;
         let Table { columns, rows, .. } = table;
         let has_temperature = columns[8].is_some();
         let row = |&[time, x, y, z, roll, pitch, yaw, transport_speed, temperature]: &[f64; 9]| MotionRow {
