@@ -103,6 +103,8 @@
 
 pub mod contact;
 pub mod element;
+#[cfg(test)]
+mod in_tests;
 pub mod integrator;
 pub mod math;
 pub mod model;
@@ -111,5 +113,3 @@ pub mod patch;
 pub mod scene;
 pub mod simulation;
 pub mod tables;
-#[cfg(test)]
-mod testing;

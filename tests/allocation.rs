@@ -1,6 +1,9 @@
 //! A run allocates nothing: all memory is allocated by `Simulation::new`.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic, reason = "tests may fail")]
 
+#[allow(dead_code, unreachable_pub, unsafe_code, reason = "shared with the tests of the FMU")]
+#[path = "common/master.rs"]
+mod master;
 #[allow(dead_code, unreachable_pub, reason = "shared with the tests of physics and the benchmark")]
 #[path = "physics/leaving_out/pairs.rs"]
 mod pairs;
@@ -280,6 +283,25 @@ fn memory_reckoned_of_an_element_is_memory_taken() {
     assert!(taken < model.memory(), "{taken} of {} bytes", model.memory());
     let run = model.start(&inputs, 0.0).unwrap();
     assert!(peak(|| run.save()) < model.state_memory());
+}
+
+/// Steps of an FMU whose master gives values alone, each done again, with all outputs after each.
+#[test]
+fn steps_that_are_done_again_allocate_nothing() {
+    let fmu = master::Fmu::running_with(master::EVERYTHING);
+    let inputs = ["u", "w"].map(|name| fmu.reference(name));
+    let (force, repeated) = (fmu.reference("F_x"), fmu.reference("solver.repeated"));
+    let mut step = |k: i32| {
+        let k = f64::from(k);
+        let values = [1e-6 * (0.9 * k).sin(), -2e-6 - 1e-6 * (0.5 * k).cos()];
+        assert_eq!(fmu.set_reals(&inputs, &values), master::OK);
+        assert_eq!(fmu.step(1e-5 * k, 1e-5), master::OK);
+        assert_eq!(fmu.get_reals(&[force], &mut [0.0]), master::OK);
+    };
+    (0..3).for_each(&mut step);
+    assert_eq!(allocations(|| (3..40).for_each(&mut step)), 0);
+    let mut count = [0];
+    assert_eq!((fmu.get_integers(&[repeated], &mut count), count[0] > 30), (master::OK, true));
 }
 
 /// Checks the counter itself.

@@ -24,6 +24,9 @@ if [ "${2:-}" = --sled ]; then
     "$root/build-fmu.sh" --table block.sweep.csv -o element.fmu
     "$python" "$here/sled.py" block.fmu 8.2e-5 -o sled-layer.csv
     "$python" "$here/sled.py" element.fmu 6.5e-5 -o sled-element.csv
+    "$root/build-fmu.sh" stop.toml -o stop.fmu
+    "$python" "$here/stop.py" stop.fmu
+    "$asperity" plot stop-values.csv stop-rates.csv stop-hold.csv --y F_x --labels "values alone,rates,hold" -o stop.svg
     "$asperity" plot sled-layer.csv sled-element.csv --y F_x --labels layer,element -o sled.svg
     exit
 fi

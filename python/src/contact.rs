@@ -23,7 +23,7 @@ pub(crate) fn contact<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let (scene, options) = (Arc::clone(&scene.scene), ContactOptions { pressure, speed, points });
     let solved = in_background(py, None, move |_| solve_contact(&scene, &options))?;
-    let SolvedContact { slide, fields, problem, .. } = solved.map_err(|error| error.raise())?;
+    let SolvedContact { slide, fields, problem, warnings, .. } = solved.map_err(|error| error.raise())?;
     let found = PyDict::new(py);
     let (friction, separation) = (slide.friction(), slide.contact.separation);
     for (name, value) in [
@@ -39,6 +39,7 @@ pub(crate) fn contact<'py>(
         found.set_item(name, value)?;
     }
     found.set_item("status", PointStatus::new(problem).text())?;
+    found.set_item("warnings", warnings)?;
     for (name, values) in [
         ("x", fields.x),
         ("y", fields.y),

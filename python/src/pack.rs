@@ -6,15 +6,20 @@ use std::{fs, io, process};
 
 use asperity_fmi::Definition;
 use asperity_study::files::reason;
-use asperity_study::pack::{Fmu, Library, LibraryFile, summary};
+use asperity_study::pack::{Fmu, Library, LibraryFile, no_start, summary};
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::errors::Raise as _;
 
 /// Writes the FMU of a `definition`, which was read from the file at `path`, with these shared libraries, each as
-/// `asperity pack --library` takes it: what is at `output` is what was there before, or the whole FMU.
-pub(crate) fn pack(definition: &Definition, path: &Path, libraries: &[OsString], output: &Path) -> PyResult<()> {
+/// `asperity pack --library` takes it, with flat names or not; returns a warning. What is at `output` is what was there before, or the whole FMU.
+pub(crate) fn pack(
+    definition: &Definition,
+    path: &Path,
+    libraries: &[OsString],
+    (output, flat_names): (&Path, bool),
+) -> PyResult<Option<String>> {
     let files: Vec<LibraryFile> = libraries.iter().map(|text| LibraryFile::named(text)).collect();
     let mut read: Vec<PathBuf> = definition.sources(path);
     read.extend(files.iter().map(|file| file.path().to_owned()));
@@ -24,8 +29,9 @@ pub(crate) fn pack(definition: &Definition, path: &Path, libraries: &[OsString],
     }
     let libraries = Library::read_all(&files).map_err(|error| error.raise())?;
     let summary = summary(definition);
-    let fmu = Fmu { definition, path, libraries: &libraries, summary: &summary, picture: None };
-    write(output, &fmu.pack().map_err(|error| error.raise())?)
+    let fmu = Fmu { definition, path, libraries: &libraries, summary: &summary, picture: None, flat_names };
+    write(output, &fmu.pack().map_err(|error| error.raise())?)?;
+    Ok(no_start(definition))
 }
 
 /// Writes a file beside its place, and puts it there.

@@ -54,8 +54,8 @@ impl Patch {
     }
 
     /// Writes an FMU.
-    fn pack(&self, output: PathBuf, libraries: Vec<OsString>) -> PyResult<()> {
-        pack(&self.patch.clone().into(), &self.file, &libraries, &output)
+    fn pack(&self, output: PathBuf, libraries: Vec<OsString>, flat_names: bool) -> PyResult<Option<String>> {
+        pack(&self.patch.clone().into(), &self.file, &libraries, (&output, flat_names))
     }
 }
 

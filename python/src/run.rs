@@ -7,6 +7,7 @@ use asperity::outputs::{OutputType, Variable, variables};
 use asperity::scene::{Scene as SceneData, Unit};
 use asperity::simulation::SimulationError;
 use asperity_study::elements::{ElementField, ElementFields};
+use asperity_study::run_figures::{RunFigures, implausible_run};
 use asperity_study::runner::{InputSample, Rows, Runner};
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::prelude::*;
@@ -85,11 +86,13 @@ fn run(scene: &SceneData, asked: Asked, task: &Task) -> Result<Recorded, Simulat
     let mut elements = asked.elements.then(|| ElementFields::new(scene));
     let mut values = vec![0.0; variables.len()];
     let duration = scene.duration();
+    let mut figures = RunFigures::default();
 
     let runner = Runner::new(scene, Rows::PerPhase(asked.points), 0.0)?;
     let mut runner = runner.with_rows_at(asked.times).stopped_by(&task.stop());
     runner.run(&scene.excitation, |carrier: InputSample, snapshot| {
         snapshot.evaluate(&variables, &mut values);
+        figures.add(snapshot);
         let row = std::iter::once(carrier.time).chain(inputs.iter().map(|&input| carrier.input(input)));
         columns.iter_mut().zip(row.chain(values.iter().copied())).for_each(|(column, value)| column.values.push(value));
         elements.iter_mut().for_each(|elements| elements.add(snapshot));
@@ -98,6 +101,7 @@ fn run(scene: &SceneData, asked: Asked, task: &Task) -> Result<Recorded, Simulat
     })?;
     let mut warnings = runner.take_warnings();
     warnings.extend(runner.simulation().inaccuracy().map(|inaccuracy| inaccuracy.to_string()));
+    warnings.extend(implausible_run(scene, &figures, runner.simulation()));
     let fields = elements.map(ElementFields::into_fields).unwrap_or_default();
     Ok(Recorded { columns, elements: fields.into_iter().map(Column::of_masses).collect(), warnings })
 }

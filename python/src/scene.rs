@@ -118,9 +118,9 @@ impl Scene {
     }
 
     /// Writes an FMU. The file of the scene has to hold what the scene is.
-    fn pack(&self, output: PathBuf, libraries: Vec<OsString>) -> PyResult<()> {
+    fn pack(&self, output: PathBuf, libraries: Vec<OsString>, flat_names: bool) -> PyResult<Option<String>> {
         let definition = (*self.scene).clone().into();
-        pack(&definition, &self.file, &libraries, &output)
+        pack(&definition, &self.file, &libraries, (&output, flat_names))
     }
 
     /// Whether the scene is the same as another, whatever text and files it is read from.

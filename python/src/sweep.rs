@@ -73,8 +73,8 @@ pub(crate) fn sweep(
     let found = in_background(py, progress, move |task| {
         let plan = SweepPlan::new((*scene).clone(), &options, None)?;
         Ok(find(&plan, task).map(|table| {
-            let few = plan.few_points(table.rows.iter().map(|stored| &stored.row));
-            let warnings = plan.warning().map(str::to_owned).into_iter().chain(few).collect();
+            let found = plan.warnings(table.rows.iter().map(|stored| &stored.row));
+            let warnings = plan.warning().map(str::to_owned).into_iter().chain(found).collect();
             (table.text(), warnings)
         }))
     })?;
@@ -85,7 +85,12 @@ pub(crate) fn sweep(
 
 /// Packs the table of a sweep as an FMU, a point-contact element.
 #[pyfunction]
-pub(crate) fn pack_table(table: PathBuf, output: PathBuf, libraries: Vec<OsString>) -> PyResult<()> {
+pub(crate) fn pack_table(
+    table: PathBuf,
+    output: PathBuf,
+    libraries: Vec<OsString>,
+    flat_names: bool,
+) -> PyResult<Option<String>> {
     let read = Table::load(&table).map_err(|error| PyValueError::new_err(error.to_string()))?;
-    pack(&PointContact::new(read).into(), &table, &libraries, &output)
+    pack(&PointContact::new(read).into(), &table, &libraries, (&output, flat_names))
 }

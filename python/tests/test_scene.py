@@ -141,8 +141,8 @@ def test_a_sweep_of_what_does_not_slide_is_refused(small):
 
 
 def test_points_that_are_not_steady_are_warned_of_and_hollow(block):
-    with pytest.warns(UserWarning, match="2 of 2 points are not steady or failed, the first: full contact"):
-        table = asperity.Scene.from_toml(SCENES / "grip-mujoco" / "face.toml").sweep([1e-3, 1e-2], [1e6])
+    with pytest.warns(UserWarning, match="2 of 2 points are not steady or failed, the first: no stiffness"):
+        table = asperity.Scene.from_toml(SCENES / "grip-mujoco" / "face.toml").sweep([1e-3, 1e-2], [1e-3])
     line, hollow = table.plot().axes[0].lines
     assert len(hollow.get_xdata()) == 2 and hollow.get_markerfacecolor() == "white"
 
@@ -193,3 +193,32 @@ def test_a_table_reads_back(block, tmp_path):
     data = pickle.loads(pickle.dumps(table)).to_xarray()
     assert data["friction"].dims == ("v", "p", "T") and float(data["p"][1]) == 2e5
     assert len(table.to_pandas()) == 12 and len(table.plot().axes[0].lines) == 6
+
+
+SEAL = {
+    "name": "seal",
+    "layer": {"masses": 100, "spacing": 2e-5, "thickness": 3e-3, "width": 5e-3},
+    "material": {
+        "density": 1200.0,
+        "poisson_ratio": 0.5,
+        "equilibrium_modulus": 6e6,
+        "prony": [{"modulus": 2e7, "relaxation_time": 1e-3}],
+    },
+    "surface": {"kind": "sinusoid", "amplitude": 1e-6, "wavelength": 2e-4},
+    "friction": {"coulomb": 0.2},
+}
+
+
+def test_springs_that_are_no_rubber_are_warned_of():
+    scene = asperity.Scene.from_dict(SEAL)
+    assert not any("springs" in warning for warning in scene.warnings)
+    scene["layer.foundation"] = "springs"
+    assert any(warning.startswith('foundation = "springs": ') for warning in scene.warnings)
+
+
+def test_a_key_that_is_missing_for_friction_to_be_that_of_rubber_is_named():
+    scene = asperity.Scene.from_dict(SEAL | {"friction": {"shear_strength": 5e6}})
+    with pytest.warns(UserWarning, match=r"friction is .* without surface.fine"):
+        scene.sweep([0.1], [1e5])
+    with pytest.warns(UserWarning, match="without surface.fine"):
+        scene.contact(1e5, 0.1)

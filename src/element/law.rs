@@ -166,6 +166,11 @@ impl Law {
         &self.log_speeds
     }
 
+    /// The speed that the law has at `speed` (m/s): the table's that is nearest.
+    fn speed_in_table(&self, speed: f64) -> f64 {
+        speed.abs().clamp(self.speed_range.0, self.speed_range.1)
+    }
+
     /// Writes the values of a quantity at all pressures, at a speed between those of the table.
     fn at_speed(&self, rows: &[Series], speed: f64, values: &mut [f64]) {
         if self.log_speeds.len() == 1 {
@@ -236,9 +241,14 @@ impl LawAtSpeed {
         curve
     }
 
+    /// Whether it is the law at `speed` (m/s).
+    pub(super) fn is_at(&self, law: &Law, speed: f64) -> bool {
+        law.speed_in_table(speed) == self.speed
+    }
+
     /// Changes the speed, m/s.
     pub(super) fn set_speed(&mut self, law: &Law, speed: f64) {
-        let speed = speed.abs().clamp(law.speed_range.0, law.speed_range.1);
+        let speed = law.speed_in_table(speed);
         if speed == self.speed {
             return;
         }
@@ -317,11 +327,6 @@ impl LawAtSpeed {
     /// The approach at the largest pressure of the table, m.
     pub(super) fn closest(&self) -> f64 {
         self.approaches[self.approaches.len() - 1]
-    }
-
-    /// The speed, limited to those of the table, m/s.
-    pub(super) fn speed(&self) -> f64 {
-        self.speed
     }
 
     /// The contact at an approach, m.

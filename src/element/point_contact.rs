@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::law::{Law, LawAtSpeed};
 use super::quantity::Quantity;
 use super::table::Table;
 use crate::outputs::{Dependencies, Output, Variable, variable};
@@ -40,6 +41,23 @@ impl PointContact {
     /// The temperature, K; 0 where the table has none.
     pub fn temperature(&self) -> f64 {
         self.temperature
+    }
+
+    /// A displacement w (m) just above the first touch at any speed and temperature of the table.
+    pub fn clear_displacement(&self) -> f64 {
+        let temperatures = &self.table.grid.temperatures;
+        let speeds = &self.table.grid.speeds;
+        let (mut touch, mut closest) = (f64::INFINITY, f64::NEG_INFINITY);
+        for temperature in temperatures.iter().copied().chain(temperatures.is_empty().then_some(0.0)) {
+            let law = Law::new(&self.table, temperature);
+            for curve in speeds.iter().map(|&speed| LawAtSpeed::new(&law, speed)) {
+                (touch, closest) = (curve.touch.min(touch), curve.closest().max(closest));
+            }
+        }
+        // A round number, higher by less than a tenth of the way that the table covers, is easier to read.
+        let decade = (closest - touch).log10().floor() - 1.0;
+        let digits = ((-touch - self.table.rest_separation) / 10.0_f64.powf(decade)).floor() + 1.0;
+        format!("{digits}e{decade}").parse().unwrap_or(0.0)
     }
 
     /// What a motion beyond the table does.

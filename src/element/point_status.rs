@@ -5,28 +5,41 @@
 pub enum PointStatus {
     /// The values can be relied on.
     Steady,
+    /// So can friction and area; everything touches, so there is no stiffness, and no element.
+    FullContact,
     /// What is wrong.
     Problem(String),
 }
 
 const STEADY: &str = "steady";
+const FULL_CONTACT: &str = "full contact";
 
 impl PointStatus {
     /// By what is wrong, if anything is.
     pub fn new(problem: Option<impl ToString>) -> Self {
-        problem.map_or(Self::Steady, |problem| Self::Problem(problem.to_string()))
+        problem.map_or(Self::Steady, |problem| Self::read(&problem.to_string()))
     }
 
     /// As tables have it.
     pub fn text(&self) -> &str {
         match self {
             Self::Steady => STEADY,
+            Self::FullContact => FULL_CONTACT,
             Self::Problem(problem) => problem,
         }
     }
 
     /// From its [text](Self::text).
     pub fn read(text: &str) -> Self {
-        if text == STEADY { Self::Steady } else { Self::Problem(text.to_owned()) }
+        match text {
+            STEADY => Self::Steady,
+            FULL_CONTACT => Self::FullContact,
+            problem => Self::Problem(problem.to_owned()),
+        }
+    }
+
+    /// Whether friction and area are a result.
+    pub fn is_result(&self) -> bool {
+        matches!(self, Self::Steady | Self::FullContact)
     }
 }

@@ -112,6 +112,8 @@ pub struct Element {
     law: Arc<Law>,
     /// The law at the present speed.
     pub(super) curve: LawAtSpeed,
+    /// The law at the speed before: a step that is refused or repeated goes back to it.
+    curve_before: LawAtSpeed,
     table_extrapolation: TableExtrapolation,
     pub(super) state: ElementState,
     pub(super) spring: Jenkins,
@@ -145,7 +147,8 @@ impl Element {
         let curve = LawAtSpeed::new(&law, state.u_rate);
         let spring = Jenkins::new(&Contact::default());
         let table_extrapolation = contact.table_extrapolation();
-        let element = Self { law, curve, table_extrapolation, state, spring, mode_changes: None };
+        let curve_before = curve.clone();
+        let element = Self { law, curve, curve_before, table_extrapolation, state, spring, mode_changes: None };
         element.check_speed(state.u_rate)?;
         element.check_separation(state.w, state.u_rate, CheckedAt::Start)?;
         Ok(element)
@@ -177,11 +180,10 @@ impl Element {
         };
         end.check()?;
         self.check_speed(u_rate)?;
-        let before = self.curve.speed();
-        self.curve.set_speed(&self.law, u_rate);
+        self.set_speed(u_rate);
         let start = self.check_separation(w, u_rate, CheckedAt::Start);
         if let Err(error) = start.and_then(|()| self.check_separation(end.w, u_rate, CheckedAt::End)) {
-            self.curve.set_speed(&self.law, before);
+            self.set_speed(self.state.u_rate);
             return Err(error);
         }
         self.follow(duration, u_rate, w_rate, end.w);
@@ -392,6 +394,24 @@ impl Element {
         }
         element.spring = Jenkins { force: saved.force, stiffness: here.stiffness.value, mode };
         Ok(element)
+    }
+
+    /// Continues from `saved`, a state of the same contact that a run has saved or that was checked when it was read;
+    /// allocates nothing.
+    pub fn continue_from(&mut self, saved: &ElementState) {
+        self.set_speed(saved.u_rate);
+        self.state = *saved;
+        let stiffness = self.contact().stiffness.value;
+        let mode = Mode::from_number(saved.mode).unwrap_or(self.spring.mode);
+        self.spring = Jenkins { force: saved.force, stiffness, mode };
+    }
+
+    /// Takes the law at another speed, m/s; that of the speed before it is kept.
+    fn set_speed(&mut self, speed: f64) {
+        if !self.curve.is_at(&self.law, speed) {
+            std::mem::swap(&mut self.curve, &mut self.curve_before);
+            self.curve.set_speed(&self.law, speed);
+        }
     }
 
     /// Keeps a record of mode changes from now on, or stops keeping it.

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::grid::{Load, OperatingPoint, SweepGrid};
+use super::point_status::PointStatus;
 use super::quantity::Quantity;
 use super::table_format::{Basis, TableError, TableRow, TableText};
 use crate::scene::read_text;
@@ -203,7 +204,10 @@ fn rows_of_points(text: &TableText, grid: &SweepGrid, load: Load, rows: &[TableR
 
 fn check_steady(text: &TableText, load: Load, rows: &[TableRow], order: &[usize]) -> Result<(), TableError> {
     let failed = order.iter().map(|&row| &rows[row]).filter(|row| !row.is_steady());
-    let failed = failed.map(|row| format!("{} is not steady: {}", row.point.describe(load), row.status.text()));
+    let failed = failed.map(|row| match &row.status {
+        PointStatus::FullContact => format!("{} is in full contact, which has no stiffness", row.point.describe(load)),
+        status => format!("{} is not steady: {}", row.point.describe(load), status.text()),
+    });
     let failed: Vec<String> = failed.collect();
     if failed.is_empty() {
         return Ok(());

@@ -128,7 +128,12 @@ impl TableRow {
         self.values[quantity as usize] = value;
     }
 
-    /// Whether the values can be relied on.
+    /// Whether friction and area are a result.
+    pub fn is_result(&self) -> bool {
+        self.status.is_result()
+    }
+
+    /// Whether all values can be relied on.
     pub fn is_steady(&self) -> bool {
         self.status == PointStatus::Steady
     }
@@ -257,11 +262,11 @@ impl TableText {
         let index = grid.index(&self.point(row, load)?);
         let index = index.ok_or_else(|| self.error_in(row, "a point that the header does not have".into()))?;
         let fields = &self.lines[row].fields;
-        let is_steady = PointStatus::read(&fields[self.column(POINT_COLUMNS[3])?]) == PointStatus::Steady;
+        let is_result = PointStatus::read(&fields[self.column(POINT_COLUMNS[3])?]).is_result();
         for quantity in Quantity::ALL {
             let column = self.column(&quantity.name(load))?;
             let allowed = match fields[column].as_str() {
-                "" => !(is_steady && quantity == Quantity::Friction),
+                "" => !(is_result && quantity == Quantity::Friction),
                 text => text.parse().is_ok_and(is_possible),
             };
             if !allowed {

@@ -7,11 +7,11 @@ mod sweeps;
 use std::path::Path;
 
 use super::*;
+use crate::in_tests::assert_relative;
 use crate::model::Mode;
 use crate::outputs::{Output, variable};
 use crate::scene::{Parameter, Value};
 use crate::simulation::Start;
-use crate::testing::assert_relative;
 use sweeps::{AREA, Grid, REST, WARM, friction, logarithmic, separation, stiffness};
 
 fn table(grid: &Grid) -> Table {

@@ -62,7 +62,7 @@ impl StageValues {
         self.margin.fill(NO_LIMIT);
     }
 
-    /// Copies `other`, rates of the same model, without allocating.
+    /// Copies `other`; rates of the same model without allocating.
     pub fn copy_from(&mut self, other: &Self) {
         let pairs = [
             (&mut self.velocity_x, &other.velocity_x),
@@ -74,10 +74,10 @@ impl StageValues {
             (&mut self.margin, &other.margin),
         ];
         for (mine, theirs) in pairs {
-            mine.copy_from_slice(theirs);
+            mine.clone_from(theirs);
         }
         for (mine, theirs) in self.elongation_rate.iter_mut().zip(&other.elongation_rate) {
-            mine.copy_from_slice(theirs);
+            mine.clone_from(theirs);
         }
     }
 
@@ -222,7 +222,7 @@ impl LayerState {
         }
     }
 
-    /// Copies `other`, of the same model, without allocating.
+    /// Copies `other`; of the same model without allocating.
     pub fn copy_from(&mut self, other: &Self) {
         self.state.copy_from(&other.state);
         self.rates.copy_from(&other.rates);

@@ -2,6 +2,7 @@
 
 mod finite;
 mod fourier;
+mod memory;
 mod monotone;
 mod number;
 mod quintic;
@@ -15,6 +16,7 @@ mod vectors;
 
 pub use finite::not_finite;
 pub use fourier::{Direction, fourier, fourier_2d};
+pub use memory::{NotEnoughMemory, check_memory};
 pub use monotone::{Expansion, cubic, interval_of, monotone_slopes};
 pub use number::{Dual, Number};
 pub use quintic::{Jet, Quintic};

@@ -141,6 +141,8 @@ impl FineFriction {
     }
 
     /// Whether friction changes with the speed.
+    // Inlined, it may be read before it is known that there is such a law, which valgrind takes for an error.
+    #[inline(never)]
     pub fn depends_on_speed(&self) -> bool {
         self.log_speeds.count > 1
     }

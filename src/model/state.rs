@@ -140,15 +140,15 @@ impl State {
         self.surface[i] = SurfacePoint::default();
     }
 
-    /// Copies `other`, a state of the same model, without allocating.
+    /// Copies `other`; of the same model without allocating.
     pub fn copy_from(&mut self, other: &Self) {
-        self.elongation_x.copy_from_slice(&other.elongation_x);
-        self.elongation_z.copy_from_slice(&other.elongation_z);
-        self.velocity_x.copy_from_slice(&other.velocity_x);
-        self.velocity_z.copy_from_slice(&other.velocity_z);
-        self.maxwell.copy_from_slice(&other.maxwell);
-        self.flash.copy_from_slice(&other.flash);
-        self.mode.copy_from_slice(&other.mode);
-        self.surface.copy_from_slice(&other.surface);
+        self.elongation_x.clone_from(&other.elongation_x);
+        self.elongation_z.clone_from(&other.elongation_z);
+        self.velocity_x.clone_from(&other.velocity_x);
+        self.velocity_z.clone_from(&other.velocity_z);
+        self.maxwell.clone_from(&other.maxwell);
+        self.flash.clone_from(&other.flash);
+        self.mode.clone_from(&other.mode);
+        self.surface.clone_from(&other.surface);
     }
 }

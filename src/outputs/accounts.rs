@@ -110,6 +110,8 @@ pub struct Counters {
     pub rejected: u64,
     /// Mode changes.
     pub events: u64,
+    /// Communication steps that were done again from their start.
+    pub repeated: u64,
     /// The largest errors of F_x and F_z, N.
     forces: [LargestError; 2],
     /// The largest errors of the bodies' displacements, m.

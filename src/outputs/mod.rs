@@ -103,6 +103,8 @@ pub enum Output {
     Events,
     /// Rejected steps since the start.
     Rejected,
+    /// Communication steps done again since the start, to the values that came in place of those extrapolated.
+    Repeated,
     /// The larger of the estimated accumulated errors of F_x and F_z, each over its largest value so far.
     ForceError,
     /// Estimated accumulated error of E_diss over its largest value so far.

@@ -186,7 +186,7 @@ macro_rules! tangent {
 
 /// All outputs, in the order of the result files within their groups.
 #[rustfmt::skip]
-pub(super) static TABLE: [OutputRow; 76] = {
+pub(super) static TABLE: [OutputRow; 77] = {
     use OutputType::{Integer, Real};
     use OutputGroup::{Carrier, Contact, Dissipation, Energy, Forces, Friction, Solver, Tangent as Tangents};
     use Unit::{
@@ -344,6 +344,8 @@ pub(super) static TABLE: [OutputRow; 76] = {
             |now| as_integer(now.at.counters.events)),
         layer(Output::Rejected, Solver, "solver.rejected", Integer, One, "Rejected steps since the start",
             |now| as_integer(now.at.counters.rejected)),
+        layer(Output::Repeated, Solver, "solver.repeated", Integer, One, "Communication steps done again since the start, to the values that came",
+            |now| as_integer(now.at.counters.repeated)),
         layer(Output::ForceError, Solver, "solver.error", Real, One, "Estimated accumulated error: the larger of those of F_x and F_z, each over its largest value so far",
             |now| now.at.counters.force_error()),
         layer(Output::DissipationError, Solver, "solver.error_E_diss", Real, One, "Estimated accumulated error of E_diss over its largest value so far",

@@ -42,6 +42,8 @@ pub(super) struct ElementBlock<T> {
     pub(super) heat: BlockHeat<T>,
     /// Energy lost in the part by slip, J.
     part_slip: Lanes<T>,
+    /// What its elements have been through since it was counted last.
+    work: u64,
 }
 
 /// The springs of a block's elements.
@@ -84,6 +86,7 @@ impl<T: Number> ElementBlock<T> {
             end: Box::new(BlockContacts::new()),
             heat: BlockHeat::new(),
             part_slip: [T::constant(0.0); BLOCK],
+            work: 0,
         }
     }
 
@@ -125,6 +128,9 @@ impl<T: Number> ElementBlock<T> {
                 Some(heat) => self.advance_warming(step, &heat, law, now, substep, sums),
                 None => self.advance_part(step, law, &now, substep),
             };
+            if step.work.add(std::mem::take(&mut self.work)) {
+                break;
+            }
             self.check_table(step, law, substep.end, sums);
         }
         self.add_up(step, sums);
@@ -141,6 +147,7 @@ impl<T: Number> ElementBlock<T> {
     ) -> BodyKinematics<T> {
         let next = step.body.at(part.end);
         // `begin` is the law at the begin of the part, `end` that at its end; the springs follow from the one to the other.
+        self.work += self.count as u64;
         std::mem::swap(&mut self.begin, &mut self.end);
         self.evaluate_at(step, law, &next, part.end);
         self.advance_springs(step, law, (now, &next), part.length());
@@ -168,6 +175,9 @@ impl<T: Number> ElementBlock<T> {
             self.heat.of_law = rise;
             // By it the springs, and by what they lose ϑ at the end of the part.
             let next = self.advance_part(step, law, &now, part);
+            if step.work.add(std::mem::take(&mut self.work)) {
+                return next;
+            }
             let warmed = self.warmed(heat, part.length() * step.body.duration);
             // Too long a part is done again, half as long.
             if self.warms_too_much(heat, &rise, &heat::total(&warmed)) && length > SHORTEST_PART * substep.length() {
@@ -268,7 +278,7 @@ impl<T: Number> ElementBlock<T> {
         }
         // All elements as if their pressures changed in one segment.
         let displacement = self.displacements(step, (now, next), length);
-        let Self { springs, part_slip, begin, end, count, .. } = self;
+        let Self { springs, part_slip, begin, end, count, work, .. } = self;
         // The law may have jumped since the springs followed it last, where a step begins: the motion has a kink there, and
         // the temperature given may be another.
         apply_jumps(springs, begin);
@@ -279,7 +289,8 @@ impl<T: Number> ElementBlock<T> {
             if needs_segments(begin.pressure[i].value(), end.pressure[i].value()) {
                 let displacement = [displacement[0][i], displacement[1][i]];
                 let ends = (&begin.endpoint(i), &end.endpoint(i));
-                let advanced = advance_in_segments(law, [before[0][i], before[1][i]], ends, displacement);
+                let (advanced, segments) = advance_in_segments(law, [before[0][i], before[1][i]], ends, displacement);
+                *work += WORK_OF_SEGMENT * u64::from(segments);
                 (springs.force[0][i], springs.force[1][i]) = (advanced.force[0], advanced.force[1]);
                 springs.slips[i] = if advanced.slips { 1.0 } else { 0.0 };
                 part_slip[i] = advanced.slip;
@@ -447,6 +458,8 @@ fn advance_all<T: Number>(
     }
 }
 
+/// A segment's work, as a number of parts of elements that vectors take together.
+const WORK_OF_SEGMENT: u64 = 4;
 /// Share of a substep below which it is not cut further for heat.
 const SHORTEST_PART: f64 = 1e-9;
 

@@ -270,9 +270,12 @@ impl Patch {
         std::iter::once(path.to_owned()).chain(self.files.iter().map(|file| folder.join(file))).collect()
     }
 
-    /// A height (m) at which nothing touches when the body is level.
+    /// A height (m) just above the touch, where nothing touches at any temperature of the table when the body is level.
     pub fn clear_height(&self) -> f64 {
-        let touch = ResampledLaw::earliest_touch_of(&self.table, self.temperature);
+        let temperatures = &self.table.grid.temperatures;
+        let all = temperatures.iter().copied().chain(temperatures.is_empty().then_some(self.temperature));
+        let touches = all.map(|kelvin| ResampledLaw::earliest_touch_of(&self.table, kelvin));
+        let touch = touches.fold(f64::INFINITY, f64::min);
         let lowest = match &*self.face {
             Face::Points(points) => points.z.iter().copied().fold(f64::INFINITY, f64::min),
             Face::Tread(tread) => tread.section.at(0.0).0[1] + tread.offset[2],

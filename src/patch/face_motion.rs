@@ -3,6 +3,7 @@
 use super::face::Face;
 use super::heat::StepHeat;
 use super::motion::{PoseMotion, Substep, Substeps, TreadMotion};
+use super::work::WorkCounter;
 use crate::math::Dual;
 
 /// The motion of the face and of its tread through a step.
@@ -16,6 +17,7 @@ pub(super) struct FaceMotion<'a, T> {
     pub(super) tread_speed: f64,
     /// Where slip warms the elements.
     pub(super) heat: Option<StepHeat>,
+    pub(super) work: &'a WorkCounter,
 }
 
 /// The elements that a step takes in, by their indices before it.
@@ -32,10 +34,10 @@ pub(super) struct ElementRange {
 impl<'a> FaceMotion<'a, f64> {
     /// The same motion with derivatives by the changes of the body's coordinates.
     pub(super) fn with_tangents(&self) -> FaceMotion<'a, Dual<6>> {
-        let Self { face, body, tread, substeps, tread_speed, heat } = *self;
+        let Self { face, body, tread, substeps, tread_speed, heat, work } = *self;
         let PoseMotion { start, change, duration } = body;
         let change = std::array::from_fn(|i| Dual::variable(change[i], i));
-        FaceMotion { face, body: PoseMotion { start, change, duration }, tread, substeps, tread_speed, heat }
+        FaceMotion { face, body: PoseMotion { start, change, duration }, tread, substeps, tread_speed, heat, work }
     }
 }
 

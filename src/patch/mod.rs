@@ -15,6 +15,7 @@
 //! | `segments` | an element whose pressure changes much in a substep |
 //! | `lanes` | elements of a block, side by side |
 //! | `heat` | elements that slip warms |
+//! | `work` | what the elements of a step go through, counted and limited |
 //! | `face_motion` | motion of the face through a step |
 //! | `step_sums` | what the blocks of a step add up to |
 //! | `block_contacts` | elements of a block at an instant, with their law |
@@ -44,6 +45,7 @@ mod segments;
 mod state;
 mod step_sums;
 mod variables;
+mod work;
 mod worker_pool;
 
 pub use definition::{Patch, PatchElement, PatchError};

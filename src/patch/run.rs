@@ -10,9 +10,10 @@ use super::heat::{ElementHeat, StepHeat};
 use super::motion::{PoseMotion, Substeps, TreadMotion};
 use super::state::{
     MotionError, PatchMotion, PatchRestoreError, PatchStart, PatchState, Pose, Springs, Totals, check_duration,
-    max_substeps,
+    max_substeps, max_work,
 };
 use super::step_sums::{BeyondTable, StepSums, TooWarm};
+use super::work::WorkCounter;
 use super::worker_pool::{WorkerPool, threads};
 use crate::element::ResampledLaw;
 use crate::math::Dual;
@@ -135,7 +136,8 @@ impl PatchRun {
         // The springs are evaluated at the start alone: of the motion only its rates count.
         let body = PoseMotion { start: self.totals.pose.coordinates(), change: rates, duration: 1.0 };
         let face = &self.patch.face;
-        let step = FaceMotion { face, body, tread, substeps: Substeps::new(tread, 0.0, 1), tread_speed, heat: None };
+        let (substeps, work) = (Substeps::new(tread, 0.0, 1), WorkCounter::new(f64::MAX));
+        let step = FaceMotion { face, body, tread, substeps, tread_speed, heat: None, work: &work };
         let springs = (&self.springs, &mut self.next);
         let sums = WorkerPool::with_threads(1, &self.law).work(&step, &mut self.law, springs, |block, law, sums| {
             block.initialize(&step, law, sums);
@@ -196,7 +198,8 @@ impl PatchRun {
         self.set_temperature(temperature);
         let heat = self.step_heat(temperature);
         let face = Arc::clone(&self.patch.face);
-        let step = FaceMotion { face: &face, body, tread, substeps, tread_speed, heat };
+        let work = WorkCounter::new(max_work(self.patch.count()));
+        let step = FaceMotion { face: &face, body, tread, substeps, tread_speed, heat, work: &work };
         let (sums, tangents) = self.advance_springs(&step);
 
         // Refuse the step or take it over.
@@ -207,7 +210,8 @@ impl PatchRun {
             (transport_speed, tread_speed, temperature);
         // Just below a whole number, rounding may give 1.
         reached.place = (tread.entered_at(1.0) - tread.whole_cells()).min(1.0_f64.next_down());
-        let checked = reached.check(tangents.as_ref());
+        let counted = if work.is_exceeded() { Err(MotionError::TooMuchWork { time: before.time }) } else { Ok(()) };
+        let checked = counted.and_then(|()| reached.check(tangents.as_ref()));
         if let Err(error) =
             checked.and_then(|()| self.check_table(temperature, &sums, |fraction| before.time + fraction * duration))
         {

@@ -32,14 +32,16 @@ struct Between<T> {
     law: SpringLaw<T>,
 }
 
-/// Takes the spring of an element from one endpoint to the other, displaced by `displacement` (m).
+/// Takes the spring of an element from one endpoint to the other, displaced by `displacement` (m); also returns the number
+/// of segments.
 pub(super) fn advance_in_segments<T: Number>(
     law: &mut ResampledLaw,
     force: [T; 2],
     (begin, end): (&Endpoint<T>, &Endpoint<T>),
     displacement: [T; 2],
-) -> Advanced<T> {
+) -> (Advanced<T>, u32) {
     let cuts = cuts(law, begin, end);
+    let mut count = 0;
     let mut here = between(law, begin, end, T::constant(0.0));
     let mut advanced = Advanced { force, slips: false, slip: T::constant(0.0), release: 0.0 };
     for cut in cuts {
@@ -49,6 +51,7 @@ pub(super) fn advance_in_segments<T: Number>(
         // A piece up to the next cut.
         let (start, there) = (here.fraction, between(law, begin, end, cut));
         let segments = segment_count(here.pressure, there.pressure);
+        count += segments as u32;
         for segment in 1..=segments as u32 {
             let fraction = start + (cut - start).times(f64::from(segment) / segments);
             let next = between(law, begin, end, fraction);
@@ -70,7 +73,7 @@ pub(super) fn advance_in_segments<T: Number>(
             here = next;
         }
     }
-    advanced
+    (advanced, count)
 }
 
 /// The fractions of the substep at which the element touches or lifts and at which it is at the least pressure of the

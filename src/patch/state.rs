@@ -24,6 +24,15 @@ pub(super) fn max_substeps(elements: usize) -> f64 {
     (MAX_ELEMENT_SUBSTEPS / elements as f64).clamp(MIN_SUBSTEPS_ALLOWED, MAX_SUBSTEPS)
 }
 
+/// Units of work that a step may take for each substep that it may have: one is an element's part of the step, a segment
+/// is several.
+const MAX_WORK: f64 = 4.0;
+
+/// The most work that a step of a patch of `elements` may take.
+pub(super) fn max_work(elements: usize) -> f64 {
+    MAX_WORK * max_substeps(elements).max(MAX_ELEMENT_SUBSTEPS / elements as f64) * elements as f64
+}
+
 /// Where a body is and how it moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
@@ -116,6 +125,14 @@ pub enum MotionError {
         speed: f64,
         /// Whether a shorter step may end before.
         within: bool,
+    },
+    /// The elements go through too much.
+    #[error(
+        "gave up the step at t = {time} s: its elements go through too much, as where a body turns fast; do shorter steps"
+    )]
+    TooMuchWork {
+        /// The time, s.
+        time: f64,
     },
     /// The temperature is beyond the table.
     #[error("the temperature {kelvin} K is beyond the table at t = {time} s")]
@@ -386,6 +403,13 @@ impl Totals {
 }
 
 impl PatchState {
+    /// Copies `other`; of the same patch without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.totals = other.totals;
+        self.springs.clone_from(&other.springs);
+        self.tangents.clone_from(&other.tangents);
+    }
+
     /// Refuses numbers that no run can have reached.
     pub(super) fn check(&self, patch: &Patch) -> Result<(), PatchRestoreError> {
         let Springs { x, y, stiffness, mode, heat } = &self.springs;

@@ -73,6 +73,18 @@ impl Wlf {
         10.0_f64.powf(-self.c1 * above / (self.c2 + above))
     }
 
+    /// What a number below [`COLDEST`](Self::COLDEST) probably means.
+    fn in_kelvin(number: f64) -> String {
+        let kelvin = 273.15 + number;
+        format!("; temperatures are in K, {number} °C being {kelvin:.2} K, or \"{number} °C\"")
+    }
+
+    /// The temperatures (K) of some that are probably meant in °C.
+    pub fn meant_in_celsius(temperatures: &[f64]) -> Option<String> {
+        let cold = temperatures.iter().find(|kelvin| **kelvin < Self::COLDEST)?;
+        Some(format!("{cold} K is too cold for rubber{}", Self::in_kelvin(*cold)))
+    }
+
     /// T_ref - C_2, K: above it alone the law holds.
     pub fn lowest_temperature(&self) -> f64 {
         self.reference_temperature - self.c2
@@ -368,8 +380,9 @@ impl Wlf {
         if self.c2 + (self.temperature - self.reference_temperature) > 0.0 {
             return Ok(());
         }
+        let celsius = if self.temperature < Self::COLDEST { Self::in_kelvin(self.temperature) } else { String::new() };
         let expected = format!(
-            "more than material.wlf.reference_temperature - c2 = {:.2} K, where the shift has its pole",
+            "more than material.wlf.reference_temperature - c2 = {:.2} K, where the shift has its pole{celsius}",
             self.lowest_temperature()
         );
         let problem = Problem::value(format_args!("{:?}", self.temperature), expected);

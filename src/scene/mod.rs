@@ -24,6 +24,7 @@ mod profile;
 mod prony_file;
 mod reader;
 mod regular_file;
+mod seam;
 mod self_affine;
 mod spectrum;
 mod surface;
@@ -60,7 +61,7 @@ pub use material::{Heat, Material, PronyTerm, Wlf, complex_stiffness};
 pub use parameters::Parameter;
 pub use patch_file::{Backing, FaceHeat, FaceShape, Grid, NotDoubled, PatchFile, PatchGroup, TableExtrapolation};
 pub use profile::{
-    Areal, Extract, LengthUnit, LoadedProfile, MeasuredPoints, MeasuredSurface, Missing, ProfileOptions,
+    Areal, Depth, Extract, LengthUnit, LoadedProfile, MeasuredPoints, MeasuredSurface, Missing, ProfileOptions,
     SurfaceFormats, TextAlone, ThirdColumn, Tilt, UnknownWord, line_note,
 };
 pub use regular_file::{read_file, read_text};

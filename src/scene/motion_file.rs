@@ -4,7 +4,9 @@
 use super::carrier::{CarrierBodies, CarrierBody};
 use super::excitation::{Force, Path, Phase};
 use super::material::Wlf;
-use crate::tables::{ContentError, Dimension, Format, POSITIVE, ReadingNote, Table, Wanted, Words, decode};
+use crate::tables::{
+    Choice, Column, ContentError, Dimension, Format, POSITIVE, ReadingNote, Table, Wanted, Words, decode,
+};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum OfMotion {
@@ -12,6 +14,8 @@ enum OfMotion {
     U,
     W,
     Load,
+    /// F_z as a tester has it: a load where the carrier bears one, or else what came of the motion.
+    NormalForce,
     Pull,
     Pressure,
     Temperature,
@@ -25,7 +29,13 @@ const MOTION: Format<OfMotion, 7> = Format {
             Words::new(OfMotion::Time, Dimension::Time, "time t zeit", ""),
             Words::new(OfMotion::U, Dimension::Length, "u x", "displacement carrier"),
             Words::new(OfMotion::W, Dimension::Length, "w z", "displacement carrier"),
-            Words::new(OfMotion::Load, Dimension::Force, "load f_z fz", "normal force"),
+            Words::new(OfMotion::Load, Dimension::Force, "load", "normal force"),
+            Words::new(
+                OfMotion::NormalForce,
+                Dimension::Force,
+                "fz fn normal normalkraft f+z f+n",
+                "force vertical z n f measured",
+            ),
             Words::new(OfMotion::Pull, Dimension::Force, "pull", "tangential force"),
             Words::new(OfMotion::Pressure, Dimension::Pressure, "pressure", "mean"),
             Words::new(OfMotion::Temperature, Dimension::Temperature, "temperature temp", ""),
@@ -34,7 +44,10 @@ const MOTION: Format<OfMotion, 7> = Format {
             Wanted::new(&[OfMotion::Time], "time", "times"),
             Wanted::new(&[OfMotion::U], "u", "displacements u"),
             Wanted::new(&[OfMotion::W], "w", "displacements w"),
-            Wanted::new(&[OfMotion::Load], "load", "loads").optional(),
+            Wanted {
+                choice: Choice::FirstQuantity,
+                ..Wanted::new(&[OfMotion::Load, OfMotion::NormalForce], "load", "loads").optional()
+            },
             Wanted::new(&[OfMotion::Pull], "pull", "tangential forces").optional(),
             Wanted::new(&[OfMotion::Pressure], "pressure", "pressures").optional(),
             Wanted::new(&[OfMotion::Temperature], "temperature", "temperatures").optional().within(POSITIVE),
@@ -44,12 +57,22 @@ const MOTION: Format<OfMotion, 7> = Format {
     )
 };
 
-/// The phases between the rows of a file. u and w count from the first row: the carrier moves from where it stands.
+/// The phases between the rows of a file, for a carrier whose bodies are these. u and w count from the first row: the
+/// carrier moves from where it stands.
 ///
 /// A temperature is held from row to row.
-pub(super) fn read_motion(bytes: &[u8]) -> Result<(Vec<Phase>, Vec<ReadingNote>), ContentError> {
+pub(super) fn read_motion(
+    bytes: &[u8],
+    carrier: &CarrierBodies,
+) -> Result<(Vec<Phase>, Vec<ReadingNote>), ContentError> {
     let text = decode(bytes)?;
-    let Table { columns, rows, mut notes, .. } = MOTION.read(&text)?;
+    let Table { mut columns, rows, mut notes, line, .. } = MOTION.read(&text)?;
+    if let Some(measured) = columns[3].take_if(|column| is_measured(column) && carrier.z.is_none()) {
+        notes.retain(|note| !note.text.contains(&measured.label()));
+        let text = format!("{} is left out: without [carrier.z] it comes of w", measured.label());
+        notes.push(ReadingNote { text, assumed: true });
+    }
+    check_forces(&columns, line, carrier)?;
     let first = rows.first().copied().unwrap_or_default();
     if first[1..3] != [0.0, 0.0] {
         let text = format!("u and w count from the first row, {:?} m and {:?} m", first[1], first[2]);
@@ -76,21 +99,40 @@ pub(super) fn read_motion(bytes: &[u8]) -> Result<(Vec<Phase>, Vec<ReadingNote>)
     Ok((rows.windows(2).map(phase).collect(), notes))
 }
 
+fn is_measured(column: &Column<OfMotion>) -> bool {
+    column.quantity == OfMotion::NormalForce
+}
+
+/// Refuses forces on an axis along which the carrier is no body, and two loads.
+fn check_forces(
+    [_, _, _, load, pull, pressure, _]: &[Option<Column<OfMotion>>; 7],
+    line: Option<usize>,
+    carrier: &CarrierBodies,
+) -> Result<(), ContentError> {
+    let no_z = "no load and no pressure without [carrier.z]";
+    let refused = [
+        (pressure, load.is_some(), "no load beside pressure"),
+        (load, carrier.z.is_none(), no_z),
+        (pressure, carrier.z.is_none(), no_z),
+        (pull, carrier.x.is_none(), "no pull without [carrier.x]"),
+    ];
+    match refused.into_iter().find(|(column, is_refused, _)| column.is_some() && *is_refused) {
+        Some((Some(column), _, expected)) => Err(ContentError::value(line, "columns", &column.label(), expected)),
+        _ => Ok(()),
+    }
+}
+
 /// What a file must not have for a carrier whose bodies are these, with `material.wlf` where the temperature is an input.
 pub(super) fn obstacle(phase: &Phase, carrier: &CarrierBodies, temperature: Option<&Wlf>) -> Option<&'static str> {
     let [body_x, body_z] = [&carrier.x, &carrier.z];
     let is_free = |body: &Option<CarrierBody>| body.as_ref().is_some_and(|body| !body.has_drive());
     let fits = |kelvin: f64| temperature.is_some_and(|wlf| Wlf { temperature: kelvin, ..*wlf }.check().is_ok());
-    let has_normal = phase.load.is_some() || phase.pressure.is_some();
     let obstacles = [
-        (phase.pressure.is_some() && phase.load.is_some(), "no load beside pressure"),
-        (has_normal && body_z.is_none(), "no load and no pressure without [carrier.z]"),
-        (phase.pull.is_some() && body_x.is_none(), "no pull without [carrier.x]"),
         (phase.u.rate != 0.0 && is_free(body_x), "no change of u with [carrier.x] that has no drive"),
         (phase.w.rate != 0.0 && is_free(body_z), "no change of w with [carrier.z] that has no drive"),
         (
             phase.temperature.is_some_and(|kelvin| !fits(kelvin)),
-            "no temperature without temperature = true in [input], nor one beyond the pole of WLF's equation",
+            "no temperature without temperature = true in [input], nor one beyond the pole of WLF's equation; temperatures are in K, 20 °C being 293.15 K",
         ),
     ];
     obstacles.into_iter().find_map(|(is_there, expected)| is_there.then_some(expected))
@@ -103,7 +145,8 @@ mod tests {
     #[test]
     fn rows_are_ends_of_straight_motions() {
         let text = "time [ms], u [mm], w [µm], load [N]\n0, 1, 0, 5\n2, 1.5, -40, 5\n3, 1.5, -40, 6\n";
-        let (phases, notes) = read_motion(text.as_bytes()).unwrap();
+        let on_body = CarrierBodies { z: Some(CarrierBody::default()), ..CarrierBodies::default() };
+        let (phases, notes) = read_motion(text.as_bytes(), &on_body).unwrap();
         let close = |a: f64, b: f64| (a - b).abs() <= 1e-12 * b.abs();
         assert!(phases.len() == 2 && close(phases[0].duration, 2e-3) && close(phases[0].u.rate, 0.25));
         assert!(close(phases[0].w.rate, -0.02) && phases[1].w.rate == 0.0 && phases[1].pull.is_none());
@@ -115,7 +158,26 @@ mod tests {
     #[test]
     fn files_that_are_no_motion_are_refused() {
         for text in ["time, u\n0, 1\n1, 2\n", "time, u, w\n0, 1, 2\n0, 1, 2\n", "time, u, w\n0, 1, x\n1, 1, 2\n", ""] {
-            assert!(read_motion(text.as_bytes()).is_err(), "{text}");
+            assert!(read_motion(text.as_bytes(), &CarrierBodies::default()).is_err(), "{text}");
         }
+    }
+
+    /// A tester's log has the forces that came of the motion; a load is none.
+    #[test]
+    fn measured_forces_are_left_out_or_loads() {
+        let none = CarrierBodies::default();
+        let on_body = CarrierBodies { z: Some(CarrierBody::default()), ..CarrierBodies::default() };
+        let log = |name: &str| format!("time [s],Fx [N],u [mm],{name},w [mm]\n0,1,0,5,-0.01\n1,1,1,5,-0.01\n");
+        for name in ["Fz [N]", "F_z [N]", "Fn [N]", "Normal force [N]", "normal_force_N"] {
+            let (phases, notes) = read_motion(log(name).as_bytes(), &none).unwrap();
+            let said = format!("column 4 ({name}) is left out: without [carrier.z] it comes of w");
+            assert!(phases[0].load.is_none(), "{name}");
+            assert!(notes.iter().any(|note| note.assumed && note.text == said), "{name} {notes:?}");
+            let (phases, _) = read_motion(log(name).as_bytes(), &on_body).unwrap();
+            assert_eq!(phases[0].load.and_then(|load| load.start), Some(5.0), "{name}");
+        }
+        let refused = read_motion(log("load [N]").as_bytes(), &none).unwrap_err().to_string();
+        let expected = "columns = column 4 (load [N]): expected no load and no pressure without [carrier.z]";
+        assert_eq!(refused, expected);
     }
 }

@@ -92,6 +92,11 @@ impl Surface {
         self.periodic
     }
 
+    /// Whether all its heights are the same.
+    pub(super) fn is_level(&self) -> bool {
+        self.z.windows(2).all(|pair| pair[0] == pair[1])
+    }
+
     /// The power law that it was made of; `None` for every other profile.
     pub fn self_affine(&self) -> Option<SelfAffine> {
         self.self_affine
@@ -280,7 +285,10 @@ fn close(z: &mut [f64]) -> Result<(), PointsError> {
     let height = peak_to_valley(z);
     let [first, .., last] = z else { return Ok(()) };
     if (*last - *first).abs() > ROUNDING * height {
-        let expected = format!("{first:?}, the first height, for a periodic profile ends at the height it starts from");
+        let expected = format!(
+            "{first:?}, the first height, for a periodic profile ends at the height it starts from; \
+             asperity surface --mirror makes a period of one that ends"
+        );
         return Err(PointsError { coordinate: Coordinate::Z, index: Some(z.len() - 1), expected });
     }
     *last = *first;

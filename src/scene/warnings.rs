@@ -65,16 +65,18 @@ pub(super) fn other_units(scene: &Scene) -> Vec<String> {
     /// Below and above these no rubber is found, and no layer of it.
     const LENGTHS: (f64, f64) = (1e-10, 10.0);
     const DENSITIES: (f64, f64) = (50.0, 3e4);
-    const GLASSY_MODULI: (f64, f64) = (1e3, 1e13);
+    const MODULI: (f64, f64) = (1e3, 1e13);
     let Some(material) = &scene.material else { return Vec::new() };
     let glassy = material.equilibrium_modulus + material.prony.iter().map(|term| term.modulus).sum::<f64>();
     let lengths = "lengths are in m, \"25 µm\" being 25e-6";
+    let moduli = "moduli are in Pa, \"8 MPa\" being 8e6";
     let checked = [
         ("layer.spacing", Some(scene.layer.spacing), LENGTHS, lengths),
         ("layer.thickness", scene.layer.thickness, LENGTHS, lengths),
         ("layer.width", scene.layer.width, LENGTHS, lengths),
         ("material.density", Some(material.density), DENSITIES, "it is in kg/m³, \"1.1 g/cm³\" being 1100"),
-        ("the glassy modulus", Some(glassy), GLASSY_MODULI, "moduli are in Pa, \"8 MPa\" being 8e6"),
+        ("material.equilibrium_modulus", Some(material.equilibrium_modulus), MODULI, moduli),
+        ("the glassy modulus", Some(glassy), MODULI, moduli),
     ];
     let unlikely = |(name, value, (least, most), unit): (&str, Option<f64>, (f64, f64), &str)| {
         let value = value.filter(|&value| value > 0.0 && !(least..=most).contains(&value))?;
@@ -82,6 +84,29 @@ pub(super) fn other_units(scene: &Scene) -> Vec<String> {
         Some(format!("{name} = {value:?} is very {far}, perhaps in another unit: {unit}"))
     };
     checked.into_iter().filter_map(unlikely).collect()
+}
+
+/// A layer that is no layer on this profile: its masses lie farther apart than that is long, or it covers periods without
+/// number.
+pub(super) fn other_spacing(scene: &Scene) -> Option<String> {
+    /// Some tens of periods are a mean over them; a unit that is mistaken makes a thousand.
+    const MOST_PERIODS: f64 = 100.0;
+    let (layer, surface) = (&scene.layer, &scene.surface);
+    if layer.masses < 2 || surface.is_level() {
+        return None;
+    }
+    let (spacing, length) = (layer.spacing, surface.reach().length());
+    let unit = "lengths are in m, \"25 µm\" being 25e-6";
+    if spacing > length {
+        return Some(format!("layer.spacing = {spacing:?} m is more than the whole profile of {length:.4e} m: {unit}"));
+    }
+    let periods = spacing * layer.masses as f64 / length;
+    (surface.is_periodic() && periods > MOST_PERIODS).then(|| {
+        format!(
+            "the layer is {periods:.0} times as long as the profile's period of {length:.4e} m, by layer.spacing = {spacing:?} m: \
+             {unit}"
+        )
+    })
 }
 
 /// Temperatures that are probably meant in °C.
@@ -104,8 +129,8 @@ impl Surface {
     fn too_short_for(&self, travel: Reach) -> bool {
         let reach = self.reach();
         let rounding = ROUNDING * (reach.high - reach.low);
-        let level = || self.z().windows(2).all(|pair| pair[0] == pair[1]);
-        !self.is_periodic() && (travel.low < reach.low - rounding || reach.high + rounding < travel.high) && !level()
+        let is_short = travel.low < reach.low - rounding || reach.high + rounding < travel.high;
+        !self.is_periodic() && is_short && !self.is_level()
     }
 }
 
@@ -141,6 +166,10 @@ impl fmt::Display for Reach {
 }
 
 impl Reach {
+    fn length(self) -> f64 {
+        self.high - self.low
+    }
+
     fn plus(self, other: Self) -> Self {
         Self { low: self.low + other.low, high: self.high + other.high }
     }
@@ -203,6 +232,33 @@ mod tests {
         let text = "the roughness reaches from 0.0 m to 0.5 m, but the layer from 0.0 m to 0.75 m: \
                     beyond its ends the roughness goes on straight, along its end tangents";
         assert_eq!(roughness("[0, 0.5]"), [text]);
+    }
+
+    /// Of a sine of 1 mm: 0.25 mm as 0.25 m, and as 250 µm a layer of 40 periods.
+    #[test]
+    fn a_layer_that_is_no_layer_on_its_profile_is_a_warning() {
+        let found = |masses: u32, spacing: f64| {
+            let layer = format!("layer = {{ masses = {masses}, spacing = {spacing}, mass = 1 }}");
+            warnings_of(&format!(
+                "name = 'l'\n{layer}\nsurface = {{ kind = 'sinusoid', amplitude = 1e-6, wavelength = 1e-3 }}"
+            ))
+        };
+        assert_eq!((found(160, 2.5e-4), found(1, 0.25)), (Vec::<String>::new(), Vec::new()));
+        let text = "layer.spacing = 0.25 m is more than the whole profile of 1.0000e-3 m: lengths are in m, \"25 µm\" being 25e-6";
+        assert_eq!(found(160, 0.25), [text]);
+        assert!(found(1000, 9e-4)[0].starts_with("the layer is 900 times as long as the profile's period"));
+    }
+
+    #[test]
+    fn moduli_of_a_few_pascals_are_a_warning() {
+        let found = warnings_of(
+            "name = 'm'\nlayer = { masses = 4, spacing = 1e-4, thickness = 1e-3, width = 1e-2 }\nsurface = { kind = 'flat' }
+            material = { density = 1100, poisson_ratio = 0.49, equilibrium_modulus = 4.4, prony = [{ modulus = 1e7, relaxation_time = 1 }] }",
+        );
+        assert!(
+            found.len() == 1 && found[0].starts_with("material.equilibrium_modulus = 4.4 is very small"),
+            "{found:?}"
+        );
     }
 
     #[test]

@@ -56,7 +56,7 @@ impl WorkLimit {
         Self { tried: 0, max_steps, mass_steps: max_mass_steps }
     }
 
-    /// Counts a step of so many `masses` that is tried at `time`, s.
+    /// Counts a step that takes the work of so many `masses` and is tried at `time`, s.
     pub(super) fn count(&mut self, time: f64, masses: usize) -> Result<(), SimulationError> {
         if self.tried >= self.max_steps {
             return Err(SimulationError::TooManySteps { time, steps: self.max_steps });

@@ -182,7 +182,7 @@ impl Stepper for EventDriven {
         loop {
             // Try it. The step that an event cuts short says how long the next may be; the shorter ones need no error
             // test.
-            work.count(context.state.time(), context.model.masses())?;
+            work.count(context.state.time(), context.model.work_of_step())?;
             let test = match proposal {
                 Some(_) if context.shorter_is_no_worse() => StepTest::Solved,
                 _ if h > RESOLVED * bounds.shortest => StepTest::Full,

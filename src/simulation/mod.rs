@@ -17,6 +17,7 @@ mod derivative_tests;
 mod event_driven;
 mod interrupt;
 mod local_regions;
+mod memory;
 mod motion;
 mod reference_run;
 mod run;
@@ -71,10 +72,11 @@ impl Simulation {
     ///
     /// # Errors
     /// [`SimulationError::OutOfRange`] where `start` is not finite, [`SimulationError::Scene`] where parameters set one
-    /// by one do not go together.
+    /// by one do not go together, [`SimulationError::Memory`] where the machine does not have it.
     pub fn new(scene: &Scene, start: &Start) -> Result<Self, SimulationError> {
         start.check()?;
         scene.check()?;
+        memory::check(scene)?;
         scene.check_equilibrium(start.load)?;
         let Some(wlf) = scene.material.as_ref().and_then(|material| material.wlf).filter(|_| scene.temperature_input)
         else {
@@ -83,6 +85,11 @@ impl Simulation {
         let temperature = start.temperature.unwrap_or(wlf.temperature);
         let start = Start { temperature: Some(temperature), ..*start };
         Ok(Self::started(&scene.at_temperature(temperature)?, &start))
+    }
+
+    /// Memory in bytes that a run of `scene` takes. It is an upper bound that tests hold against what runs allocate.
+    pub fn memory(scene: &Scene) -> usize {
+        memory::of_run(scene)
     }
 
     fn started(scene: &Scene, start: &Start) -> Self {
@@ -110,6 +117,16 @@ impl Simulation {
         SimulationState { run: self.run.context.state.clone(), reference_run }
     }
 
+    /// As [`state`](Self::state), into a state that there is; allocates nothing where that is of the same scene.
+    pub fn save_into(&self, state: &mut SimulationState) {
+        state.copy_runs(self.runs().map(|run| &run.context.state));
+    }
+
+    /// Counts a communication step of a master that was done again from its start.
+    pub fn count_repetition(&mut self) {
+        self.run.context.state.counters.repeated += 1;
+    }
+
     /// A simulation of `scene` in `state`: it goes on bit for bit as the one whose state this is.
     ///
     /// # Errors
@@ -131,6 +148,15 @@ impl Simulation {
         for (run, state) in self.runs().zip(state.states()) {
             state.check(&run.context.state, &run.context.model, &run.context.settings)?;
         }
+        Ok(self.continue_from(state)?)
+    }
+
+    /// Continues from `state`, which a run of the same scene has saved, or which was checked when it was read; allocates
+    /// nothing.
+    ///
+    /// # Errors
+    /// [`ParameterError`] where the scene has no model at the state's temperature, which none of its runs reaches.
+    pub fn continue_from(&mut self, state: &SimulationState) -> Result<(), ParameterError> {
         if state.run.start != self.run.context.state.start {
             self.freeze_dashpots(state.run.start);
         }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::math::NotEnoughMemory;
 pub use crate::scene::Motion;
 use crate::scene::{Force, LARGEST, ParameterError, Path, is_possible};
 
@@ -76,6 +77,9 @@ pub enum SimulationError {
     /// Parameters that do not go together, as [`Scene::check`](crate::scene::Scene::check) finds.
     #[error(transparent)]
     Scene(#[from] ParameterError),
+    /// The machine does not have the memory for it.
+    #[error(transparent)]
+    Memory(#[from] NotEnoughMemory),
 }
 
 /// A mode change of one mass.

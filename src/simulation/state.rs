@@ -29,6 +29,22 @@ pub struct SimulationState {
 }
 
 impl SimulationState {
+    /// Copies `other`; of the same scene without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.copy_runs(other.states());
+    }
+
+    /// Copies the states of a run and of its reference run, where there is one.
+    pub(super) fn copy_runs<'a>(&mut self, mut states: impl Iterator<Item = &'a RunState>) {
+        if let Some(run) = states.next() {
+            self.run.copy_from(run);
+        }
+        match (&mut self.reference_run, states.next()) {
+            (Some(mine), Some(theirs)) => mine.copy_from(theirs),
+            (mine, theirs) => *mine = theirs.cloned(),
+        }
+    }
+
     /// Of the run, and of the reference run where there is one.
     pub(super) fn states(&self) -> impl Iterator<Item = &RunState> {
         std::iter::once(&self.run).chain(&self.reference_run)
@@ -89,7 +105,7 @@ impl RunState {
         }
     }
 
-    /// Copies `other`, of the same scene, without allocating.
+    /// Copies `other`; of the same scene without allocating.
     pub(super) fn copy_from(&mut self, other: &Self) {
         let Self { carrier, s, layer, rates_valid, energies, counters, controller, .. } = other;
         let Self { tangents, start, temperature, time_stepping, mode_changes_per_step, .. } = other;

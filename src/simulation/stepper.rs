@@ -63,7 +63,7 @@ pub(super) trait Stepper {
         let test = if context.shorter_is_no_worse() { StepTest::Solved } else { StepTest::Full };
         let mut length = h;
         while !self.try_shorter(context, length, test) {
-            work.count(context.state.time(), context.model.masses())?;
+            work.count(context.state.time(), context.model.work_of_step())?;
             if length <= SHORTEST_CUT * h {
                 return Err(context.step_too_small(length));
             }

@@ -107,7 +107,7 @@ impl Stepper for TimeStepping {
         let bounds = context.length_bounds(duration)?;
         let mut h = bounds.fit(context.state.controller.step_size.min(bounds.longest));
         loop {
-            work.count(context.state.time(), context.model.masses())?;
+            work.count(context.state.time(), context.model.work_of_step())?;
             let test = if h <= bounds.shortest { StepTest::Solved } else { StepTest::Full };
             if let Some(attempt) = self.try_step(context, h, test) {
                 let Context { model, state: run, integrator, .. } = context;

@@ -91,22 +91,17 @@ impl<'a, Q: Copy + PartialEq> Header<'a, Q> {
         let Some(heading) = self.headings.get(index).and_then(Option::as_ref) else {
             return Err(ContentError::value(self.line, "columns", &self.given(), "a name that is known"));
         };
-        let (dimension, units) = (heading.dimension, heading.dimension.units());
-        let key = || format!("unit of {}", self.label(index));
-        let refuse = |unit: &str, expected: &str| Err(ContentError::value(self.line, &key(), unit, expected));
+        let dimension = heading.dimension;
         let named = match (given, &heading.unit) {
             (Some(unit), _) if unit.is_of(dimension) => Some(unit),
-            (Some(unit), _) => return refuse(unit.name, &format!("one of {units}")),
+            (Some(unit), _) => return Err(self.refuse_unit(index, unit.name, dimension)),
             _ if rule == UnitRule::Ignored => Some(Unit::ONE),
-            (None, HeadingUnit::Known(unit)) => Some(*unit),
             (None, HeadingUnit::None) if dimension == Dimension::Number => Some(Unit::ONE),
-            (None, HeadingUnit::None) => None,
-            (None, HeadingUnit::Unknown(unit)) => {
-                return refuse(&format!("\"{}\"", shortened(unit)), &format!("one of {units}"));
-            }
+            (None, unit) => self.known_unit(index, unit, dimension)?,
         };
         if named.is_none() && rule == UnitRule::Named {
-            return refuse("", &format!("it beside the name: one of {units}"));
+            let expected = format!("it beside the name: one of {}", dimension.units());
+            return Err(ContentError::value(self.line, &self.unit_key(index), "", &expected));
         }
         Ok(Column {
             index,
@@ -117,6 +112,28 @@ impl<'a, Q: Copy + PartialEq> Header<'a, Q> {
             condition: self.conditions.get(index).copied().flatten(),
             logarithm: heading.logarithm,
         })
+    }
+
+    /// The unit of the column at a place, whatever its name: the one beside that or in the line below it.
+    ///
+    /// # Errors
+    /// [`ContentError`] where that is none of the dimension.
+    pub fn unit(&self, index: usize, dimension: Dimension) -> Result<Option<Unit>, ContentError> {
+        let text = |texts: &'_ [Cow<'a, str>]| texts.get(index).map_or_else(String::new, |text| text.to_string());
+        let unit = HeadingUnit::beside(&text(&self.names), &text(&self.head.units), dimension);
+        self.known_unit(index, &unit, dimension)
+    }
+
+    fn known_unit(&self, index: usize, unit: &HeadingUnit, dimension: Dimension) -> Result<Option<Unit>, ContentError> {
+        unit.known().map_err(|text| self.refuse_unit(index, &format!("\"{}\"", shortened(text)), dimension))
+    }
+
+    fn refuse_unit(&self, index: usize, found: &str, dimension: Dimension) -> ContentError {
+        ContentError::value(self.line, &self.unit_key(index), found, &format!("one of {}", dimension.units()))
+    }
+
+    fn unit_key(&self, index: usize) -> String {
+        format!("unit of {}", self.label(index))
     }
 
     /// The columns that are not among those `used`, in a note.
@@ -200,6 +217,32 @@ impl<Q: Copy> Column<Q> {
             }
             None => Ok(()),
         }
+    }
+
+    /// Refuses to assume a unit beside `others` of the same quantity, lengths and areas being one, that name another one.
+    ///
+    /// # Errors
+    /// [`ContentError`] in the line of the `names`.
+    pub fn check_beside<'c>(
+        &self,
+        others: impl IntoIterator<Item = &'c Self>,
+        names: Option<usize>,
+    ) -> Result<(), ContentError>
+    where
+        Q: 'c,
+    {
+        let quantity = |unit: &Unit| if unit.dimension == Dimension::Area { Dimension::Length } else { unit.dimension };
+        let Some(assumed) = self.assumed_unit() else { return Ok(()) };
+        let is_other =
+            |other: &&Self| other.names_unit && quantity(&other.unit) == quantity(&assumed) && !other.unit.is_si();
+        let Some(other) = others.into_iter().find(is_other) else { return Ok(()) };
+        let expected = format!(
+            "the unit beside its name, as in {} [{assumed}], for {} names {}",
+            self.text,
+            other.label(),
+            other.unit
+        );
+        Err(ContentError::value(names, &format!("unit of {}", self.label()), "", &expected))
     }
 
     /// How the column was found and its unit, where its numbers are called `meaning`.

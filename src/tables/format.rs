@@ -85,6 +85,30 @@ pub struct Table<'a, Q, const N: usize> {
     pub above: Vec<Line<'a>>,
 }
 
+impl<Q: Copy, const N: usize> Table<'_, Q, N> {
+    /// Refuses lengths and areas that name no unit beside others that do and are not in SI units: they are hardly in m.
+    ///
+    /// # Errors
+    /// [`ContentError`] with the first column without a unit.
+    pub fn check_units(&self) -> Result<(), ContentError> {
+        let of_size = || {
+            let is_size = |column: &&Column<Q>| matches!(column.unit.dimension, Dimension::Length | Dimension::Area);
+            self.columns.iter().flatten().filter(is_size)
+        };
+        let (unnamed, named) = (
+            of_size().find(|column| !column.names_unit),
+            of_size().find(|column| column.names_unit && !column.unit.is_si()),
+        );
+        match (unnamed, named) {
+            (Some(column), Some(other)) => {
+                let expected = format!("it beside the name, as {} names {}", other.label(), other.unit);
+                Err(ContentError::value(self.line, &format!("unit of {}", column.label()), "", &expected))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
 impl<Q> Wanted<Q> {
     /// A column that must be there, with any number, in SI units where it names none.
     pub const fn new(quantities: &'static [Q], name: &'static str, meaning: &'static str) -> Self {
@@ -190,6 +214,9 @@ impl<Q: Copy + PartialEq, const N: usize> Format<Q, N> {
             column.check_assumed(block, header.line)?;
             notes.push(column.note(wanted.meaning));
             *place = Some(column);
+        }
+        for column in columns.iter().flatten() {
+            column.check_beside(columns.iter().flatten(), header.line)?;
         }
         Ok(columns)
     }
@@ -347,6 +374,21 @@ mod tests {
         let longest = Format { others: Others::Tables, ..LOADS };
         let table = longest.read(two).unwrap_or_else(|error| unreachable!("{error}"));
         assert_eq!(table.notes[0].text, "lines 6 to 6, another table, are left out");
+    }
+
+    /// Beside a column in another unit SI is no guess.
+    #[test]
+    fn a_unit_is_not_assumed_beside_another_one() {
+        const POINTS: Format<u8, 2> = Format::new(
+            &[Words::new(0, Dimension::Length, "x", ""), Words::new(1, Dimension::Area, "area", "")],
+            [Wanted::new(&[0], "x", "positions"), Wanted::new(&[1], "area", "areas")],
+            "x,area",
+        );
+        let refused = POINTS.read("x [mm],area\n1,2\n").map_or_else(|error| error.to_string(), |_| String::new());
+        let expected = "unit of column 2 (area): expected the unit beside its name, as in area [m²], for column 1 (x [mm]) \
+                        names mm";
+        assert_eq!(refused, expected);
+        assert!(POINTS.read("x [m],area\n1,2\n").is_ok() && POINTS.read("x,area\n1,2\n").is_ok());
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! has one of its key words and no word beside its key and other words. It may also say what holds for all of its column:
 //! `E' [MPa] @ 20 °C`.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use super::numbers::number;
@@ -16,7 +17,7 @@ pub struct Words<Q: 'static> {
     pub quantity: Q,
     /// What its unit measures.
     pub dimension: Dimension,
-    /// One of these must be there.
+    /// One of these must be there; those of `s+mu` both.
     pub key_words: &'static str,
     /// These may stand beside it.
     pub other_words: &'static str,
@@ -65,6 +66,14 @@ impl HeadingUnit {
             Self::Unknown(text) => Err(text),
         }
     }
+
+    /// The unit of a dimension beside a name, whatever that is, or in a line of units below it.
+    pub fn beside(name: &str, below: &str, dimension: Dimension) -> Self {
+        let text = plain(&with_unit_below(name, below));
+        let all = || splits(&text).filter_map(|(_, place)| unit_of(place, dimension));
+        let is_known = |unit: &Self| matches!(unit, Self::Known(_));
+        all().find(is_known).or_else(|| all().next()).unwrap_or(Self::None)
+    }
 }
 
 impl<Q: Copy + PartialEq> Heading<Q> {
@@ -82,13 +91,14 @@ impl<Q: Copy + PartialEq> Heading<Q> {
 
     /// The heading with a unit from a line below it.
     pub fn with_unit(text: &str, unit: &str, vocabulary: &[Words<Q>]) -> Option<Self> {
-        let bare = unit.trim().trim_start_matches(['[', '(', '<']).trim_end_matches([']', ')', '>']);
-        if bare.is_empty() {
-            Self::parse(text, vocabulary)
-        } else {
-            Self::parse(&format!("{text} [{bare}]"), vocabulary)
-        }
+        Self::parse(&with_unit_below(text, unit), vocabulary)
     }
+}
+
+/// A name with the unit that stands in the line below it, if any does.
+fn with_unit_below<'t>(name: &'t str, unit: &str) -> Cow<'t, str> {
+    let bare = unit.trim().trim_start_matches(['[', '(', '<']).trim_end_matches([']', ')', '>']);
+    if bare.is_empty() { Cow::Borrowed(name) } else { Cow::Owned(format!("{name} [{bare}]")) }
 }
 
 /// What a name and the text at the place of its unit may mean.
@@ -99,10 +109,13 @@ fn readings<'v, Q: Copy>(
 ) -> impl Iterator<Item = (&'v Words<Q>, HeadingUnit)> {
     let found = words(name);
     vocabulary.iter().filter_map(move |words| {
-        let is_one_of = |words: &str, word: &String| words.split(' ').any(|known| known == word);
-        let is_key = |word: &String| is_one_of(words.key_words, word);
-        let is_known = |word: &String| is_key(word) || is_one_of(words.other_words, word);
-        let is_named = found.iter().any(is_key) && found.iter().all(is_known);
+        let is_there = |part: &str| found.iter().any(|word| word == part);
+        let mut keys = words.key_words.split(' ').filter(|key| key.split('+').all(is_there)).peekable();
+        let has_key = keys.peek().is_some();
+        let keys: Vec<&str> = keys.flat_map(|key| key.split('+')).collect();
+        let is_known =
+            |word: &String| keys.contains(&word.as_str()) || words.other_words.split(' ').any(|known| known == word);
+        let is_named = has_key && found.iter().all(is_known);
         if is_named { unit_of(place, words.dimension).map(|unit| (words, unit)) } else { None }
     })
 }
@@ -316,6 +329,30 @@ mod tests {
         }
         for text in ["y [mm]", "", "[mm]", "loss [MPa]", "x y"] {
             assert_eq!(read(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_unit_belongs_to_its_column_whatever_that_is_called() {
+        let read = |name: &str, below: &str| match HeadingUnit::beside(name, below, Dimension::Length) {
+            HeadingUnit::None => None,
+            HeadingUnit::Known(unit) => Some(unit.name),
+            HeadingUnit::Unknown(_) => Some("?"),
+        };
+        let cases = [
+            ("Texture [µm]", "", Some("µm")),
+            ("Sensor 3 (mm)", "", Some("mm")),
+            ("Signal in nm", "", Some("nm")),
+            ("Raw_um", "", Some("µm")),
+            ("Laser [µm] left", "", Some("µm")),
+            ("Relief", "[mm]", Some("mm")),
+            ("Data", "", None),
+            ("Value of sensor", "", None),
+            ("Signal [V]", "", Some("?")),
+            ("Signal", "counts", Some("?")),
+        ];
+        for (name, below, unit) in cases {
+            assert_eq!(read(name, below), unit, "{name} {below}");
         }
     }
 

@@ -268,6 +268,11 @@ const UNITS: &[(Unit, &[&str])] = &{
         (Unit::si(Speed), &["m/s", "ms-1"]),
         (Unit::part("mm/s", Speed, 1e3), &["mm/s"]),
         (Unit::part("km/h", Speed, 3.6), &["km/h", "kph"]),
+        (Unit::part("cm/s", Speed, 1e2), &["cm/s"]),
+        (Unit::part("µm/s", Speed, 1e6), &["um/s"]),
+        (Unit::part("m/min", Speed, 60.0), &["m/min"]),
+        (Unit::part("mm/min", Speed, 6e4), &["mm/min"]),
+        (Unit::new("mph", Speed, 0.44704), &["mph"]),
         (Unit::si(Force), &["N", "newton"]),
         (Unit::new("kN", Force, 1e3), &["kN"]),
         (Unit::si(Mass), &["kg"]),
@@ -311,7 +316,7 @@ mod tests {
     #[test]
     fn units_as_people_write_them() {
         use Dimension::{
-            Frequency, Length, LineSpectrum, Pressure, Rate, SurfaceSpectrum, Temperature, Time, WaveNumber,
+            Frequency, Length, LineSpectrum, Pressure, Rate, Speed, SurfaceSpectrum, Temperature, Time, WaveNumber,
         };
         let cases = [
             ("mm", Length, 1e-3),
@@ -332,6 +337,9 @@ mod tests {
             ("psi", Pressure, 6894.757293168361),
             ("ksi", Pressure, 6894757.293168361),
             ("min", Time, 60.0),
+            ("cm/s", Speed, 1e-2),
+            ("µm/s", Speed, 1e-6),
+            ("mph", Speed, 0.44704),
             ("µs", Time, 1e-6),
             ("hz", Frequency, TAU),
             ("MHZ", Frequency, 1e6 * TAU),

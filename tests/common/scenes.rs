@@ -19,9 +19,11 @@ impl SceneText {
         Self::of_keys(masses, spacing).set("layer.mass", mass)
     }
 
-    /// As many pieces of rubber, so long, thick and wide (m), with a Poisson's ratio of 0.49 and 1100 kg/m³.
+    /// As many pieces of rubber, so long, thick and wide (m), with a Poisson's ratio of 0.49 and 1100 kg/m³; its links
+    /// are springs.
     pub fn rubber(masses: usize, spacing: f64, thickness: f64, width: f64) -> Self {
         let layer = Self::of_keys(masses, spacing).set("layer.thickness", thickness).set("layer.width", width);
+        let layer = layer.set("layer.foundation", "springs");
         layer.set("material.density", 1100.0).set("material.poisson_ratio", 0.49)
     }
 

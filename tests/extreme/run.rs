@@ -82,6 +82,7 @@ impl From<SimulationError> for Stop {
             SimulationError::StepTooSmall { .. } => "StepTooSmall",
             SimulationError::OutOfRange { .. } => "OutOfRange",
             SimulationError::Scene(_) => "Scene",
+            SimulationError::Memory(_) => "Memory",
             SimulationError::Interrupted { .. } => "Interrupted",
         };
         Self { name, text: error.to_string() }

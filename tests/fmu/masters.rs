@@ -1,18 +1,21 @@
 //! The default scene and a patch in other people's masters.
 //!
-//! Each master gives the FMU its inputs at even times, without rates. The carrier, or the body, then goes on as it came: in
-//! the first step to u_0, in the others to u_n + (u_n - u_{n-1}). The library, moved straight along that path, gives the same.
+//! Each master gives the FMU its inputs at even times, without rates. The carrier, or the body, then goes straight from value
+//! to value, but for the last step, which goes on as it came: the first to u_0, the others to u_n + (u_n - u_{n-1}). The
+//! library, moved along the same paths, gives the same.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::common::{
-    Table, asperity, difference, fmpy, interpolate, largest, library, library_along, masters_python, pack, root, run,
-    scratch, simulate, target,
+    Table, asperity, difference, fmpy, interpolate, largest, library, masters_python, pack, root, run, scratch,
+    simulate, target,
 };
+use asperity::outputs::variables;
 use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchRun, PatchStart, Pose};
-use asperity::scene::Scene;
+use asperity::scene::{self, Scene};
+use asperity::simulation::{Motion, Simulation, Start};
 
 /// The communication step, s, and how many there are.
 const STEP: f64 = 1e-5;
@@ -57,7 +60,7 @@ impl Case {
 
     /// Compares the outputs called `prefix` and their names with what the library gives for `scene`.
     fn compare_outputs(&self, found: &Table, prefix: &str, scene: &Scene) {
-        let own = library_along(scene, &extrapolated(&self.values));
+        let own = library_predicting(scene, &self.values);
         for name in own.names() {
             let theirs = format!("{prefix}{name}");
             assert_close(&theirs, &found.column(&theirs), &own.column(name));
@@ -72,12 +75,35 @@ fn even_times(motion: &Table) -> Table {
     Table::new(["time", "u", "w"], (0..=STEPS).map(|i| row(i as f64 * STEP)))
 }
 
-/// Where the FMU takes the carrier, given values alone.
-fn extrapolated(values: &Table) -> Table {
+/// What the library gives along the values, straight from one to the next, where at each the last step is one to the value
+/// that is extrapolated there.
+fn library_predicting(scene: &Scene, values: &Table) -> Table {
     let [time, u, w] = ["time", "u", "w"].map(|name| values.column(name));
-    let target = |values: &[f64], i: usize| if i < 2 { values[0] } else { 2.0 * values[i - 1] - values[i - 2] };
-    let row = |i| vec![time[i], target(&u, i), target(&w, i)];
-    Table::new(["time", "u", "w"], (0..time.len()).map(row))
+    let mut simulation = Simulation::new(scene, &Start::default()).unwrap();
+    let variables = variables(scene);
+    let go = |simulation: &mut Simulation, i: usize, (to_u, to_w): (f64, f64)| {
+        let (duration, (u, w)) = (time[i + 1] - time[i], simulation.carrier());
+        let path = |from: f64, to: f64| scene::Path { rate: (to - from) / duration, ..scene::Path::default() };
+        simulation.advance(&Motion { duration, u: path(u, to_u), w: path(w, to_w), ..Motion::default() }).unwrap();
+    };
+    let row = |simulation: &mut Simulation| {
+        let mut row = vec![0.0; variables.len()];
+        simulation.evaluate(&variables, &mut row);
+        row
+    };
+    let mut rows = vec![row(&mut simulation)];
+    for i in 0..time.len() - 1 {
+        let mut last = simulation.clone();
+        go(&mut last, i, (extrapolated(&u, i), extrapolated(&w, i)));
+        rows.push(row(&mut last));
+        go(&mut simulation, i, (u[i + 1], w[i + 1]));
+    }
+    Table::new(variables.iter().map(|variable| variable.name.as_str()), rows)
+}
+
+/// Where a step from the value `i` on goes.
+fn extrapolated(values: &[f64], i: usize) -> f64 {
+    if i == 0 { values[0] } else { 2.0 * values[i] - values[i - 1] }
 }
 
 /// Runs a script of tests/python on an FMU and a motion; its result lies beside the motion.
@@ -134,26 +160,31 @@ fn inputs_at(patch: &Patch, time: f64) -> [f64; 7] {
     [time, 0.02 * time, z, 1e-4 * (50.0 * time).sin(), 0.0, 0.2 * time, 1.1 * (time / 0.02).min(1.0)]
 }
 
-/// All outputs after every step of a wheel that goes on as it came.
+/// All outputs after every step of a wheel of which the last step goes on as it came.
 fn wheel_along(patch: &Patch, inputs: &[[f64; 7]]) -> Table {
-    let target = |i: usize| -> [f64; 7] {
-        if i < 2 { inputs[0] } else { std::array::from_fn(|k| 2.0 * inputs[i - 1][k] - inputs[i - 2][k]) }
+    let extrapolated = |i: usize| -> [f64; 7] {
+        if i == 0 { inputs[0] } else { std::array::from_fn(|k| 2.0 * inputs[i][k] - inputs[i - 1][k]) }
     };
     let pose = |inputs: [f64; 7]| -> [f64; 6] { std::array::from_fn(|k| inputs[k]) };
     let mut wheel =
         PatchRun::new(patch, &PatchStart { pose: Pose::from_coordinates(pose(inputs[0])), ..PatchStart::default() })
             .unwrap();
-    let variables = patch.variables();
-    let row = |i: usize| {
-        let (from, to) = (wheel.pose().coordinates(), target(i));
+    let go = |wheel: &mut PatchRun, to: [f64; 7]| {
+        let from = wheel.pose().coordinates();
         let rates = std::array::from_fn(|k| (to[k] - from[k]) / ROLLING_STEP);
         let motion = PatchMotion { duration: ROLLING_STEP, rates, transport_speed: to[6], temperature: 0.0 };
         wheel.advance(&motion).unwrap();
+    };
+    let variables = patch.variables();
+    let row = |i: usize| {
+        let mut last = wheel.clone();
+        go(&mut last, extrapolated(i));
         let mut values = vec![0.0; variables.len()];
-        wheel.evaluate(&variables, &mut values);
+        last.evaluate(&variables, &mut values);
+        go(&mut wheel, inputs[i + 1]);
         values
     };
-    let rows = (1..inputs.len()).map(row);
+    let rows = (0..inputs.len() - 1).map(row);
     let names: Vec<_> = variables.iter().map(|variable| variable.name.as_str()).collect();
     Table::new(names, rows)
 }

@@ -23,7 +23,7 @@ w_rate = -1e-3
 
 /// Rubber on a sinusoid, for studies of convergence.
 const RUBBER: &str = "name = 'rubber'
-layer = { masses = 8, spacing = 2.5e-5, thickness = 1e-3, width = 1e-2 }
+layer = { foundation = 'springs', masses = 8, spacing = 2.5e-5, thickness = 1e-3, width = 1e-2 }
 material = { density = 1100, poisson_ratio = 0.49, equilibrium_modulus = 2e6, prony = [] }
 surface = { kind = 'sinusoid', amplitude = 1e-6, wavelength = 2e-4 }
 friction = { coulomb = 0.2 }

@@ -22,3 +22,4 @@ mod spoken;
 mod steady;
 mod surface;
 mod sweep;
+mod told;

@@ -182,7 +182,7 @@ fn tables_go_to_standard_output() {
     let rubber = folder.join("rubber.toml");
     fs::write(
         &rubber,
-        "name = 'rubber'\nlayer = { masses = 8, spacing = 2.5e-5, thickness = 1e-3, width = 1e-2 }\n\
+        "name = 'rubber'\nlayer = { foundation = 'springs', masses = 8, spacing = 2.5e-5, thickness = 1e-3, width = 1e-2 }\n\
          material = { density = 1100, poisson_ratio = 0.49, equilibrium_modulus = 2e6, prony = [] }\n\
          surface = { kind = 'sinusoid', amplitude = 1e-6, wavelength = 2e-4 }\nfriction = { coulomb = 0.2 }\n\
          solver = { method = 'step', relative_tolerance = 1e-3 }\n",

@@ -135,6 +135,10 @@ fn the_analysis_is_printed_and_plotted() {
 
 #[test]
 fn what_cannot_be_analysed_is_refused() {
+    let line = scratch("surface-smooth").join("line.csv");
+    write_line(line.parent().unwrap());
+    let refusal = failure(&["surface", line.to_str().unwrap(), "--smooth", "25"]);
+    assert!(refusal.contains("--smooth 25.0: expected at most") && refusal.contains("lengths are in m"), "{refusal}");
     let folder = scratch("surface-refused");
     let [source, profile] = ["scene.toml", "profile.csv"].map(|name| folder.join(name));
     fs::write(&source, scene("kind = 'file', path = 'profile.csv'")).unwrap();

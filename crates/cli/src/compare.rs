@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity_study::calibration::{Measured, chi_square_per_degree, in_words};
+use asperity_study::calibration::{Measured, chi_square_per_degree};
 use asperity_study::comparison::{Comparison, ComparisonError};
 use asperity_study::decimals::rounded;
 use asperity_study::sweep::{SweepTable, SweepTableError};
@@ -22,7 +22,11 @@ pub(crate) enum CompareError {
     Table(#[from] SweepTableError),
     #[error(transparent)]
     Comparison(#[from] ComparisonError),
-    #[error("{}: expected measurements within the speeds, pressures and temperatures of the table; it has none", .0.display())]
+    #[error(
+        "{}: expected measurements within the speeds, pressures and temperatures of the table, where its points have a result; it \
+         has none",
+        .0.display()
+    )]
     NoneWithin(PathBuf),
 }
 
@@ -36,9 +40,7 @@ pub(crate) fn compare(command: &Compare) -> Result<(), CompareError> {
     let table = SweepTable::read(&command.table)?;
     let comparison = Comparison::new(&table, &command.table, &command.data)?;
     comparison.notes.iter().for_each(|text| note(text));
-    if let Some(text) = left_out(&comparison.beyond) {
-        warn(&text);
-    }
+    comparison.left_out_in_words().iter().for_each(|text| warn(text));
     if comparison.within.is_empty() {
         return Err(CompareError::NoneWithin(command.data.clone()));
     }
@@ -46,15 +48,6 @@ pub(crate) fn compare(command: &Compare) -> Result<(), CompareError> {
     let swept = ModelCurves { name: "swept", stroke: Stroke::Line, points: comparison.swept.clone() };
     measured_friction::picture(&table.header.scene, &comparison.grid, &rows, &[swept]).write(&picture)?;
     Ok(print_beside([&picture], &summary(command, &comparison, &picture))?)
-}
-
-/// The measurements that the table does not reach, in one sentence.
-fn left_out(beyond: &[Measured]) -> Option<String> {
-    let named: Vec<String> =
-        beyond.iter().take(WORST).map(|row| format!("line {} ({})", row.line, in_words(&row.point))).collect();
-    let more = if beyond.len() > WORST { format!(" and {} more", beyond.len() - WORST) } else { String::new() };
-    let text = || format!("left out: {}{more}: the table does not reach there", named.join(", "));
-    (!beyond.is_empty()).then(text)
 }
 
 fn summary(command: &Compare, comparison: &Comparison, picture: &Path) -> String {

@@ -1,5 +1,6 @@
 //! Outputs as they are being written: beside their places, which they take whole.
 
+use std::ffi::OsStr;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Stdout, Write};
 use std::path::{Path, PathBuf};
@@ -8,7 +9,7 @@ use asperity_study::files;
 use tempfile::{Builder, NamedTempFile, TempDir};
 
 use super::interrupt::Leftover;
-use super::output::{FileError, STANDARD_OUTPUT, is_standard_output};
+use super::output::{FileError, STANDARD_OUTPUT, is_standard_output, is_stream};
 
 /// An output as it is being written. It takes its place when it is [finished](Self::finish); where the run ends before,
 /// whatever was there is still there.
@@ -83,11 +84,14 @@ impl Target {
         let mut prefix = std::ffi::OsString::from(".");
         prefix.push(place.file_name().unwrap_or_default());
         prefix.push(".");
+        remove_abandoned(folder, &prefix);
         let mut builder = Builder::new();
-        builder.prefix(&prefix).suffix(".part");
+        builder.prefix(&prefix).suffix(ENDING);
         #[cfg(unix)]
         builder.permissions(permissions(before.as_ref()));
         let file = builder.tempfile_in(folder)?;
+        // Held until the file has its place or its writer has ended; some file systems have no locks.
+        drop(file.as_file().try_lock());
         let leftover = Leftover::new(file.path());
         Ok(Self::Beside { file, place, leftover })
     }
@@ -123,6 +127,32 @@ impl Write for Target {
     }
 }
 
+/// How the names of drafts end.
+const ENDING: &str = ".part";
+
+/// Removes drafts of an output that begin with `prefix` and whose writers were killed: nobody holds their locks. One that
+/// is empty may just have been made.
+fn remove_abandoned(folder: &Path, prefix: &OsStr) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    let is_draft = |name: &OsStr| {
+        let name = name.to_string_lossy();
+        name.strip_prefix(&*prefix.to_string_lossy()).and_then(|rest| rest.strip_suffix(ENDING)).is_some_and(is_random)
+    };
+    for entry in entries.flatten().filter(|entry| is_draft(&entry.file_name())) {
+        let abandoned = File::open(entry.path()).is_ok_and(|file| {
+            file.metadata().is_ok_and(|found| found.is_file() && found.len() > 0) && file.try_lock().is_ok()
+        });
+        if abandoned {
+            drop(fs::remove_file(entry.path()));
+        }
+    }
+}
+
+/// Whether a part of a name is what makes drafts differ.
+fn is_random(part: &str) -> bool {
+    !part.is_empty() && part.chars().all(|letter| letter.is_ascii_alphanumeric())
+}
+
 /// Those of the file that was there, else those of any new file.
 #[cfg(unix)]
 fn permissions(before: Option<&fs::Metadata>) -> fs::Permissions {
@@ -141,25 +171,49 @@ pub(crate) fn print(text: &str) -> Result<(), FileError> {
     write(Path::new(STANDARD_OUTPUT), text)
 }
 
-/// Where a table is that is continued: in its place or, for standard output, in a folder of its own until it is whole.
+/// Where a table is that is continued: in its place or, for standard output and other streams, in a folder of its own until it is whole.
 #[derive(Debug)]
 pub(crate) struct TablePlace {
     pub(crate) path: PathBuf,
-    folder: Option<(TempDir, Leftover)>,
+    stream: Option<(PathBuf, TempDir, Leftover)>,
 }
 
 impl TablePlace {
     pub(crate) fn new(output: &Path) -> Result<Self, FileError> {
-        if !is_standard_output(output) {
-            return Ok(Self { path: output.to_owned(), folder: None });
+        if !is_stream(output) {
+            return Ok(Self { path: output.to_owned(), stream: None });
         }
         let folder = tempfile::tempdir().map_err(FileError::io("write", &std::env::temp_dir()))?;
         let leftover = Leftover::new(folder.path());
-        Ok(Self { path: folder.path().join("table.csv"), folder: Some((folder, leftover)) })
+        Ok(Self { path: folder.path().join("table.csv"), stream: Some((output.to_owned(), folder, leftover)) })
     }
 
-    /// Prints the whole table where it is for standard output.
+    /// Writes the whole table where it is for a stream.
     pub(crate) fn finish(self) -> Result<(), FileError> {
-        if self.folder.is_some() { print(&String::from_utf8_lossy(&files::bytes(&self.path)?)) } else { Ok(()) }
+        match &self.stream {
+            Some((output, ..)) => write(output, files::bytes(&self.path)?),
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn drafts_of_writers_that_were_killed_are_removed_and_no_others() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let (abandoned, other, named_alike) =
+            (at(".t.csv.Ab12Cd.part"), at(".u.csv.Ab12Cd.part"), at(".t.csv.x.y.part"));
+        [&abandoned, &other, &named_alike].into_iter().for_each(|path| fs::write(path, "1,2").unwrap());
+        let mut running = Draft::create(&at("t.csv")).unwrap();
+        running.write_all(&[b'1'; 1 << 16]).unwrap();
+        assert!(!abandoned.exists() && other.exists() && named_alike.exists());
+        write(&at("t.csv"), "whole").unwrap();
+        running.finish().unwrap();
+        assert_eq!(fs::read(at("t.csv")).unwrap().len(), 1 << 16);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
     }
 }

@@ -9,15 +9,15 @@ use asperity::scene::Scene;
 use super::draft::Draft;
 pub(crate) use super::draft::{print, write};
 pub(crate) use super::output::FileError;
-pub(crate) use super::output::{is_standard_output, named};
+pub(crate) use super::output::{is_standard_output, is_stream, named};
 use super::terminal::{LabelledLine, labelled, note, warn};
 use asperity_study::files;
 pub(crate) use asperity_study::files::name_of;
 use asperity_study::settings::Setting;
 
-/// The picture beside a table: the one named, else one with the table's name; none of a table on standard output.
+/// The picture beside a table: the one named, else one with the table's name; none of a table on standard output or another stream.
 pub(crate) fn picture_beside(table: &Path, named: Option<&PathBuf>) -> Option<PathBuf> {
-    named.cloned().or_else(|| (!is_standard_output(table)).then(|| table.with_extension("svg")))
+    named.cloned().or_else(|| (!is_stream(table)).then(|| table.with_extension("svg")))
 }
 
 /// Reads a scene, its keys overridden by `--set`, and prints its warnings and what was assumed in reading its tables.

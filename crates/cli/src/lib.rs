@@ -81,14 +81,19 @@ const FAILURE: u8 = 1;
 /// asked for.
 const NOT_REACHED: u8 = 3;
 
+/// Exit status of one whose results nobody reads any more: 128 and the number of SIGPIPE.
+const BROKEN_PIPE: u8 = 141;
+
 /// Executes a command line, the program's name first; prints its results, and the error that ended it. Returns the exit
 /// status. Does not return from `--help` and from a command line that cannot be understood.
-#[expect(clippy::print_stderr, reason = "the one place where the program prints the error that ended it")]
 pub fn execute(words: impl IntoIterator<Item = OsString>) -> u8 {
     match run(Arguments::parse_from(words)) {
         Ok(status) => status,
         Err(error) => {
-            eprintln!("asperity: {}", flags::with_flags(error));
+            if output::is_broken_pipe(&*error) {
+                return BROKEN_PIPE;
+            }
+            terminal::say(&flags::with_flags(error));
             FAILURE
         }
     }

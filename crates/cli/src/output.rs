@@ -1,5 +1,7 @@
 //! Names of files in messages, and what goes wrong with them.
 
+use std::error::Error;
+use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -11,7 +13,28 @@ pub(crate) const STANDARD_OUTPUT: &str = "-";
 
 /// Whether an output goes to standard output.
 pub(crate) fn is_standard_output(path: &Path) -> bool {
-    path == Path::new(STANDARD_OUTPUT)
+    [STANDARD_OUTPUT, "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|name| path == Path::new(name))
+}
+
+/// Whether an output is a pipe or a device, beside which no file belongs.
+pub(crate) fn is_stream(path: &Path) -> bool {
+    is_standard_output(path) || fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
+}
+
+/// Whether an error, or what caused it, is that nobody reads the output.
+pub(crate) fn is_broken_pipe(error: &(dyn Error + 'static)) -> bool {
+    let mut next = Some(error);
+    while let Some(error) = next {
+        let of_file = match error.downcast_ref::<FileError>() {
+            Some(FileError::Io { source, .. }) => Some(source),
+            _ => error.downcast_ref::<io::Error>(),
+        };
+        if of_file.is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe) {
+            return true;
+        }
+        next = error.source();
+    }
+    false
 }
 
 /// An output's name in messages.

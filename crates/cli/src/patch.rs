@@ -9,7 +9,7 @@ use crate::cli::Simulate;
 use crate::figure::{Figure as _, PatchHistory};
 use crate::files::{FileError, check_outputs, load_patch, named, print_beside};
 use crate::result_file::CsvWriter;
-use crate::terminal::{is_quiet, lines, warn};
+use crate::terminal::{lines, warn};
 use asperity_study::csv::{CsvError, Field};
 use asperity_study::decimals::with_prefix;
 use asperity_study::patch::MotionFile;
@@ -55,7 +55,7 @@ pub(crate) fn simulate(command: &Simulate, patch_file: &Path, motion_file: &Path
     let steps = format!("{} steps to t = {} s", motion.rows().len() - 1, run.time());
     let files = [output.as_path()].into_iter().chain(command.plot.as_deref()).map(named).collect::<Vec<_>>();
     let summary = lines(&[("At the end", forces), ("Run", steps), ("Written", files.join(", "))]);
-    if is_quiet() { Ok(()) } else { Ok(print_beside([&output], &summary)?) }
+    Ok(print_beside([&output], &summary)?)
 }
 
 /// Writes the rows of a run to the file and keeps them for the plot.

@@ -9,7 +9,7 @@ use asperity::simulation::Simulation;
 
 use super::terminal::{LabelledLine, labelled};
 use asperity_study::decimals::{rounded, with_prefix};
-use asperity_study::run_figures::{RunCost, RunFigures, Saving};
+use asperity_study::run_figures::{RunCost, RunFigures, Saving, implausible_run};
 
 /// Follows the rows of a run.
 #[derive(Debug)]
@@ -75,6 +75,11 @@ impl RunSummary {
             counters.events,
             seconds(self.began.elapsed().as_secs_f64())
         )
+    }
+
+    /// What of the run of `scene` no rubber has, and why.
+    pub(super) fn warnings(&self, scene: &Scene, simulation: &mut Simulation) -> Vec<String> {
+        implausible_run(scene, &self.figures, simulation)
     }
 
     /// What the run cost and what would make it cheaper.

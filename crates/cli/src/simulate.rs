@@ -14,7 +14,7 @@ use super::figure::{Figure as _, LayerPicture, TimeHistory, write_row};
 use super::files::{FileError, check_outputs, ends_in, load, named, print_beside};
 use super::result_file::ResultWriter;
 use super::run_summary::RunSummary;
-use super::terminal::{LabelledLine, bar, is_quiet, is_verbose, lines, note, warn};
+use super::terminal::{LabelledLine, bar, is_verbose, lines, note, warn};
 use asperity_study::elements::{ElementHistory, Span};
 use asperity_study::runner::{InputSample, Rows, Runner};
 
@@ -44,6 +44,9 @@ pub(crate) fn simulate(command: &Simulate, path: &Path) -> Result<(), SimulateEr
     if scene.excitation.is_empty() {
         warn("the scene has no [[excitation]]: the carrier rests, and the result file has the initial row only");
     }
+    Rows::PerPhase(command.points)
+        .check(&scene, numbers_of_masses(&scene, command))
+        .map_err(|error| SimulateError::Start(error.into()))?;
     let mut recorder = Recorder::new(&scene, command, &output)?;
     let result = run(&scene, command, &mut recorder);
     if let Err(error @ (SimulateError::Start(_) | SimulateError::File(_))) = result {
@@ -58,7 +61,19 @@ pub(crate) fn simulate(command: &Simulate, path: &Path) -> Result<(), SimulateEr
         write_elements(&elements, command)?;
     }
     summary.push(("Written", written(command, &output)));
-    if is_quiet() && !command.stats { Ok(()) } else { Ok(print_beside([&output], &lines(&summary))?) }
+    Ok(print_beside([&output], &lines(&summary))?)
+}
+
+/// Whether what shows the masses is asked for.
+fn shows_elements(command: &Simulate) -> bool {
+    command.animate.is_some() || command.elements.is_some() || !command.contact.is_empty()
+}
+
+/// Numbers of all masses that are kept of a row.
+fn numbers_of_masses(scene: &Scene, command: &Simulate) -> usize {
+    /// Place, forces, mode and flash temperature.
+    const OF_MASS: usize = 6;
+    if shows_elements(command) { OF_MASS * scene.layer.masses } else { 0 }
 }
 
 /// The files of a run.
@@ -126,6 +141,7 @@ fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<Vec
         return Err(SimulateError::Run { source, time: recorder.time, output: recorder.output.clone() });
     }
     let shown = recorder.shown(scene);
+    recorder.summary.warnings(shown, runner.simulation()).iter().for_each(|warning| warn(warning));
     let mut summary = recorder.summary.lines(shown, runner.simulation());
     if command.stats {
         summary.extend(recorder.summary.statistics(shown, runner.simulation()));
@@ -172,14 +188,13 @@ const PROGRESS_LENGTH: f64 = 1000.0;
 impl Recorder {
     fn new(scene: &Scene, command: &Simulate, output: &Path) -> Result<Self, FileError> {
         let variables = variables(scene);
-        let shows_elements = command.animate.is_some() || command.elements.is_some() || !command.contact.is_empty();
         Ok(Self {
             values: vec![0.0; variables.len()],
             output: output.to_owned(),
             writer: ResultWriter::create(output, &scene.inputs(), &variables, command.head())?,
             variables,
             history: command.plot.is_some().then(|| TimeHistory::new(scene)),
-            elements: shows_elements.then(|| ElementHistory::new(scene)),
+            elements: shows_elements(command).then(|| ElementHistory::new(scene)),
             summary: RunSummary::new(),
             progress: bar(PROGRESS_LENGTH as u64),
             duration: scene.duration(),

@@ -1,7 +1,7 @@
 //! Text for the terminal: aligned lines, warnings, the progress bar.
 
 use std::fmt;
-use std::io::{self, IsTerminal as _};
+use std::io::{self, IsTerminal as _, Write as _};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -14,25 +14,36 @@ use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, P
 /// The lines as text, aligned after their labels, and broken between words where they are long.
 pub(crate) fn lines(lines: &[LabelledLine]) -> String {
     let options = textwrap::Options::new(LINE_LENGTH).subsequent_indent(CONTINUED).break_words(false);
-    lines.iter().map(|(label, text)| textwrap::fill(&format!("{label:<12}{text}"), &options) + "\n").collect()
+    // Which files were written is a note.
+    let is_said = |(label, _): &&LabelledLine| !(is_quiet() && *label == WRITTEN);
+    lines
+        .iter()
+        .filter(is_said)
+        .map(|(label, text)| textwrap::fill(&format!("{label:<12}{text}"), &options) + "\n")
+        .collect()
 }
 
+/// The label of the files that were written.
+const WRITTEN: &str = "Written";
 /// Characters of a line.
 const LINE_LENGTH: usize = 120;
 /// What is before the continuation of a line.
 const CONTINUED: &str = "              ";
 
+/// Prints a line to standard error, where somebody reads that; nobody is left to be told where nobody does.
+pub(crate) fn say(message: &str) {
+    drop(writeln!(io::stderr(), "asperity: {message}"));
+}
+
 /// Prints a warning to standard error.
-#[expect(clippy::print_stderr, reason = "standard output holds results only")]
 pub(crate) fn warn(message: &str) {
-    eprintln!("asperity: warning: {message}");
+    say(&format!("warning: {message}"));
 }
 
 /// Prints a note to standard error.
-#[expect(clippy::print_stderr, reason = "standard output holds results only")]
 pub(crate) fn note(message: &str) {
     if !is_quiet() {
-        eprintln!("asperity: {message}");
+        say(message);
     }
 }
 

@@ -3,7 +3,7 @@
 use std::slice;
 
 use super::error::{Error, RestoreError};
-use super::inputs::{CommunicationStep, Inputs, MAX_INPUTS};
+use super::inputs::{CommunicationStep, InputKind, InputScales, Inputs, MAX_INPUTS};
 use super::log::Message;
 use super::model::{Experiment, FmuModel, FmuRun, RunState};
 use super::resources::TABLE_FILE;
@@ -27,10 +27,11 @@ impl FmuModel for PointContact {
     }
 
     fn inputs(&self) -> Vec<VariableRef> {
-        let input =
-            |(input, text): (Input, &str)| VariableRef::input(input as usize, input.name(), input.unit(), text, 0.0);
-        let texts = ["Displacement of the carrier along x", "Displacement of the carrier along z, negative presses"];
-        [Input::U, Input::W].into_iter().zip(texts).map(input).collect()
+        let input = |input: Input, text: &str, start: f64| {
+            VariableRef::input(input as usize, input.name(), input.unit(), text, start)
+        };
+        let w = "Displacement of the carrier along z, negative presses; starts just above the touch";
+        vec![input(Input::U, "Displacement of the carrier along x", 0.0), input(Input::W, w, self.clear_displacement())]
     }
 
     fn calculated(&self) -> Vec<VariableRef> {
@@ -51,6 +52,10 @@ impl FmuModel for PointContact {
 
     fn extrapolation(&self) -> Extrapolation {
         self.extrapolation
+    }
+
+    fn input_scales(&self) -> InputScales {
+        InputScales::new([Input::U, Input::W].map(|input| (input as usize, InputKind::Length)), 0.0)
     }
 
     fn memory(&self) -> usize {
@@ -83,14 +88,13 @@ impl FmuModel for PointContact {
 /// A run of the element.
 #[derive(Debug)]
 struct ElementRun {
-    contact: PointContact,
     variables: Vec<Variable>,
     element: Element,
 }
 
 impl ElementRun {
     fn new(contact: &PointContact, element: Element) -> Self {
-        Self { contact: contact.clone(), variables: contact.variables(), element }
+        Self { variables: contact.variables(), element }
     }
 }
 
@@ -128,7 +132,7 @@ impl FmuRun for ElementRun {
 
     fn set_state(&mut self, state: &RunState) -> Result<(), RestoreError> {
         let RunState::Element(state) = state else { return Err(RestoreError::OTHER_MODEL) };
-        self.element = Element::restore(&self.contact, state)?;
+        self.element.continue_from(state);
         Ok(())
     }
 

@@ -80,6 +80,10 @@ pub enum Error {
         "the input {name} goes to {value:?} m, where rounding is coarser than the profile; expected up to ±{farthest:?} m"
     )]
     TooFar { name: &'static str, value: f64, farthest: f64 },
+    #[error(
+        "the step of {h} s from t = {time} s, whose inputs were extrapolated, cannot be done again to the values that came: {source}"
+    )]
+    Repetition { time: f64, h: f64, source: Box<Error> },
     #[error(transparent)]
     Simulation(#[from] SimulationError),
     #[error("no values: the initialisation failed")]
@@ -133,10 +137,11 @@ impl Error {
             Self::Element(ElementError::Pressure { within: true, .. }) => Status::Discard,
             Self::Motion(
                 MotionError::TooManySubsteps { .. }
+                | MotionError::TooMuchWork { .. }
                 | MotionError::BeyondTable { within: true, .. }
                 | MotionError::ElementTooWarm { within: true, .. },
             ) => Status::Discard,
-            Self::TooFar { .. } | Self::NoSuchStatus => Status::Discard,
+            Self::TooFar { .. } | Self::NoSuchStatus | Self::Repetition { .. } => Status::Discard,
             Self::Panic(_) => Status::Fatal,
             _ => Status::Error,
         }

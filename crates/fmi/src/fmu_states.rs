@@ -17,9 +17,10 @@ use super::error::{Error, RestoreError, Status};
 use super::inputs::Inputs;
 use super::lifecycle::LifecycleState;
 use super::model::{FmuRun, RunState};
+use super::provisional::LastStep;
 use super::state::{Clock, FmuState};
 use super::variables::VariableTable;
-use asperity::scene::Value;
+use asperity::scene::{Extrapolation, Value};
 
 /// FMU states by handle. A handle is a number that no other state of the process has or had; it is looked up and never
 /// dereferenced, so that of a state that was freed is refused, as are those of other instances.
@@ -62,7 +63,7 @@ impl FmuStates {
 const MARK: [u8; 8] = *b"asperity";
 
 /// The version of the format, to be raised with each change of what is written.
-const FORMAT: u32 = 10;
+const FORMAT: u32 = 11;
 
 const CHECKSUM: usize = 16;
 
@@ -75,6 +76,7 @@ struct WrittenState {
     clock: Clock,
     last_step: Status,
     run: Option<RunState>,
+    last: Option<LastStep>,
 }
 
 /// A state as it is written, borrowed: that of a patch may be large.
@@ -86,13 +88,15 @@ struct BorrowedState<'a> {
     clock: Clock,
     last_step: Status,
     run: &'a Option<RunState>,
+    last: &'a Option<LastStep>,
 }
 
 impl<'a> BorrowedState<'a> {
     fn new(state: &'a FmuState) -> Self {
-        let FmuState { lifecycle, parameters, inputs, clock, last_step, run } = state;
+        let FmuState { lifecycle, parameters, inputs, clock, last_step, run, last } = state;
         let parameters = parameters.values_set();
-        Self { lifecycle: *lifecycle, parameters, inputs: *inputs, clock: *clock, last_step: *last_step, run }
+        let (lifecycle, inputs, clock, last_step) = (*lifecycle, *inputs, *clock, *last_step);
+        Self { lifecycle, parameters, inputs, clock, last_step, run, last }
     }
 }
 
@@ -124,12 +128,15 @@ pub(super) fn read(
         return Err(RestoreError::Invalid("something follows its end"));
     }
     written.check()?;
-    let WrittenState { lifecycle, parameters: set, inputs, clock, last_step, run } = written;
+    let WrittenState { lifecycle, parameters: set, inputs, clock, last_step, run, last } = written;
     let parameters = parameters(original, set)?;
-    if let Some(state) = &run {
+    for state in run.iter().chain(last.as_ref().map(|last| &last.run)) {
         check_outputs(parameters.definition().restore(state)?.as_mut(), variables)?;
     }
-    Ok(FmuState { lifecycle, parameters, inputs, clock, last_step, run })
+    if last.is_some() && parameters.definition().extrapolation() == Extrapolation::Hold {
+        return Err(RestoreError::Invalid("its last step was not extrapolated"));
+    }
+    Ok(FmuState { lifecycle, parameters, inputs, clock, last_step, run, last })
 }
 
 fn check_outputs(run: &mut dyn FmuRun, variables: &VariableTable) -> Result<(), RestoreError> {
@@ -153,6 +160,14 @@ impl WrittenState {
         match (has_run, self.clock.is_valid() && self.inputs.is_valid()) {
             (false, _) => Err(RestoreError::Invalid("its lifecycle and its run do not fit together")),
             (_, false) => Err(RestoreError::Invalid("its times or past inputs are no numbers")),
+            _ => self.check_last_step(),
+        }
+    }
+
+    fn check_last_step(&self) -> Result<(), RestoreError> {
+        let fits = |last: &LastStep| self.run.is_some() && last.step.is_valid(&self.inputs, self.clock.time);
+        match &self.last {
+            Some(last) if !fits(last) => Err(RestoreError::Invalid("its last step does not lead to it")),
             _ => Ok(()),
         }
     }

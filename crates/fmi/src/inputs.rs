@@ -19,9 +19,11 @@ struct Signal {
     value: f64,
     /// Its first derivative, if the master gave it for the next step.
     rate: Option<f64>,
-    /// The last communication step, and the one before it.
-    past: [Option<Past>; 2],
-    sampling: Sampling,
+    /// The last communication step.
+    past: Option<Past>,
+    /// Its value at the end of the step, where that came before the step is done again.
+    #[serde(skip)]
+    end: Option<f64>,
 }
 
 /// A communication step that is done.
@@ -33,44 +35,6 @@ struct Past {
     step: f64,
 }
 
-/// Whether values come from a source that samples on another grid than that of the communication points.
-///
-/// Their rate between two points then changes forth and back, singly or with alternating signs. Where a motion goes
-/// faster or slower, its rate changes with one sign over several steps; where it starts or stops, once.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Sampling {
-    /// The last rate between communication points, per second.
-    rate: Option<f64>,
-    /// Its last changes, the latest first.
-    changes: [f64; 2],
-    /// How often it has changed forth and back.
-    alternations: u8,
-}
-
-impl Sampling {
-    /// Changes of a rate below this part of it are no pattern.
-    const SIGNIFICANT: f64 = 0.01;
-    /// So many are none by chance.
-    const ENOUGH: u8 = 3;
-
-    /// Includes the `rate` since the last communication point.
-    fn include(&mut self, rate: f64) {
-        let Some(before) = self.rate.replace(rate) else { return };
-        let (change, [last, earlier]) = (rate - before, self.changes);
-        let limit = Self::SIGNIFICANT * rate.abs().max(before.abs());
-        let is_significant = |change: f64| change.abs() > limit;
-        let reverses = is_significant(change) && is_significant(last) && change * last < 0.0;
-        let is_gradual = is_significant(earlier) && earlier * last > 0.0;
-        self.alternations = self.alternations.saturating_add((reverses && !is_gradual).into());
-        self.changes = [change, last];
-    }
-
-    /// Whether rates between two points are not those of the motion.
-    fn is_uneven(&self) -> bool {
-        self.alternations >= Self::ENOUGH
-    }
-}
-
 /// A communication step that is to be done.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CommunicationStep {
@@ -80,6 +44,106 @@ pub struct CommunicationStep {
     pub h: f64,
     /// How inputs go on where the master gives no derivatives.
     pub extrapolation: Extrapolation,
+}
+
+/// When a value that came is the one that an input went to, but for rounding.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InputScales {
+    /// What each slot is measured by.
+    kinds: [InputKind; MAX_INPUTS],
+    /// The least of lengths, m: the spacing of the masses.
+    spacing: f64,
+}
+
+/// What an input is measured by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum InputKind {
+    /// A length, by the largest of all lengths.
+    Length,
+    /// By its own size.
+    Other,
+    /// Held over a step at its value, which is no prediction; or no input at all.
+    Held,
+}
+
+impl InputScales {
+    /// The scales of the inputs in these slots, those of lengths with a least one, m.
+    pub(super) fn new(slots: impl IntoIterator<Item = (usize, InputKind)>, spacing: f64) -> Self {
+        let mut kinds = [InputKind::Held; MAX_INPUTS];
+        slots.into_iter().for_each(|(slot, kind)| kinds[slot] = kind);
+        Self { kinds, spacing }
+    }
+}
+
+/// A communication step in which an input without a derivative went to an extrapolated value: it is done again where
+/// another value comes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ProvisionalStep {
+    /// The inputs at its start, as they were set.
+    inputs: Inputs,
+    /// The time at its start, s.
+    time: f64,
+    /// Its size, s.
+    h: f64,
+}
+
+/// The part of its scale by which a value may be off that an input went to.
+const SAME: f64 = 1e-12;
+
+impl ProvisionalStep {
+    /// The step if it is provisional.
+    pub fn new(inputs: &Inputs, step: &CommunicationStep, scales: &InputScales) -> Option<Self> {
+        let own = Self { inputs: *inputs, time: step.time, h: step.h };
+        (step.extrapolation == Extrapolation::Linear && own.slots(scales).next().is_some()).then_some(own)
+    }
+
+    /// The step itself.
+    pub fn step(&self) -> CommunicationStep {
+        CommunicationStep { time: self.time, h: self.h, extrapolation: Extrapolation::Linear }
+    }
+
+    /// The inputs with which it is done again, straight to the values that `came` at its end; `None` where it went there.
+    /// A value that no step goes to does not count: the next step refuses it.
+    pub fn corrected(&self, came: &Inputs, scales: &InputScales) -> Option<Inputs> {
+        let step = self.step();
+        let size = |slot: usize| {
+            let values = [self.inputs.value(slot), self.inputs.0[slot].target(&step), came.value(slot)];
+            values.into_iter().map(f64::abs).fold(0.0, f64::max)
+        };
+        let lengths = (0..MAX_INPUTS).filter(|&slot| scales.kinds[slot] == InputKind::Length);
+        let length = lengths.map(size).fold(scales.spacing, f64::max);
+        let differs = |slot: usize| {
+            let scale = if scales.kinds[slot] == InputKind::Length { length } else { size(slot) };
+            let value = came.value(slot);
+            is_possible(value) && (value - self.inputs.0[slot].target(&step)).abs() > SAME * scale
+        };
+        if !self.slots(scales).any(differs) {
+            return None;
+        }
+        let mut corrected = self.inputs;
+        for slot in self.slots(scales).filter(|&slot| is_possible(came.value(slot))) {
+            corrected.0[slot].end = Some(came.value(slot));
+        }
+        Some(corrected)
+    }
+
+    /// The slots whose inputs were extrapolated.
+    fn slots(&self, scales: &InputScales) -> impl Iterator<Item = usize> {
+        let extrapolated = |slot: &usize| scales.kinds[*slot] != InputKind::Held && self.inputs.0[*slot].rate.is_none();
+        (0..MAX_INPUTS).filter(extrapolated)
+    }
+
+    /// Whether it can be the last step of a run that has reached `end` (s), with these inputs.
+    pub(super) fn is_valid(&self, inputs: &Inputs, end: f64) -> bool {
+        let (before, h) = (&self.inputs, self.h);
+        let step = self.step();
+        let is_past = |(signal, before): (&Signal, &Signal)| {
+            signal.past == Some(Past { value: before.value, step: h }) && is_possible(before.target(&step))
+        };
+        // A master's time may be off by less than half a step.
+        let ends = (self.time + h - end).abs() <= h;
+        ends && before.is_valid() && is_possible(self.time) && inputs.0.iter().zip(&before.0).all(is_past)
+    }
 }
 
 impl Inputs {
@@ -160,11 +224,6 @@ impl Inputs {
     pub fn complete_step(&mut self, h: f64) {
         self.0.iter_mut().for_each(|signal| signal.complete_step(h));
     }
-
-    /// Whether the values of an input come from a source on another grid than that of the communication points.
-    pub(super) fn is_uneven(&self, slot: usize) -> bool {
-        self.0[slot].sampling.is_uneven()
-    }
 }
 
 /// Displacements whose relative difference is smaller are equal but for rounding.
@@ -173,15 +232,12 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 impl Signal {
     /// Whether the values of the past step are finite.
     fn is_valid(&self) -> bool {
-        self.past.iter().flatten().all(|past| is_possible(past.value) && is_possible(past.step) && past.step > 0.0)
+        self.past.iter().all(|past| is_possible(past.value) && is_possible(past.step) && past.step > 0.0)
     }
 
     fn complete_step(&mut self, h: f64) {
-        match (self.rate.take(), self.past[0]) {
-            (None, Some(past)) => self.sampling.include((self.value - past.value) / past.step),
-            _ => self.sampling.rate = None,
-        }
-        self.past = [Some(Past { value: self.value, step: h }), self.past[0]];
+        self.rate = None;
+        self.past = Some(Past { value: self.value, step: h });
     }
 
     /// The rate that the master gave, if û = `current` equals its value but for rounding. It is then used as it is: if
@@ -196,12 +252,9 @@ impl Signal {
     fn target(&self, step: &CommunicationStep) -> f64 {
         match (self.rate, step.extrapolation, self.past) {
             (Some(rate), _, _) => self.value + step.h * rate,
-            // Of points on another grid, the mean rate over two steps is that of the motion.
-            (None, Extrapolation::Linear, [Some(past), Some(earlier)]) if self.sampling.is_uneven() => {
-                self.value + (self.value - earlier.value) * (step.h / (past.step + earlier.step))
-            }
+            (None, _, _) if self.end.is_some() => self.end.unwrap_or(self.value),
             // At rest it stays exactly where it is, whatever the ratio of the steps.
-            (None, Extrapolation::Linear, [Some(past), _]) if past.value != self.value => {
+            (None, Extrapolation::Linear, Some(past)) if past.value != self.value => {
                 self.value + (self.value - past.value) * (step.h / past.step)
             }
             (None, Extrapolation::Linear | Extrapolation::Hold, _) => self.value,
@@ -258,51 +311,6 @@ mod tests {
         assert_eq!(rate(&inputs, Extrapolation::Hold), 0.0);
         inputs.set_rate(0, -1.0);
         assert_eq!(rate(&inputs, Extrapolation::Hold), -1.0);
-    }
-
-    /// Steps of 25 µs, a source every 10, 40 or 62.5 µs: a steady motion of 2 m/s is off by what it goes in the age of
-    /// a value, and by a step at a mean rate over two that is a multiple of the source's.
-    #[test]
-    fn values_of_another_grid_are_followed_by_their_mean_rate() {
-        let (h, speed) = (25.0, 2.0);
-        let sources =
-            [(10.0, 20.0, true), (40.0, 90.0, true), (62.5, 175.0, true), (25.0, 1e-6, false), (1e-3, 0.1, false)];
-        for (grid, bound, is_found) in sources {
-            let mut inputs = at(0.0);
-            for k in 0..40 {
-                inputs.set(0, speed * grid * (f64::from(k) * h / grid + 1e-9).floor());
-                let target = inputs.target(0, "u", &step(h, Extrapolation::Linear)).unwrap();
-                let lag = speed * f64::from(k + 1) * h - target;
-                assert!(k < 20 || lag.abs() <= bound, "{grid}: {lag} at {k}");
-                inputs.complete_step(h);
-            }
-            assert_eq!(inputs.is_uneven(0), is_found, "{grid}");
-        }
-    }
-
-    /// Motions on an even grid are no such pattern: sines from eight points a period on, ramps, steps that begin and
-    /// end.
-    #[test]
-    fn motions_on_an_even_grid_are_extrapolated_as_they_are() {
-        let sine = |points: f64, phase: f64| move |k: f64| (std::f64::consts::TAU * k / points + phase).sin();
-        let ramp = |k: f64| (k - 10.0).clamp(0.0, 12.0) - (k - 30.0).clamp(0.0, 12.0);
-        for phase in 0..20 {
-            let phase = 0.1 * f64::from(phase);
-            for motion in [sine(8.0, phase), sine(13.3, phase), sine(50.0, phase)] {
-                let mut inputs = at(motion(0.0));
-                for k in 0..200 {
-                    inputs.set(0, motion(f64::from(k)));
-                    inputs.complete_step(0.1);
-                }
-                assert!(!inputs.is_uneven(0), "{phase}");
-            }
-        }
-        let mut inputs = at(0.0);
-        for k in 0..200 {
-            inputs.set(0, ramp(f64::from(k % 50)));
-            inputs.complete_step(0.1);
-        }
-        assert!(!inputs.is_uneven(0));
     }
 
     #[test]

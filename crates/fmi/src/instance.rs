@@ -4,7 +4,7 @@ use std::ffi::CString;
 use std::path::Path;
 use std::sync::Arc;
 
-use asperity::scene::{Extrapolation, Input, LOOSEST_TOLERANCE, Parameter, Value};
+use asperity::scene::{LOOSEST_TOLERANCE, Parameter, Value};
 
 use super::definition::{Definition, Parameters, Sources, guid};
 use super::error::{Error, Status, catch_panic};
@@ -13,7 +13,7 @@ use super::lifecycle::{Function, LifecycleState};
 use super::log::{Category, Log, Message};
 use super::memory;
 use super::state::{Clock, InstanceState, OutputCache};
-use super::variables::{Role, VariableTable};
+use super::variables::VariableTable;
 
 #[derive(Debug)]
 pub(super) struct Instance {
@@ -24,8 +24,6 @@ pub(super) struct Instance {
     pub(super) texts: Vec<CString>,
     /// Whether it has warned of derivatives of inputs that it does not use.
     pub(super) warned_of_orders: bool,
-    /// Whether it has warned of values that a source samples on another grid.
-    warned_of_sampling: bool,
     /// Values looked up by a call that is under way.
     pub(super) found: Vec<Value>,
     fmu_states: FmuStates,
@@ -58,7 +56,8 @@ impl Instance {
     fn from_definition(definition: Definition, variables: VariableTable, guid: String, logging: bool) -> Self {
         let mut log = Log::new(logging);
         log.extend(definition.warnings().iter().map(|text| Message::from_status(Status::Warning, text.clone())));
-        let state_memory = definition.state_memory();
+        // With that at the start of the last step.
+        let state_memory = definition.state_memory().saturating_mul(2);
         let original = Arc::new(Parameters::new(definition));
         Self {
             state: InstanceState::new(Arc::clone(&original), &variables),
@@ -66,7 +65,6 @@ impl Instance {
             outputs: OutputCache::default(),
             texts: Vec::new(),
             warned_of_orders: false,
-            warned_of_sampling: false,
             found: Vec::new(),
             fmu_states: FmuStates::default(),
             state_memory,
@@ -161,12 +159,13 @@ impl Instance {
     pub(super) fn do_step(&mut self, point: f64, h: f64) -> Result<(), Error> {
         let result = self.state.step(point, h);
         let time = self.state.clock.time;
+        let repeated = self.state.repeated_from.take();
         let records = self.state.run().map(|run| run.take_records(time)).unwrap_or_default();
         // Records of a discarded step are dropped.
         result?;
         self.outputs.invalidate();
+        self.log_repetition(repeated);
         self.log.extend(records);
-        self.warn_of_sampling();
         self.log_warnings();
         Ok(())
     }
@@ -186,7 +185,6 @@ impl Instance {
         self.outputs.invalidate();
         self.texts.clear();
         self.warned_of_orders = false;
-        self.warned_of_sampling = false;
         self.log = Log::new(self.logging);
         Ok(())
     }
@@ -252,26 +250,15 @@ impl Instance {
         }
     }
 
-    /// Warns once of values that are extrapolated though their source samples on another grid.
-    fn warn_of_sampling(&mut self) {
-        if self.warned_of_sampling || self.state.parameters.definition().extrapolation() == Extrapolation::Hold {
-            return;
+    /// Mode changes that were logged of a step that has been done again since, from `start` (s) on, do not count.
+    fn log_repetition(&mut self, start: Option<f64>) {
+        let Some(start) = start else { return };
+        for category in [Category::Events, Category::Solver] {
+            if self.log.includes(category) {
+                let text = format!("t = {start} s: the step from here is done again, to the values that came");
+                self.log.add(Message::record(category, text));
+            }
         }
-        let warning = self.uneven_input().map(sampling_warning);
-        self.warned_of_sampling = warning.is_some();
-        warning.into_iter().for_each(|text| self.warn(text));
-    }
-
-    /// The name of an input whose source samples on another grid than that of the communication points. A temperature
-    /// is held.
-    fn uneven_input(&self) -> Option<&str> {
-        // Inputs come first in the table.
-        let inputs = self.variables.entries().map_while(|(_, variable)| match variable.role {
-            Role::Input(slot) => Some((slot, variable.name.as_str())),
-            _ => None,
-        });
-        let mut extrapolated = inputs.filter(|(_, name)| *name != Input::Temperature.name());
-        extrapolated.find(|(slot, _)| self.state.inputs.is_uneven(*slot)).map(|(_, name)| name)
     }
 
     fn log_warnings(&mut self) {
@@ -279,14 +266,6 @@ impl Instance {
         let warnings = self.state.run.as_mut().map(|run| run.take_warnings(time)).unwrap_or_default();
         warnings.into_iter().for_each(|text| self.warn(text));
     }
-}
-
-fn sampling_warning(name: &str) -> String {
-    format!(
-        "the rate of the input {name} jumps forth and back between communication points, as where its source samples on \
-         another grid: it is extrapolated by the mean rate over two steps. Set the input's derivative, sample it at the \
-         communication points or set input.extrapolation = \"hold\""
-    )
 }
 
 /// A GUID without the braces, which some masters leave out, in small letters.

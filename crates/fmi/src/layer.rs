@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::{io, slice};
 
 use super::error::{Error, InputOutOfRange, RestoreError};
-use super::inputs::{CommunicationStep, Inputs, MAX_INPUTS};
+use super::inputs::{CommunicationStep, InputKind, InputScales, Inputs, MAX_INPUTS};
 use super::log::{Category, Message};
 use super::model::{Experiment, FmuModel, FmuRun, RunRecord, RunState};
 use super::resources::SCENE_FILE;
@@ -76,18 +76,15 @@ impl FmuModel for Arc<Scene> {
         self.extrapolation
     }
 
+    fn input_scales(&self) -> InputScales {
+        layer_scales(self)
+    }
+
     fn memory(&self) -> usize {
-        /// Of a mass; of its variables, five with their names in two places; of each of its elements.
-        const MASS: usize = 2048;
+        /// Of a mass's variables, five with their names in two places.
         const VARIABLES: usize = 5 * 512;
-        const ELEMENT: usize = 512;
-        /// For each input that derivatives are taken by, this part more.
-        const TANGENT: f64 = 0.5;
-        let asks = |group| self.outputs.contains(&group);
-        let tangents = if asks(OutputGroup::Tangent) { Scene::inputs(self).len() } else { 0 };
-        let run = (MASS + ELEMENT * elements(self)) as f64 * (1.0 + TANGENT * tangents as f64);
-        let variables = if asks(OutputGroup::Elements) { VARIABLES } else { 0 };
-        (1 << 20) + self.layer.masses * (runs(self) * run as usize + variables)
+        let variables = if self.outputs.contains(&OutputGroup::Elements) { VARIABLES } else { 0 };
+        (1 << 20) + self.layer.masses * variables + Simulation::memory(self)
     }
 
     fn state_memory(&self) -> usize {
@@ -144,6 +141,16 @@ fn input_description(input: Input, has_body: bool) -> &'static str {
         (Input::Temperature, _) => "Bulk temperature of the layer, held over each communication step",
         (Input::Pull, _) => "Tangential force on the carrier along x, without its constant part",
     }
+}
+
+/// When values that come are those that the inputs went to: a temperature is held.
+pub fn layer_scales(scene: &Scene) -> InputScales {
+    let kind = |input: Input| match input {
+        Input::U | Input::W => InputKind::Length,
+        Input::Load | Input::Pull => InputKind::Other,
+        Input::Temperature => InputKind::Held,
+    };
+    InputScales::new(scene.inputs().into_iter().map(|input| (input as usize, kind(input))), scene.layer.spacing)
 }
 
 /// The carrier at the start: at the displacements given, with the derivatives given as its velocity, else at rest. The
@@ -255,9 +262,20 @@ impl FmuRun for LayerRun {
         RunState::Layer(Box::new(self.simulation.state()))
     }
 
+    fn save_into(&self, saved: &mut RunState) {
+        match saved {
+            RunState::Layer(saved) => self.simulation.save_into(saved),
+            _ => *saved = self.save(),
+        }
+    }
+
     fn set_state(&mut self, state: &RunState) -> Result<(), RestoreError> {
         let RunState::Layer(state) = state else { return Err(RestoreError::OTHER_MODEL) };
-        Ok(self.simulation.set_state(state)?)
+        Ok(self.simulation.continue_from(state)?)
+    }
+
+    fn count_repetition(&mut self) {
+        self.simulation.count_repetition();
     }
 
     fn history(&self) -> RunRecord {

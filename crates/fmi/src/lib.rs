@@ -16,6 +16,7 @@
 //! | `log` | messages by category |
 //! | `model` | what all layers below ask of a model and of its run |
 //! | `layer`, `element`, `patch` | the three models |
+//! | `provisional` | the last step, where it is done again once the values at its end are known |
 //! | `definition` | what an FMU simulates: one of them, its parameters, its GUID |
 //! | `state` | the state of an instance, its copy in an FMU state, its clock |
 //! | `fmu_states` | FMU states handed out, and as byte strings |
@@ -38,6 +39,7 @@ mod log;
 mod memory;
 mod model;
 mod patch;
+mod provisional;
 mod resources;
 mod state;
 mod values;
@@ -50,8 +52,8 @@ pub mod bindings;
 pub use definition::{Definition, Sources, guid};
 pub use error::InputOutOfRange;
 pub use exports::*;
-pub use inputs::{CommunicationStep, Inputs};
-pub use layer::{layer_motion, layer_start};
+pub use inputs::{CommunicationStep, InputScales, Inputs, ProvisionalStep};
+pub use layer::{layer_motion, layer_scales, layer_start};
 pub use log::Category;
 pub use model::{Experiment, FmuModel};
 pub use resources::{PATCH_FILE, SCENE_FILE, TABLE_FILE};

@@ -8,7 +8,7 @@ use std::{fs, io};
 use serde::{Deserialize, Serialize};
 
 use super::error::{Error, RestoreError};
-use super::inputs::{CommunicationStep, Inputs, MAX_INPUTS};
+use super::inputs::{CommunicationStep, InputScales, Inputs, MAX_INPUTS};
 use super::log::Message;
 use super::variables::{Kind, VariableRef, VariableTable};
 use asperity::element::ElementState;
@@ -87,6 +87,9 @@ pub trait FmuModel: Debug {
     /// How inputs are extrapolated where the master gives no derivatives.
     fn extrapolation(&self) -> Extrapolation;
 
+    /// When values that come are those that inputs went to.
+    fn input_scales(&self) -> InputScales;
+
     /// Memory in bytes that an instance takes, its variables and a run. It is an upper bound that tests hold against
     /// what runs allocate.
     fn memory(&self) -> usize;
@@ -101,6 +104,11 @@ pub trait FmuModel: Debug {
 
     /// How it is simulated where nothing else is said; `None` where there is no default.
     fn default_experiment(&self) -> Option<Experiment>;
+
+    /// Why no run begins at the start values of the inputs; `None` where one does.
+    fn start_problem(&self) -> Option<String> {
+        self.start(&self.variables().start_inputs(), 0.0).err().map(|error| error.to_string())
+    }
 
     /// A run that starts from `inputs` at `time` (s).
     #[doc(hidden)]
@@ -148,6 +156,9 @@ pub trait FmuRun: Debug {
     /// Continues from `state`, which was checked where it was read, of a run of the same model.
     fn set_state(&mut self, state: &RunState) -> Result<(), RestoreError>;
 
+    /// Counts a communication step that was done again from its start.
+    fn count_repetition(&mut self) {}
+
     /// What it has done that is no part of its state.
     fn history(&self) -> RunRecord {
         RunRecord::default()
@@ -181,6 +192,17 @@ pub enum RunState {
     Layer(Box<SimulationState>),
     Element(ElementState),
     Patch(Box<PatchState>),
+}
+
+impl RunState {
+    /// Copies `other`, into the arrays that there are where it is of the same model.
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        match (self, other) {
+            (Self::Layer(own), Self::Layer(other)) => own.copy_from(other),
+            (Self::Patch(own), Self::Patch(other)) => own.copy_from(other),
+            (own, other) => *own = other.clone(),
+        }
+    }
 }
 
 /// What a run has done that is no part of its state: a step that is repeated spends its time again but does not warn

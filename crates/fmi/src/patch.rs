@@ -4,13 +4,15 @@
 use std::path::{Path, PathBuf};
 
 use super::error::{Error, InputOutOfRange, RestoreError};
-use super::inputs::{CommunicationStep, Inputs, MAX_INPUTS};
+use super::inputs::{CommunicationStep, InputKind, InputScales, Inputs, MAX_INPUTS};
 use super::model::{Experiment, FmuModel, FmuRun, RunState};
 use super::resources::PATCH_FILE;
 use super::variables::VariableRef;
 use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchRun, PatchStart, PatchVariable, Pose};
 use asperity::scene::{Extrapolation, FmuOptions, Parameter, ParameterError, PatchGroup, Unit, Value, is_possible};
 
+/// The slot of the first angle, after those of the position.
+const ANGLES: usize = 3;
 /// The slot of the speed of the tread, after those of the pose's coordinates.
 const TRANSPORT_SPEED: usize = COORDINATES.len();
 const TEMPERATURE: usize = TRANSPORT_SPEED + 1;
@@ -90,6 +92,13 @@ impl FmuModel for Patch {
 
     fn extrapolation(&self) -> Extrapolation {
         self.extrapolation
+    }
+
+    /// A temperature is held.
+    fn input_scales(&self) -> InputScales {
+        let kind = |slot: usize| if slot < ANGLES { InputKind::Length } else { InputKind::Other };
+        let slots = COORDINATES.len() + usize::from(self.has_tread());
+        InputScales::new((0..slots).map(|slot| (slot, kind(slot))), 0.0)
     }
 
     fn memory(&self) -> usize {

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::definition::Parameters;
+use super::definition::{Definition, Parameters};
 use super::error::{Error, Status};
-use super::inputs::{CommunicationStep, Inputs};
+use super::inputs::{CommunicationStep, InputScales, Inputs};
 use super::lifecycle::LifecycleState;
 use super::memory;
 use super::model::{FmuRun, RunState};
+use super::provisional::{LastStep, Stepper};
 use super::variables::VariableTable;
 use asperity::scene::{SMALLEST, is_possible};
 
@@ -25,6 +26,11 @@ pub(super) struct InstanceState {
     pub(super) last_step: Status,
     /// The run. Before it begins, one that would start from the parameters and inputs set, once outputs were asked for.
     pub(super) run: Option<Box<dyn FmuRun>>,
+    stepper: Stepper,
+    /// Of the parameters set, from the first step on.
+    scales: Option<InputScales>,
+    /// When the last step began that was done again, s, until it is taken.
+    pub(super) repeated_from: Option<f64>,
 }
 
 /// An FMU state: a copy of an instance's state without the workspace of its run.
@@ -37,6 +43,8 @@ pub(super) struct FmuState {
     pub(super) last_step: Status,
     /// `None` before the run: it follows from the rest then.
     pub(super) run: Option<RunState>,
+    /// The last step, where it may be done again.
+    pub(super) last: Option<LastStep>,
 }
 
 impl InstanceState {
@@ -49,6 +57,9 @@ impl InstanceState {
             clock: Clock::default(),
             last_step: Status::Ok,
             run: None,
+            stepper: Stepper::default(),
+            scales: None,
+            repeated_from: None,
         }
     }
 
@@ -63,7 +74,7 @@ impl InstanceState {
     pub(super) fn run(&mut self) -> Result<&mut dyn FmuRun, Error> {
         if self.run.is_none() && self.lifecycle.before_run() {
             let definition = self.parameters.definition();
-            memory::check("a run", definition.memory())?;
+            memory::check("a run", memory_of_run(definition))?;
             self.run = Some(definition.start(&self.inputs, self.clock.time)?);
         }
         Ok(self.run.as_mut().ok_or(Error::NoRun)?.as_mut())
@@ -92,9 +103,14 @@ impl InstanceState {
     }
 
     fn advance(&mut self, clock: Clock, h: f64) -> Result<(), Error> {
-        let extrapolation = self.parameters.definition().extrapolation();
-        let (inputs, step) = (self.inputs, CommunicationStep { time: self.clock.time, h, extrapolation });
-        self.run()?.advance(&inputs, &step)?;
+        let definition = self.parameters.definition();
+        let extrapolation = definition.extrapolation();
+        let scales = *self.scales.get_or_insert_with(|| definition.input_scales());
+        let step = CommunicationStep { time: self.clock.time, h, extrapolation };
+        let run = self.run.as_mut().ok_or(Error::NoRun)?.as_mut();
+        let repeated = self.stepper.last().map(|last| last.step.step().time);
+        let repeats = self.stepper.advance(run, &self.inputs, &step, &scales)?;
+        self.repeated_from = repeated.filter(|_| repeats);
         self.inputs.complete_step(h);
         self.clock = clock;
         Ok(())
@@ -107,17 +123,20 @@ impl InstanceState {
 
     /// A copy for an FMU state.
     pub(super) fn save(&self) -> FmuState {
-        FmuState { run: self.begun().map(|run| run.save()), ..self.without_run() }
+        let last = self.stepper.last().cloned();
+        FmuState { run: self.begun().map(|run| run.save()), last, ..self.without_run() }
     }
 
     /// As [`save`](Self::save), into an FMU state that there is: the arrays of a large patch stay where they are.
     pub(super) fn save_into(&self, saved: &mut FmuState) {
         let mut kept = saved.run.take();
+        let mut last = saved.last.take();
         match (self.begun(), &mut kept) {
             (Some(run), Some(kept)) => run.save_into(kept),
             (run, kept) => *kept = run.map(|run| run.save()),
         }
-        *saved = FmuState { run: kept, ..self.without_run() };
+        LastStep::copy(&mut last, self.stepper.last());
+        *saved = FmuState { run: kept, last, ..self.without_run() };
     }
 
     fn without_run(&self) -> FmuState {
@@ -128,6 +147,7 @@ impl InstanceState {
             clock: self.clock,
             last_step: self.last_step,
             run: None,
+            last: None,
         }
     }
 
@@ -139,7 +159,7 @@ impl InstanceState {
             (Some(state), Some(run)) if same => run.set_state(state)?,
             (Some(saved), run) => {
                 let definition = state.parameters.definition();
-                memory::check("a run", definition.memory())?;
+                memory::check("a run", memory_of_run(definition))?;
                 let mut restored = definition.restore(saved)?;
                 if let Some(before) = run {
                     restored.set_history(before.history());
@@ -148,12 +168,19 @@ impl InstanceState {
             }
             (None, run) => *run = None,
         }
+        self.stepper.set_last(state.last.as_ref());
+        self.scales = None;
         self.lifecycle = state.lifecycle;
         self.parameters = Arc::clone(&state.parameters);
         self.inputs = state.inputs;
         (self.clock, self.last_step) = (state.clock, state.last_step);
         Ok(())
     }
+}
+
+/// Memory in bytes of a run and of the states that its [`Stepper`] keeps.
+fn memory_of_run(definition: &Definition) -> usize {
+    definition.memory().saturating_add(definition.state_memory().saturating_mul(Stepper::STATES))
 }
 
 /// The outputs at the last communication point, computed when first asked for.

@@ -1,5 +1,6 @@
 //! The variables of an FMU by value reference.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use super::error::Error;
@@ -183,6 +184,22 @@ impl VariableTable {
     /// All variables with their value references, in rising order.
     pub fn entries(&self) -> impl Iterator<Item = (u32, &VariableRef)> {
         (0..).zip(&self.variables)
+    }
+
+    /// The same variables with names that have no structure: each point, bracket and comma is an underscore.
+    ///
+    /// # Errors
+    /// Two names that would become one.
+    pub fn flat(&self) -> Result<Self, [String; 2]> {
+        let mut names: BTreeMap<String, &str> = BTreeMap::new();
+        let mut table = self.clone();
+        for (variable, own) in table.variables.iter_mut().zip(&self.variables) {
+            variable.name = own.name.replace("].", "_").replace(']', "").replace(['.', '[', ','], "_");
+            if let Some(other) = names.insert(variable.name.clone(), &own.name) {
+                return Err([other.to_owned(), own.name.clone()]);
+            }
+        }
+        Ok(table)
     }
 
     /// The number of calculated variables.

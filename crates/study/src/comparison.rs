@@ -2,10 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::element::{Load, OperatingPoint, PointStatus, Quantity};
+use asperity::element::{Load, OperatingPoint, Quantity};
 
-use crate::calibration::{CurveGrid, Measured, MeasuredFrictionError, Measurements};
-use crate::steady::SlideProblem;
+use crate::calibration::{CurveGrid, Measured, MeasuredFrictionError, Measurements, left_out_in_words};
 use crate::sweep::SweepTable;
 
 /// A table cannot be compared with measurements.
@@ -14,6 +13,11 @@ use crate::sweep::SweepTable;
 pub enum ComparisonError {
     #[error(transparent)]
     Measured(#[from] MeasuredFrictionError),
+    #[error(
+        "{}: no temperatures: expected a column temperature [°C], for the table has several; or a table of one temperature",
+        .0.display()
+    )]
+    NoTemperature(PathBuf),
     #[error("{}: a table over forces: expected one over pressures, as `asperity sweep --pressures` makes", .0.display())]
     OverForces(PathBuf),
 }
@@ -25,12 +29,23 @@ pub struct Comparison {
     pub notes: Vec<String>,
     /// The measurements that the table reaches, and its friction there.
     pub within: Vec<(Measured, f64)>,
-    /// The other ones.
-    pub beyond: Vec<Measured>,
+    /// The other ones, and why the table has no friction there.
+    pub left_out: Vec<(Measured, NoFriction)>,
     /// The curves that the measurements make.
     pub grid: CurveGrid,
     /// Friction of the table along these curves, and at the measurements.
     pub swept: Vec<(OperatingPoint, f64)>,
+}
+
+/// Why a table has no friction at a point.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoFriction {
+    /// It lies beyond its points.
+    #[error("the table does not reach there")]
+    Beyond,
+    /// A point beside it has no result, but this status.
+    #[error("the table has no result beside it: {0}")]
+    Failed(String),
 }
 
 /// Points of a curve.
@@ -46,29 +61,42 @@ impl Comparison {
             return Err(ComparisonError::OverForces(path.to_owned()));
         };
         let mut measurements = Measurements::read(data, area)?;
-        if let [only] = table.header.grid.temperatures[..] {
+        let temperatures = &table.header.grid.temperatures;
+        if temperatures.len() > 1 && !measurements.has_temperature() {
+            return Err(ComparisonError::NoTemperature(data.to_owned()));
+        }
+        if temperatures.is_empty() && measurements.has_temperature() {
+            measurements.notes.push(without_temperature(&measurements.rows));
+        }
+        if let [only] = temperatures[..] {
             measurements.rows.iter_mut().for_each(|row| {
                 let _ = row.point.temperature.get_or_insert(only);
             });
         }
         let curves = SweptFriction { table };
-        let (mut within, mut beyond): (Vec<(Measured, f64)>, Vec<Measured>) = (Vec::new(), Vec::new());
+        let (mut within, mut left_out) = (Vec::<(Measured, f64)>::new(), Vec::<(Measured, NoFriction)>::new());
         for &row in &measurements.rows {
             match curves.at(&row.point) {
-                Some(friction) => within.push((row, friction)),
-                None => beyond.push(row),
+                Ok(friction) => within.push((row, friction)),
+                Err(why) => left_out.push((row, why)),
             }
         }
         let grid = CurveGrid::new(within.iter().map(|(row, _)| &row.point));
         let mut points = grid.points(CURVE);
         points.extend(within.iter().map(|(row, _)| row.point));
-        let swept = points.into_iter().filter_map(|point| Some((point, curves.at(&point)?))).collect();
-        Ok(Self { notes: measurements.notes, within, beyond, grid, swept })
+        let swept = points.into_iter().filter_map(|point| Some((point, curves.at(&point).ok()?))).collect();
+        Ok(Self { notes: measurements.notes, within, left_out, grid, swept })
     }
 
     /// Sum of the squared deviations of the table from the measurements.
     pub fn chi_square(&self) -> f64 {
         self.within.iter().map(|pair| deviation(pair).powi(2)).sum()
+    }
+
+    /// How many measurements are left out, which, and why; `None` where none is.
+    pub fn left_out_in_words(&self) -> Option<String> {
+        let left_out = self.left_out.iter().map(|(row, why)| (vec![row.line], row.point, why));
+        left_out_in_words(left_out, self.within.len() + self.left_out.len())
     }
 
     /// Measurement, friction of the table and its deviation over the standard deviation, the worst first.
@@ -78,6 +106,14 @@ impl Comparison {
         all.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
         all
     }
+}
+
+/// The note that a table without temperatures is compared with measurements that have some.
+fn without_temperature(rows: &[Measured]) -> String {
+    let kelvins = || rows.iter().filter_map(|row| row.point.temperature);
+    let (low, high) = (kelvins().fold(f64::INFINITY, f64::min), kelvins().fold(0.0, f64::max));
+    let range = if low == high { format!("{low} K") } else { format!("{low} to {high} K") };
+    format!("the table has no temperatures, as its scene has no material.wlf: it is compared with those at {range}")
 }
 
 /// How far a table is off, over the standard deviation.
@@ -93,8 +129,15 @@ struct SweptFriction<'a> {
 
 /// The values beside one on an axis, and how far it is between them; alone where it is on one. `None` beyond.
 fn beside(axis: &[f64], value: f64, scale: fn(f64) -> f64) -> Option<Vec<(f64, f64)>> {
-    /// What a number that was written and read with a unit may be off.
+    /// What a number that was written and read with a unit may be off; of one beyond an end, what was rounded before.
     const ROUNDING: f64 = 1e-9;
+    const ROUNDING_OF_END: f64 = 1e-6;
+    let (first, last) = (*axis.first()?, *axis.last()?);
+    let is_beyond = |end: &&f64| (**end == first && value < first) || (**end == last && value > last);
+    let ends = [first, last];
+    if let Some(end) = ends.iter().filter(is_beyond).find(|end| (value - **end).abs() <= ROUNDING_OF_END * end.abs()) {
+        return Some(vec![(*end, 1.0)]);
+    }
     if let Some(on) = axis.iter().find(|on| (*on - value).abs() <= ROUNDING * value.abs()) {
         return Some(vec![(*on, 1.0)]);
     }
@@ -105,18 +148,19 @@ fn beside(axis: &[f64], value: f64, scale: fn(f64) -> f64) -> Option<Vec<(f64, f
 }
 
 impl SweptFriction<'_> {
-    /// Friction at a point; `None` beyond the table, or beside a point of it that is not steady.
-    fn at(&self, point: &OperatingPoint) -> Option<f64> {
+    /// Friction at a point, unless it is beyond the table or beside a point of it without a result.
+    fn at(&self, point: &OperatingPoint) -> Result<f64, NoFriction> {
         let grid = &self.table.header.grid;
-        let speeds = beside(&grid.speeds, point.speed, f64::ln)?;
-        let loads = beside(&grid.loads, point.load, f64::ln)?;
+        let speeds = beside(&grid.speeds, point.speed, f64::ln).ok_or(NoFriction::Beyond)?;
+        let loads = beside(&grid.loads, point.load, f64::ln).ok_or(NoFriction::Beyond)?;
         let temperatures: Vec<(Option<f64>, f64)> = match point.temperature {
             Some(kelvin) if !grid.temperatures.is_empty() => {
-                let found = beside(&grid.temperatures, kelvin, |value| value)?;
+                let found = beside(&grid.temperatures, kelvin, |value| value).ok_or(NoFriction::Beyond)?;
                 found.into_iter().map(|(kelvin, weight)| (Some(kelvin), weight)).collect()
             }
-            None if grid.temperatures.is_empty() => vec![(None, 1.0)],
-            _ => return None,
+            // One without temperatures holds at all of them.
+            _ if grid.temperatures.is_empty() => vec![(None, 1.0)],
+            _ => return Err(NoFriction::Beyond),
         };
         let mut friction = 0.0;
         for &(temperature, of_temperature) in &temperatures {
@@ -127,14 +171,13 @@ impl SweptFriction<'_> {
                 }
             }
         }
-        Some(friction)
+        Ok(friction)
     }
 
-    fn on_grid(&self, point: &OperatingPoint) -> Option<f64> {
-        let found = self.table.rows.iter().find(|stored| stored.row.point == *point)?;
-        let has_friction =
-            found.row.is_steady() || found.row.status == PointStatus::new(Some(SlideProblem::FullContact));
-        found.row.value(Quantity::Friction).filter(|_| has_friction)
+    fn on_grid(&self, point: &OperatingPoint) -> Result<f64, NoFriction> {
+        let found = self.table.rows.iter().find(|stored| stored.row.point == *point).ok_or(NoFriction::Beyond)?;
+        let friction = found.row.value(Quantity::Friction).filter(|_| found.row.is_result());
+        friction.ok_or_else(|| NoFriction::Failed(found.row.status.text().to_owned()))
     }
 }
 
@@ -145,6 +188,10 @@ mod tests {
     #[test]
     fn between_two_values_the_nearer_counts_more() {
         assert_eq!(beside(&[1.0, 2.0], 2.0 * (1.0 + 1e-12), f64::ln), Some(vec![(2.0, 1.0)]));
+        for (value, end) in [(1.0 - 0.9e-6, 1.0), (2.0 + 1.8e-6, 2.0)] {
+            assert_eq!(beside(&[1.0, 2.0], value, f64::ln), Some(vec![(end, 1.0)]));
+        }
+        assert_eq!(beside(&[1.0, 2.0], 2.0 + 2.2e-6, f64::ln), None);
         let found = beside(&[1.0, 100.0], 10.0, f64::ln).unwrap();
         assert!((found[0].1 - 0.5).abs() < 1e-12 && found[1].0 == 100.0);
         assert_eq!((beside(&[1.0, 2.0], 0.5, f64::ln), beside(&[1.0, 2.0], 3.0, f64::ln)), (None, None));

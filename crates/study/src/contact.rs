@@ -2,8 +2,9 @@
 
 use asperity::scene::Scene;
 
+use crate::implausible::{FoundFriction, implausible};
 use crate::steady::{SlideProblem, SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
-use crate::sweep::{Method, MethodError, SlidingOptions, SweepMethod};
+use crate::sweep::{Method, MethodError, NotPossible, SlidingOptions, SweepMethod};
 
 /// The contact of a scene cannot be solved for.
 #[derive(Debug, thiserror::Error)]
@@ -11,6 +12,8 @@ use crate::sweep::{Method, MethodError, SlidingOptions, SweepMethod};
 pub enum ContactError {
     #[error(transparent)]
     Method(#[from] MethodError),
+    #[error(transparent)]
+    Range(#[from] NotPossible),
     #[error("the scene has no material or layer.width, so its contact has no pressure")]
     NoMaterial,
 }
@@ -41,6 +44,8 @@ pub struct SolvedContact {
     pub fields: ContactFields,
     /// Why not all of the values can be relied on; `None` where they can.
     pub problem: Option<SlideProblem>,
+    /// What of it no rubber has, and why.
+    pub warnings: Vec<String>,
 }
 
 /// One state of steady sliding, and on how many points it is solved for.
@@ -57,8 +62,10 @@ pub struct ContactOptions {
 /// Solves for steady sliding of a scene.
 ///
 /// # Errors
-/// Where the scene cannot be solved for.
+/// Where the scene cannot be solved for, or there is no such state.
 pub fn solve_contact(scene: &Scene, options: &ContactOptions) -> Result<SolvedContact, ContactError> {
+    NotPossible::check("speed", "m/s", &[options.speed])?;
+    NotPossible::check("pressure", "Pa", &[options.pressure])?;
     let sliding =
         SlidingOptions { method: Some(SweepMethod::Steady), points: options.points, ..SlidingOptions::default() };
     // What is asked for is chosen or refused.
@@ -68,7 +75,10 @@ pub fn solve_contact(scene: &Scene, options: &ContactOptions) -> Result<SolvedCo
     let slide = solver.slide(&rubber, options.speed, options.pressure);
     let surface = solver.surface().clone();
     let (fields, problem) = (ContactFields::new(&surface, &slide), slide.problem());
-    Ok(SolvedContact { surface, slide, fields, problem })
+    let place = format!("at {} m/s, {} Pa", options.speed, options.pressure);
+    let area = slide.real_area.unwrap_or(slide.area);
+    let warnings = implausible(scene, [FoundFriction { place, friction: slide.friction(), area: Some(area) }]);
+    Ok(SolvedContact { surface, slide, fields, problem, warnings })
 }
 
 impl ContactFields {

@@ -15,17 +15,18 @@
 //! | [`labelled`] | | lines with labels, of which summaries are made |
 //! | [`html`] | | pages in HTML: templates filled in, tables |
 //! | [`progress`] | | how far long work is, and how it is ended |
+//! | [`implausible`] | decimals | friction and areas of contact that no rubber has |
 //! | [`settings`] | | keys of scenes and patches set to other values |
 //! | [`files`] | settings | scenes, patches and other files, read |
 //! | [`csv`] | decimals, files | tables of text with a header, read and written |
 //! | [`elements`] | | what the masses of a layer do over a run, as arrays and as pictures show it |
 //! | [`runner`] | progress | a scene along its excitation, row by row |
-//! | [`run_figures`] | | forces and friction of a run, what it cost, and what would make it cheaper |
+//! | [`run_figures`] | implausible | forces and friction of a run, what it cost, and what would make it cheaper |
 //! | [`steady`] | | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
-//! | [`sweep`] | decimals, files, progress, steady | friction over speed, load and temperature, as a table |
-//! | [`contact`] | steady, sweep | the contact of a surface in steady sliding |
+//! | [`sweep`] | decimals, files, implausible, progress, steady | friction over speed, load and temperature, as a table |
+//! | [`contact`] | implausible, steady, sweep | the contact of a surface in steady sliding |
 //! | [`converge`] | decimals, files, settings, steady, sweep | whether area and friction depend on spacing, length or chance |
-//! | [`calibration`] | decimals, files, settings, steady, sweep | free numbers of a scene from measured friction: models, least squares, errors, plans |
+//! | [`calibration`] | decimals, files, implausible, settings, steady, sweep | free numbers of a scene from measured friction: models, least squares, errors, plans |
 //! | [`comparison`] | calibration, steady, sweep | a table of a sweep beside measured friction |
 //! | [`fit`] | decimals, files | Prony series and shift factors from measured moduli |
 //! | [`material`] | decimals | moduli of a scene's compound, or stiffnesses of its links, over frequency |
@@ -48,6 +49,10 @@ pub mod elements;
 pub mod files;
 pub mod fit;
 pub mod html;
+pub mod implausible;
+#[cfg(test)]
+#[path = "../../../src/in_tests.rs"]
+mod in_tests;
 pub mod labelled;
 pub mod material;
 pub mod pack;
@@ -62,6 +67,3 @@ pub mod steady;
 pub mod summary;
 pub mod surface;
 pub mod sweep;
-#[cfg(test)]
-#[path = "../../../src/testing.rs"]
-mod testing;

@@ -1,9 +1,11 @@
 //! What a run of a scene comes to: forces, friction, what it cost, and what would make it cheaper.
 
 use asperity::model::Model;
-use asperity::outputs::{Accounts, Snapshot};
+use asperity::outputs::{Accounts, Output, Snapshot, variable};
 use asperity::scene::{Method, Scene};
 use asperity::simulation::Simulation;
+
+use crate::implausible::{FoundFriction, implausible};
 
 /// Forces and friction over the rows of a run.
 #[derive(Clone, Copy, Debug)]
@@ -47,6 +49,23 @@ impl RunFigures {
     pub fn friction(&self) -> Option<f64> {
         (self.load > 0.0).then(|| self.work.abs() / self.load)
     }
+}
+
+/// What of a run of `scene` that has come to its end no rubber has, and why.
+pub fn implausible_run(scene: &Scene, figures: &RunFigures, simulation: &mut Simulation) -> Vec<String> {
+    let Some(friction) = figures.friction() else { return Vec::new() };
+    let snapshot = simulation.snapshot();
+    let value = |output: Output| {
+        let mut value = [0.0];
+        snapshot.evaluate(&[variable(output)?], &mut value);
+        Some(value[0])
+    };
+    let area = match (&scene.fine, scene.layer.area()) {
+        (Some(_), Some(nominal)) => value(Output::RealArea).map(|area| area / nominal),
+        _ => value(Output::ContactCount).map(|count| count / scene.layer.masses as f64),
+    };
+    let place = "over the run".to_owned();
+    implausible(scene, [FoundFriction { place, friction, area }])
 }
 
 /// What a run cost.

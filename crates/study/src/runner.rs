@@ -2,7 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use asperity::outputs::Snapshot;
+use asperity::math::{NotEnoughMemory, check_memory};
+use asperity::outputs::{Snapshot, variables};
 use asperity::scene::{Force, Input, Phase, Scene};
 use asperity::simulation::{MethodSwitch, Motion, Simulation, SimulationError, Start};
 
@@ -77,6 +78,27 @@ impl Rows {
         }
     }
 
+    /// Rows of a run of `scene`.
+    pub fn count(self, scene: &Scene) -> u64 {
+        let of_phase = |phase: &Phase| if phase.is_row { 1 } else { u64::from(self.intervals(phase.duration)) };
+        1 + scene.excitation.iter().map(of_phase).sum::<u64>()
+    }
+
+    /// Checks that the result, with `more` numbers a row than the scene's variables, is no larger than the memory of the
+    /// machine: whoever reads it needs that.
+    ///
+    /// # Errors
+    /// [`NotEnoughMemory`].
+    pub fn check(self, scene: &Scene, more: usize) -> Result<(), NotEnoughMemory> {
+        /// Of a number, with those of pictures.
+        const BYTES: u64 = 24;
+        let columns = (1 + scene.inputs().len() + variables(scene).len() + more) as u64;
+        let rows = self.count(scene);
+        check_memory(rows.saturating_mul(columns).saturating_mul(BYTES), || {
+            format!("`points`: {rows} rows of {columns} numbers")
+        })
+    }
+
     /// Ends of the intervals of a phase of `duration` (s), in s from its start. The last is the duration itself: a row
     /// later by a rounding error would never be reached.
     pub fn times(self, duration: f64) -> impl Iterator<Item = f64> {
@@ -122,6 +144,7 @@ impl Runner {
     /// # Errors
     /// As for [`Simulation::new`].
     pub fn new(scene: &Scene, rows: Rows, u: f64) -> Result<Self, SimulationError> {
+        rows.check(scene, 0)?;
         let start = start(scene, u);
         let temperature = start.temperature.unwrap_or(scene.input_start(Input::Temperature));
         let carrier =

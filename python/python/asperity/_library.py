@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import warnings
 from pathlib import Path
 
 _BINARIES = Path(__file__).parent / "binaries"
@@ -20,6 +21,12 @@ def program() -> Path:
     if not path.is_file():
         raise FileNotFoundError(f"no program at {path}: {_WHEEL}")
     return path
+
+
+def warn_of_start(text: str | None) -> None:
+    """Warns the caller's caller of start values that do not initialise."""
+    if text is not None:
+        warnings.warn(text, stacklevel=3)
 
 
 def options() -> list[str]:

@@ -12,6 +12,7 @@ from typing import Any
 from . import _native
 from ._arguments import Floats
 from ._library import options as library_options
+from ._library import warn_of_start
 from ._scene import folder_of
 
 PatchState = _native.PatchState
@@ -159,15 +160,22 @@ class Patch:
         files = {str(name): (file.parent / name).read_bytes() for name in (Path(file.name), *self._patch.files())}
         return _unpickled, (file.name, files, self.state)
 
-    def pack(self, path: str | PathLike[str], libraries: Sequence[str | PathLike[str]] | None = None) -> Path:
+    def pack(
+        self,
+        path: str | PathLike[str],
+        libraries: Sequence[str | PathLike[str]] | None = None,
+        *,
+        flat_names: bool = False,
+    ) -> Path:
         """Packs the patch, where it starts left out, as an FMU, and returns its path.
 
         Args:
             path: The FMU to write.
             libraries: As for :meth:`Scene.pack`.
+            flat_names: As for :meth:`Scene.pack`.
         """
         given = library_options() if libraries is None else [str(library) for library in libraries]
-        self._patch.pack(Path(path), given)
+        warn_of_start(self._patch.pack(Path(path), given, flat_names))
         return Path(path)
 
     def __repr__(self) -> str:

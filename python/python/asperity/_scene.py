@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from . import _native
 from ._arguments import Floats, Progress, axis, columns_of, numbers, positive, shown, table_text, to_toml
 from ._library import options as library_options
+from ._library import warn_of_start
 
 if TYPE_CHECKING:
     from ._calibration import Calibration
@@ -420,7 +421,7 @@ class Scene:
         for warning in said:
             warnings.warn(warning, stacklevel=2)
         table = Table(text)
-        failed = [status for status in table.status.ravel() if status != "steady"]
+        failed = [status for status in table.status.ravel() if status not in ("steady", "full contact")]
         if failed:
             text = f"{len(failed)} of {table.status.size} points are not steady or failed, the first: {failed[0]}"
             warnings.warn(f"{text}; Table.status says which", stacklevel=2)
@@ -443,6 +444,8 @@ class Scene:
         from ._contact import Contact
 
         found = _native.contact(self._native, positive("pressure", pressure), positive("speed", speed), points)
+        for warning in found.pop("warnings"):
+            warnings.warn(warning, stacklevel=2)
         return Contact._of(found)
 
     def calibrate(
@@ -481,12 +484,19 @@ class Scene:
         settings = {one["key"]: to_toml(one["value"]) for one in found["parameters"]}
         return Calibration._of(found, self._changed(settings))
 
-    def pack(self, path: str | PathLike[str], libraries: Sequence[str | PathLike[str]] | None = None) -> Path:
+    def pack(
+        self,
+        path: str | PathLike[str],
+        libraries: Sequence[str | PathLike[str]] | None = None,
+        *,
+        flat_names: bool = False,
+    ) -> Path:
         """Packs the scene as an FMI 2.0 co-simulation FMU, and returns its path.
 
         Args:
             path: The FMU to write.
             libraries: Shared libraries, as ``asperity pack --library`` takes them; None: those of this package.
+            flat_names: Gives variables names without structure, such as ``transport_speed``.
 
         Raises:
             SceneError: Where a key was set that stands in a file which the scene names: an FMU carries the text.
@@ -499,7 +509,7 @@ class Scene:
             raise SceneError(
                 "a key is set that stands in a file which the scene names: expected it in the text to pack"
             )
-        packed._native.pack(Path(path), given)
+        warn_of_start(packed._native.pack(Path(path), given, flat_names))
         return Path(path)
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from . import _native
 from ._arguments import Floats
 from ._library import options as library_options
+from ._library import warn_of_start
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -33,7 +34,8 @@ class Table:
         loads: Mean pressures, Pa, or forces, N, shape (np,).
         temperatures: Temperatures, K, shape (nT,); one that is nan where the scene has none.
         units: Units of the columns.
-        status: "steady", or why the values cannot be relied on; shape (nv, np, nT), "" of points not found yet.
+        status: "steady"; "full contact", where friction and area are a result, but nothing gives way; or why the values
+            cannot be relied on; shape (nv, np, nT), "" of points not found yet.
     """
 
     def __init__(self, text: str) -> None:
@@ -123,25 +125,33 @@ class Table:
         from ._plots import swept
 
         unit = "Pa" if self.load == "pressure" else "N"
+        found = np.isin(self.status, ("steady", "full contact"))
         curves = [
-            (_label(load, unit, kelvin), self.speeds, self[column][:, j, k], self.status[:, j, k] == "steady")
+            (_label(load, unit, kelvin), self.speeds, self[column][:, j, k], found[:, j, k])
             for k, kelvin in enumerate(self.temperatures)
             for j, load in enumerate(self.loads)
         ]
         return swept(f"{column} [{self.units[column]}]", curves)
 
-    def pack(self, path: str | PathLike[str], libraries: Sequence[str | PathLike[str]] | None = None) -> Path:
+    def pack(
+        self,
+        path: str | PathLike[str],
+        libraries: Sequence[str | PathLike[str]] | None = None,
+        *,
+        flat_names: bool = False,
+    ) -> Path:
         """Packs the table as an FMU, a point-contact element, and returns its path.
 
         Args:
             path: The FMU to write.
             libraries: As for :meth:`Scene.pack`.
+            flat_names: As for :meth:`Scene.pack`.
         """
         given = library_options() if libraries is None else [str(library) for library in libraries]
         with tempfile.TemporaryDirectory(prefix="asperity-") as folder:
             file = Path(folder) / "table.csv"
             self.to_csv(file)
-            _native.pack_table(file, Path(path), given)
+            warn_of_start(_native.pack_table(file, Path(path), given, flat_names))
         return Path(path)
 
     def __reduce__(self) -> tuple[type[Table], tuple[str]]:

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use nalgebra::{DMatrix, DVector};
 
 use super::{BLOCK, Spline, floor};
-use crate::testing::assert_within;
+use crate::in_tests::assert_within;
 
 const UNEVEN: [f64; 9] = [-1.0, -0.97, -0.2, -0.19, 0.4, 1.3, 1.31, 1.7, 3.0];
 const HEIGHTS: [f64; 9] = [0.3, 0.1, -0.4, -0.38, 0.9, 0.2, 0.25, -0.7, 0.3];

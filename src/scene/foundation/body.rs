@@ -61,7 +61,7 @@ fn tangential_numerator(a: f64, kappa: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::assert_relative;
+    use crate::in_tests::assert_relative;
 
     fn bonded(thickness: f64, poisson_ratio: f64) -> ElasticBody {
         ElasticBody::Bonded { thickness, poisson_ratio }

@@ -51,8 +51,8 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
+    use crate::in_tests::assert_relative;
     use crate::scene::Scene;
-    use crate::testing::assert_relative;
 
     fn waves(masses: usize, spacing: f64, surface: &str) -> Waves {
         let text = format!(

@@ -20,12 +20,12 @@ use super::{Layer, LinkKind, Material, Surface};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FoundationKind {
-    /// By the layer's thickness and the spacing alone (docs/model.md, section 7).
-    #[default]
+    /// By the layer's thickness and the spacing alone (docs/model.md, section 7): off by factors but near one wavelength.
     Springs,
     /// Fitted to a half-space.
     HalfSpace,
     /// Fitted to a layer of a thickness, bonded to a rigid base.
+    #[default]
     Layer,
 }
 

@@ -1,6 +1,6 @@
 //! Warnings of a fitted foundation: where area and friction would not be those of rubber on this surface.
 
-use super::Foundation;
+use super::{Foundation, FoundationKind};
 use crate::scene::{LinkKind, Phase, PowerLaw, Scene, Spectrum, Surface};
 
 /// Root mean square of r - 1 above which area and friction are off.
@@ -9,6 +9,8 @@ const WIDE: f64 = 0.5;
 const MASSES_PER_WAVE: f64 = 8.0;
 /// Part of the weight that may lie below the spacing.
 const ALIASED: f64 = 0.01;
+/// Springs that are further than this factor from the stiffness of a layer are none of rubber.
+const FAR: f64 = 2.0;
 /// Root mean square slope above which friction is too large.
 const STEEP: f64 = 0.3;
 /// Part of the plane modulus above which pressures move masses along.
@@ -19,11 +21,36 @@ const ROLL_OFFS: f64 = 2.0;
 const ROUNDING: f64 = 1.0e-9;
 
 impl Scene {
-    /// What of this scene is outside the range in which the links stand for the rubber's surface; nothing for springs.
+    /// What of this scene is outside the range in which the links stand for the rubber's surface.
     pub(in crate::scene) fn foundation_warnings(&self) -> Vec<String> {
         let mut found = self.link_warnings();
         found.extend(self.foundation.as_ref().and_then(steep_slopes));
+        found.extend(self.far_springs());
+        found.extend(self.foundation.as_ref().and_then(|foundation| foundation.no_support(self.layer.masses)));
         found
+    }
+
+    /// Springs that are far from the stiffness of a layer of their thickness.
+    fn far_springs(&self) -> Option<String> {
+        if self.layer.foundation != Some(FoundationKind::Springs) || self.surface.is_level() {
+            return None;
+        }
+        let along = |kind| self.quality(kind).map(|quality| [quality.least, quality.largest]);
+        let [vertical, horizontal] = [along(LinkKind::Vertical)?, along(LinkKind::Horizontal)?];
+        let is_far = |[least, largest]: [f64; 2]| least < 1.0 / FAR || largest > FAR;
+        let times = |[least, largest]: [f64; 2]| match (format!("{least:.3}"), format!("{largest:.3}")) {
+            (least, largest) if least == largest => least,
+            (least, largest) => format!("{least} to {largest}"),
+        };
+        (is_far(vertical) || is_far(horizontal)).then(|| {
+            format!(
+                "foundation = \"springs\": against the waves of the profile the links are {} times as stiff along z, and {} \
+                 times along x, as a layer of rubber of layer.thickness: forces, friction and area are not those of rubber; \
+                 layer.foundation = \"layer\" or \"half_space\" fits the links",
+                times(vertical),
+                times(horizontal)
+            )
+        })
     }
 
     /// Warnings about the masses and links that stand for the rubber; a solution for steady sliding uses neither.
@@ -83,6 +110,12 @@ impl Scene {
     pub fn hard_pressure(&self, name: &str, pressure: f64) -> Option<String> {
         self.foundation.as_ref()?;
         let modulus = self.material.as_ref()?.plane_modulus(self.material.as_ref()?.equilibrium_modulus);
+        if pressure > modulus {
+            return Some(format!(
+                "pressed too hard: {name} = {pressure:?} Pa is more than the plane modulus at rest, {modulus:.3e} Pa: is one of \
+                 them in another unit than Pa?"
+            ));
+        }
         (pressure > HARD * modulus).then(|| {
             format!(
                 "pressed too hard: {name} = {pressure:?} Pa is more than a tenth of the plane modulus at rest, \
@@ -111,6 +144,18 @@ impl Scene {
     }
 }
 
+impl Foundation {
+    /// Over waves of a narrow band the fit may leave nothing between the carrier and the masses.
+    fn no_support(&self, masses: usize) -> Option<String> {
+        (self.normal.alpha == 0.0).then(|| {
+            format!(
+                "no vertical links: fitted over the waves that {masses} masses resolve, α is 0, so that nothing bears the \
+                 carrier: more masses, or foundation = \"springs\""
+            )
+        })
+    }
+}
+
 fn steep_slopes(foundation: &Foundation) -> Option<String> {
     let slope = foundation.waves.slope;
     (slope > STEEP).then(|| {
@@ -124,8 +169,7 @@ fn steep_slopes(foundation: &Foundation) -> Option<String> {
 impl Surface {
     /// The period of a profile that is not level, m.
     fn period(&self) -> Option<f64> {
-        let level = self.z().windows(2).all(|pair| pair[0] == pair[1]);
-        (self.is_periodic() && !level).then(|| self.x()[self.x().len() - 1] - self.x()[0])
+        (self.is_periodic() && !self.is_level()).then(|| self.x()[self.x().len() - 1] - self.x()[0])
     }
 
     /// The wavelength above which the spectrum is constant, m: as given, or of the law that the spectrum follows.

@@ -63,7 +63,7 @@ const LAYER: &[Key] = &[
         .material()
         .reads(field!(|scene, _| scene.layer.width)),
     word::<FoundationKind>("foundation", "What the links stand for: springs, half_space or layer")
-        .default("\"springs\"")
+        .default("\"layer\"")
         .material(),
 ];
 

@@ -3,7 +3,9 @@
 use super::field::{Field, FieldValue, field};
 use super::{Allowed, Key, Kinds, PATH, key, kinds, number, numbers, table, whole, word};
 use crate::scene::values::{ANY, NOT_NEGATIVE, POSITIVE, Word};
-use crate::scene::{Convention, FineRoughness, FineWaves, LengthUnit, Missing, Softening, ThirdColumn, Tilt, Unit};
+use crate::scene::{
+    Convention, Depth, FineRoughness, FineWaves, LengthUnit, Missing, Softening, ThirdColumn, Tilt, Unit,
+};
 
 /// Where the heights of a surface come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -150,6 +152,7 @@ const FILE: &[Key] = &[
     word::<LengthUnit>("z_unit", "Unit of z").follows("`unit`"),
     word::<Missing>("missing", "What becomes of points without a height").default("\"refuse\""),
     word::<Tilt>("tilt", "What becomes of the profile's tilt").default("\"keep\""),
+    word::<Depth>("depth", "Whether heights of the file grow up or down").follows("the name of their column, else up"),
     word::<ThirdColumn>("third_column", "What a third column means"),
     key("columns", Allowed::Text(COLUMNS), "Columns of x and z, by their names or numbers"),
     numbers("spacing", POSITIVE, Unit::Meter, "Distance of points of a file without x"),

@@ -18,8 +18,12 @@ pub struct Areal {
     heights: Vec<f64>,
     /// The unit of x, if it is not the metre; numbers of the spacing are in m.
     pub x_unit: Option<Unit>,
+    /// The unit of y, if it is not that of x.
+    pub y_unit: Option<Unit>,
     /// The unit of the heights that the file names.
     pub unit: Option<Unit>,
+    /// Whether its heights grow downwards, as far as the file tells.
+    is_depth: bool,
     /// How it was read.
     pub notes: Vec<ReadingNote>,
 }
@@ -28,16 +32,26 @@ impl Areal {
     /// `size` points along x and lines along y at even `spacing`, m.
     pub fn even(kind: &'static str, size: [usize; 2], spacing: [f64; 2], heights: Vec<f64>) -> Self {
         let positions = |axis: usize| (0..size[axis]).map(|i| spacing[axis] * i as f64).collect();
-        Self { kind, x: positions(0), y: positions(1), heights, x_unit: None, unit: None, notes: Vec::new() }
+        Self {
+            kind,
+            x: positions(0),
+            y: positions(1),
+            heights,
+            x_unit: None,
+            y_unit: None,
+            unit: None,
+            is_depth: false,
+            notes: Vec::new(),
+        }
     }
 
     /// Lines at these positions along y with points at these along x.
     pub fn at(kind: &'static str, x: Vec<f64>, y: Vec<f64>, heights: Vec<f64>) -> Self {
-        Self { kind, x, y, heights, x_unit: None, unit: None, notes: Vec::new() }
+        Self { kind, x, y, heights, x_unit: None, y_unit: None, unit: None, is_depth: false, notes: Vec::new() }
     }
 
     /// Points on a grid in any order of lines; each line with all its points, one after the other along x or along y.
-    pub(super) fn of_points(raw: MeasuredPoints, y: &[f64]) -> Result<Self, ContentError> {
+    pub(super) fn of_points(raw: MeasuredPoints, y: &[f64], y_unit: Option<Unit>) -> Result<Self, ContentError> {
         let (x_values, y_values) = (sorted(&raw.x), sorted(y));
         if x_values.len() * y_values.len() != raw.x.len() {
             let given =
@@ -51,7 +65,8 @@ impl Areal {
             heights[at(&y_values, *y) * x_values.len() + at(&x_values, *x)] = *z;
         }
         let [x_unit, unit] = raw.units;
-        Ok(Self { kind: "a map of points", x: x_values, y: y_values, heights, x_unit, unit, notes: raw.notes })
+        let (kind, is_depth) = ("a map of points", raw.is_depth);
+        Ok(Self { kind, x: x_values, y: y_values, heights, x_unit, y_unit, unit, is_depth, notes: raw.notes })
     }
 
     /// The line that `options` choose, and the map, or why there is none; no map of a single line.
@@ -60,7 +75,23 @@ impl Areal {
     /// [`ContentError`] where there is no such line, or heights are missing and may not be.
     pub fn surface(&self, options: &ProfileOptions) -> Result<MeasuredSurface, ContentError> {
         let is_map = self.x.len() > 1 && self.y.len() > 1;
+        if is_map && options.periodic && options.tilt == Tilt::Remove {
+            return self.level(options)?.surface(&ProfileOptions { tilt: Tilt::Keep, ..options.clone() });
+        }
         Ok(MeasuredSurface { line: self.line(options)?, map: is_map.then(|| self.whole(options)) })
+    }
+
+    /// The heights above their least squares plane.
+    fn level(&self, options: &ProfileOptions) -> Result<Self, ContentError> {
+        let refuse = |error: MapError| ContentError::value(None, "tilt", "\"remove\"", &error.to_string());
+        for (axis, positions) in [("x", &self.x), ("y", &self.y)] {
+            even_step(positions).ok_or_else(|| refuse(MapError::Uneven(axis)))?;
+        }
+        let heights = self.known_heights(options.missing).map_err(refuse)?;
+        // On an even grid the plane is the same whatever the steps are.
+        let level = HeightMap::new(self.x.len(), [1.0; 2], heights).without_plane();
+        let (x, y, notes) = (self.x.clone(), self.y.clone(), self.notes.clone());
+        Ok(Self { x, y, heights: level.heights().to_vec(), notes, ..*self })
     }
 
     /// The line that `options` choose, or the middle one. That of a periodic map is closed by its first height, unless
@@ -90,7 +121,8 @@ impl Areal {
         }
         let units = [self.x_unit, self.unit];
         let is_spaced = !options.spacing.is_empty();
-        let raw = MeasuredPoints { x, z, units, is_spaced, notes, ..MeasuredPoints::default() };
+        let raw =
+            MeasuredPoints { x, z, units, is_spaced, is_depth: self.is_depth, notes, ..MeasuredPoints::default() };
         match raw.z.iter().position(|z| z.is_nan()).filter(|_| options.missing == Missing::Refuse) {
             Some(i) => Err(raw.refuse(i, "z", "missing", "a height, or missing = \"fill\" where heights are missing")),
             None => Ok(raw),
@@ -101,17 +133,20 @@ impl Areal {
         // Positions and heights in metres.
         let unit =
             |given: Option<LengthUnit>, own: Option<Unit>| given.map(LengthUnit::unit).or(own).unwrap_or(Unit::ONE);
-        let x_unit = if options.spacing.is_empty() { unit(options.x_unit, self.x_unit) } else { Unit::ONE };
+        let along = |own: Option<Unit>| if options.spacing.is_empty() { unit(options.x_unit, own) } else { Unit::ONE };
         let z_unit = unit(options.z_unit, self.unit);
-        let step =
-            |axis, positions: &[f64]| even_step(positions).map(|step| x_unit.to_si(step)).ok_or(MapError::Uneven(axis));
-        let spacing = [step("x", &self.x)?, step("y", &self.y)?];
+        let step = |axis, positions: &[f64], unit: Unit| {
+            even_step(positions).map(|step| unit.to_si(step)).ok_or(MapError::Uneven(axis))
+        };
+        let y_unit = along(self.y_unit.or(self.x_unit));
+        let spacing = [step("x", &self.x, along(self.x_unit))?, step("y", &self.y, y_unit)?];
         let (nx, ny) = (self.x.len(), self.y.len());
         if self.heights.len() > MOST_HEIGHTS {
             return Err(MapError::TooLarge { nx, ny });
         }
         let mut heights = self.known_heights(options.missing)?;
-        heights.iter_mut().for_each(|z| *z = z_unit.to_si(*z));
+        let sign = if options.turns_over(self.is_depth) { -1.0 } else { 1.0 };
+        heights.iter_mut().for_each(|z| *z = sign * z_unit.to_si(*z));
         // Lines follow each other in +y.
         if spacing[1] < 0.0 {
             heights = heights.chunks_exact(nx).rev().flatten().copied().collect();

@@ -78,15 +78,21 @@ impl<'a> Header<'a> {
         Self { table, set, stated }
     }
 
-    /// The unit that a column's heading names.
+    /// The unit that a column's heading names, be the name one that is known or one that was chosen.
     fn unit(&self, column: usize, key: &str) -> Result<Option<Unit>, ContentError> {
-        if self.table.headings.get(column).is_none_or(Option::is_none) {
-            return Ok(None);
-        }
-        let found = self.table.column(column, UnitRule::Assumed, None);
-        let found = found.map_err(|error| error.or(&format!("{key} in the scene")))?;
-        found.check_plain(self.table.line)?;
-        Ok(found.names_unit.then_some(found.unit))
+        let is_known = self.table.headings.get(column).is_some_and(Option::is_some);
+        let found = if is_known {
+            let found = self.table.column(column, UnitRule::Assumed, None);
+            found.and_then(|found| found.check_plain(self.table.line).map(|()| found.names_unit.then_some(found.unit)))
+        } else {
+            self.table.unit(column, Dimension::Length)
+        };
+        found.map_err(|error| error.or(&format!("{key} in the scene")))
+    }
+
+    /// The unit of y, of points in space: its own, or else that of x.
+    pub(super) fn unit_of_y(&self, column: usize, options: &ProfileOptions) -> Result<Option<Unit>, ContentError> {
+        options.x_unit.map_or_else(|| self.unit(column, "x_unit"), |unit| Ok(Some(unit.unit())))
     }
 
     /// The units of x and z, and notes on them.
@@ -128,13 +134,13 @@ impl<'a> Header<'a> {
                 ReadingNote { text, assumed: true }
             }
         });
-        if words(self.table.names.get(z_column).map_or("", |name| name))
-            .iter()
-            .any(|word| word == "depth" || word == "tiefe")
-        {
-            raw.notes.push(ReadingNote { text: "depths are taken as heights, upwards".into(), assumed: true });
-        }
         Ok(units)
+    }
+
+    /// Whether a column is called depth.
+    pub(super) fn says_depth(&self, column: usize) -> bool {
+        let name = self.table.names.get(column).map_or("", |name| name);
+        words(name).iter().any(|word| ["depth", "depths", "tiefe", "profondeur"].contains(&word.as_str()))
     }
 }
 

@@ -18,10 +18,11 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 pub use areal::{Areal, line_note};
-pub use options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
+pub use options::{Depth, LengthUnit, MeasuredPoints, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
 
 use super::error::SceneError;
 use super::regular_file::read_file;
+use super::seam::Seam;
 use super::surface::{Coordinate, Surface, check_points, remove_tilt};
 use super::{HeightMap, MapError};
 use crate::tables::{ContentError, ReadingNote, Unit, decode};
@@ -130,25 +131,66 @@ fn parse(
     is_extract: bool,
 ) -> Result<Parsed, ContentError> {
     if is_extract {
-        // It has x and z in m, whatever the file had that it stands for.
-        let of_text =
-            ProfileOptions { columns: Vec::new(), spacing: Vec::new(), third_column: None, ..options.clone() };
+        let of_text = of_extract(options);
         let Content::Profile(raw) = read_text(bytes, &of_text)? else { return Err(no_profile()) };
-        return finish(MeasuredPoints { is_spaced: !options.spacing.is_empty(), ..raw }, options);
+        return finish(raw, &of_text);
     }
-    let MeasuredSurface { line: raw, map } = match formats.read(bytes, options) {
+    let MeasuredSurface { line: mut raw, map } = match formats.read(bytes, options) {
         Some(read) => read?,
         None => match read_text(bytes, options)? {
             Content::Profile(raw) => {
                 check_line(options)?;
-                return finish(raw, options);
+                check_tilt(options)?;
+                let parsed = finish(raw, options)?;
+                return with_seams(parsed, options);
             }
             map => map.line(options)?,
         },
     };
+    if map.is_none() {
+        check_tilt(options)?;
+    }
+    in_metres(&mut raw, options)?;
     let text = text::write(&raw.x, &raw.z);
-    let parsed = finish(raw, options)?;
-    Ok(Parsed { extract: Some(text), surface: parsed.surface.with_map(map), ..parsed })
+    let parsed = finish(raw, &of_extract(options))?;
+    with_seams(Parsed { extract: Some(text), surface: parsed.surface.with_map(map), ..parsed }, options)
+}
+
+/// How the line of an areal measurement is read: it has x and z in m, whatever the file had that it stands for, and that
+/// of a periodic map is without the tilt of the map already.
+fn of_extract(options: &ProfileOptions) -> ProfileOptions {
+    ProfileOptions {
+        x_unit: None,
+        z_unit: None,
+        columns: Vec::new(),
+        spacing: Vec::new(),
+        third_column: None,
+        depth: Some(Depth::Up),
+        tilt: if options.periodic { Tilt::Keep } else { options.tilt },
+        ..options.clone()
+    }
+}
+
+/// A period has no tilt but that of a map, whose plane is no plane of its line.
+fn check_tilt(options: &ProfileOptions) -> Result<(), ContentError> {
+    let is_level = !(options.periodic && options.tilt == Tilt::Remove);
+    let expected = "\"keep\" for a periodic profile, whose ends meet as they are";
+    if is_level { Ok(()) } else { Err(ContentError::value(None, "tilt", "\"remove\"", expected)) }
+}
+
+/// Refuses a periodic surface whose ends do not meet, and warns where they hardly do.
+fn with_seams(mut parsed: Parsed, options: &ProfileOptions) -> Result<Parsed, ContentError> {
+    if !options.periodic {
+        return Ok(parsed);
+    }
+    let surface = &parsed.surface;
+    let seams = match surface.map() {
+        Some(map) => Seam::of_map(map),
+        None => Vec::from_iter(Seam::of_profile(surface.x(), surface.z())),
+    };
+    let warnings = Seam::check(&seams).map_err(|expected| ContentError::value(None, "periodic", "true", &expected))?;
+    parsed.warnings.extend(warnings);
+    Ok(parsed)
 }
 
 fn read_text(bytes: &[u8], options: &ProfileOptions) -> Result<Content, ContentError> {
@@ -193,14 +235,23 @@ impl SurfaceFormats for TextAlone {
     }
 }
 
-/// Converts to metres, fills gaps, removes the tilt and checks the points.
-fn finish(mut raw: MeasuredPoints, options: &ProfileOptions) -> Result<Parsed, ContentError> {
-    sentinels::take_out(&mut raw, options.missing)?;
-    let [x_unit, z_unit] = raw.units;
+/// Takes out what stands for no height, turns depths over, and converts to metres.
+fn in_metres(raw: &mut MeasuredPoints, options: &ProfileOptions) -> Result<(), ContentError> {
+    sentinels::take_out(raw, options.missing)?;
+    if options.turns_over(std::mem::take(&mut raw.is_depth)) {
+        raw.z.iter_mut().for_each(|z| *z = -*z);
+    }
+    let [x_unit, z_unit] = std::mem::take(&mut raw.units);
     if !raw.is_spaced {
         to_metres(&mut raw.x, options.x_unit.map(LengthUnit::unit).or(x_unit));
     }
     to_metres(&mut raw.z, options.z_unit.map(LengthUnit::unit).or(z_unit));
+    Ok(())
+}
+
+/// Converts to metres, fills gaps, removes the tilt and checks the points.
+fn finish(mut raw: MeasuredPoints, options: &ProfileOptions) -> Result<Parsed, ContentError> {
+    in_metres(&mut raw, options)?;
     let fill = options.missing == Missing::Fill && raw.z.iter().any(|z| z.is_nan());
     if fill || options.tilt == Tilt::Remove {
         check(&mut raw, false)?;

@@ -16,6 +16,8 @@ pub struct ProfileOptions {
     pub missing: Missing,
     /// What becomes of the profile's tilt.
     pub tilt: Tilt,
+    /// Which way heights grow; `None`: up, but down where their column is called depth and they are not mostly below 0.
+    pub depth: Option<Depth>,
     /// What a third column means; `None`: what its name in the header says.
     pub third_column: Option<ThirdColumn>,
     /// The columns of x and z, by their names or numbers from 1, or of z alone; none: by their names in the file.
@@ -71,6 +73,15 @@ pub enum Tilt {
     Remove,
 }
 
+/// Which way the heights of a file grow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Depth {
+    /// They are heights.
+    Up,
+    /// They are depths: z is minus them.
+    Down,
+}
+
 /// What a third column means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ThirdColumn {
@@ -110,6 +121,7 @@ option_words!(LengthUnit: "m" Metre, "mm" Millimetre, "um" Micrometre, "µm" Mic
     "Å" Angstrom, "in" Inch, "mil" Mil, "ft" Foot);
 option_words!(Missing: "refuse" Refuse, "fill" Fill);
 option_words!(Tilt: "keep" Keep, "remove" Remove);
+option_words!(Depth: "up" Up, "down" Down);
 option_words!(ThirdColumn: "invalid" Invalid, "valid" Valid, "ignore" Ignore);
 
 impl LengthUnit {
@@ -131,10 +143,19 @@ pub struct MeasuredPoints {
     pub units: [Option<Unit>; 2],
     /// Whether x follows from a spacing, which is in m whatever the units are.
     pub is_spaced: bool,
+    /// Whether they grow downwards, as far as the file tells.
+    pub is_depth: bool,
     /// What may not be meant in them.
     pub warnings: Vec<String>,
     /// How they were read.
     pub notes: Vec<ReadingNote>,
+}
+
+impl ProfileOptions {
+    /// Whether numbers of a file are depths, where the file itself says that they are or not.
+    pub(super) fn turns_over(&self, is_depth: bool) -> bool {
+        self.depth.map_or(is_depth, |depth| depth == Depth::Down)
+    }
 }
 
 impl MeasuredPoints {

@@ -228,7 +228,8 @@ fn what_is_written_is_read_again() {
 #[test]
 fn periodic_ends_meet() {
     let (line, message) = refusal(b"0 1\n1 2\n2 1.5", true);
-    let expected = "z = 1.5: expected 1.0, the first height, for a periodic profile ends at the height it starts from";
+    let expected = "z = 1.5: expected 1.0, the first height, for a periodic profile ends at the height it starts from; \
+                    asperity surface --mirror makes a period of one that ends";
     assert_eq!((line, message.as_str()), (3, expected));
     let (_, message) = refusal(b"0 1\n1 1", true);
     assert_eq!(message, "points = 2: expected at least 3 points for a periodic profile");
@@ -341,6 +342,23 @@ fn what_was_assumed_is_said() {
     assert_eq!(assumed("x [mm],depth [mm]\n0,1\n1,2"), 1);
 }
 
+#[test]
+fn depths_grow_downwards() {
+    let heights = |name: &str, numbers: [f64; 3], depth: Option<Depth>| {
+        let rows: String = numbers.iter().enumerate().map(|(i, z)| format!("{i},{z}\n")).collect();
+        let options = ProfileOptions { depth, ..options() };
+        surface(&format!("x [m],{name} [m]\n{rows}"), &options).z().to_vec()
+    };
+    let (grooves, below) = ([0.0, 0.5, 0.0], [0.0, -0.5, -0.25]);
+    assert_eq!(heights("Depth", grooves, None), [0.0, -0.5, 0.0]);
+    assert_eq!(heights("profile depth", grooves, Some(Depth::Up)), grooves);
+    assert_eq!(heights("height", grooves, Some(Depth::Down)), [0.0, -0.5, 0.0]);
+    assert_eq!((heights("Tiefe", below, None), heights("height", grooves, None)), (below.to_vec(), grooves.to_vec()));
+    let map = "x [m],y [m],depth [m]\n0,0,1\n1,0,0\n0,1,0\n1,1,2\n";
+    let whole = surface(map, &options());
+    assert_eq!((whole.z(), whole.map().map(HeightMap::heights)), (&[-1.0, 0.0][..], Some(&[-1.0, 0.0, 0.0, -2.0][..])));
+}
+
 fn surface(text: &str, options: &ProfileOptions) -> Surface {
     parse(text.as_bytes(), options, &TextAlone, false).unwrap_or_else(|error| unreachable!("{error:?}")).surface
 }
@@ -399,4 +417,55 @@ fn gaps_of_a_map_are_refused_or_filled() {
     assert_eq!(map.heights(), [2.0, 2.0, 3.0, 4.0, 1.5, 1.5, 3.0, 3.5, 1.0, 1.0, 3.0, 3.0]);
     // A period has no ends.
     assert_eq!(surface(text, &ProfileOptions { periodic: true, ..fill }).z(), [1.0, 1.0, 3.0, 3.0, 1.0]);
+}
+
+/// Whatever the columns are called that are chosen.
+#[test]
+fn units_belong_to_columns() {
+    let chosen = |columns: &[&str]| ProfileOptions {
+        columns: columns.iter().map(|name| (*name).to_owned()).collect(),
+        ..options()
+    };
+    let text = b"Distance [mm];Texture [\xc2\xb5m];Dropout\n0,0;1,5;0\n1,0;3,0;0\n";
+    let profile = [(0.0, 1.5e-6), (1e-3, 3e-6)];
+    assert_eq!(points_of(text, &chosen(&["Distance", "Texture"])), profile);
+    let odd = b"Odometer [mm];Laser left\n;[um]\n0,0;1,5\n1,0;3,0\n";
+    assert_eq!(points_of(odd, &chosen(&["Odometer", "Laser left"])), profile);
+    let alone = ProfileOptions { spacing: vec![1e-3], ..chosen(&["Texture"]) };
+    assert_eq!(points_of(text, &alone), profile);
+    let (_, message) = refused(b"Distance [mm],Sensor [V]\n0,1\n1,2\n", &chosen(&["1", "2"]));
+    assert!(message.starts_with("unit of column 2 (Sensor [V]) = \"V\": expected one of m, mm"), "{message}");
+    assert!(message.ends_with("or z_unit in the scene"), "{message}");
+}
+
+/// Each axis has its own; the line that an FMU carries in place of the map is in metres.
+#[test]
+fn units_of_a_map_belong_to_its_columns() {
+    let text = "x [mm],y [um],z [nm]\n0,0,1\n2,0,2\n0,500,4\n2,500,5\n";
+    let parsed =
+        parse(text.as_bytes(), &options(), &TextAlone, false).unwrap_or_else(|error| unreachable!("{error:?}"));
+    assert_eq!(parsed.surface.map().map(HeightMap::spacing), Some([2e-3, 5e-4]));
+    let carried = parsed.extract.unwrap_or_default();
+    let again = parse(carried.as_bytes(), &options(), &TextAlone, true).map(|again| again.surface);
+    let again = again.unwrap_or_else(|error| unreachable!("{error:?}"));
+    assert_eq!((again.x(), again.z()), (parsed.surface.x(), parsed.surface.z()));
+    assert_eq!((again.x(), again.z()), (&[0.0, 2e-3][..], &[1e-9, 2e-9][..]));
+}
+
+/// Of waves that meet, on a plane: with it the ends do not meet, without it they do.
+#[test]
+fn the_tilt_of_a_periodic_map_is_that_of_the_map() {
+    let wave = |i: usize, count: f64| (std::f64::consts::TAU * i as f64 / count).sin();
+    let height = |i: usize, j: usize| wave(i, 32.0) + wave(j, 16.0) + 4.0 * i as f64 - 3.0 * j as f64;
+    let row = |j: usize| (0..32).map(|i| height(i, j).to_string()).collect::<Vec<_>>().join(",");
+    let text = (0..16).map(row).collect::<Vec<_>>().join("\n");
+    let kept = ProfileOptions { periodic: true, ..spaced() };
+    let (_, message) = refused(text.as_bytes(), &kept);
+    assert!(message.starts_with("periodic = true: expected false, for the ends do not meet along x:"), "{message}");
+    assert!(message.contains("asperity surface --mirror") && message.contains("tilt = \"remove\""), "{message}");
+    let found = surface(&text, &ProfileOptions { tilt: Tilt::Remove, line: Some(3), ..kept });
+    let map = found.map().unwrap_or_else(|| unreachable!("{:?}", found.map_error()));
+    // Its plane takes some of the waves with it.
+    assert!(map.tilt().iter().all(|slope| slope.abs() < 1e-6) && (0.5..1.0).contains(&map.rms_height()));
+    assert_eq!((found.z()[..32].to_vec(), found.z()[32]), (map.line(2).to_vec(), map.line(2)[0]));
 }

@@ -177,10 +177,12 @@ impl<'a, 'b> PointsReader<'a, 'b> {
         for line in self.block.lines(text).chain(meant.iter().copied()) {
             self.add(line)?;
         }
+        self.tell_depths(header.says_depth(self.roles.z));
         // Words and results.
         self.raw.notes.extend(footer.first().map(|(line, _)| behind_note(*line, footer.len())));
         if self.y.windows(2).any(|pair| pair[0] != pair[1]) {
-            return Areal::of_points(self.raw, &self.y).map(Content::Map);
+            let y_unit = self.roles.y.map(|column| header.unit_of_y(column, self.options)).transpose()?.flatten();
+            return Areal::of_points(self.raw, &self.y, y_unit).map(Content::Map);
         }
         self.raw.is_spaced = self.roles.x.is_none();
         if header.table.names.is_empty() && self.roles.x.is_some() {
@@ -188,6 +190,25 @@ impl<'a, 'b> PointsReader<'a, 'b> {
             self.raw.notes.push(ReadingNote { text, assumed: true });
         }
         Ok(Content::Profile(self.raw))
+    }
+
+    /// Notes which way the numbers are taken to grow where their column `is_called` depth. Depths below a datum are
+    /// mostly above 0; where most are below, they are heights.
+    fn tell_depths(&mut self, is_called: bool) {
+        let count = |is_it: fn(&f64) -> bool| self.raw.z.iter().filter(|z| is_it(z)).count();
+        self.raw.is_depth = is_called && count(|z| *z > 0.0) >= count(|z| *z < 0.0);
+        if is_called && self.options.depth.is_none() {
+            let text = match self.raw.is_depth {
+                true => {
+                    "the column is called depth, so its numbers grow downwards, z = -depth: depth = \"up\" where they do not"
+                }
+                false => {
+                    "the column is called depth, but most of its numbers are below 0 and taken as heights: depth = \"down\" \
+                     turns them over"
+                }
+            };
+            self.raw.notes.push(ReadingNote { text: text.to_owned(), assumed: true });
+        }
     }
 
     /// Whether a line behind the block is meant as one of its rows: it begins with a number.

@@ -3,23 +3,32 @@
 //! Their numbers have no units: times are taken in s, and E_0 stands in a comment, with its unit.
 
 use super::{ModulusKind, WrittenSeries, WrittenTerm, note};
-use crate::tables::{ContentError, Line, POSITIVE, number};
+use crate::tables::{ContentError, Line, POSITIVE, ReadingNote, number, shortened};
 
 /// The series in the cards of a text; `None` where there are none.
 pub(super) fn read(text: &str) -> Option<Result<WrittenSeries<'_>, ContentError>> {
     let lines = || (1..).zip(text.lines().map(str::trim)).filter(|(_, line)| !line.is_empty());
-    let begins = |(number, line): &Line<'_>, words: &[&str]| {
-        let found = line.to_uppercase().replace(' ', "");
-        words.iter().all(|word| found.contains(word)).then_some(*number)
-    };
-    let abaqus = lines().find_map(|line| begins(&line, &["*VISCOELASTIC"]));
-    let ansys = lines().find_map(|line| begins(&line, &["TB,PRONY"]));
-    let (line, comment, terms) = match (abaqus, ansys) {
-        (Some(line), _) => (line, "**", abaqus_terms(lines().skip_while(move |(number, _)| *number < line))),
-        (None, Some(line)) => (line, "!", ansys_terms(lines())),
+    let of_abaqus = |word: &'static str| lines().filter(move |(_, line)| is_keyword(line, word));
+    let of_ansys = |words: &'static [&'static str]| lines().filter(move |(_, line)| is_table(line, words));
+    let (abaqus, ansys) = (of_abaqus("VISCOELASTIC").next(), of_ansys(&["PRONY"]).next());
+    let (line, comment, terms, ignored) = match (abaqus, ansys) {
+        (Some((line, _)), _) => {
+            let terms = check_one(of_abaqus("VISCOELASTIC"))
+                .and_then(|()| abaqus_terms(lines().skip_while(move |(number, _)| *number < line)));
+            (line, "**", terms, of_abaqus("TRS").next().map(shift_note))
+        }
+        (None, Some((line, _))) => {
+            let terms = check_one(of_ansys(&["PRONY", "SHEAR"])).and_then(|()| ansys_terms(lines()));
+            (line, "!", terms, of_ansys(&["SHIFT"]).next().map(shift_note))
+        }
         (None, None) => return None,
     };
     let name = if abaqus.is_some() { "Abaqus" } else { "Ansys" };
+    let mut notes = vec![note("relaxation times in s are assumed", true)];
+    notes.extend(ignored);
+    notes.extend(of_ansys(&["PRONY", "BULK"]).next().map(|(line, text)| {
+        note(format!("line {line} ({text}) is not taken: the model's Poisson's ratio does not relax"), true)
+    }));
     Some(terms.map(|terms| WrittenSeries {
         terms,
         kind: ModulusKind::Relative,
@@ -27,8 +36,39 @@ pub(super) fn read(text: &str) -> Option<Result<WrittenSeries<'_>, ContentError>
         line: Some(line),
         header: lines().map(|(number, line)| (number, line.trim_start_matches(['*', '!', '#', '/', ' ']))).collect(),
         comment,
-        notes: vec![note("relaxation times in s are assumed", true)],
+        notes,
     }))
+}
+
+/// Whether a line is this keyword of Abaqus, and no comment.
+fn is_keyword(line: &str, word: &str) -> bool {
+    let name = line.strip_prefix('*').and_then(|name| name.split(',').next());
+    name.is_some_and(|name| name.replace(' ', "").eq_ignore_ascii_case(word))
+}
+
+/// Whether a line is a table of Ansys of this kind: `TB,PRONY,1,1,2,SHEAR`.
+fn is_table(line: &str, words: &[&str]) -> bool {
+    let fields: Vec<String> =
+        line.split('!').next().unwrap_or_default().split(',').map(|field| field.trim().to_uppercase()).collect();
+    let kinds = [fields.get(1), fields.get(5)];
+    fields[0] == "TB" && words.iter().zip(kinds).all(|(word, kind)| kind.is_some_and(|kind| kind == word))
+}
+
+/// One series alone: of two materials, or of two temperatures, none is the file's.
+fn check_one<'a>(mut series: impl Iterator<Item = Line<'a>>) -> Result<(), ContentError> {
+    match (series.next(), series.next()) {
+        (Some((first, _)), Some((second, card))) => {
+            let given = format!("\"{}\", a second one beside that of line {first}", shortened(card));
+            Err(ContentError::value(Some(second), "card", &given, "the series of one material: a file for each"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A shift with temperature is the scene's.
+fn shift_note((line, card): Line<'_>) -> ReadingNote {
+    let key = "material.wlf = { c1, c2, reference_temperature, temperature }";
+    note(format!("line {line} ({}), the shift with temperature, is not taken: write {key}", shortened(card)), true)
 }
 
 /// The rows g, k, τ below `*VISCOELASTIC, TIME=PRONY`.

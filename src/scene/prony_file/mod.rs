@@ -281,11 +281,44 @@ mod tests {
             ("**E0=1MPa\n*Viscoelastic, time=PRONY\n2,0,1\n", 3, "modulus = \"2\": expected a share of E_0"),
             ("!E0=1MPa\nTB,PRONY,1,1,2,SHEAR\nTBDATA,1,0.2\n", 3, "constants = 1: expected shares and times by turns"),
             ("!E0=1MPa\nTB,PRONY,1,1,2,SHEAR\nTBDATA,3,0.2,1\n", 3, "TBDATA = 3: expected constants from 1 on"),
+            (
+                "**E0=1MPa\n*Material, name=A\n*Viscoelastic, time=PRONY\n0.2,0,1\n*Material, name=B\n\
+                 *Viscoelastic, time=PRONY\n0.3,0,1\n",
+                6,
+                "card = \"*Viscoelastic, time=PRONY\", a second one beside that of line 3: expected the series of one material",
+            ),
+            (
+                "!E0=1MPa\nTB,PRONY,1,1,1,SHEAR\nTBDATA,1,0.2,1\nTB,PRONY,2,1,1,SHEAR\nTBDATA,1,0.3,1\n",
+                4,
+                "card = \"TB,PRONY,2,1,1,SHEAR\", a second one beside that of line 2: expected the series of one material",
+            ),
         ];
         for (text, line, message) in refused {
             let (found, error) = read(text).err().unwrap_or_default();
             assert!(found == Some(line) && error.starts_with(message), "{text:?}: {found:?} {error}");
         }
+    }
+
+    /// The shift is that of the scene; bulk moduli do not relax.
+    #[test]
+    fn what_of_cards_is_not_taken_is_said() {
+        let said = |text: &str| {
+            let series = PronySeries::parse(text.as_bytes(), ELASTIC).unwrap_or_else(|error| unreachable!("{error}"));
+            let notes = series.notes.into_iter().filter(|note| note.assumed).map(|note| note.text);
+            notes.filter(|text| text.contains("not taken")).collect::<Vec<_>>()
+        };
+        let abaqus =
+            said("** E0 = 5 MPa\n*Viscoelastic, time=PRONY\n0.2,0.2,1.\n* TRS, definition=WLF\n20., 8.86, 101.6\n");
+        assert!(abaqus.len() == 1 && abaqus[0].starts_with("line 4 (* TRS, definition=WLF), the shift"), "{abaqus:?}");
+        assert!(
+            abaqus[0].ends_with("write material.wlf = { c1, c2, reference_temperature, temperature }"),
+            "{abaqus:?}"
+        );
+        let ansys = said(
+            "! E0 = 5 MPa\nTB,PRONY,1,1,1,SHEAR\nTBDATA,1,0.2,1\ntb, prony,1,1,1,bulk\nTBDATA,1,0.3,5.0\n\
+             TB,SHIFT,1,1,3,WLF\nTBDATA,1,293.15,8.86,101.6\n",
+        );
+        assert!(ansys.len() == 2 && ansys[0].contains("TB,SHIFT") && ansys[1].contains("bulk"), "{ansys:?}");
     }
 
     #[test]

@@ -57,7 +57,8 @@ pub(super) fn read_phases(
     found: &mut Findings,
 ) -> Result<Vec<Phase>> {
     let Some(entry) = table.entry("file") else { return Ok(vec![read_phase(table, carrier, temperature)?]) };
-    let phases = found.read_file(&entry, &read_path(&entry)?, motion_file::read_motion)?;
+    let parse = |bytes: &[u8]| motion_file::read_motion(bytes, carrier);
+    let phases = found.read_file(&entry, &read_path(&entry)?, parse)?;
     match phases.iter().find_map(|phase| motion_file::obstacle(phase, carrier, temperature)) {
         Some(expected) => Err(entry.refuse(format_args!("a file with {expected}"))),
         None => Ok(phases),

@@ -147,7 +147,8 @@ fn read_options(root: &mut TableReader<'_>, scene: &mut Scene) -> Result<()> {
 fn add_warnings(scene: &mut Scene) {
     let temperature = wlf(scene).map(|wlf| wlf.temperature);
     let cold_contacts = temperature.and_then(|temperature| scene.cold_contacts(temperature));
-    let of_scene = warnings::other_units(scene).into_iter().chain(scene.short_profile());
+    let of_scene = warnings::other_units(scene).into_iter().chain(warnings::other_spacing(scene));
+    let of_scene = of_scene.chain(scene.short_profile());
     let of_scene = of_scene.chain(scene.material.as_ref().and_then(warnings::cold_temperatures));
     let of_contacts = scene.fine_warnings().into_iter().chain(cold_contacts);
     let warnings: Vec<String> = of_scene.chain(scene.foundation_warnings()).chain(of_contacts).collect();

@@ -22,7 +22,7 @@ const POINTS: Format<usize, 4> = Format {
             Words::new(0, Dimension::Length, "x", ""),
             Words::new(1, Dimension::Length, "y", ""),
             Words::new(2, Dimension::Length, "z", ""),
-            Words::new(3, Dimension::Area, "area", ""),
+            Words::new(3, Dimension::Area, "area fläche", "nominal"),
         ],
         [
             Wanted::new(&[0], "x", "positions x"),
@@ -177,6 +177,7 @@ fn read_points(entry: &Entry<'_>) -> Result<FaceShape> {
 fn parse_points(bytes: &[u8]) -> std::result::Result<Vec<[f64; 4]>, ContentError> {
     let text = decode(bytes)?;
     let table = POINTS.read(&text)?;
+    table.check_units()?;
     if table.rows.len() as i64 > MAX_ELEMENTS {
         let expected = format!("1 to {MAX_ELEMENTS}, one an element");
         return Err(ContentError::value(table.line, "rows", &table.rows.len().to_string(), &expected));
@@ -190,4 +191,21 @@ fn default_outputs() -> Vec<PatchGroup> {
 
 fn read_outputs(table: &mut TableReader<'_>) -> Result<Vec<PatchGroup>> {
     table.entry("outputs").map_or_else(|| Ok(default_outputs()), |entry| super::read_groups(&entry))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_are_read_as_every_table_and_areas_have_their_unit() {
+        let read = |text: &str| parse_points(text.as_bytes()).map_err(|error| error.to_string());
+        let [x, y, area] = [1e-3, 2e-3, 4e-6];
+        let expected = Ok(vec![[x, y, 0.0, area]]);
+        for text in ["x [mm];y [mm];z [mm];area [mm²]\n1,0;2,0;0,0;4,0\n", "x,y,z,area\n1e-3,2e-3,0,4e-6\n"] {
+            assert_eq!(read(text), expected, "{text}");
+        }
+        let refusal = "unit of column 4 (area): expected it beside the name, as column 1 (x [mm]) names mm";
+        assert_eq!(read("x [mm],y [mm],z [mm],area\n1,2,0,4e-6\n"), Err(refusal.to_owned()));
+    }
 }

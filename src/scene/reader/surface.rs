@@ -4,7 +4,8 @@ use std::path::{Component, Path as FilePath, PathBuf};
 
 use super::table::{Entry, Result, TableReader};
 use crate::scene::keys::{PATH, SurfaceKind};
-use crate::scene::profile::{self, Extract, ProfileOptions, ReadFailure, Tilt};
+use crate::scene::profile::{self, Extract, ProfileOptions, ReadFailure};
+use crate::scene::seam::Seam;
 use crate::scene::surface::{Coordinate, check_points};
 use crate::scene::{Layer, MOST_HEIGHTS, SelfAffine, Surface, read_file as read_bytes, warnings};
 use crate::tables::{ContentError, ReadingNote};
@@ -66,7 +67,7 @@ pub(super) fn read(entry: &Entry<'_>, found: &mut Findings) -> Result<Surface> {
         SurfaceKind::Flat => Surface::flat(),
         SurfaceKind::Sinusoid => read_sinusoid(&mut table)?,
         SurfaceKind::SelfAffine => read_self_affine(&mut table, found)?,
-        SurfaceKind::Points => read_points(&mut table)?,
+        SurfaceKind::Points => read_points(&mut table, found)?,
         SurfaceKind::File => read_file(&mut table, found)?,
     };
     // Read once the surface is known.
@@ -141,7 +142,7 @@ fn read_size_y(table: &mut TableReader<'_>, length: f64) -> Result<Option<f64>> 
     Ok(Some(table.optional_number("size_y")?.unwrap_or(length)))
 }
 
-fn read_points(table: &mut TableReader<'_>) -> Result<Surface> {
+fn read_points(table: &mut TableReader<'_>, found: &mut Findings) -> Result<Surface> {
     let periodic = table.flag("periodic")?;
     let (x_entry, z_entry) = (table.required("x")?, table.required("z")?);
     let (x, mut z) = (x_entry.numbers()?, z_entry.numbers()?);
@@ -155,6 +156,11 @@ fn read_points(table: &mut TableReader<'_>) -> Result<Surface> {
             None => entry.refuse_count(x.len(), &error.expected),
         }
     })?;
+    let seams = Vec::from_iter(Seam::of_profile(&x, &z).filter(|_| periodic));
+    match (Seam::check(&seams), table.entry("periodic")) {
+        (Err(expected), Some(entry)) => return Err(entry.refuse(expected)),
+        (warnings, _) => found.warnings.extend(warnings.unwrap_or_default()),
+    }
     Ok(Surface::new(x, z, periodic))
 }
 
@@ -180,21 +186,18 @@ fn read_file(table: &mut TableReader<'_>, found: &mut Findings) -> Result<Surfac
 
 fn read_options(table: &mut TableReader<'_>) -> Result<ProfileOptions> {
     let unit = table.optional_choice("unit")?;
-    let options = ProfileOptions {
+    Ok(ProfileOptions {
         x_unit: table.optional_choice("x_unit")?.or(unit),
         z_unit: table.optional_choice("z_unit")?.or(unit),
         missing: table.optional_choice("missing")?.unwrap_or_default(),
         tilt: table.optional_choice("tilt")?.unwrap_or_default(),
+        depth: table.optional_choice("depth")?,
         third_column: table.optional_choice("third_column")?,
         columns: read_columns(table)?,
         spacing: read_spacing(table)?,
         line: table.optional_whole("line")?.and_then(|line| usize::try_from(line).ok()),
         periodic: table.flag("periodic")?,
-    };
-    match table.entry("tilt").filter(|_| options.periodic && options.tilt == Tilt::Remove) {
-        Some(entry) => Err(entry.refuse("\"keep\" for a periodic profile, whose ends meet as they are")),
-        None => Ok(options),
-    }
+    })
 }
 
 /// The names of columns: x and z, or z alone.

@@ -191,7 +191,7 @@ impl LocalRegions {
                 Some(Cut::Unresolved(time)) => time,
             };
             // The step is tried again up to there, and without its regions.
-            work.count(context.state.time(), context.model.masses())?;
+            work.count(context.state.time(), context.model.work_of_step())?;
             cuts += 1;
             let start = context.state.s;
             let h = if cuts > MAX_CUTS { 0.5 * (time - start) } else { time - start };

@@ -189,7 +189,8 @@ fn its_mode_changes_are_logged() {
     assert!(messages[0].text.ends_with("s: the contact from sticking to slipping forwards"), "{messages:?}");
 }
 
-/// Values alone: the first step stays at 0, the second goes 2e-5 m, the others 1e-5 m each.
+/// Values alone: the first step stays at 0, the second, from where the first ends done again, comes to 2e-5 m, the third to
+/// 3e-5 m.
 #[test]
 fn values_without_rates_are_extrapolated() {
     let fmu = pressed(2e5);

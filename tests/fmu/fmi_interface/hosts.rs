@@ -164,7 +164,8 @@ mod memory {
     /// A layer of 10 000 000 masses takes some 20 GB; instantiation says so, and the process lives on.
     #[test]
     fn an_instance_that_the_system_has_no_memory_for_is_refused() {
-        const NAME: &str = "fmi_interface::hosts::memory::an_instance_that_the_system_has_no_memory_for_is_refused";
+        const NAME: &str =
+            "fmu::fmi_interface::hosts::memory::an_instance_that_the_system_has_no_memory_for_is_refused";
         if std::env::var_os(LIMITED).is_none() {
             return limited(NAME, 2048);
         }

@@ -27,7 +27,7 @@ fn pages() -> u64 {
 #[test]
 #[cfg(target_os = "linux")]
 fn ten_thousand_instances_leave_memory_flat() {
-    run_alone("fmi_interface::many::ten_thousand_instances", &scratch("ten-thousand"));
+    run_alone("fmu::fmi_interface::many::ten_thousand_instances", &scratch("ten-thousand"));
 }
 
 #[test]

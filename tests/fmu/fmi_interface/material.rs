@@ -54,6 +54,8 @@ fn a_temperature_set_is_the_same_as_one_in_the_scene() {
 #[test]
 fn a_temperature_without_a_shift_is_an_error_at_the_end_of_the_initialisation() {
     let fmu = Fmu::initialising_with(&scene(293.15));
+    // Of its springs.
+    assert!(fmu.message().starts_with("foundation = \"springs\": "));
     assert_eq!(fmu.set_real("material.wlf.temperature", 170.0), OK);
     assert_eq!(fmu.exit(), ERROR);
     let message = fmu.message();

@@ -14,6 +14,7 @@ mod many;
 mod master;
 mod material;
 mod patch;
+mod provisional;
 mod states;
 mod stepping;
 mod values;

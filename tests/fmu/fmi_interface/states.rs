@@ -135,7 +135,7 @@ fn another_instance_continues_bit_for_bit() {
 fn another_process_continues_bit_for_bit() {
     let (fmu, folder) = (in_contact(), scratch("serialised"));
     fs::write(folder.join("state"), fmu.frozen()).unwrap();
-    run_alone("fmi_interface::states::the_other_process", &folder);
+    run_alone("fmu::fmi_interface::states::the_other_process", &folder);
     let there = fs::read_to_string(folder.join("steps")).unwrap();
     assert_eq!(there, format!("{:x?}", three_steps(&fmu, 1e-5)));
 }
@@ -221,7 +221,7 @@ fn another_scene_or_format_is_refused_and_named() {
     assert!(refused(&fmu, &other.frozen()).contains("it is of another scene or another version"));
     let mut later = fmu.frozen();
     later[8] += 1;
-    assert!(refused(&fmu, &later).contains("its format is 11, expected 10"));
+    assert!(refused(&fmu, &later).contains("its format is 12, expected 11"));
     assert!(refused(&fmu, b"PK").contains("does not begin like one"));
 }
 

@@ -10,7 +10,7 @@ use crate::program::scene_errors::{Folder, PATH, assert_refusals};
 const BASE: [&str; 22] = [
     r#"name = "base""#,
     "[layer]",
-    "masses = 3",
+    "masses = 4",
     "spacing = 1.0e-4",
     "thickness = 5.0e-3",
     "width = 1.0e-2",

@@ -7,7 +7,7 @@ use std::ffi::OsString;
 use std::ops::{Deref, RangeInclusive};
 use std::path::{Path, PathBuf};
 
-use asperity::scene::{LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt};
+use asperity::scene::{Depth, LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt};
 use asperity_study::calibration::FreeParameter;
 use asperity_study::fit::WlfConstants;
 use clap::{ArgGroup, Args, Parser, Subcommand};
@@ -256,6 +256,10 @@ pub(crate) struct Pack {
     /// The FMU to write.
     #[arg(short, long, value_name = "OUT.fmu")]
     pub(crate) output: PathBuf,
+    /// Gives variables names without structure, as transport_speed for transport.speed, for tools that make buses or
+    /// folders of points and brackets in names.
+    #[arg(long)]
+    pub(crate) flat_names: bool,
     /// A shared library; for this platform unless linux64, win64 or darwin64 is given, as in win64=PATH. May be
     /// repeated. Default: the library beside this program.
     #[arg(long, value_name = "[PLATFORM=]PATH")]
@@ -437,6 +441,10 @@ pub(crate) struct Reading {
     /// Tilt: keep it, or remove the least squares line. Default: keep.
     #[arg(long, value_name = "keep|remove")]
     pub(crate) tilt: Option<Tilt>,
+    /// Whether numbers of z are heights or depths, which grow downwards: z is minus them. Default: by the name of their
+    /// column, depth or not.
+    #[arg(long, value_name = "up|down")]
+    pub(crate) depth: Option<Depth>,
     /// What the third column marks: invalid points, valid points, or nothing (ignore). Default: taken from its header.
     #[arg(long, value_name = "invalid|valid|ignore")]
     pub(crate) third_column: Option<ThirdColumn>,
@@ -462,6 +470,7 @@ impl Reading {
             z_unit: self.z_unit.or(self.unit),
             missing: self.missing.unwrap_or_default(),
             tilt: self.tilt.unwrap_or_default(),
+            depth: self.depth,
             third_column: self.third_column,
             columns: self.columns.clone(),
             spacing: self.spacing.clone(),

@@ -1,7 +1,6 @@
 //! The values of a sweep and its shards as the command line gives them.
 
-use asperity::scene::is_possible;
-use asperity::tables::{Dimension, Unit, quantity};
+use asperity::tables::{Dimension, POSITIVE, Unit, quantity};
 
 use asperity_study::decimals::rounded;
 
@@ -80,7 +79,7 @@ struct Numbers {
 
 impl Numbers {
     fn read(&mut self, text: &str) -> Result<f64, String> {
-        let found = quantity(text, self.dimension).filter(|&(number, _)| is_possible(number) && number > 0.0);
+        let found = quantity(text, self.dimension).filter(|&(number, _)| POSITIVE.holds(number));
         let (number, unit) = found.ok_or_else(|| wrong(text, &self.expected()))?;
         match *self.with_unit.get_or_insert(unit.is_some()) == unit.is_some() {
             true => Ok(number),
@@ -89,11 +88,7 @@ impl Numbers {
     }
 
     fn expected(&self) -> String {
-        format!(
-            "a positive number in {}, or with its unit, one of {}",
-            Unit::si(self.dimension),
-            self.dimension.units()
-        )
+        format!("{POSITIVE} in {}, or with its unit, one of {}", Unit::si(self.dimension), self.dimension.units())
     }
 }
 
@@ -146,12 +141,13 @@ mod tests {
     #[test]
     fn wrong_values_are_refused_with_what_was_expected() {
         for (text, part) in [
-            ("", "a positive number"),
-            ("1,,2", "a positive number"),
-            ("-1", "a positive number"),
-            ("0..1/3", "a positive number"),
-            ("NaN", "a positive number"),
-            ("1e99", "a positive number"),
+            ("", "a number from 1e-30 to 1e30"),
+            ("1,,2", "a number from 1e-30 to 1e30"),
+            ("-1", "a number from 1e-30 to 1e30"),
+            ("0..1/3", "a number from 1e-30 to 1e30"),
+            ("NaN", "a number from 1e-30 to 1e30"),
+            ("1e-300", "a number from 1e-30 to 1e30"),
+            ("1e99", "a number from 1e-30 to 1e30"),
             ("1..2", "a..b/n"),
             ("2..1/3", "a < b"),
             ("1..2/1", "2 to"),

@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use asperity::scene::Wlf;
-use asperity::tables::{Dimension, Unit, quantity};
+use asperity::tables::{Dimension, POSITIVE, Unit, quantity};
 use asperity_study::calibration::FreeParameter;
 use asperity_study::decimals::tenth;
 use asperity_study::fit::WlfConstants;
@@ -106,20 +106,19 @@ fn number(text: &str, allowed: impl Fn(&f64) -> bool, expected: &str) -> Result<
     text.trim().parse().ok().filter(allowed).ok_or_else(|| format!("expected {expected}"))
 }
 
-/// A number above 0 in SI units, or in the unit behind it.
+/// A number above 0, such as a quantity can have, in SI units or in the unit behind it.
 fn above_zero(text: &str, dimension: Dimension) -> Option<f64> {
-    quantity(text, dimension).map(|(number, _)| number).filter(|number| *number > 0.0)
+    quantity(text, dimension).map(|(number, _)| number).filter(|number| POSITIVE.holds(*number))
 }
 
 /// A pressure above 0, in Pa or in the unit behind it.
 pub(super) fn pressure(text: &str) -> Result<f64, String> {
-    above_zero(text, Dimension::Pressure).ok_or_else(|| "expected a number above 0, such as 2e5 (in Pa) or 2bar".into())
+    above_zero(text, Dimension::Pressure).ok_or_else(|| format!("expected {POSITIVE}, such as 2e5 (in Pa) or 2bar"))
 }
 
 /// A speed above 0, in m/s or in the unit behind it.
 pub(super) fn speed(text: &str) -> Result<f64, String> {
-    above_zero(text, Dimension::Speed)
-        .ok_or_else(|| "expected a number above 0, such as 0.1 (in m/s) or 100mm/s".into())
+    above_zero(text, Dimension::Speed).ok_or_else(|| format!("expected {POSITIVE}, such as 0.1 (in m/s) or 100mm/s"))
 }
 
 /// A length above 0, in m or in the unit behind it.

@@ -33,7 +33,7 @@ pub(crate) fn contact(command: &Contact) -> Result<(), ContactCommandError> {
     check_outputs(&outputs, scene.sources(&command.scene))?;
     let SteadyState { pressure, speed } = command.at;
     let solved = solve_contact(&scene, &ContactOptions { pressure, speed, points: command.points })?;
-    let SolvedContact { surface, slide, fields, problem } = &solved;
+    let SolvedContact { surface, slide, fields, problem, warnings } = &solved;
     picture::write(surface, fields, slide.area, &command.output)?;
     if let Some(path) = &command.data {
         let bytes = if ends_in(path, "npz") {
@@ -43,7 +43,7 @@ pub(crate) fn contact(command: &Contact) -> Result<(), ContactCommandError> {
         };
         files::write(path, bytes)?;
     }
-    problem.iter().for_each(|problem| warn(&problem.to_string()));
+    problem.iter().map(ToString::to_string).chain(warnings.iter().cloned()).for_each(|text| warn(&text));
     Ok(print_beside(&outputs, &summary(&scene, command, slide, fields))?)
 }
 

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use asperity::element::{PointContact, Table, TableError};
 use asperity_fmi::Definition;
 use asperity_study::check::CheckError;
-use asperity_study::pack::{self, Fmu, Library, LibraryFile, not_converged};
+use asperity_study::pack::{self, Fmu, Library, LibraryFile, flat_names, no_start, not_converged};
 use asperity_study::summary::missing_backing;
 
 use super::cli::Pack;
@@ -50,11 +50,21 @@ pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
     taken.extend(command.check.clone());
     check_outputs([&command.output], taken)?;
     let libraries = Library::read_all(&libraries)?;
+    no_start(&definition).iter().for_each(|warning| warn(warning));
+    let names = command.flat_names.then(|| flat_names(&definition)).flatten();
     let needs = labelled("Needs", libraries.iter().filter_map(Library::needs));
     let summary = summary(command, &definition)?;
     let picture = Some(picture(&definition)?);
-    let fmu = Fmu { definition: &definition, path: &path, libraries: &libraries, summary: &summary, picture };
+    let fmu = Fmu {
+        definition: &definition,
+        path: &path,
+        libraries: &libraries,
+        summary: &summary,
+        picture,
+        flat_names: command.flat_names,
+    };
     write(&command.output, fmu.pack()?)?;
+    let needs = [names.into_iter().collect(), needs].concat();
     let shown = if matches!(definition, Definition::Layer(_)) { needs } else { [summary, needs].concat() };
     print(&lines(&shown))?;
     note(&format!("{} is written", named(&command.output)));

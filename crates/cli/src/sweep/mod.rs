@@ -83,8 +83,8 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
     let mut table =
         SweepTable { header: plan.header().clone(), ..SweepTable::read(&place.path).map_err(TableFileError::from)? };
     table.sort();
-    let few = plan.few_points(table.rows.iter().map(|stored| &stored.row));
-    few.iter().for_each(|warning| warn(&with_flags(warning)));
+    let found = plan.warnings(table.rows.iter().map(|stored| &stored.row));
+    found.iter().for_each(|warning| warn(&with_flags(warning)));
     table.find_low_end(&output);
     write(&place.path, table.text())?;
     drop(file);
@@ -174,14 +174,12 @@ fn finish(
 ) -> Result<(), SweepCommandError> {
     picture.map_or(Ok(()), |path| plot::draw(path, table))?;
     master.map_or(Ok(()), |(path, wlf)| plot::draw_master(path, table, &wlf))?;
-    let mut summary = if terminal::is_quiet() { Vec::new() } else { printed::lines(table) };
+    let mut summary = printed::lines(table);
     summary.extend(table.header.low_end.iter().map(|low_end| ("Low end", low_end.clone())));
-    if !terminal::is_quiet() {
-        let files = [output.as_path()].into_iter().chain(picture).chain(master.map(|(path, _)| path)).map(named);
-        summary.push(("Written", files.collect::<Vec<_>>().join(", ")));
-    }
+    let files = [output.as_path()].into_iter().chain(picture).chain(master.map(|(path, _)| path)).map(named);
+    summary.push(("Written", files.collect::<Vec<_>>().join(", ")));
     print_beside([output], &lines(&summary))?;
-    let (failed, total) = (table.rows.iter().filter(|stored| !stored.row.is_steady()).count(), table.rows.len());
+    let (failed, total) = (table.rows.iter().filter(|stored| !stored.row.is_result()).count(), table.rows.len());
     if failed == 0 { Ok(()) } else { Err(SweepCommandError::NotSteady { failed, total, path: output.to_owned() }) }
 }
 

@@ -143,14 +143,14 @@ impl<X: Fn(&OperatingPoint) -> f64> Points<X> {
     /// The curves of a quantity, and dashed those of a part of it.
     fn panel(&self, (title, groups): &GroupedPanel<'_>, quantity: Quantity, part: Option<(&str, Quantity)>) -> Panel {
         let curves = groups.iter().enumerate().flat_map(|(look, Group { name, rows })| {
-            let steady = self.points(quantity, rows, TableRow::is_steady);
+            let steady = self.points(quantity, rows, TableRow::is_result);
             let (stroke, hollow) = match self.hollow {
-                Hollow::NotSteady => (Stroke::Marked, self.points(quantity, rows, |row| !row.is_steady())),
+                Hollow::NotSteady => (Stroke::Marked, self.points(quantity, rows, |row| !row.is_result())),
                 Hollow::NotConverged => (Stroke::Line, self.points(quantity, rows, |_| true)),
             };
             let whole = Curve { name: name.clone(), look, stroke, points: steady };
             let part = part.map(|(name, part)| {
-                let points = self.points(part, rows, TableRow::is_steady);
+                let points = self.points(part, rows, TableRow::is_result);
                 Curve { name: name.into(), look, stroke: Stroke::Dashed, points }
             });
             let hollow = (!hollow.is_empty()).then(|| Curve {

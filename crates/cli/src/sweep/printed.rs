@@ -1,7 +1,7 @@
 //! The friction of a table as lines of text: a line for each speed, a column for each load, a block for each
 //! temperature.
 
-use asperity::element::Quantity;
+use asperity::element::{PointStatus, Quantity};
 
 use crate::terminal::{LabelledLine, labelled};
 use asperity_study::decimals::{as_given, rounded, with_prefix};
@@ -11,8 +11,10 @@ use asperity_study::sweep::{StoredRow, SweepTable};
 const MOST: (usize, usize) = (60, 7);
 /// Characters of a column.
 const WIDTH: usize = 12;
-/// Behind friction that cannot be relied on.
+/// Behind friction that cannot be relied on, ...
 const NOT_STEADY: char = '*';
+/// ... and behind that of full contact.
+const FULL_CONTACT: char = '+';
 
 /// Friction over speed and load; none of a table too large to be read in a terminal.
 pub(super) fn lines(table: &SweepTable) -> Vec<LabelledLine> {
@@ -37,8 +39,12 @@ pub(super) fn lines(table: &SweepTable) -> Vec<LabelledLine> {
             texts.push(columns(with_prefix(speed, speed, "m/s"), grid.loads.iter().map(friction)));
         }
     }
-    if texts.iter().any(|text| text.contains(NOT_STEADY)) {
+    let has = |status: fn(&PointStatus) -> bool| table.rows.iter().any(|stored| status(&stored.row.status));
+    if has(|status| !status.is_result()) {
         texts.push(format!("{NOT_STEADY} not steady"));
+    }
+    if has(|status| *status == PointStatus::FullContact) {
+        texts.push(format!("{FULL_CONTACT} full contact: friction and area, but no stiffness, so no element"));
     }
     labelled("Friction", texts)
 }
@@ -46,7 +52,11 @@ pub(super) fn lines(table: &SweepTable) -> Vec<LabelledLine> {
 fn friction(stored: &StoredRow) -> String {
     let value =
         stored.row.value(Quantity::Friction).map_or_else(|| "-".to_owned(), |value| rounded(value, 4).to_string());
-    if stored.row.is_steady() { value } else { format!("{value}{NOT_STEADY}") }
+    match stored.row.status {
+        PointStatus::Steady => value,
+        PointStatus::FullContact => format!("{value}{FULL_CONTACT}"),
+        PointStatus::Problem(_) => format!("{value}{NOT_STEADY}"),
+    }
 }
 
 fn columns(first: String, others: impl Iterator<Item = String>) -> String {

@@ -33,8 +33,7 @@ impl<'a> Archive<'a> {
         let depth = |name: &&String| name.matches('/').count();
         let found = names.iter().filter(is_main).min_by_key(depth);
         let main = found.and_then(|main| names.iter().position(|name| name == main));
-        let main = main
-            .ok_or_else(|| ContentError::value(None, "", "a zip archive without main.xml", "an X3P file, or text"))?;
+        let main = main.ok_or_else(|| other_archive(&names))?;
         Ok(Self { zip, names, main })
     }
 
@@ -60,6 +59,25 @@ impl<'a> Archive<'a> {
             .ok_or_else(|| ContentError::value(None, "PointDataLink", &link, "the name of a file of the archive"))?;
         self.zip.by_index(index).map_err(|error| unreadable(&link, &error))
     }
+}
+
+/// The error of an archive that is no X3P file, by what it is known to be.
+fn other_archive(names: &[String]) -> ContentError {
+    const KNOWN: [(&str, &str, &str); 5] = [
+        ("xl/workbook.xml", "a workbook (xlsx)", "the sheet of the surface as CSV"),
+        ("xl/workbook.bin", "a workbook (xlsb)", "the sheet of the surface as CSV"),
+        ("content.xml", "an OpenDocument (ods)", "the sheet of the surface as CSV"),
+        ("index.xml", "a file of Sensofar (PLUX)", "the surface as X3P, SDF, SUR or text"),
+        ("word/document.xml", "a document of Word", "x and z as text"),
+    ];
+    let known = KNOWN.iter().find(|(part, ..)| names.iter().any(|name| name.eq_ignore_ascii_case(part)));
+    let (given, expected) = match known {
+        Some((_, kind, export)) => {
+            (format!("{kind}, which is not read"), format!("an X3P file, or text: export {export}"))
+        }
+        None => ("a zip archive without main.xml".to_owned(), "an X3P file, or text: unpack it".to_owned()),
+    };
+    ContentError::value(None, "", &given, &expected)
 }
 
 pub(super) fn unreadable(what: &str, error: &dyn std::error::Error) -> ContentError {
@@ -258,4 +276,21 @@ impl MatrixSize {
 
 pub(super) fn missing(key: &str) -> ContentError {
     ContentError::value(None, key, "not there", "an element of main.xml")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn other_archives_are_named() {
+        let message = |part: &str| other_archive(&[part.to_owned()]).to_string();
+        assert_eq!(
+            message("xl/workbook.xml"),
+            "a workbook (xlsx), which is not read: expected an X3P file, or text: export the sheet of the surface as CSV"
+        );
+        assert!(
+            message("index.xml").contains("PLUX") && message("a.csv").starts_with("a zip archive without main.xml")
+        );
+    }
 }

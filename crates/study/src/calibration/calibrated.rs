@@ -2,7 +2,6 @@
 
 use asperity::element::OperatingPoint;
 
-use super::curve_grid::in_words;
 use super::error::NoSliding;
 use super::fit::Fitted;
 use super::measurements::Measurements;
@@ -31,6 +30,8 @@ pub struct Calibration {
     pub frictions: Vec<FrictionParts>,
     /// The points that cannot be simulated, and why.
     pub left_out: Vec<(OperatingPoint, NoSliding)>,
+    /// What of it no rubber has, and why.
+    pub implausible: Vec<String>,
     /// How it was fitted.
     pub way: String,
 }
@@ -93,11 +94,8 @@ impl Calibration {
     /// What is left out, and what is not as it should be.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
-        for (point, why) in &self.left_out {
-            let rows = self.measurements.rows.iter().filter(|row| row.point == *point);
-            let lines: Vec<String> = rows.map(|row| row.line.to_string()).collect();
-            warnings.push(format!("left out: line {} ({}): {why}", lines.join(", "), in_words(point)));
-        }
+        warnings.extend(self.measurements.left_out_in_words(&self.left_out));
+        warnings.extend(self.implausible.iter().cloned());
         if !self.fitted.has_converged {
             warnings.push("the fit has not converged: other bounds or fewer parameters may help".to_owned());
         }

@@ -8,13 +8,14 @@ use asperity::scene::Scene;
 
 use super::calibrated::Calibration;
 use super::candidates::candidates;
+use super::curve_grid::in_words;
 use super::error::{CalibrationError, ModelError};
 use super::fit::{Fitted, Tolerance, minimise, starts_by_theory};
 use super::free_scene::FreeScene;
 use super::layer_model::LayerModel;
 use super::measurements::Measurements;
 use super::memo::{Memo, NewOutcome};
-use super::model::{FrictionModel, Outcome, Task};
+use super::model::{FrictionModel, FrictionParts, Outcome, Task};
 use super::options::{CalibrationOptions, CandidateOptions};
 use super::plan::{Plan, plan};
 use super::problem::{FrictionMeasurement, Linearised, Problem};
@@ -24,6 +25,7 @@ use super::statistics::{Statistics, chi_square_per_degree};
 use super::steady_model::SteadyModel;
 use super::theory_model::TheoryModel;
 use crate::files::parse_scene;
+use crate::implausible::{FoundFriction, implausible};
 use crate::sweep::Method;
 
 /// What a calibration does now.
@@ -96,6 +98,7 @@ impl Calibrator<'_> {
                 Ok((fitted, linearised, way)) => {
                     let statistics = Statistics::new(&problem, &fitted.places, &linearised);
                     let frictions = problem.frictions(self.model, std::slice::from_ref(&fitted.places))?.remove(0);
+                    let implausible = implausible(self.free.scene(), found_at(&problem, &frictions));
                     return Ok(Calibration {
                         own: self.free.own.clone(),
                         measurements: measurements.clone(),
@@ -105,6 +108,7 @@ impl Calibrator<'_> {
                         statistics,
                         frictions,
                         left_out,
+                        implausible,
                         way,
                     });
                 }
@@ -112,6 +116,10 @@ impl Calibrator<'_> {
                     let points: Vec<OperatingPoint> = failed.iter().map(|(point, _)| *point).collect();
                     problem = problem.without(&points);
                     left_out.extend(failed);
+                }
+                Err(ModelError::TooFew { rows, parameters, .. }) => {
+                    let left_out = measurements.left_out_in_words(&left_out);
+                    return Err(ModelError::TooFew { rows, parameters, left_out });
                 }
                 Err(error) => return Err(error),
             }
@@ -205,6 +213,15 @@ impl Calibrator<'_> {
         let model: &dyn FrictionModel = if self.free.is_solved() { self.model } else { self.theory };
         plan(problem, model, (&fitted.places, linearised, statistics), &candidates, PLANNED)
     }
+}
+
+/// What was found at the points of a problem.
+fn found_at(problem: &Problem, frictions: &[FrictionParts]) -> Vec<FoundFriction> {
+    let found = |(point, parts): (&OperatingPoint, &FrictionParts)| {
+        let (place, friction) = (format!("at {}", in_words(point)), parts.friction());
+        FoundFriction { place, friction, area: Some(parts.area) }
+    };
+    problem.points.iter().zip(frictions).map(found).collect()
 }
 
 /// Fits numbers of a scene, of which this is the `text`, to measured friction: what it found, and the text of the scene

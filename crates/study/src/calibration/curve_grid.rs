@@ -1,6 +1,8 @@
 //! The curves that measured points make: pressures and temperatures that are nearly alike are one.
 
-use asperity::element::{Load, OperatingPoint};
+use std::fmt::Display;
+
+use asperity::element::{Load, OperatingPoint, some_of};
 
 use crate::decimals::rounded;
 
@@ -12,6 +14,21 @@ pub fn in_words(point: &OperatingPoint) -> String {
         temperature: point.temperature.map(|temperature| rounded(temperature, 5)),
     };
     point.describe(Load::Pressure { area: 1.0 })
+}
+
+/// How many of some measurements are left out, the lines of each with its point and why; `None` where none is.
+pub fn left_out_in_words<W: Display>(
+    left_out: impl IntoIterator<Item = (Vec<usize>, OperatingPoint, W)>,
+    all: usize,
+) -> Option<String> {
+    let mut count = 0;
+    let named = |(lines, point, why): (Vec<usize>, OperatingPoint, W)| {
+        count += lines.len();
+        let lines: Vec<String> = lines.iter().map(usize::to_string).collect();
+        format!("line {} ({}): {why}", lines.join(", "), in_words(&point))
+    };
+    let named: Vec<String> = left_out.into_iter().map(named).collect();
+    (count > 0).then(|| format!("{count} of {all} measurements are left out: {}", some_of(&named)))
 }
 
 /// Values that are nearly alike, and their mean.

@@ -60,12 +60,17 @@ pub enum ModelError {
     #[error("{} points cannot be simulated", .0.len())]
     NotSteady(Vec<(OperatingPoint, NoSliding)>),
     /// No measurement is left.
-    #[error("{rows} measurements can be simulated, fewer than the {parameters} free parameters")]
+    #[error(
+        "{rows} measurements can be simulated, fewer than the {parameters} free parameters{}",
+        .left_out.as_ref().map_or_else(String::new, |left_out| format!("; {left_out}"))
+    )]
     TooFew {
         /// How many there are.
         rows: usize,
         /// The free parameters.
         parameters: usize,
+        /// Which others there are, and why they cannot.
+        left_out: Option<String>,
     },
 }
 

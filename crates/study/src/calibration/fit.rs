@@ -52,7 +52,7 @@ pub fn minimise(
 ) -> Result<Fitted, ModelError> {
     let count = start.len();
     if problem.rows.len() < count {
-        return Err(ModelError::TooFew { rows: problem.rows.len(), parameters: count });
+        return Err(ModelError::TooFew { rows: problem.rows.len(), parameters: count, left_out: None });
     }
     let bounded = || MPPar {
         limited_low: true,

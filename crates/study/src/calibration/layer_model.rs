@@ -33,6 +33,7 @@ impl FrictionModel for LayerModel<'_> {
                 profile: sliding.hysteresis() - sliding.fine(),
                 fine: sliding.fine(),
                 shear: sliding.friction() - sliding.hysteresis(),
+                area: sliding.real_area.unwrap_or(sliding.contact_ratio),
             });
             done(index, parts.map_err(NoSliding::new))
         })

@@ -4,11 +4,12 @@ use std::path::Path;
 
 use asperity::element::{Load, OperatingPoint};
 use asperity::tables::{
-    ABOVE_ZERO, Choice, ContentError, Dimension, FINITE, Format, Others, ReadingNote, Table, UnitRule, Wanted, Words,
-    decode,
+    ABOVE_ZERO, Choice, Column, ContentError, Dimension, FINITE, Format, Others, ReadingNote, Table, UnitRule, Wanted,
+    Words, decode,
 };
 
-use super::error::MeasuredFrictionError;
+use super::curve_grid::left_out_in_words;
+use super::error::{MeasuredFrictionError, NoSliding};
 use crate::files;
 
 /// A measured friction coefficient.
@@ -63,8 +64,9 @@ const FRICTION: Format<Quantity, 5> = Format {
             Words::new(
                 Quantity::Deviation,
                 Dimension::Number,
-                "sigma σ std sd stdev deviation uncertainty standardabweichung",
-                "standard of friction coefficient mu μ cof error the",
+                "sigma σ std sd stdev stddev deviation uncertainty standardabweichung err error errors fehler se sem \
+                 stderr stdunc unsicherheit s+mu u+mu s+μ u+μ s+cof u+cof s+friction u+friction",
+                "standard of friction coefficient mu μ cof the in mean dev 1 reibwert",
             ),
             Words::new(
                 Quantity::Speed,
@@ -124,7 +126,7 @@ impl Measurements {
     pub fn parse(bytes: &[u8], area: f64) -> Result<Self, ContentError> {
         let text = decode(bytes)?;
         let Table { columns, rows, lines, notes, .. } = FRICTION.read(&text)?;
-        let [_, load, _, temperature, deviation] = &columns;
+        let [_, load, friction_column, temperature, deviation] = &columns;
         let is_said = |note: &ReadingNote| note.assumed || note.text.contains("left out");
         let mut notes: Vec<String> = notes.into_iter().filter(is_said).map(|note| note.text).collect();
         let is_force = load.as_ref().is_some_and(|column| column.quantity == Quantity::Force);
@@ -132,7 +134,13 @@ impl Measurements {
         if is_force {
             notes.push(format!("forces are those on the scene's whole layer, {area:.6e} m²"));
         }
+        let is_in = |column: Option<&Column<Quantity>>, unit| column.is_some_and(|column| column.unit.name == unit);
+        let is_relative = is_in(deviation.as_ref(), "%") && !is_in(friction_column.as_ref(), "%");
+        if is_relative {
+            notes.push("standard deviations in % are taken as parts of the friction".to_owned());
+        }
         let row = |(&[speed, load, friction, kelvin, sigma], line): (&[f64; 5], usize)| {
+            let sigma = if is_relative { sigma * friction.abs() } else { sigma };
             let (load, temperature) = (to_pressure * load, temperature.as_ref().map(|_| kelvin));
             let point = OperatingPoint { speed, load, temperature };
             Measured { line, point, friction, sigma: deviation.as_ref().map(|_| sigma) }
@@ -147,6 +155,14 @@ impl Measurements {
     pub fn read(path: &Path, area: f64) -> Result<Self, MeasuredFrictionError> {
         let refused = |error| MeasuredFrictionError::Content { path: path.to_owned(), error };
         Self::parse(&files::bytes(path)?, area).map_err(refused)
+    }
+
+    /// How many rows are left out with the points that have no result, which, and why; `None` where none is.
+    pub(super) fn left_out_in_words(&self, points: &[(OperatingPoint, NoSliding)]) -> Option<String> {
+        let lines = |point: &OperatingPoint| {
+            self.rows.iter().filter(|row| row.point == *point).map(|row| row.line).collect::<Vec<_>>()
+        };
+        left_out_in_words(points.iter().map(|(point, why)| (lines(point), *point, why)), self.rows.len())
     }
 
     /// Whether the standard deviations were measured.
@@ -188,6 +204,21 @@ mod tests {
         assert!((measured.rows[0].sigma_or_assumed() - 0.0412).abs() < 1e-4 && !measured.has_sigma());
         assert_eq!(measured.notes.len(), 2, "{:?}", measured.notes);
         assert!(measured.notes[0].contains("m/s is assumed"), "{:?}", measured.notes);
+    }
+
+    /// Errors by the names that they have in tables; what is no standard deviation is named as left out.
+    #[test]
+    fn errors_are_standard_deviations_or_are_named() {
+        let table = |name: &str| read(&format!("v [mm/s],p [kPa],mu,{name}\n1,10,0.5,0.02\n")).unwrap();
+        for name in ["std", "mu_err", "err", "error", "Error of mu", "s_mu", "u(mu)", "σ_μ", "std. dev.", "sd mu"] {
+            assert_eq!(table(name).rows[0].sigma, Some(0.02), "{name}");
+        }
+        for name in ["mu_min", "mu_max", "CI95", "s", "u", "n"] {
+            let found = table(name);
+            assert_eq!((found.rows[0].sigma, found.notes), (None, vec![format!("columns left out: {name}")]));
+        }
+        let relative = read("v [mm/s],p [kPa],mu,error [%]\n1,10,0.5,2\n").unwrap();
+        assert!((relative.rows[0].sigma.unwrap() - 0.01).abs() < 1e-15 && relative.notes[0].contains("in %"));
     }
 
     #[test]

@@ -22,6 +22,9 @@ pub struct FrictionParts {
     pub fine: f64,
     /// By what acts in the contacts else: Coulomb's friction and shear, 1.
     pub shear: f64,
+    /// The area that touches over the nominal one, 1: with the roughness below the profile where the scene has it, but by
+    /// the theory.
+    pub area: f64,
 }
 
 impl FrictionParts {

@@ -9,12 +9,13 @@ use super::parameter::FreeParameter;
 use crate::decimals::real;
 
 /// The first line of a table; its number grows when readers have to know of a change.
-const FORMAT: &str = "# asperity calibrate = 1";
+const FORMAT: &str = "# asperity calibrate = 2";
 
 /// The lines before the rows.
 pub fn head(fingerprint: &str, parameters: &[FreeParameter]) -> String {
     let keys = parameters.iter().map(|parameter| parameter.key.as_str());
-    let others = ["speed [m/s]", "pressure [Pa]", "temperature [K]", "status", "profile [1]", "fine [1]", "shear [1]"];
+    let point = ["speed [m/s]", "pressure [Pa]", "temperature [K]", "status"];
+    let others = point.into_iter().chain(["profile [1]", "fine [1]", "shear [1]", "area [1]"]);
     format!("{FORMAT}\n# fingerprint = {fingerprint}\n{}\n", keys.chain(others).collect::<Vec<_>>().join(","))
 }
 
@@ -24,7 +25,8 @@ pub fn line(task: &Task, outcome: &Outcome) -> String {
     let OperatingPoint { speed, load, temperature } = task.point;
     let point = [real(speed), real(load), temperature.map(real).unwrap_or_default()];
     let status = PointStatus::new(outcome.as_ref().err());
-    let parts = outcome.as_ref().map_or([None; 3], |parts| [parts.profile, parts.fine, parts.shear].map(Some));
+    let parts =
+        outcome.as_ref().map_or([None; 4], |parts| [parts.profile, parts.fine, parts.shear, parts.area].map(Some));
     let fields = values.chain(point).chain([tables::quoted(status.text())]);
     let parts = parts.map(|part| part.map(real).unwrap_or_default());
     fields.chain(parts).collect::<Vec<_>>().join(",") + "\n"
@@ -45,7 +47,7 @@ pub struct DamagedLine(pub usize);
 /// The point of a row, without its end; `None` where it is damaged.
 fn point(line: &str, parameters: usize) -> Option<(Task, Outcome)> {
     let fields: Vec<String> = tables::fields(line, ',').map(std::borrow::Cow::into_owned).collect();
-    if fields.len() != parameters + 7 {
+    if fields.len() != parameters + 8 {
         return None;
     }
     let number = |index: usize| fields.get(index)?.parse::<f64>().ok().filter(|number| number.is_finite());
@@ -53,10 +55,11 @@ fn point(line: &str, parameters: usize) -> Option<(Task, Outcome)> {
     let temperature = if fields[parameters + 2].is_empty() { None } else { Some(number(parameters + 2)?) };
     let point = OperatingPoint { speed: number(parameters)?, load: number(parameters + 1)?, temperature };
     let outcome = match PointStatus::read(&fields[parameters + 3]) {
-        PointStatus::Steady => Ok(FrictionParts {
+        PointStatus::Steady | PointStatus::FullContact => Ok(FrictionParts {
             profile: number(parameters + 4)?,
             fine: number(parameters + 5)?,
             shear: number(parameters + 6)?,
+            area: number(parameters + 7)?,
         }),
         PointStatus::Problem(why) => Err(NoSliding::new(why)),
     };
@@ -73,7 +76,7 @@ mod tests {
             parameters: vec![1.0 / 3.0, 2e-7],
             point: OperatingPoint { speed: 0.1, load: 1e5, temperature },
         };
-        let parts = FrictionParts { profile: 0.1 + 0.2, fine: 1e-9, shear: -0.5 };
+        let parts = FrictionParts { profile: 0.1 + 0.2, fine: 1e-9, shear: -0.5, area: 0.1 };
         for (task, outcome) in
             [(task(Some(293.15)), Ok(parts)), (task(None), Err(NoSliding::new("no, \"never\" steady")))]
         {

@@ -52,6 +52,7 @@ impl FrictionModel for Corrected<'_> {
                 profile: ratio * parts.profile,
                 fine: ratio * parts.fine,
                 shear: ratio * parts.shear,
+                ..parts
             };
             done(index, outcome.map(times))
         })

@@ -65,11 +65,12 @@ impl FrictionModel for SteadyModel<'_> {
 /// Full contact has friction; only elements have no use for it.
 fn outcome(slide: &SteadySlide) -> Outcome {
     match slide.problem() {
-        Some(problem) if !problem.leaves_friction() => Err(NoSliding::new(problem)),
+        Some(problem) if !problem.is_result() => Err(NoSliding::new(problem)),
         _ => Ok(FrictionParts {
             profile: slide.profile_hysteresis,
             fine: slide.fine_hysteresis.unwrap_or(0.0),
             shear: slide.adhesion,
+            area: slide.real_area.unwrap_or(slide.area),
         }),
     }
 }

@@ -56,7 +56,7 @@ impl<'a> TheoryModel<'a> {
             let slip = law.slip(normal, point.speed, Flash::held(0.0));
             let coefficient = |force: f64| force / normal;
             let (fine, all) = (coefficient(slip.hysteresis), coefficient(slip.force()));
-            FrictionParts { profile: theory.friction, fine, shear: all - fine }
+            FrictionParts { profile: theory.friction, fine, shear: all - fine, area: theory.area }
         };
         Ok(points.iter().zip(theories).map(parts).collect())
     }

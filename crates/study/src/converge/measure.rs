@@ -39,7 +39,7 @@ pub(super) fn solve(scene: &Scene, state: State, points: u64) -> Result<Measured
     let (Method::Steady(surface), _) = asked.choose(scene)? else { return Err(RunError::NotSolved) };
     let rubber = SlidingRubber::new(scene).ok_or(RunError::NotSolved)?;
     let slide = SteadySolver::new(surface).slide(&rubber, state.speed, state.pressure);
-    if let Some(problem) = slide.problem().filter(|problem| !problem.leaves_friction()) {
+    if let Some(problem) = slide.problem().filter(|problem| !problem.is_result()) {
         return Err(NotSteady::from(problem).into());
     }
     Ok(Measured {

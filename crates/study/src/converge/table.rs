@@ -125,7 +125,7 @@ impl RunRow {
         let pair = |friction: usize, area: usize| Some(Pair { friction: number(friction)?, area: number(area)? });
         let status = PointStatus::read(text(9));
         let measured = match &status {
-            PointStatus::Steady => {
+            PointStatus::Steady | PointStatus::FullContact => {
                 Some(Measured { mean: pair(11, 15)?, error: pair(12, 16)?, hysteresis: number(14)? })
             }
             PointStatus::Problem(_) => None,

@@ -95,6 +95,13 @@ impl<'a> ModuliTable<'a> {
         if let Some(error) = twin(self.line, &self.columns.first(&[&[Quantity::Temperature]])) {
             return Err(error);
         }
+        for curve in &self.curves {
+            let moduli: Vec<&Column> = [Some(&curve.modulus), curve.loss.as_ref()].into_iter().flatten().collect();
+            for modulus in &moduli {
+                let checked = modulus.check_beside(moduli.iter().copied(), Some(self.line));
+                checked.map_err(|error| error.or("`unit` NAME=UNIT"))?;
+            }
+        }
         let of_curve = |curve: &'_ Curve| [curve.at.clone(), Some(curve.modulus.clone()), curve.loss.clone()];
         let used = self.curves.iter().flat_map(of_curve).flatten().chain(self.temperature.clone());
         used.into_iter().try_for_each(|column| columns::check_unit(&column, &self.block, self.line))

@@ -12,8 +12,12 @@ use crate::decimals::decimal;
 
 type Xml = Writer<Vec<u8>>;
 
-/// Writes the description of a model with these variables.
-pub(super) fn write(model: &dyn FmuModel, variables: &VariableTable, guid: &str) -> io::Result<Vec<u8>> {
+/// Writes the description of a model with these variables, its GUID and the convention of their names.
+pub(super) fn write(
+    model: &dyn FmuModel,
+    variables: &VariableTable,
+    (guid, naming): (&str, &str),
+) -> io::Result<Vec<u8>> {
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
     xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
     let description = clean(&model.description());
@@ -24,7 +28,7 @@ pub(super) fn write(model: &dyn FmuModel, variables: &VariableTable, guid: &str)
         .with_attribute(("guid", guid))
         .with_attributes(Some(("description", description.as_str())).filter(|_| !description.is_empty()))
         .with_attribute(("generationTool", concat!("asperity ", env!("CARGO_PKG_VERSION"))))
-        .with_attribute(("variableNamingConvention", "structured"))
+        .with_attribute(("variableNamingConvention", naming))
         .with_attribute(("numberOfEventIndicators", "0"));
     root.write_inner_content(|xml| content(xml, model, variables))?;
     let mut bytes = xml.into_inner();
@@ -247,7 +251,7 @@ mod tests {
         let model = Definition::from(Scene::load(&path).unwrap());
         let variables = model.variables();
         let guid = guid(&Sources::new(&path, &*model).unwrap(), &variables);
-        let written = String::from_utf8(write(&*model, &variables, &guid).unwrap()).unwrap();
+        let written = String::from_utf8(write(&*model, &variables, (&guid, "structured")).unwrap()).unwrap();
         let golden = root.join("modelDescription/modelDescription.xml");
         if std::env::var_os("BLESS").is_some() {
             std::fs::write(&golden, &written).unwrap();
@@ -256,7 +260,7 @@ mod tests {
     }
 
     fn description_of(model: &Definition) -> String {
-        String::from_utf8(write(&**model, &model.variables(), "{}").unwrap()).unwrap()
+        String::from_utf8(write(&**model, &model.variables(), ("{}", "structured")).unwrap()).unwrap()
     }
 
     #[test]

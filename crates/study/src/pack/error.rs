@@ -19,6 +19,8 @@ pub enum PackError {
     SamePlatform { platform: &'static str, first: PathBuf, second: PathBuf },
     #[error("the scene reads {}, which is not below the scene's folder: an FMU carries only what is", .path.display())]
     Outside { path: PathBuf },
+    #[error("`flat-names`: {first} and {second} would have one name")]
+    SameName { first: String, second: String },
     #[error("cannot write {document}: {source}")]
     Document { document: &'static str, source: io::Error },
     #[error("cannot pack: {0}")]

@@ -27,6 +27,8 @@ pub struct Fmu<'a> {
     pub summary: &'a [LabelledLine],
     /// model.png, a picture of it as a PNG file; without one it has none.
     pub picture: Option<Vec<u8>>,
+    /// Whether names of variables have an underscore in place of each point and bracket.
+    pub flat_names: bool,
 }
 
 impl Fmu<'_> {
@@ -62,7 +64,12 @@ impl Fmu<'_> {
         let document = |document, source| PackError::Document { document, source };
         let variables = definition.variables();
         let guid = guid(&Sources::new(path, &**definition).map_err(unread(path))?, &variables);
-        let description = description::write(&**definition, &variables, &guid);
+        let (variables, naming) = if self.flat_names {
+            (variables.flat().map_err(|[first, second]| PackError::SameName { first, second })?, "flat")
+        } else {
+            (variables, "structured")
+        };
+        let description = description::write(&**definition, &variables, (&guid, naming));
         let description = description.map_err(|error| document("modelDescription.xml", error))?;
         let index = documentation::write(definition, &variables, self.summary);
         let index = index.map_err(|error| document("documentation/index.html", error))?;
@@ -87,6 +94,15 @@ fn archive_path(file: &Path) -> Result<String, PackError> {
     Ok(parts.collect::<Result<Vec<_>, _>>()?.join("/"))
 }
 
+/// The line that says what flat names are, by one of them.
+pub fn flat_names(definition: &Definition) -> Option<LabelledLine> {
+    let variables = definition.variables();
+    let flat = variables.flat().ok()?;
+    let mut pairs = variables.entries().zip(flat.entries()).map(|((_, own), (_, flat))| (&own.name, &flat.name));
+    let (own, flat) = pairs.find(|(own, flat)| own != flat)?;
+    Some(("Names", format!("flat, such as {flat} for {own}; messages keep {own}")))
+}
+
 /// What there is in the scene, in the table or in the patch.
 pub fn summary(definition: &Definition) -> Vec<LabelledLine> {
     match definition {
@@ -94,6 +110,12 @@ pub fn summary(definition: &Definition) -> Vec<LabelledLine> {
         Definition::Element(contact) => table_rows(contact.table()),
         Definition::Patch(patch) => [patch_rows(patch), table_rows(patch.table())].concat(),
     }
+}
+
+/// A warning of start values that do not initialise, which masters begin with that set none.
+pub fn no_start(definition: &Definition) -> Option<String> {
+    let problem = definition.start_problem()?;
+    Some(format!("the FMU does not initialise at its start values: {problem}; set others before initialisation ends"))
 }
 
 /// A warning of a table of links that stand for a material, where it does not say that its numbers no longer depend on

@@ -8,5 +8,5 @@ mod fmu;
 mod library;
 
 pub use error::PackError;
-pub use fmu::{Fmu, not_converged, summary};
+pub use fmu::{Fmu, flat_names, no_start, not_converged, summary};
 pub use library::{Library, LibraryFile, Platform};

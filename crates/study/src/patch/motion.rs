@@ -28,7 +28,7 @@ const MOTION: Format<&str, 9> = Format {
     others: Others::Refused,
     ..Format::new(
         &[
-            words(TIME, Dimension::Time),
+            Words::new(TIME, Dimension::Time, "time t zeit", ""),
             words("x", Dimension::Length),
             words("y", Dimension::Length),
             words("z", Dimension::Length),
@@ -36,7 +36,7 @@ const MOTION: Format<&str, 9> = Format {
             words("pitch", Dimension::Angle),
             words("yaw", Dimension::Angle),
             Words::new(TRANSPORT, Dimension::Speed, "transport speed", ""),
-            words(TEMPERATURE, Dimension::Temperature),
+            Words::new(TEMPERATURE, Dimension::Temperature, "temperature temp temperatur", ""),
         ],
         [
             wanted(&[TIME], "times"),
@@ -91,6 +91,7 @@ impl MotionFile {
         let bytes = bytes(path)?;
         let text = decode(&bytes).map_err(|error| CsvError::content(path, error))?;
         let table = format.read(&text).map_err(|error: ContentError| CsvError::content(path, error))?;
+        table.check_units().map_err(|error| CsvError::content(path, error))?;
         let Table { columns, rows, .. } = table;
         let has_temperature = columns[8].is_some();
         let row = |&[time, x, y, z, roll, pitch, yaw, transport_speed, temperature]: &[f64; 9]| MotionRow {

@@ -3,8 +3,10 @@
 use std::ops::ControlFlow;
 
 use asperity::scene::{Input, Scene};
-use asperity::simulation::{Motion, Simulation, SimulationError};
-use asperity_fmi::{CommunicationStep, InputOutOfRange, Inputs, layer_motion, layer_start};
+use asperity::simulation::{Motion, Simulation, SimulationError, SimulationState};
+use asperity_fmi::{
+    CommunicationStep, InputOutOfRange, Inputs, ProvisionalStep, layer_motion, layer_scales, layer_start,
+};
 use cpu_time::ThreadTime;
 
 use super::figures::CompletedRun;
@@ -84,6 +86,8 @@ struct Master<'a> {
     given: MasterInputs,
     inputs: Inputs,
     simulation: Simulation,
+    /// The last step, where it may be done again, and the state at its start.
+    last: Option<(ProvisionalStep, SimulationState)>,
     recorder: TraceRecorder,
     /// On the excitation, at the communication point.
     carrier: InputSample,
@@ -103,7 +107,7 @@ impl<'a> Master<'a> {
         let mut recorder = TraceRecorder::new(scene);
         recorder.row(&simulation.snapshot());
         let carrier = InputSample { u, ..InputSample::default() };
-        Ok(Self { scene, given, inputs, simulation, recorder, carrier })
+        Ok(Self { scene, given, inputs, simulation, last: None, recorder, carrier })
     }
 
     /// Does the communication step between two times (s) of the `motion` that began at `start`.
@@ -117,11 +121,25 @@ impl<'a> Master<'a> {
             set_rates(&mut self.inputs, motion, from);
         }
         let step = CommunicationStep { time: self.carrier.time, h: to - from, extrapolation: self.scene.extrapolation };
-        self.simulation.advance(&layer_motion(self.scene, &self.inputs, self.simulation.driven(), &step)?)?;
+        let scales = layer_scales(self.scene);
+        if let Some((last, state)) = self.last.take()
+            && let Some(corrected) = last.corrected(&self.inputs, &scales)
+        {
+            self.simulation.continue_from(&state).map_err(SimulationError::from)?;
+            self.follow(&corrected, &last.step())?;
+        }
+        self.last = ProvisionalStep::new(&self.inputs, &step, &scales).map(|step| (step, self.simulation.state()));
+        let inputs = self.inputs;
+        self.follow(&inputs, &step)?;
         self.inputs.complete_step(step.h);
         self.recorder.row(&self.simulation.snapshot());
         self.carrier = start.after(motion, to);
         Ok(())
+    }
+
+    fn follow(&mut self, inputs: &Inputs, step: &CommunicationStep) -> Result<(), DriveError> {
+        let motion = layer_motion(self.scene, inputs, self.simulation.driven(), step)?;
+        Ok(self.simulation.advance(&motion)?)
     }
 }
 

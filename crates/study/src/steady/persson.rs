@@ -231,7 +231,7 @@ mod tests {
     use asperity::scene::PronyTerm;
 
     use super::*;
-    use crate::testing::assert_relative;
+    use crate::in_tests::assert_relative;
 
     fn rubber(prony: Vec<PronyTerm>) -> Material {
         let (density, poisson_ratio, equilibrium_modulus) = (1e3, 0.5, 3e6);

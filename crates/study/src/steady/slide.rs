@@ -107,9 +107,9 @@ pub enum SlideProblem {
 }
 
 impl SlideProblem {
-    /// Whether friction and area can be relied on all the same.
-    pub fn leaves_friction(self) -> bool {
-        matches!(self, Self::FullContact | Self::SinglePoint)
+    /// Whether friction and area are a result all the same.
+    pub fn is_result(self) -> bool {
+        self == Self::FullContact
     }
 }
 

@@ -176,7 +176,9 @@ fn solver(scene: &Scene) -> String {
 fn input(scene: &Scene) -> String {
     let names: Vec<_> = scene.inputs().into_iter().map(Input::name).collect();
     let rule = match scene.extrapolation {
-        Extrapolation::Linear => "values without rates continue at their last rate (linear)",
+        Extrapolation::Linear => {
+            "values without rates continue at their last rate, until the next ones correct the step (linear)"
+        }
         Extrapolation::Hold => "values without rates are reached at the end of the step (hold)",
     };
     format!("{}; {rule}", names.join(", "))

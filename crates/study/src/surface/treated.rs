@@ -37,6 +37,14 @@ pub enum SurfaceError {
     /// It is periodic.
     #[error("`mirror` and `taper` make a profile periodic, and it is")]
     AlreadyPeriodic,
+    /// It is no longer than the waves that are to be taken away.
+    #[error("`smooth` {smooth:?}: expected at most {length:?} m, the length of the profile; lengths are in m")]
+    Smooth {
+        /// The wavelength asked for, m.
+        smooth: f64,
+        /// The length of the profile, m.
+        length: f64,
+    },
     /// It is too short or too coarse to be split.
     #[error("`split` {split:?}: expected {expected}")]
     Split {
@@ -68,6 +76,10 @@ impl TreatedSurface {
     pub fn new(read: Surface, options: &SurfaceOptions) -> Result<Self, SurfaceError> {
         if options.periodic.is_some() && read.is_periodic() {
             return Err(SurfaceError::AlreadyPeriodic);
+        }
+        let length = read.x()[read.x().len() - 1] - read.x()[0];
+        if let Some(smooth) = options.smooth.filter(|smooth| *smooth > length) {
+            return Err(SurfaceError::Smooth { smooth, length });
         }
         let split = |split: f64| read.split(split).map_err(|expected| SurfaceError::Split { split, expected });
         let (smooth, finer) = match options.split.map(split).transpose()? {

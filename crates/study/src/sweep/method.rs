@@ -1,5 +1,6 @@
 //! How steady sliding is found: by solving for it, or by letting the layer slide until it is steady.
 
+use asperity::math::{NotEnoughMemory, check_memory};
 use asperity::scene::{FoundationKind, HeightMap, Scene};
 
 use super::never_steady::{NeverSteady, check_can_be_steady};
@@ -44,6 +45,8 @@ pub enum MethodError {
     SmallMap { least: usize, found: [usize; 2] },
     #[error("`points`: expected at least {least}, found {found}")]
     FewPoints { least: usize, found: usize },
+    #[error(transparent)]
+    Memory(#[from] NotEnoughMemory),
 }
 
 /// How steady sliding is to be found; without any of it as the scene allows.
@@ -119,6 +122,7 @@ impl SlidingOptions {
         if points < SurfaceGrid::FEWEST {
             return Err(MethodError::FewPoints { least: SurfaceGrid::FEWEST, found: points });
         }
+        check_points([points, 1])?;
         let which = match self.points {
             Some(_) => "as asked for".to_owned(),
             None if points == own => "the profile's own".to_owned(),
@@ -137,6 +141,7 @@ impl SlidingOptions {
         if size.nx.min(size.ny) < least {
             return Err(MethodError::SmallMap { least, found: [size.nx, size.ny] });
         }
+        check_points([size.nx, size.ny])?;
         if scene.material.as_ref().is_some_and(|material| material.equilibrium_modulus == 0.0) {
             return Err(MethodError::Lacks(
                 "material.equilibrium_modulus = 0 leaves waves across the sliding no stiffness",
@@ -152,6 +157,16 @@ impl SlidingOptions {
         );
         Ok((Method::Steady(surface.resampled(size)), header))
     }
+}
+
+/// Checks that a surface of so many points can be solved for.
+fn check_points([nx, ny]: [usize; 2]) -> Result<(), NotEnoughMemory> {
+    /// Of a point, in the solver and what it finds.
+    const BYTES: u64 = 400;
+    check_memory((nx as u64).saturating_mul(ny as u64).saturating_mul(BYTES), || match ny {
+        1 => format!("`points`: {nx} points"),
+        _ => format!("`points`: {nx} x {ny} points"),
+    })
 }
 
 /// Why a scene cannot be solved for, and the layer has to slide; `None` where it need not.

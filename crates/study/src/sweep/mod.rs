@@ -19,7 +19,7 @@ mod table;
 mod window;
 
 pub use convergence::{NotAStudy, verdict};
-pub use error::SweepError;
+pub use error::{NotPossible, SweepError};
 pub use load_search::separation_at_rest;
 pub use method::{Method, MethodError, SlidingOptions, SweepMethod};
 pub use never_steady::NeverSteady;

@@ -3,11 +3,12 @@
 use std::ops::ControlFlow;
 
 use asperity::element::{Basis, Load, OperatingPoint, SweepGrid, TableHeader, TableRow};
-use asperity::scene::{FineRoughness, Scene};
+use asperity::math::check_memory;
+use asperity::scene::{FineRoughness, Scene, Wlf};
 use asperity::simulation::Interrupt;
 use rayon::prelude::*;
 
-use super::error::SweepError;
+use super::error::{NotPossible, SweepError};
 use super::load_search::separation_at_rest;
 use super::method::{Method, SlidingOptions};
 use super::point;
@@ -15,6 +16,7 @@ use super::scenes::{relevant, scene_at};
 use super::search::StopBounds;
 use super::solved::SolvedPoints;
 use super::table;
+use crate::implausible::{FoundFriction, implausible};
 use crate::progress::Stop;
 
 /// Mean loads to sweep over, rising.
@@ -59,9 +61,12 @@ impl SweepPlan {
         if scene.carrier.x.is_some() {
             return Err(SweepError::BodyAlongX);
         }
+        check(options)?;
         let (load, loads) = loads(&options.loads, &scene)?;
         let (method, of_method) = options.sliding.choose(&scene)?;
-        let warning = if matches!(method, Method::Layer) { hard_pressure(&scene, load, &loads) } else { None };
+        let pressed = if matches!(method, Method::Layer) { hard_pressure(&scene, load, &loads) } else { None };
+        let cold = options.temperatures.as_deref().and_then(Wlf::meant_in_celsius);
+        let warning = pressed.or_else(|| cold.map(|cold| format!("`temperatures`: {cold}")));
         let temperatures = temperatures(options.temperatures.as_deref(), &scene)?;
         let grid = SweepGrid { speeds: options.speeds.clone(), loads, temperatures };
         method.check(&scene)?;
@@ -88,7 +93,8 @@ impl SweepPlan {
         &self.header
     }
 
-    /// What to look at before the points are found: a load that presses the layer harder than its links stand for.
+    /// What to look at before the points are found: a load that presses the layer harder than its links stand for, or
+    /// temperatures that are probably meant in °C.
     pub fn warning(&self) -> Option<&str> {
         self.warning.as_deref()
     }
@@ -126,10 +132,27 @@ impl SweepPlan {
         })
     }
 
-    /// The warning where some of the rows have few points of the surface in contact.
-    pub fn few_points<'a>(&self, rows: impl Iterator<Item = &'a TableRow>) -> Option<String> {
-        self.solved.as_ref()?.few_points(rows, &self.header)
+    /// What to look at in the rows: few points of the surface in contact, and friction that no rubber has.
+    pub fn warnings<'a>(&self, rows: impl Iterator<Item = &'a TableRow> + Clone) -> Vec<String> {
+        let few = self.solved.as_ref().and_then(|solved| solved.few_points(rows.clone(), &self.header));
+        let found = rows.filter_map(|row| FoundFriction::of_row(row, self.header.load));
+        few.into_iter().chain(implausible(&self.scene, found)).collect()
     }
+}
+
+/// Checks that there are such states of sliding, and no more of them than the memory holds rows.
+fn check(options: &SweepOptions) -> Result<(), SweepError> {
+    /// Of a row.
+    const BYTES: u64 = 1024;
+    NotPossible::check("speeds", "m/s", &options.speeds)?;
+    let loads = match &options.loads {
+        Loads::Pressures(pressures) => NotPossible::check("pressures", "Pa", pressures).map(|()| pressures.len()),
+        Loads::Forces(forces) => NotPossible::check("forces", "N", forces).map(|()| forces.len()),
+    }?;
+    let temperatures = options.temperatures.as_deref().unwrap_or(&[0.0]).len();
+    let points = [options.speeds.len(), loads, temperatures].map(|count| count as u64);
+    let points = points.into_iter().fold(1, u64::saturating_mul);
+    Ok(check_memory(points.saturating_mul(BYTES), || format!("{points} points of the sweep"))?)
 }
 
 /// What the table rests on, for those who use it.

@@ -20,7 +20,7 @@ pub struct SteadySliding {
     /// Masses in contact over all masses, 1.
     pub contact_ratio: f64,
     /// Area that touches with the waves that the profile lacks over the layer's, 1; `None` without them.
-    pub(super) real_area: Option<f64>,
+    pub real_area: Option<f64>,
     /// Standard error of the contact ratio, 1.
     pub contact_error: f64,
     /// Power lost in dampers, Maxwell elements, friction and impacts, W; `None` for a channel that the scene cannot

@@ -233,8 +233,12 @@ pub(in crate::report) fn communication(
     picture: &str,
 ) -> io::Result<String> {
     let extrapolation = match scene.extrapolation {
-        Extrapolation::Linear => "with the rate of the step before",
-        Extrapolation::Hold => "to the value given, which it reaches at the end of the step",
+        Extrapolation::Linear => {
+            "with the rate of the step before, a prediction: where another value comes the step is done again, straight to it"
+        }
+        Extrapolation::Hold => {
+            "to the value given, which it reaches at the end of the step, so that every kink is known one step late"
+        }
     };
     let kinds = if reference.comparison.is_of_means() {
         ""

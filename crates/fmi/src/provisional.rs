@@ -1,0 +1,123 @@
+//! The last step of a run where it went to extrapolated values: once the values at its end are known and are others, it
+//! is done again from its start, straight to them. The course of the inputs is then the piecewise linear one through the
+//! values given, and the last step alone is a prediction.
+
+use serde::{Deserialize, Serialize};
+
+use super::error::Error;
+use super::inputs::{CommunicationStep, InputScales, Inputs, ProvisionalStep};
+use super::model::{FmuRun, RunState};
+
+/// A step that may be done again, and where.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct LastStep {
+    pub(super) step: ProvisionalStep,
+    /// The run at its start.
+    pub(super) run: RunState,
+}
+
+/// Does the steps of a run, the last one again where it is to be. Nothing is allocated after the first step.
+#[derive(Debug, Default)]
+pub(super) struct Stepper {
+    /// The last step, where it is provisional.
+    last: Option<LastStep>,
+    /// Where the state at the start of the next step is kept.
+    start: Option<RunState>,
+    /// Where the state before the call is kept while a step is done again.
+    before: Option<RunState>,
+}
+
+impl LastStep {
+    /// Copies `from`, into the arrays that there are.
+    pub(super) fn copy(own: &mut Option<Self>, from: Option<&Self>) {
+        match (own, from) {
+            (Some(own), Some(from)) => {
+                own.step = from.step;
+                own.run.copy_from(&from.run);
+            }
+            (own, from) => *own = from.cloned(),
+        }
+    }
+}
+
+impl Stepper {
+    /// The states that it keeps at most.
+    pub(super) const STATES: usize = 3;
+
+    /// The last step, where it is provisional.
+    pub(super) fn last(&self) -> Option<&LastStep> {
+        self.last.as_ref()
+    }
+
+    /// Takes over the last step of the state that a run continues from.
+    pub(super) fn set_last(&mut self, last: Option<&LastStep>) {
+        LastStep::copy(&mut self.last, last);
+    }
+
+    /// Does a step of `run`, and the last one before where other values have come than those that it went to; returns
+    /// whether it was. Where either fails the run is as it was.
+    pub(super) fn advance(
+        &mut self,
+        run: &mut dyn FmuRun,
+        inputs: &Inputs,
+        step: &CommunicationStep,
+        scales: &InputScales,
+    ) -> Result<bool, Error> {
+        let corrected = self.last.as_ref().and_then(|last| last.step.corrected(inputs, scales));
+        let provisional = ProvisionalStep::new(inputs, step, scales);
+        let Some(corrected) = corrected else {
+            self.follow(run, inputs, step, provisional)?;
+            return Ok(false);
+        };
+        save(run, &mut self.before);
+        let result = self.repeat(run, &corrected).and_then(|()| self.follow(run, inputs, step, provisional));
+        if let (Err(_), Some(before)) = (&result, &self.before) {
+            run.set_state(before)?;
+        }
+        result.map(|()| true)
+    }
+
+    /// Does the last step again.
+    fn repeat(&self, run: &mut dyn FmuRun, corrected: &Inputs) -> Result<(), Error> {
+        let Some(last) = &self.last else { return Ok(()) };
+        run.set_state(&last.run)?;
+        let step = last.step.step();
+        run.advance(corrected, &step).map_err(|source| Error::Repetition {
+            time: step.time,
+            h: step.h,
+            source: Box::new(source),
+        })?;
+        run.count_repetition();
+        Ok(())
+    }
+
+    /// Does a step, and keeps the state at its start where it is provisional.
+    fn follow(
+        &mut self,
+        run: &mut dyn FmuRun,
+        inputs: &Inputs,
+        step: &CommunicationStep,
+        provisional: Option<ProvisionalStep>,
+    ) -> Result<(), Error> {
+        let Some(provisional) = provisional else {
+            run.advance(inputs, step)?;
+            self.start = self.last.take().map(|last| last.run).or(self.start.take());
+            return Ok(());
+        };
+        save(run, &mut self.start);
+        run.advance(inputs, step)?;
+        let spare = self.last.take().map(|last| last.run);
+        self.last = self.start.take().map(|run| LastStep { step: provisional, run });
+        self.start = Some(spare.unwrap_or_else(|| run.save()));
+        self.before.get_or_insert_with(|| run.save());
+        Ok(())
+    }
+}
+
+/// Copies the state of a run into the one kept, or keeps the first.
+fn save(run: &dyn FmuRun, kept: &mut Option<RunState>) {
+    match kept {
+        Some(kept) => run.save_into(kept),
+        None => *kept = Some(run.save()),
+    }
+}

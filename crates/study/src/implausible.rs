@@ -1,0 +1,157 @@
+//! Friction and areas of contact that no rubber has, and which key of the scene is missing or mistaken.
+
+use asperity::element::{Load, OperatingPoint, Quantity, TableRow};
+use asperity::scene::{Friction, Scene};
+
+use crate::decimals::rounded;
+
+/// No rubber is known to have a friction coefficient above it.
+const LARGEST_FRICTION: f64 = 3.0;
+/// A real area that is this part of the nominal one is all of it.
+const WHOLE: f64 = 0.99;
+
+/// What was found at a point or in a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundFriction {
+    /// Where, as in "at 0.1 m/s".
+    pub place: String,
+    /// Friction coefficient, 1.
+    pub friction: f64,
+    /// Area that touches over the nominal one, 1: with the roughness below the profile where the scene has it.
+    pub area: Option<f64>,
+}
+
+impl FoundFriction {
+    /// What is in the row of a point that has a result.
+    pub fn of_row(row: &TableRow, load: Load) -> Option<Self> {
+        let friction = row.value(Quantity::Friction).filter(|_| row.is_result())?;
+        let area = row.value(Quantity::RealArea).or(row.value(Quantity::ContactRatio));
+        Some(Self { place: at(&row.point, load), friction, area })
+    }
+}
+
+/// A point as a place.
+pub fn at(point: &OperatingPoint, load: Load) -> String {
+    format!("at {}", point.describe(load))
+}
+
+/// What of it no rubber on the surface of `scene` has, why, and which key is missing; nothing where all is plausible.
+pub fn implausible(scene: &Scene, found: impl IntoIterator<Item = FoundFriction>) -> Vec<String> {
+    let found: Vec<FoundFriction> = found.into_iter().collect();
+    let is_rubbing = |one: &&FoundFriction| one.friction > LARGEST_FRICTION;
+    let is_whole = |one: &&FoundFriction| one.area.is_some_and(|area| area >= WHOLE) && is_unresolved(scene);
+    let rubbing: Vec<&FoundFriction> = found.iter().filter(is_rubbing).collect();
+    let whole: Vec<&FoundFriction> = found.iter().filter(is_whole).collect();
+    let largest = rubbing.iter().max_by(|a, b| a.friction.total_cmp(&b.friction)).map(|largest| {
+        let (friction, place) = (rounded(largest.friction, 4), &largest.place);
+        let why = why(scene);
+        format!("friction is {friction} {place}{}, more than that of any rubber: {why}", more(rubbing.len()))
+    });
+    // One key is missing for both.
+    let is_said = largest.is_some() && scene.fine.is_none();
+    let touching = whole.first().filter(|_| !is_said).map(|first| {
+        let place = format!("{}{}", first.place, more(whole.len()));
+        match scene.fine {
+            None => format!("the whole nominal area touches {place}: {NO_FINE}"),
+            Some(_) => format!(
+                "the roughness of surface.fine is pressed flat {place}, so that the whole nominal area touches: are its shortest \
+                 waves (surface.fine.shortest) those of the surface, and the pressure right?"
+            ),
+        }
+    });
+    largest.into_iter().chain(touching).collect()
+}
+
+const NO_FINE: &str = "without surface.fine the profile counts as smooth between its points, and the shear strength acts on all \
+                       of it; a real surface touches on a part alone: give surface.fine the waves that the profile lacks";
+
+fn more(count: usize) -> String {
+    match count {
+        0 | 1 => String::new(),
+        2 => " and at one more point".to_owned(),
+        count => format!(" and at {} more points", count - 1),
+    }
+}
+
+/// Whether shear acts on a surface that is rough, by what is not its own shape.
+fn is_unresolved(scene: &Scene) -> bool {
+    let is_level = scene.surface.z().windows(2).all(|pair| pair[0] == pair[1]);
+    scene.friction.as_ref().is_some_and(has_shear) && (scene.fine.is_some() || !is_level)
+}
+
+fn has_shear(friction: &Friction) -> bool {
+    let of_rate = friction.rate_shear.as_ref().map(|rate| [rate.force, rate.strength]).unwrap_or_default();
+    let all = [friction.shear_force, friction.shear_strength].into_iter().chain(of_rate);
+    all.flatten().any(|shear| shear > 0.0)
+}
+
+fn why(scene: &Scene) -> String {
+    let friction = scene.friction.as_ref();
+    match (friction.is_some_and(has_shear), scene.material.is_some(), scene.fine.is_some()) {
+        (true, false, _) => "is the shear force right, in N a mass in contact?".to_owned(),
+        (true, true, false) => NO_FINE.to_owned(),
+        (true, true, true) => {
+            "is the shear strength right, in Pa, and are the shortest waves of surface.fine (surface.fine.shortest) those of the \
+             surface?"
+                .to_owned()
+        }
+        (false, ..) => match friction.and_then(|friction| friction.coulomb).filter(|mu| *mu > LARGEST_FRICTION) {
+            Some(coulomb) => format!("friction.coulomb = {coulomb}"),
+            None => format!(
+                "the slopes of the profile, {} in the root mean square, lose too much: are its units right, and is it the \
+                 surface's?",
+                rounded(scene.surface.rms_slope(), 3)
+            ),
+        },
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    fn scene(surface: &str, friction: &str) -> Scene {
+        let text = format!(
+            "name = 's'\nlayer = {{ foundation = 'half_space', masses = 16, spacing = 6.25e-5, width = 1e-2 }}\n\
+             material = {{ density = 1e3, poisson_ratio = 0.5, equilibrium_modulus = 1e6, prony = [] }}\n\
+             surface = {{ {surface} }}\nfriction = {{ {friction} }}"
+        );
+        Scene::parse(&text, "s.toml".as_ref()).unwrap()
+    }
+
+    const SINE: &str = "kind = 'sinusoid', amplitude = 1e-6, wavelength = 1e-3";
+
+    fn said(surface: &str, friction: &str, found: &[(f64, f64)]) -> Vec<String> {
+        let found = found.iter().map(|&(friction, area)| FoundFriction {
+            place: "at 1 m/s".into(),
+            friction,
+            area: Some(area),
+        });
+        implausible(&scene(surface, friction), found)
+    }
+
+    #[test]
+    fn the_missing_key_is_named() {
+        let shear = "shear_strength = 5e6";
+        let rough = said(SINE, shear, &[(8.0, 0.3), (9.0, 0.2), (1.0, 0.5)]);
+        assert!(
+            rough.len() == 1 && rough[0].starts_with("friction is 9 at 1 m/s and at one more point, more"),
+            "{rough:?}"
+        );
+        assert!(rough[0].contains("give surface.fine the waves"), "{rough:?}");
+        let pressed = said(SINE, shear, &[(1.0, 1.0)]);
+        assert!(pressed.len() == 1 && pressed[0].contains("without surface.fine"), "{pressed:?}");
+        let fine = format!("{SINE}, fine = {{ hurst = 0.8, rms_slope = 0.3, longest = 1e-4, shortest = 1e-6 }}");
+        assert!(said(&fine, shear, &[(1.0, 0.999)])[0].contains("surface.fine.shortest"));
+        assert!(said(SINE, "coulomb = 5", &[(5.0, 1.0)])[0].ends_with("friction.coulomb = 5"));
+    }
+
+    /// Glass is smooth, and Coulomb's friction has no area.
+    #[test]
+    fn what_is_plausible_is_passed_over() {
+        assert_eq!(said("kind = 'flat'", "shear_strength = 5e6", &[(1.0, 1.0)]), [""; 0]);
+        assert_eq!(said(SINE, "coulomb = 0.5", &[(0.5, 1.0)]), [""; 0]);
+        assert_eq!(said(SINE, "shear_strength = 5e6", &[(2.9, 0.9)]), [""; 0]);
+    }
+}
