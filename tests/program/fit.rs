@@ -373,3 +373,38 @@ fn links_have_stiffnesses_instead() {
     let message = String::from_utf8(refused.stderr).unwrap();
     assert!(message.contains("the scene has no material.wlf"), "{message}");
 }
+
+/// E'' of a factor 1.3 contradicts E': said by decades; one of both alone is fitted; b_T of a table divides its moduli.
+#[test]
+fn moduli_that_contradict_each_other_are_named() {
+    let folder = scratch("fit-contradiction");
+    let terms: Vec<(f64, f64)> = (-4..10).map(|i| (10_f64.powi(-i), 1e6 * 10_f64.powf(f64::from(i) / 5.0))).collect();
+    let mut table = String::from("omega [rad/s],E' [Pa],E'' [Pa],T [K],b_T\n");
+    for (kelvin, b) in [(293.15, 1.0), (313.15, 1.25)] {
+        for i in -16..=48 {
+            let omega = 10_f64.powf(f64::from(i) / 8.0);
+            let (mut storage, mut loss) = (1e6, 0.0);
+            for (tau, modulus) in &terms {
+                let x = omega * tau;
+                (storage, loss) = (storage + modulus * x * x / (1.0 + x * x), loss + modulus * x / (1.0 + x * x));
+            }
+            table += &format!("{omega:e},{:e},{:e},{kelvin},{b}\n", b * storage, 1.3 * b * loss);
+        }
+    }
+    let data = folder.join("both.csv");
+    fs::write(&data, table).unwrap();
+    let fit = |options: &[&str]| {
+        asperity().arg("fit").arg(&data).arg("-o").arg(folder.join("out.csv")).args(options).output().unwrap()
+    };
+    // The same curve at both temperatures, once moduli are divided: a_T = 1.
+    let wlf = ["--wlf", "1e-9,100,293.15"];
+    let output = fit(&wlf);
+    let (found, said) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert_eq!(output.status.code(), Some(3), "{said}");
+    assert!(found.contains("10 rad/s      16     1.30"), "{found}");
+    assert!(said.contains("E' and E'' contradict each other") && said.contains("b_T"), "{said}");
+    let alone = fit(&[&wlf[..], &["--weight", "loss"]].concat());
+    assert_eq!(alone.status.code(), Some(0), "{}", String::from_utf8_lossy(&alone.stderr));
+    let whole = fit(&[&wlf[..], &["--weight", "loss", "--vertical", "none"]].concat());
+    assert_eq!(whole.status.code(), Some(3), "25 % between the temperatures remain");
+}

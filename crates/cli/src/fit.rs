@@ -91,7 +91,7 @@ pub(crate) fn fit(command: &Fit) -> Result<u8, FitError> {
 fn not_reached(fitted: &FittedModuli, command: &Fit) -> String {
     let (wanted, reached) = (percent(command.error, 3), percent(fitted.error(), 3));
     let scatter = || "the data scatter too much for less, and --error sets what is enough".to_owned();
-    let contradiction = || fitted.consistency().filter(|found| found.apart() > APART).map(contradiction);
+    let contradiction = || fitted.consistency().filter(|found| found.is_contradiction()).map(contradiction);
     let why = fitted.blame().map(|why| with_flags(&why)).or_else(contradiction).unwrap_or_else(scatter);
     format!(
         "the error asked for, {wanted}, cannot be reached: {reached} is about the smallest of any series with moduli of 0 \
@@ -99,9 +99,6 @@ fn not_reached(fitted: &FittedModuli, command: &Fit) -> String {
         command.output.display()
     )
 }
-
-/// E' and E'' whose means over decades differ by less do not contradict each other, 1.
-const APART: f64 = 0.03;
 
 fn contradiction(found: &Consistency) -> String {
     format!(
@@ -112,7 +109,7 @@ fn contradiction(found: &Consistency) -> String {
     )
 }
 
-/// How far E' and E'' are apart: in a line, or by decades where that is more than the error asked for.
+/// How far E' and E'' are apart: in a line, and by decades where no series reaches the error asked for.
 fn consistency(fitted: &FittedModuli, requested: f64) -> Vec<LabelledLine> {
     let Some(found) = fitted.consistency() else { return Vec::new() };
     let apart = percent(found.apart(), 2);
@@ -121,7 +118,7 @@ fn consistency(fitted: &FittedModuli, requested: f64) -> Vec<LabelledLine> {
         ("Kramers-", format!("E'' is {apart} (rms of the means over decades) from what E' says it is")),
         ("Kronig", format!("no sum of Maxwell elements comes nearer to both than {nearest} rms")),
     ];
-    if found.apart().max(found.nearest) <= requested {
+    if found.nearest <= requested {
         return rows;
     }
     rows.push(("", format!("{:<14}{:<7}{:<24}E', E'' off the nearest sum", "from", "rows", "E'' over that of E'")));

@@ -23,6 +23,9 @@ pub struct Consistency {
     pub decades: Vec<DecadeConsistency>,
     /// The root mean square error (1) of both moduli that the best spectrum leaves.
     pub nearest: f64,
+    /// The share of the squares of these errors that the means over decades make, beyond those of scatter: near 0 of
+    /// scatter alone, near 1 where E' and E'' contradict each other.
+    pub systematic: f64,
 }
 
 /// How far E' and E'' are apart in a decade.
@@ -62,7 +65,16 @@ impl Consistency {
             }
         };
         let decades = sorted.chunk_by(|a, b| decade(a) == decade(b)).map(of_decade).collect();
-        Self { decades, nearest: FitErrors::of(&best, samples, Test::Oscillation).both.rms }
+        let by_decade: Vec<&[Sample]> = sorted.chunk_by(|a, b| decade(a) == decade(b)).collect();
+        let nearest = FitErrors::of(&best, samples, Test::Oscillation).both.rms;
+        Self { decades, nearest, systematic: systematic(&best, &by_decade) }
+    }
+
+    /// Whether what the best spectrum leaves is a contradiction of both moduli, not scatter.
+    pub fn is_contradiction(&self) -> bool {
+        /// Of the squares.
+        const MOST: f64 = 0.5;
+        self.systematic > MOST
     }
 
     /// How far the means over decades are apart, as a share: root mean square over all points.
@@ -71,6 +83,25 @@ impl Consistency {
         let squares: f64 = self.decades.iter().map(|decade| decade.rows as f64 * decade.ratio.ln().powi(2)).sum();
         (squares / rows as f64).sqrt()
     }
+}
+
+/// The share of the squared errors that their means over decades make, without that of independent ones.
+fn systematic(best: &Compound, by_decade: &[&[Sample]]) -> f64 {
+    let (mut of_means, mut whole) = (0.0, 0.0);
+    for own in by_decade.iter().filter(|own| own.len() > 1) {
+        let errors = |of: fn(&Sample, (f64, f64)) -> f64| {
+            own.iter().map(|sample| of(sample, best.complex_modulus(sample.at))).collect::<Vec<f64>>()
+        };
+        let (storage, loss) = (errors(|at, fit| fit.0 / at.storage - 1.0), errors(|at, fit| fit.1 / at.loss - 1.0));
+        for errors in [storage, loss] {
+            let count = errors.len() as f64;
+            let squares: f64 = errors.iter().map(|error| error * error).sum();
+            let of_mean = errors.iter().sum::<f64>().powi(2) / count;
+            of_means += of_mean - (squares - of_mean) / (count - 1.0);
+            whole += squares;
+        }
+    }
+    if whole > 0.0 { (of_means / whole).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 fn dense(samples: &[Sample], weight: Weight) -> Compound {
@@ -114,7 +145,7 @@ mod tests {
             for decade in &found.decades[1..6] {
                 assert!((decade.ratio / factor - 1.0).abs() < 0.03, "{factor} {found:?}");
             }
-            assert!(found.nearest > 0.05 && found.apart() > 0.2, "{found:?}");
+            assert!(found.nearest > 0.05 && found.apart() > 0.2 && found.is_contradiction(), "{found:?}");
         }
     }
 }
