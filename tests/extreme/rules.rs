@@ -184,13 +184,16 @@ fn work(outcome: &Outcome) -> Option<String> {
     (tried > MAX_STEPS as f64).then(|| format!("{tried} steps tried"))
 }
 
-/// What is lost stays lost: no channel ever gives energy back.
+/// What is lost stays lost: no channel ever gives energy back, but for what a step done again puts right.
 fn channels(limits: &Limits, outcome: &Outcome) -> Option<String> {
     let names = ["dissipation.E_damper", "dissipation.E_maxwell", "dissipation.E_friction", "dissipation.E_impact"];
     let scale = energy_scale(outcome);
+    let repeated = outcome.column("solver.repeated");
+    let is_done_again = |row: usize| repeated.get(row) < repeated.get(row + 1);
     names.iter().find_map(|name| {
-        let column = outcome.column(name);
-        let fall = column.windows(2).map(|pair| pair[0] - pair[1]).fold(0.0, f64::max);
+        let pairs = outcome.column(name);
+        let pairs = pairs.windows(2).enumerate().filter(|(row, _)| !is_done_again(*row));
+        let fall = pairs.map(|(_, pair)| pair[0] - pair[1]).fold(0.0, f64::max);
         (fall > ENERGY * limits.relative * scale + limits.force * limits.masses * outcome.path)
             .then(|| format!("{name} falls by {fall:.1e} of {scale:.1e} J"))
     })

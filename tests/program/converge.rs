@@ -178,7 +178,7 @@ fn invalid_studies_are_refused() {
     assert!(asked(&["--points", "64"], 1).contains("--points: expected none with --method layer"));
     assert!(asked(&["--seeds", "1"], 2).contains("from 2 to 1000"));
     assert!(asked(&["--error", "0"], 2).contains("a share above 0"));
-    assert!(refused(&scene, &path, &["--speed", "1", "--pressure", "-1"], 2).contains("a number above 0"));
+    assert!(refused(&scene, &path, &["--speed", "1", "--pressure", "-1"], 2).contains("a number from 1e-30 to 1e30"));
     assert!(refused(&scene, &path, &["--speed", "1"], 2).contains("--pressure"));
     assert!(refused(&scene, &scene, &FULL, 1).contains("will not write"));
     assert!(!path.exists());

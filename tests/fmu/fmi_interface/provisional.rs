@@ -72,7 +72,7 @@ fn to_and_fro_with_stops(time: f64) -> ([f64; 2], [f64; 2]) {
 
 fn ramped(time: f64) -> ([f64; 2], [f64; 2]) {
     let ramp = (time - 0.01).clamp(0.0, 0.02);
-    let over = (time - 0.03).max(0.0).min(0.01);
+    let over = (time - 0.03).clamp(0.0, 0.01);
     let u = 0.25 * ramp * ramp + 0.01 * over - 0.5 * over * over;
     let u_rate = 0.5 * ramp - over;
     pressed(time, (u, if time > 0.04 - 1e-9 { 0.0 } else { u_rate }))
