@@ -16,6 +16,9 @@ use crate::errors::Raise as _;
 #[derive(Debug)]
 pub(crate) struct Fit(FittedModuli);
 
+/// Of a decade: where it begins (rad/s), rows, E'' over that of E', errors of E' and E''.
+type Decade = (f64, usize, f64, f64, f64);
+
 /// An array of numbers.
 type Numbers<'py> = Bound<'py, PyArray1<f64>>;
 
@@ -52,10 +55,9 @@ impl Fit {
         self.0.wlf().map(|wlf| (wlf.c1, wlf.c2, wlf.reference_temperature))
     }
 
-    /// How far E' and E'' are apart, the least error of any series, and by decades: from (rad/s), rows, E'' over that of
-    /// E', errors of E' and E''.
+    /// How far E' and E'' are apart, the least error of any series, and by decades.
     #[getter]
-    fn consistency(&self) -> Option<(f64, f64, Vec<(f64, usize, f64, f64, f64)>)> {
+    fn consistency(&self) -> Option<(f64, f64, Vec<Decade>)> {
         let found = self.0.consistency()?;
         let decades = found.decades.iter().map(|of| (of.from, of.rows, of.ratio, of.storage, of.loss)).collect();
         Some((found.apart(), found.nearest, decades))
