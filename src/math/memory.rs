@@ -30,11 +30,19 @@ pub fn check_memory(needed: u64, what: impl FnOnce() -> String) -> Result<(), No
     if needed > free {
         return Err(NotEnoughMemory { what: what(), needed, free });
     }
+    if usize::try_from(needed).is_ok_and(can_allocate) {
+        return Ok(());
+    }
+    Err(NotEnoughMemory { what: what(), needed, free: needed.min(free) - 1 })
+}
+
+/// Whether the system promises so many bytes at once.
+pub fn can_allocate(bytes: usize) -> bool {
     let mut probe: Vec<u8> = Vec::new();
-    let refused = usize::try_from(needed).map_or(true, |bytes| probe.try_reserve_exact(bytes).is_err());
+    let is_promised = probe.try_reserve_exact(bytes).is_ok();
     // An allocation that nothing looks at may be left out.
     hint::black_box(&mut probe);
-    if refused { Err(NotEnoughMemory { what: what(), needed, free: needed.min(free) - 1 }) } else { Ok(()) }
+    is_promised
 }
 
 /// Bytes that the machine, or the group of processes that this one is in, has free; `None` where the system does not say.

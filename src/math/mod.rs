@@ -16,7 +16,7 @@ mod vectors;
 
 pub use finite::not_finite;
 pub use fourier::{Direction, fourier, fourier_2d};
-pub use memory::{NotEnoughMemory, check_memory};
+pub use memory::{NotEnoughMemory, can_allocate, check_memory};
 pub use monotone::{Expansion, cubic, interval_of, monotone_slopes};
 pub use number::{Dual, Number};
 pub use quintic::{Jet, Quintic};

@@ -250,14 +250,14 @@ impl Signal {
 
     /// The input at the end of a step.
     fn target(&self, step: &CommunicationStep) -> f64 {
-        match (self.rate, step.extrapolation, self.past) {
-            (Some(rate), _, _) => self.value + step.h * rate,
-            (None, _, _) if self.end.is_some() => self.end.unwrap_or(self.value),
+        match (self.rate, self.end, step.extrapolation, self.past) {
+            (Some(rate), ..) => self.value + step.h * rate,
+            (None, Some(end), ..) => end,
             // At rest it stays exactly where it is, whatever the ratio of the steps.
-            (None, Extrapolation::Linear, Some(past)) if past.value != self.value => {
+            (None, None, Extrapolation::Linear, Some(past)) if past.value != self.value => {
                 self.value + (self.value - past.value) * (step.h / past.step)
             }
-            (None, Extrapolation::Linear | Extrapolation::Hold, _) => self.value,
+            (None, None, Extrapolation::Linear | Extrapolation::Hold, _) => self.value,
         }
     }
 }

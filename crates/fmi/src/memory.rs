@@ -1,9 +1,8 @@
 //! Memory that the system would refuse: what a call needs is reckoned and asked for before it is used, since Rust ends
 //! the process where an allocation fails.
 
-use std::hint;
-
 use super::error::Error;
+use asperity::math::can_allocate;
 
 /// What stays free for all that is not reckoned, such as messages.
 const SPARE: usize = 1 << 18;
@@ -13,11 +12,10 @@ const SPARE: usize = 1 << 18;
 /// # Errors
 /// [`Error::Memory`].
 pub(super) fn check(what: &'static str, bytes: usize) -> Result<(), Error> {
-    let mut probe: Vec<u8> = Vec::new();
-    let refused = probe.try_reserve_exact(bytes.saturating_add(SPARE)).is_err();
-    // An allocation that nothing looks at may be left out.
-    hint::black_box(&mut probe);
-    if refused { Err(Error::Memory { what, mebibytes: bytes.div_ceil(1 << 20) }) } else { Ok(()) }
+    if can_allocate(bytes.saturating_add(SPARE)) {
+        return Ok(());
+    }
+    Err(Error::Memory { what, mebibytes: bytes.div_ceil(1 << 20) })
 }
 
 #[cfg(test)]

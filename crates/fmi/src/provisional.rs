@@ -55,26 +55,27 @@ impl Stepper {
     }
 
     /// Does a step of `run`, and the last one before where other values have come than those that it went to; returns
-    /// whether it was. Where either fails the run is as it was.
+    /// when that began, s. Where either fails the run is as it was.
     pub(super) fn advance(
         &mut self,
         run: &mut dyn FmuRun,
         inputs: &Inputs,
         step: &CommunicationStep,
         scales: &InputScales,
-    ) -> Result<bool, Error> {
+    ) -> Result<Option<f64>, Error> {
         let corrected = self.last.as_ref().and_then(|last| last.step.corrected(inputs, scales));
         let provisional = ProvisionalStep::new(inputs, step, scales);
         let Some(corrected) = corrected else {
             self.follow(run, inputs, step, provisional)?;
-            return Ok(false);
+            return Ok(None);
         };
+        let began = self.last.as_ref().map(|last| last.step.step().time);
         save(run, &mut self.before);
         let result = self.repeat(run, &corrected).and_then(|()| self.follow(run, inputs, step, provisional));
         if let (Err(_), Some(before)) = (&result, &self.before) {
             run.set_state(before)?;
         }
-        result.map(|()| true)
+        result.map(|()| began)
     }
 
     /// Does the last step again.

@@ -108,9 +108,7 @@ impl InstanceState {
         let scales = *self.scales.get_or_insert_with(|| definition.input_scales());
         let step = CommunicationStep { time: self.clock.time, h, extrapolation };
         let run = self.run.as_mut().ok_or(Error::NoRun)?.as_mut();
-        let repeated = self.stepper.last().map(|last| last.step.step().time);
-        let repeats = self.stepper.advance(run, &self.inputs, &step, &scales)?;
-        self.repeated_from = repeated.filter(|_| repeats);
+        self.repeated_from = self.stepper.advance(run, &self.inputs, &step, &scales)?;
         self.inputs.complete_step(h);
         self.clock = clock;
         Ok(())
