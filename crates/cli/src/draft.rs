@@ -171,7 +171,8 @@ pub(crate) fn print(text: &str) -> Result<(), FileError> {
     write(Path::new(STANDARD_OUTPUT), text)
 }
 
-/// Where a table is that is continued: in its place or, for standard output and other streams, in a folder of its own until it is whole.
+/// Where a table is that is continued: in its place or, for standard output and other streams, in a folder of its own until
+/// it is whole.
 #[derive(Debug)]
 pub(crate) struct TablePlace {
     pub(crate) path: PathBuf,

@@ -15,7 +15,8 @@ use asperity_study::files;
 pub(crate) use asperity_study::files::name_of;
 use asperity_study::settings::Setting;
 
-/// The picture beside a table: the one named, else one with the table's name; none of a table on standard output or another stream.
+/// The picture beside a table: the one named, else one with the table's name; none of a table on standard output or another
+/// stream.
 pub(crate) fn picture_beside(table: &Path, named: Option<&PathBuf>) -> Option<PathBuf> {
     named.cloned().or_else(|| (!is_stream(table)).then(|| table.with_extension("svg")))
 }

@@ -5,17 +5,19 @@ use asperity_study::steady::persson::Theory;
 
 use crate::figure::{Curve, Panel, Stacked, Stroke};
 
-/// A curve of Persson's theory: its name, which of the two surfaces, and its value.
-type TheoryCurve = (&'static str, usize, fn(&Theory) -> f64);
+/// A curve of Persson's theory: its name, its stroke, which of the two surfaces, and its value.
+type TheoryCurve = (&'static str, Stroke, usize, fn(&Theory) -> f64);
 
 const FRICTIONS: [TheoryCurve; 4] = [
-    ("Persson's hysteresis, ridges", 0, |theory| theory.friction),
-    ("the same with S = ½ + ½P²", 0, |theory| theory.friction_reduced),
-    ("Persson's hysteresis, isotropic", 1, |theory| theory.friction),
-    ("the same, isotropic, with S = ½ + ½P²", 1, |theory| theory.friction_reduced),
+    ("Persson's hysteresis, ridges", Stroke::Dashed, 0, |theory| theory.friction),
+    ("the same with S = ½ + ½P²", Stroke::Dotted, 0, |theory| theory.friction_reduced),
+    ("Persson's hysteresis, isotropic", Stroke::Dashed, 1, |theory| theory.friction),
+    ("the same, isotropic, with S = ½ + ½P²", Stroke::Dotted, 1, |theory| theory.friction_reduced),
 ];
-const AREAS: [TheoryCurve; 2] =
-    [("Persson, ridges", 0, |theory| theory.area), ("Persson, isotropic", 1, |theory| theory.area)];
+const AREAS: [TheoryCurve; 2] = [
+    ("Persson, ridges", Stroke::Dashed, 0, |theory| theory.area),
+    ("Persson, isotropic", Stroke::Dashed, 1, |theory| theory.area),
+];
 
 /// The runs of the study `title`, those with another length or seed as circles.
 pub(super) fn picture(title: &str, runs: &[RunRow]) -> Stacked {
@@ -61,9 +63,8 @@ fn hysteresis(runs: &[RunRow]) -> Curve {
     Curve { name: "its hysteresis".into(), look: 3, stroke: Stroke::Line, points }
 }
 
-fn theory_curve(runs: &[RunRow], (name, surface, value): TheoryCurve) -> Curve {
+fn theory_curve(runs: &[RunRow], (name, stroke, surface, value): TheoryCurve) -> Curve {
     let ladder = runs.iter().filter(|run| run.variant.is_of_ladder());
     let points = ladder.map(|run| (run.dimensions.spacing, value(&run.theories[surface]))).collect();
-    let stroke = if name.starts_with("the same") { Stroke::Dotted } else { Stroke::Dashed };
     Curve { name: name.into(), look: 5 + surface, stroke, points }
 }
