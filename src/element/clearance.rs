@@ -67,13 +67,45 @@ fn round_up(value: f64, step: f64) -> f64 {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
+    use crate::math::SplitMix64;
+
+    /// At any speed and temperature of a table, those between its points, too; a tenth of the table's way lower some touch.
+    #[test]
+    fn nothing_touches_there_and_a_little_lower_something_does() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch");
+        for name in ["block.table.csv", "winkler.table.csv"] {
+            let table = Table::load(&folder.join(name)).unwrap();
+            let clearance = Clearance::new(&table);
+            let mut random = SplitMix64::new(7);
+            let mut between = |values: &[f64]| match values {
+                [] => 0.0,
+                values => values[0] + (values[values.len() - 1] - values[0]) * random.unit(),
+            };
+            let logarithms: Vec<f64> = table.grid.speeds.iter().map(|speed| speed.ln()).collect();
+            let mut earliest = f64::INFINITY;
+            for _ in 0..20_000 {
+                let law = Law::new(&table, between(&table.grid.temperatures));
+                let curve = LawAtSpeed::new(&law, between(&logarithms).exp());
+                earliest = earliest.min(curve.touch);
+            }
+            // The carrier's own way down is from where its middle plane touches.
+            for place in [0.0, 1e-4, -0.3] {
+                let approach = -(clearance.displacement(place) + place);
+                let lower = 0.15 * clearance.way;
+                assert!(approach <= earliest && approach + lower > earliest, "{name}: {approach} {earliest}");
+            }
+        }
+    }
 
     #[test]
     fn numbers_are_rounded_up_to_the_decade_of_a_step() {
         for (value, step, rounded) in
-            [(1.234e-4, 2e-6, 1.24e-4), (-1.234e-4, 2e-6, -1.23e-4), (3e-4, 1e-4, 4e-4), (-1e-6, 2e-5, 0.0)]
+            [(1.234e-4, 2e-6, 1.24e-4), (-1.234e-4, 2e-6, -1.23e-4), (3.5e-4, 1e-4, 4e-4), (-1e-6, 2e-5, 0.0)]
         {
             assert_eq!(round_up(value, step), rounded, "{value}, {step}");
         }
