@@ -82,6 +82,8 @@ def _caption(axes: Axes, slides: float) -> None:
     from matplotlib.figure import Figure
 
     figure = axes.get_figure()
+    # It takes its room from the axes.
+    axes.set_title("heights", loc="left", fontsize="medium")
     if isinstance(figure, Figure):
         figure.draw_without_rendering()
     box = axes.get_window_extent()
@@ -92,6 +94,9 @@ def _caption(axes: Axes, slides: float) -> None:
     text = f"heights drawn {scales[1] / scales[0]:.2g} times as large as lengths"
     axes.set_title(text + way.get(float(np.sign(slides)), ""), loc="left", fontsize="medium")
 
+
+# Entries of a legend beside a title.
+_CLOSE = {"handlelength": 1.0, "columnspacing": 0.8, "handletextpad": 0.4}
 
 # How a mass is drawn by what it does: colour, marker, and whether it is full.
 _TOUCHES = {"sticks": ("#0072b2", "s", True), "slips": ("#d55e00", "o", True), "free": ("#8c8c8c", "o", False)}
@@ -116,7 +121,7 @@ def moment(found: Moment) -> Figure:
         face = colour if full else "none"
         layer.plot(found.x[its], found.z[its], marker, color=colour, markerfacecolor=face, markersize=3, label=touch)
     layer.set(ylim=(low, high), xlim=(x[0], x[-1]), ylabel="z [m]")
-    layer.legend(loc="upper right", ncols=5, fontsize="small")
+    layer.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=5, fontsize="small", frameon=False, **_CLOSE)
     width = 0.8 * found.spacing
     bars[0].bar(found.x, found.load, width, color=colours)
     bars[0].set_ylabel(f"{found.load_name} [{found.load_unit}]")
