@@ -52,8 +52,8 @@ const MOTION: Format<OfMotion, 7> = Format {
             Wanted::new(&[OfMotion::Pressure], "pressure", "pressures").optional(),
             Wanted::new(&[OfMotion::Temperature], "temperature", "temperatures").optional().within(POSITIVE),
         ],
-        "time, u and w, of which one that rests may be missing, and of a body along an axis, which has no u or w but by its \
-         drive, load, pressure or pull; temperature where it is an input",
+        "time, u and w, of which one that rests may be missing, and of a body along an axis, which has no u or w but by \
+         its drive, load, pressure or pull; temperature where it is an input",
     )
 };
 

@@ -351,7 +351,7 @@ const PHASE: &[Key] = &[
     key(
         "file",
         Allowed::Text(PATH),
-        "File of the motion, with columns time, u and w, one of which may be missing and then rests, in place of the other keys",
+        "File of the motion, with columns time, u and w, of which one that rests may be missing, in place of others",
     ),
     number("duration", POSITIVE, Unit::Second, "Duration").follows("required but of a file"),
     number("u_rate", ANY, Unit::MeterPerSecond, "Rate of u").default("0"),
