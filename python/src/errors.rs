@@ -8,12 +8,15 @@ use asperity::patch::{MotionError, PatchError, PatchRestoreError};
 use asperity::scene::{ParameterError, SceneError};
 use asperity::simulation::SimulationError;
 use asperity_study::calibration::{CalibrationError, MeasuredFrictionError};
+use asperity_study::comparison::ComparisonError;
 use asperity_study::contact::ContactError;
+use asperity_study::converge::ConvergeError;
 use asperity_study::files::ReadError;
 use asperity_study::fit::FitError;
 use asperity_study::pack::PackError;
 use asperity_study::settings::OverrideError;
-use asperity_study::sweep::SweepError;
+use asperity_study::surface::SurfaceError;
+use asperity_study::sweep::{SweepError, SweepTableError};
 use pyo3::exceptions::{PyFileNotFoundError, PyKeyError, PyOSError, PyValueError};
 use pyo3::prelude::*;
 
@@ -129,6 +132,39 @@ impl Raise for SweepError {
 impl Raise for ContactError {
     fn raise(self) -> PyErr {
         scene_error(&self, None, None, "")
+    }
+}
+
+impl Raise for ConvergeError {
+    fn raise(self) -> PyErr {
+        match self {
+            Self::Read(error) => error.raise(),
+            error => scene_error(&error, None, None, ""),
+        }
+    }
+}
+
+impl Raise for SurfaceError {
+    fn raise(self) -> PyErr {
+        PyValueError::new_err(self.to_string())
+    }
+}
+
+impl Raise for SweepTableError {
+    fn raise(self) -> PyErr {
+        match self {
+            Self::File(error) => error.raise(),
+            error => PyValueError::new_err(error.to_string()),
+        }
+    }
+}
+
+impl Raise for ComparisonError {
+    fn raise(self) -> PyErr {
+        match self {
+            Self::Measured(MeasuredFrictionError::Read(error)) => error.raise(),
+            error => PyValueError::new_err(error.to_string()),
+        }
     }
 }
 

@@ -3,7 +3,10 @@
 
 mod background;
 mod calibrate;
+mod compare;
 mod contact;
+mod converge;
+mod elements;
 mod errors;
 mod fit;
 mod pack;
@@ -12,6 +15,7 @@ mod run;
 mod scene;
 mod simulation;
 mod state;
+mod surface;
 mod sweep;
 
 use pyo3::prelude::*;
@@ -22,7 +26,13 @@ mod _native {
     #[pymodule_export]
     use super::calibrate::calibrate;
     #[pymodule_export]
+    use super::compare::compare;
+    #[pymodule_export]
     use super::contact::contact;
+    #[pymodule_export]
+    use super::converge::converge;
+    #[pymodule_export]
+    use super::elements::{animate, moment};
     #[pymodule_export]
     use super::fit::{Fit, fit};
     #[pymodule_export]
@@ -33,6 +43,8 @@ mod _native {
     use super::scene::Scene;
     #[pymodule_export]
     use super::simulation::{Simulation, State};
+    #[pymodule_export]
+    use super::surface::{surface, surface_of};
     #[pymodule_export]
     use super::sweep::{pack_table, sweep};
 

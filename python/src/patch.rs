@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use asperity::patch::{PatchMotion, PatchStart, PatchVariable, Pose};
+use asperity_study::labelled::LabelledLine;
+use asperity_study::summary::{described_patch, missing_backing};
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -42,6 +44,17 @@ impl Patch {
     #[getter]
     fn description(&self) -> String {
         self.patch.description()
+    }
+
+    /// The summary, in lines with labels.
+    fn describe(&self) -> Vec<LabelledLine> {
+        described_patch(&self.patch)
+    }
+
+    /// What is probably not meant.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        missing_backing(&self.patch).into_iter().collect()
     }
 
     /// The files that it reads, as it names them.

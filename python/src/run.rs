@@ -6,7 +6,7 @@ use std::sync::Arc;
 use asperity::outputs::{OutputType, Variable, variables};
 use asperity::scene::{Scene as SceneData, Unit};
 use asperity::simulation::SimulationError;
-use asperity_study::elements::{ElementField, ElementFields};
+use asperity_study::elements::{ElementField, ElementHistory};
 use asperity_study::run_figures::{RunFigures, implausible_run};
 use asperity_study::runner::{InputSample, Rows, Runner};
 use numpy::{IntoPyArray as _, PyArray1};
@@ -14,6 +14,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::background::{Task, in_background};
+use crate::elements::recorded;
 use crate::errors::Raise as _;
 use crate::scene::Scene;
 
@@ -51,7 +52,7 @@ impl Column {
 }
 
 /// Arrays and units by the columns' names.
-pub(crate) fn arrays<'py>(py: Python<'py>, columns: Vec<Column>) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
+pub(crate) fn arrays<'py>(py: Python<'py>, columns: Vec<Column>) -> PyResult<Arrays<'py>> {
     let (arrays, units) = (PyDict::new(py), PyDict::new(py));
     for column in columns {
         units.set_item(&column.name, &column.unit)?;
@@ -65,6 +66,8 @@ struct Recorded {
     columns: Vec<Column>,
     /// Of the masses, row by row.
     elements: Vec<Column>,
+    /// What each row says of the layer as a whole, where the masses are kept.
+    instants: Vec<f64>,
     warnings: Vec<String>,
 }
 
@@ -83,7 +86,7 @@ fn run(scene: &SceneData, asked: Asked, task: &Task) -> Result<Recorded, Simulat
     let of_input = inputs.iter().map(|input| Column::new(input.name(), input.unit(), OutputType::Real));
     let mut columns: Vec<Column> =
         std::iter::once(time).chain(of_input).chain(variables.iter().map(Column::of)).collect();
-    let mut elements = asked.elements.then(|| ElementFields::new(scene));
+    let mut elements = asked.elements.then(|| ElementHistory::new(scene));
     let mut values = vec![0.0; variables.len()];
     let duration = scene.duration();
     let mut figures = RunFigures::default();
@@ -95,19 +98,22 @@ fn run(scene: &SceneData, asked: Asked, task: &Task) -> Result<Recorded, Simulat
         figures.add(snapshot);
         let row = std::iter::once(carrier.time).chain(inputs.iter().map(|&input| carrier.input(input)));
         columns.iter_mut().zip(row.chain(values.iter().copied())).for_each(|(column, value)| column.values.push(value));
-        elements.iter_mut().for_each(|elements| elements.add(snapshot));
+        elements.iter_mut().for_each(|elements| elements.add(carrier.time, snapshot));
         task.report(if duration > 0.0 { carrier.time / duration } else { 1.0 });
         ControlFlow::Continue(())
     })?;
     let mut warnings = runner.take_warnings();
     warnings.extend(runner.simulation().inaccuracy().map(|inaccuracy| inaccuracy.to_string()));
     warnings.extend(implausible_run(scene, &figures, runner.simulation()));
-    let fields = elements.map(ElementFields::into_fields).unwrap_or_default();
-    Ok(Recorded { columns, elements: fields.into_iter().map(Column::of_masses).collect(), warnings })
+    let (instants, fields) = elements.map(recorded).unwrap_or_default();
+    Ok(Recorded { columns, elements: fields.into_iter().map(Column::of_masses).collect(), instants, warnings })
 }
 
-/// Arrays and units of the rows, those of the masses, and the warnings.
-type Found<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>, Bound<'py, PyDict>, Bound<'py, PyDict>, Vec<String>);
+/// Arrays and their units.
+type Arrays<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>);
+
+/// The rows, the masses, what each row says of the layer as a whole, and the warnings.
+type Found<'py> = (Arrays<'py>, Arrays<'py>, Bound<'py, PyArray1<f64>>, Vec<String>);
 
 /// Runs the scene along its excitation.
 #[pyfunction]
@@ -121,8 +127,6 @@ pub(crate) fn simulate<'py>(
 ) -> PyResult<Found<'py>> {
     let (scene, asked) = (Arc::clone(&scene.scene), Asked { points, times, elements });
     let recorded = in_background(py, progress, move |task| run(&scene, asked, task))?;
-    let Recorded { columns, elements, warnings } = recorded.map_err(|error| error.raise())?;
-    let (columns, units) = arrays(py, columns)?;
-    let (elements, element_units) = arrays(py, elements)?;
-    Ok((columns, units, elements, element_units, warnings))
+    let Recorded { columns, elements, instants, warnings } = recorded.map_err(|error| error.raise())?;
+    Ok((arrays(py, columns)?, arrays(py, elements)?, instants.into_pyarray(py), warnings))
 }

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use asperity_study::files::parse_scene;
+use asperity_study::labelled::LabelledLine;
 use asperity_study::settings::{Setting, item_at, with_settings};
+use asperity_study::summary::described;
 use numpy::{PyArray1, PyArrayMethods as _, ToPyArray as _};
 use pyo3::IntoPyObjectExt as _;
 use pyo3::exceptions::PyKeyError;
@@ -70,6 +72,17 @@ impl Scene {
     #[getter]
     fn notes(&self) -> Vec<String> {
         self.scene.notes.iter().map(|note| note.text.clone()).collect()
+    }
+
+    /// The notes of what was assumed in the tables.
+    #[getter]
+    fn assumptions(&self) -> Vec<String> {
+        self.scene.notes.iter().filter(|note| note.assumed).map(|note| note.text.clone()).collect()
+    }
+
+    /// The summary, in lines with labels.
+    fn describe(&self) -> PyResult<Vec<LabelledLine>> {
+        described(&self.scene).map_err(|error| error.raise())
     }
 
     /// The text with the keys set.

@@ -164,12 +164,36 @@ def test_a_scene_is_saved_with_its_files(small, block, tmp_path):
 
 def test_a_motion_counts_from_its_first_row(small):
     motion = {"time": [0.0, 1e-3], "u": [0.0, 0.0], "w": [-1e-5, -2e-5]}
-    with pytest.warns(UserWarning, match="count from the first row of the motion, u = 0 m, w = -1e-05 m"):
+    with pytest.warns(UserWarning, match="motion: u and w count from the first row, 0.0 m and -1e-5 m"):
         offset = small.simulate(motion=motion)
     motion["w"] = [0.0, -1e-5]
     assert np.array_equal(offset["F_z"], small.simulate(motion=motion)["F_z"])
     with pytest.raises(ValueError, match="times: expected numbers from 0 to"):
         small.simulate(times=[np.nan])
+
+
+def test_inputs_that_a_motion_lacks_stay_as_at_the_start(small):
+    whole = {"time": [0.0, 1e-3, 3e-3], "u": [0.0, 0.0, 0.0], "w": [0.0, -2e-5, -3e-5]}
+    with pytest.warns(UserWarning, match="motion: no column u: it stays as at the start"):
+        result = small.simulate(motion={"time": whole["time"], "w": whole["w"]})
+    assert np.array_equal(result["F_z"], small.simulate(motion=whole)["F_z"]) and result["F_z"][-1] > 0.0
+    with pytest.raises(asperity.SceneError, match="time alone"):
+        small.simulate(motion={"time": whole["time"]})
+
+
+def test_a_motion_is_taken_from_a_file(small, tmp_path):
+    motion = {"time": [0.0, 1e-3, 3e-3], "u": [0.0, 0.0, 2e-4], "w": [0.0, -2e-5, -2e-5]}
+    path = tmp_path / "motion.csv"
+    rows = zip(*motion.values(), strict=True)
+    path.write_text("t [ms];x [mm];w [um]\n" + "".join(f"{1e3 * t};{1e3 * u};{1e6 * w}\n" for t, u, w in rows))
+    for given in (path, str(path)):
+        # The units' factors round.
+        np.testing.assert_allclose(small.simulate(motion=given)["F_z"], small.simulate(motion=motion)["F_z"], rtol=1e-9)
+    path.write_text("t [ms];w [um]\n0;0\n1;-20\n")
+    with pytest.warns(UserWarning, match=r"motion\.csv: no column u: it stays as at the start"):
+        small.with_motion(path)
+    with pytest.raises(FileNotFoundError, match="nothing"):
+        small.with_motion(tmp_path / "nothing.csv")
 
 
 def test_a_compound_has_a_time_for_each_modulus(block):

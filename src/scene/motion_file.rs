@@ -42,8 +42,8 @@ const MOTION: Format<OfMotion, 7> = Format {
         ],
         [
             Wanted::new(&[OfMotion::Time], "time", "times"),
-            Wanted::new(&[OfMotion::U], "u", "displacements u"),
-            Wanted::new(&[OfMotion::W], "w", "displacements w"),
+            Wanted::new(&[OfMotion::U], "u", "displacements u").optional_by_name(),
+            Wanted::new(&[OfMotion::W], "w", "displacements w").optional_by_name(),
             Wanted {
                 choice: Choice::FirstQuantity,
                 ..Wanted::new(&[OfMotion::Load, OfMotion::NormalForce], "load", "loads").optional()
@@ -52,8 +52,8 @@ const MOTION: Format<OfMotion, 7> = Format {
             Wanted::new(&[OfMotion::Pressure], "pressure", "pressures").optional(),
             Wanted::new(&[OfMotion::Temperature], "temperature", "temperatures").optional().within(POSITIVE),
         ],
-        "time, u and w, and of a body along an axis, which has no u or w but by its drive, load, pressure or pull; \
-         temperature where it is an input",
+        "time, u and w, of which one that rests may be missing, and of a body along an axis, which has no u or w but by \
+         its drive, load, pressure or pull; temperature where it is an input",
     )
 };
 
@@ -73,6 +73,7 @@ pub(super) fn read_motion(
         notes.push(ReadingNote { text, assumed: true });
     }
     check_forces(&columns, line, carrier)?;
+    notes.extend(resting(&columns, line, carrier)?);
     let first = rows.first().copied().unwrap_or_default();
     if first[1..3] != [0.0, 0.0] {
         let text = format!("u and w count from the first row, {:?} m and {:?} m", first[1], first[2]);
@@ -97,6 +98,33 @@ pub(super) fn read_motion(
         }
     };
     Ok((rows.windows(2).map(phase).collect(), notes))
+}
+
+/// What is said of displacements that the file does not have and that nothing else moves; refused where it has nothing
+/// but times.
+fn resting(
+    columns: &[Option<Column<OfMotion>>; 7],
+    line: Option<usize>,
+    carrier: &CarrierBodies,
+) -> Result<Option<ReadingNote>, ContentError> {
+    if columns[1..].iter().all(Option::is_none) {
+        return Err(ContentError::value(line, "columns", "time alone", MOTION.expected));
+    }
+    let rests = |column: &Option<_>, body: &Option<CarrierBody>| column.is_none() && !is_free(body);
+    let names = match [rests(&columns[1], &carrier.x), rests(&columns[2], &carrier.z)] {
+        [false, false] => return Ok(None),
+        [true, false] => "u",
+        [false, true] => "w",
+        [true, true] => "u and w",
+    };
+    let (plural, them, stay) = if names.len() > 1 { ("s", "they", "stay") } else { ("", "it", "stays") };
+    let text = format!("no column{plural} {names}: {them} {stay} as at the start");
+    Ok(Some(ReadingNote { text, assumed: true }))
+}
+
+/// Whether forces alone move the carrier along an axis.
+fn is_free(body: &Option<CarrierBody>) -> bool {
+    body.as_ref().is_some_and(|body| !body.has_drive())
 }
 
 fn is_measured(column: &Column<OfMotion>) -> bool {
@@ -125,7 +153,6 @@ fn check_forces(
 /// What a file must not have for a carrier whose bodies are these, with `material.wlf` where the temperature is an input.
 pub(super) fn obstacle(phase: &Phase, carrier: &CarrierBodies, temperature: Option<&Wlf>) -> Option<&'static str> {
     let [body_x, body_z] = [&carrier.x, &carrier.z];
-    let is_free = |body: &Option<CarrierBody>| body.as_ref().is_some_and(|body| !body.has_drive());
     let fits = |kelvin: f64| temperature.is_some_and(|wlf| Wlf { temperature: kelvin, ..*wlf }.check().is_ok());
     let obstacles = [
         (phase.u.rate != 0.0 && is_free(body_x), "no change of u with [carrier.x] that has no drive"),
@@ -157,9 +184,34 @@ mod tests {
 
     #[test]
     fn files_that_are_no_motion_are_refused() {
-        for text in ["time, u\n0, 1\n1, 2\n", "time, u, w\n0, 1, 2\n0, 1, 2\n", "time, u, w\n0, 1, x\n1, 1, 2\n", ""] {
+        for text in [
+            "time, v\n0, 1\n1, 2\n",
+            "0, 1\n1, 2\n",
+            "time, u, w\n0, 1, 2\n0, 1, 2\n",
+            "time, u, w\n0, 1, x\n1, 1, 2\n",
+            "",
+        ] {
             assert!(read_motion(text.as_bytes(), &CarrierBodies::default()).is_err(), "{text}");
         }
+    }
+
+    /// Those rest, which is said; without names there is no telling which of them is missing.
+    #[test]
+    fn displacements_that_are_missing_rest() {
+        let read = |text: &str| read_motion(text.as_bytes(), &CarrierBodies::default()).unwrap();
+        for (name, other, [u, w]) in [("u", "w", [0.25, 0.0]), ("w", "u", [0.0, 0.25])] {
+            let (phases, notes) = read(&format!("time [s], {name} [m]\n0, 0\n2, 0.5\n"));
+            assert_eq!([phases[0].u.rate, phases[0].w.rate], [u, w]);
+            let said = format!("no column {other}: it stays as at the start");
+            assert!(notes.iter().any(|note| note.assumed && note.text == said), "{notes:?}");
+        }
+        let on_body = CarrierBodies { z: Some(CarrierBody::default()), ..CarrierBodies::default() };
+        let (_, notes) = read_motion(b"time [s], u [m], load [N]\n0, 0, 5\n2, 0.5, 5\n", &on_body).unwrap();
+        assert!(notes.iter().all(|note| !note.assumed), "{notes:?}");
+        let (phases, notes) = read("time [s], temperature [K]\n0, 300\n2, 310\n");
+        assert_eq!([phases[0].u.rate, phases[0].w.rate], [0.0, 0.0]);
+        let said = "no columns u and w: they stay as at the start";
+        assert!(notes.iter().any(|note| note.assumed && note.text == said), "{notes:?}");
     }
 
     /// A tester's log has the forces that came of the motion; a load is none.

@@ -17,7 +17,7 @@ pub struct Format<Q: 'static, const N: usize> {
     pub columns: [Wanted<Q>; N],
     /// The columns in words.
     pub expected: &'static str,
-    /// Whether a table without names is refused; else it has the required columns in their order, in SI units.
+    /// Whether a table without names is refused; else it has its columns in their order, in SI units.
     pub needs_names: bool,
     /// The least number of rows.
     pub least: usize,
@@ -51,6 +51,8 @@ pub struct Wanted<Q: 'static> {
     pub range: NumberRange,
     /// Whether a file must have it.
     pub required: bool,
+    /// Whether a table without names has it.
+    pub unnamed: bool,
     /// Which it is, where several have such names.
     pub choice: Choice,
     /// What is done where no unit is named.
@@ -89,18 +91,23 @@ impl<Q> Wanted<Q> {
     /// A column that must be there, with any number, in SI units where it names none.
     pub const fn new(quantities: &'static [Q], name: &'static str, meaning: &'static str) -> Self {
         let (choice, unit) = (Choice::One, UnitRule::Assumed);
-        Self { quantities, name, meaning, range: ANY, required: true, choice, unit }
+        Self { quantities, name, meaning, range: ANY, required: true, unnamed: true, choice, unit }
     }
 
     /// The same, which need not be there.
     pub const fn optional(self) -> Self {
+        Self { required: false, unnamed: false, ..self }
+    }
+
+    /// The same, which a table with names need not have.
+    pub const fn optional_by_name(self) -> Self {
         Self { required: false, ..self }
     }
 
     /// The same where a file must not have it.
     #[must_use]
     pub const fn absent(self) -> Self {
-        Self { quantities: &[], required: false, ..self }
+        Self { quantities: &[], required: false, unnamed: false, ..self }
     }
 
     /// The same with numbers of a range.
@@ -221,9 +228,9 @@ impl<Q: Copy + PartialEq, const N: usize> Format<Q, N> {
         }
     }
 
-    /// The required columns in their order, in SI units.
+    /// The columns of a table without names in their order, in SI units.
     fn unnamed(&self, block: &Block<'_>, notes: &mut Vec<ReadingNote>) -> Result<[Option<Column<Q>>; N], ContentError> {
-        let required = self.columns.iter().filter(|column| column.required).count();
+        let required = self.columns.iter().filter(|column| column.unnamed).count();
         let refuse = |given: &str, expected: &str| ContentError::value(Some(block.first), "columns", given, expected);
         if self.needs_names {
             return Err(refuse("no names", self.expected));
@@ -235,7 +242,7 @@ impl<Q: Copy + PartialEq, const N: usize> Format<Q, N> {
         let dimension = |quantity: Q| self.vocabulary.iter().find(|words| words.quantity == quantity);
         let mut next = 0..;
         let columns = self.columns.each_ref().map(|wanted| {
-            let (index, quantity) = (if wanted.required { next.next()? } else { return None }, wanted.quantities[0]);
+            let (index, quantity) = (if wanted.unnamed { next.next()? } else { return None }, wanted.quantities[0]);
             let dimension = dimension(quantity).map_or(Dimension::Number, |words| words.dimension);
             Some(Column::unnamed(index, wanted.name, quantity, dimension))
         });

@@ -1,6 +1,6 @@
 //! `asperity compare`: the curves of a sweep beside measured friction.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use asperity_study::calibration::{Measured, chi_square_per_degree};
 use asperity_study::comparison::{Comparison, ComparisonError};
@@ -22,12 +22,6 @@ pub(crate) enum CompareError {
     Table(#[from] SweepTableError),
     #[error(transparent)]
     Comparison(#[from] ComparisonError),
-    #[error(
-        "{}: expected measurements within the speeds, pressures and temperatures of the table, where its points have a result; it \
-         has none",
-        .0.display()
-    )]
-    NoneWithin(PathBuf),
 }
 
 /// Measurements that are off the most are named up to this many.
@@ -41,9 +35,7 @@ pub(crate) fn compare(command: &Compare) -> Result<(), CompareError> {
     let comparison = Comparison::new(&table, &command.table, &command.data)?;
     comparison.notes.iter().for_each(|text| note(text));
     comparison.left_out_in_words().iter().for_each(|text| warn(text));
-    if comparison.within.is_empty() {
-        return Err(CompareError::NoneWithin(command.data.clone()));
-    }
+    comparison.check(&command.data)?;
     let rows: Vec<Measured> = comparison.within.iter().map(|(row, _)| *row).collect();
     let swept = ModelCurves { name: "swept", stroke: Stroke::Line, points: comparison.swept.clone() };
     measured_friction::picture(&table.header.scene, &comparison.grid, &rows, &[swept]).write(&picture)?;

@@ -1,21 +1,18 @@
 //! `asperity describe`: summarises a scene or a patch.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use asperity::scene::{FoundationKind, LinkKind, Scene};
-use asperity::simulation::{Simulation, SimulationError};
-use asperity_fmi::FmuModel;
+use asperity::simulation::SimulationError;
 use asperity_study::decimals::rounded;
-use asperity_study::runner::start;
 use asperity_study::settings::Setting;
 use asperity_study::summary::{
-    DescribedScene, FineFrictionCurve, MIDDLE_PRESSURE, missing_backing, patch_rows, scene_rows,
+    DescribedScene, FineFrictionCurve, MIDDLE_PRESSURE, described, described_patch, missing_backing,
 };
 
 use super::cli::Describe;
 use super::figure::{Below, Curve, Figure as _, Panel, PanelRow, SideBySide, Stacked, Stroke};
-use super::files::{FileError, check_outputs, load, load_patch, print, table_lines};
+use super::files::{FileError, check_outputs, load, load_patch, print};
 use super::terminal::{lines, warn};
 
 /// `asperity describe` failed.
@@ -50,8 +47,7 @@ pub(crate) fn describe(command: &Describe, path: &Path) -> Result<(), DescribeEr
 pub(crate) fn describe_patch(path: &Path, set: &[Setting]) -> Result<(), FileError> {
     let patch = load_patch(path, set)?;
     missing_backing(&patch).iter().for_each(|warning| warn(warning));
-    let title = ("Name", patch.name().to_owned());
-    print(&lines(&[vec![title], patch_rows(&patch)].concat()))
+    print(&lines(&described_patch(&patch)))
 }
 
 fn json(scene: &Scene) -> Result<String, DescribeError> {
@@ -59,12 +55,7 @@ fn json(scene: &Scene) -> Result<String, DescribeError> {
 }
 
 fn text(scene: &Scene) -> Result<String, DescribeError> {
-    // A scene that no run can start with is refused.
-    Simulation::new(scene, &start(scene, 0.0))?;
-    let title = scene.description.as_ref().map_or_else(|| scene.name.clone(), |text| format!("{}: {text}", scene.name));
-    let bytes = FmuModel::memory(&Arc::new(scene.clone()));
-    let memory = ("Memory", format!("at most {} MiB an instance of the FMU", bytes.div_ceil(1 << 20)));
-    Ok(lines(&[vec![("Scene", title)], scene_rows(scene), table_lines(scene), vec![memory]].concat()))
+    Ok(lines(&described(scene)?))
 }
 
 /// The stiffness of the links over that of the body that they stand for, over wavelength; `None` in the direct form.

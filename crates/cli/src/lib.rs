@@ -20,7 +20,7 @@
 //! | `cli` | files | the command line: commands and their options |
 //! | `figure` | cli, files, terminal | charts, maps and moments, drawn with plotters |
 //! | `measured_friction` | figure | measured friction beside that of a model |
-//! | `elements` | files, npz | the masses of a run as arrays and as a page |
+//! | `elements` | files, npz | the masses of a run as arrays |
 //! | `run_summary` | terminal | the lines that a run ends with |
 //! | `simulate` | cli, elements, figure, files, result_file, run_summary, terminal | `simulate` of a scene |
 //! | `patch` | cli, figure, files, result_file, terminal | `simulate` of a patch |

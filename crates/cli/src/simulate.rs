@@ -9,13 +9,13 @@ use asperity::simulation::{MethodSwitch, SimulationError};
 use indicatif::ProgressBar;
 
 use super::cli::Simulate;
-use super::elements::{ArraysError, write_arrays, write_page};
+use super::elements::{ArraysError, write_arrays};
 use super::figure::{Figure as _, LayerPicture, TimeHistory, write_row};
-use super::files::{FileError, check_outputs, ends_in, load, named, print_beside};
+use super::files::{self, FileError, check_outputs, ends_in, load, named, print_beside};
 use super::result_file::ResultWriter;
 use super::run_summary::RunSummary;
 use super::terminal::{LabelledLine, bar, is_verbose, lines, note, warn};
-use asperity_study::elements::{ElementHistory, Span};
+use asperity_study::elements::{ElementHistory, Span, animation};
 use asperity_study::runner::{InputSample, Rows, Runner};
 
 /// `asperity simulate` failed.
@@ -98,7 +98,10 @@ fn write_elements(elements: &ElementHistory, command: &Simulate) -> Result<(), S
         write_arrays(elements, path)?;
     }
     match &command.animate {
-        Some(path) if ends_in(path, "html") => write_page(elements, path)?,
+        Some(path) if ends_in(path, "html") => {
+            let page = animation(elements).map_err(|error| FileError::picture(path, &error))?;
+            files::write(path, page)?;
+        }
         Some(path) => write_frames(elements, path)?,
         None => (),
     }

@@ -207,17 +207,11 @@ fn curves(surface: &scene::Surface, analysis: &SurfaceAnalysis) -> ProfileCurves
 fn drawn(treated: &TreatedSurface, command: &Surface) -> ProfilePicture {
     let TreatedSurface { read, surface, analysis, .. } = treated;
     let before = analysis.removed.is_some().then(|| SurfaceAnalysis::of(read, command.wavelengths.as_ref()));
-    let law = analysis.law.as_ref().map_or_else(Vec::new, |law| {
-        let shortest = law.wavelengths[0];
-        let shown = analysis.spectrum.iter().map(|band| band.wave_number);
-        let covered = shown.filter(|q| q * shortest <= std::f64::consts::TAU * (1.0 + 1e-9));
-        covered.map(|q| (q, law.density(q))).collect()
-    });
     let hurst = analysis.law.map(|law| format!(", Hurst exponent {:.2}", law.hurst)).unwrap_or_default();
     ProfilePicture {
         title: format!("{}: rms height {:.3e} m{hurst}", name_of(&command.file), analysis.statistics.rms_height),
         read: before.map(|before| curves(read, &before)),
         used: curves(surface, analysis),
-        law,
+        law: analysis.law_curve().into_iter().map(|[q, density]| (q, density)).collect(),
     }
 }

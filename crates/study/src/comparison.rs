@@ -20,6 +20,12 @@ pub enum ComparisonError {
     NoTemperature(PathBuf),
     #[error("{}: a table over forces: expected one over pressures, as `asperity sweep --pressures` makes", .0.display())]
     OverForces(PathBuf),
+    #[error(
+        "{}: expected measurements within the speeds, pressures and temperatures of the table, where its points have a result; it \
+         has none",
+        .0.display()
+    )]
+    NoneWithin(PathBuf),
 }
 
 /// Measurements and the friction of a table there.
@@ -86,6 +92,14 @@ impl Comparison {
         points.extend(within.iter().map(|(row, _)| row.point));
         let swept = points.into_iter().filter_map(|point| Some((point, curves.at(&point).ok()?))).collect();
         Ok(Self { notes: measurements.notes, within, left_out, grid, swept })
+    }
+
+    /// Refuses measurements, those in the file `data`, of which the table has none.
+    ///
+    /// # Errors
+    /// Where it has none.
+    pub fn check(&self, data: &Path) -> Result<(), ComparisonError> {
+        if self.within.is_empty() { Err(ComparisonError::NoneWithin(data.to_owned())) } else { Ok(()) }
     }
 
     /// Sum of the squared deviations of the table from the measurements.

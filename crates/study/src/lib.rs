@@ -19,7 +19,7 @@
 //! | [`settings`] | | keys of scenes and patches set to other values |
 //! | [`files`] | settings | scenes, patches and other files, read |
 //! | [`csv`] | decimals, files | tables of text with a header, read and written |
-//! | [`elements`] | | what the masses of a layer do over a run, as arrays and as pictures show it |
+//! | [`elements`] | html | what the masses of a layer do over a run, as arrays, as pictures and as a page show it |
 //! | [`runner`] | progress | a scene along its excitation, row by row |
 //! | [`run_figures`] | implausible | forces and friction of a run, what it cost, and what would make it cheaper |
 //! | [`steady`] | | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
@@ -31,7 +31,7 @@
 //! | [`fit`] | decimals, files | Prony series and shift factors from measured moduli |
 //! | [`material`] | decimals | moduli of a scene's compound, or stiffnesses of its links, over frequency |
 //! | [`surface`] | decimals | numbers, spectra and power laws of a surface; smoothed, split and made periodic |
-//! | [`summary`] | decimals, labelled, steady | what there is in a scene, a patch or a table, in lines |
+//! | [`summary`] | decimals, labelled, runner, steady | what there is in a scene, a patch or a table, in lines |
 //! | [`pack`] | decimals, files, html, labelled, summary | scenes, tables and patches as FMUs |
 //! | [`patch`] | csv, files | the motion that a patch is moved along |
 //! | [`check`] | csv, decimals, labelled, progress, runner, sweep | elements and patches against what was swept |

@@ -10,20 +10,27 @@ docs/reference.md.
 
 from . import fmi
 from ._calibration import Calibration, Parameter
+from ._comparison import Comparison
 from ._contact import Contact
+from ._convergence import Convergence
 from ._errors import SceneError, SimulationError
 from ._fit import Fit, fit
+from ._moment import Moment
 from ._native import __version__
 from ._patch import Patch, PatchState
 from ._result import Result
 from ._scene import Scene
 from ._simulation import Simulation, State
+from ._surface import Surface, surface
 from ._table import Table
 
 __all__ = [
     "Calibration",
+    "Comparison",
     "Contact",
+    "Convergence",
     "Fit",
+    "Moment",
     "Parameter",
     "Patch",
     "PatchState",
@@ -33,8 +40,10 @@ __all__ = [
     "Simulation",
     "SimulationError",
     "State",
+    "Surface",
     "Table",
     "__version__",
     "fit",
     "fmi",
+    "surface",
 ]

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -79,11 +80,24 @@ def table_text(data: object) -> str:
     return "\n".join(lines) + "\n"
 
 
+def with_units(data: object, units: Mapping[str, str]) -> dict[str, Any]:
+    """The columns of a table, units beside those names that stand alone."""
+    return {f"{name} [{units[name]}]" if name in units else name: column for name, column in columns_of(data).items()}
+
+
 def _field(value: object) -> str:
     if isinstance(value, float):
         return "" if value != value else repr(value)
     text = "" if value is None else str(value)
     return '"' + text.replace('"', '""') + '"' if any(c in text for c in ',"\n') else text
+
+
+def described(rows: Sequence[tuple[str, str]]) -> str:
+    """Lines after their labels, broken between words as the program breaks them."""
+    return "".join(
+        "\n".join(wrap(f"{label:<12}{text}", 120, subsequent_indent=" " * 14, break_long_words=False)) + "\n"
+        for label, text in rows
+    )
 
 
 def shown(progress: Progress) -> Callable[[float], object] | None:

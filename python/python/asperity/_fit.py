@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from . import _native
 from ._arguments import Floats, numbers
+from ._files import table_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -153,8 +154,6 @@ def fit(
     Raises:
         ValueError: Where the table cannot be read, or its temperatures cannot be put together.
     """
-    from ._scene import table_file
-
     with table_file(data) as path:
         native = _native.fit(
             path,

@@ -10,10 +10,10 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from . import _native
-from ._arguments import Floats
+from ._arguments import Floats, described
+from ._files import folder_of
 from ._library import options as library_options
 from ._library import warn_of_start
-from ._scene import folder_of
 
 PatchState = _native.PatchState
 Six = tuple[float, float, float, float, float, float]
@@ -100,6 +100,12 @@ class Patch:
     def __getitem__(self, name: str) -> float:
         """The present value of an output of the patch's groups."""
         return self._run.value(name)
+
+    def describe(self) -> str:
+        """What the patch is, in the lines of ``asperity describe --patch``."""
+        for text in self._patch.warnings:
+            warnings.warn(text, stacklevel=2)
+        return described(self._patch.describe())
 
     def __len__(self) -> int:
         """The number of elements."""

@@ -7,14 +7,22 @@ import html
 import io
 from collections.abc import Iterator
 from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from . import _native
 from ._arguments import Floats
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
     from matplotlib.figure import Figure
+
+    from ._moment import Moment
+    from ._scene import Scene
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -28,6 +36,7 @@ class Result:
         elements: The fields of the masses by their names, each of shape (rows, masses): x, z (m), F_N, F_T (N), mode
             (0 free, 1 or -1 slipping, 2 sticking), flash (K); empty unless they were asked for.
         profile: x and z of the data points of the profile, m, each of shape (n,).
+        scene: The scene that was run; None of an FMU's run.
     """
 
     name: str
@@ -35,6 +44,8 @@ class Result:
     units: dict[str, str]
     elements: dict[str, Any]
     profile: tuple[Floats, Floats]
+    scene: Scene | None = None
+    _instants: Floats | None = None
 
     def __getitem__(self, name: str) -> Any:
         """A column, shape (rows,)."""
@@ -94,6 +105,42 @@ class Result:
             for unit, group in panels.items()
         ]
         return stacked(self.name, f"{x} [{self.units[x]}]", curves)
+
+    def animate(self, path: str | PathLike[str]) -> Path:
+        """Writes the page for a browser that ``asperity simulate --animate`` writes, and returns its path.
+
+        The run has to have kept its masses: ``simulate(elements=True)``.
+
+        Args:
+            path: The file to write, .html.
+        """
+        place = Path(path)
+        if place.suffix.lower() != ".html":
+            raise ValueError(f"{place}: expected a name that ends in .html")
+        place.write_text(_native.animate(*self._masses()), encoding="utf-8")
+        return place
+
+    def contact(self, time: float) -> Moment:
+        """The masses at the row that is nearest to a time, as ``asperity simulate --contact`` draws them.
+
+        The run has to have kept its masses: ``simulate(elements=True, times=[...])``, which makes rows of these times.
+
+        Args:
+            time: The time, s.
+        """
+        from ._moment import Moment
+
+        last = float(self.time[-1])
+        if not 0.0 <= time <= last * (1.0 + 1e-9):
+            raise ValueError(f"time = {time:g}: expected a time of the run, 0 to {last:g} s")
+        return Moment._of(self.name, _native.moment(*self._masses(), time))
+
+    def _masses(self) -> tuple[_native.Scene, Floats, Floats]:
+        """The scene, its rows, and the fields of a mass beside each other, mass by mass, row by row."""
+        if self.scene is None or self._instants is None or not self.elements:
+            raise ValueError("the masses of the run were not kept: expected simulate(elements=True)")
+        fields = [np.asarray(values, dtype=np.float64) for values in self.elements.values()]
+        return self.scene._native, self._instants, np.stack(fields, axis=-1).ravel()
 
     def __repr__(self) -> str:
         return f"<asperity.Result of {self.name!r}: {len(self)} rows of {', '.join(self.columns)}>"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import tempfile
+import warnings
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
@@ -13,6 +14,7 @@ import numpy as np
 
 from . import _native
 from ._arguments import Floats
+from ._files import table_file
 from ._library import options as library_options
 from ._library import warn_of_start
 
@@ -20,6 +22,8 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
     from matplotlib.figure import Figure
+
+    from ._comparison import Comparison
 
 
 class Table:
@@ -132,6 +136,28 @@ class Table:
             for j, load in enumerate(self.loads)
         ]
         return swept(f"{column} [{self.units[column]}]", curves)
+
+    def compare(self, data: object) -> Comparison:
+        """Compares the table with measured friction, as ``asperity compare`` does.
+
+        Args:
+            data: What :meth:`Scene.calibrate` takes: the path of a table, a DataFrame or a mapping.
+
+        Raises:
+            ValueError: Where the table is over forces, or has no friction at any of the measurements.
+        """
+        from ._comparison import Comparison
+
+        with tempfile.TemporaryDirectory(prefix="asperity-") as folder, table_file(data) as path:
+            file = Path(folder) / "table.csv"
+            self.to_csv(file)
+            found = _native.compare(file, path)
+        for text in found.pop("warnings"):
+            warnings.warn(text, stacklevel=2)
+        refused = found.pop("refused")
+        if refused is not None:
+            raise ValueError(refused)
+        return Comparison._of(found)
 
     def pack(
         self,

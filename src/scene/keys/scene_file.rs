@@ -348,7 +348,11 @@ pub(super) const DEPENDENCIES: Key =
     word::<DependencyList>("dependencies", "Dependencies of outputs on inputs that are listed").default("\"direct\"");
 
 const PHASE: &[Key] = &[
-    key("file", Allowed::Text(PATH), "File of the motion, with columns time, u and w, in place of the other keys"),
+    key(
+        "file",
+        Allowed::Text(PATH),
+        "File of the motion, with columns time, u and w, of which one that rests may be missing, in place of others",
+    ),
     number("duration", POSITIVE, Unit::Second, "Duration").follows("required but of a file"),
     number("u_rate", ANY, Unit::MeterPerSecond, "Rate of u").default("0"),
     number("w_rate", ANY, Unit::MeterPerSecond, "Rate of w").default("0"),

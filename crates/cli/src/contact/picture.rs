@@ -5,7 +5,10 @@ use std::path::Path;
 use asperity_study::contact::ContactFields;
 use asperity_study::steady::SurfaceGrid;
 
-use crate::figure::{Colours, Curve, FieldMap, Figure as _, LinearPanel, LinearStack, Marks, Stroke, SurfaceMaps};
+use crate::figure::{
+    Colours, ContactCurves, Curve, FieldMap, Figure as _, LinearPanel, LinearStack, Marks, RUBBER_SLIDES, Stroke,
+    SurfaceMaps,
+};
 use crate::files::FileError;
 use asperity_study::decimals::rounded;
 
@@ -15,7 +18,7 @@ pub(super) fn write(surface: &SurfaceGrid, fields: &ContactFields, area: f64, pa
 }
 
 /// The profile with the rubber's surface above it, and the pressure below.
-fn curves(fields: &ContactFields) -> LinearStack {
+fn curves(fields: &ContactFields) -> ContactCurves {
     let curve = |name: &str, look: usize, values: Vec<f64>| Curve {
         name: name.to_owned(),
         look,
@@ -25,13 +28,13 @@ fn curves(fields: &ContactFields) -> LinearStack {
     let rubber = fields.heights.iter().zip(&fields.gaps).map(|(height, gap)| height + gap).collect();
     let heights = vec![curve("rubber", 1, rubber), curve("surface", 0, fields.heights.clone())];
     let pressure = vec![curve("pressure", 1, fields.pressures.clone())];
-    LinearStack {
+    ContactCurves(LinearStack {
         x: ("x", "m"),
         panels: vec![
             LinearPanel { quantity: "height", unit: "m", curves: heights },
             LinearPanel { quantity: "pressure", unit: "Pa", curves: pressure },
         ],
-    }
+    })
 }
 
 /// Pressure, gap, and where on the heights the contact is.
@@ -48,7 +51,7 @@ fn maps(surface: &SurfaceGrid, fields: &ContactFields, area: f64) -> SurfaceMaps
     SurfaceMaps {
         nx: surface.size.nx,
         extents: [surface.length, surface.width],
-        arrow: "the rubber slides",
+        arrow: RUBBER_SLIDES,
         maps: vec![
             map("pressure", "Pa", &fields.pressures, Colours::Viridis, free),
             map("gap", "m", &fields.gaps, Colours::Blues, None),

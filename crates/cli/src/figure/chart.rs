@@ -72,11 +72,16 @@ pub(super) type Context<'a, B> = ChartContext<'a, B, Cartesian2d<Axis, Axis>>;
 impl Chart {
     /// Draws the legend and, below it, the chart.
     pub(super) fn draw_with_legend<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {
-        let names = self.curves.iter().map(|curve| (curve.name.as_str(), Symbol::for_curve(curve)));
-        let legend = Legend::new(names, canvas.dim_in_pixel().0);
+        let legend = self.legend(canvas);
         let (above, below) = canvas.split_vertically(legend.height());
         legend.draw(&above)?;
         self.draw(&below)
+    }
+
+    /// The legend on a canvas.
+    pub(super) fn legend<B: Backend>(&self, canvas: &Canvas<B>) -> Legend {
+        let names = self.curves.iter().map(|curve| (curve.name.as_str(), Symbol::for_curve(curve)));
+        Legend::new(names, canvas.dim_in_pixel().0)
     }
 
     pub(super) fn draw<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {
@@ -252,6 +257,10 @@ pub(super) enum Symbol {
     },
     /// A shaded area.
     Area(RGBColor),
+    /// A full square, a full disc and a ring.
+    Square(RGBColor),
+    Disc(RGBColor),
+    Ring(RGBColor),
 }
 
 /// Names, each once, in as many lines as they need. plotters' own legend covers a part of the curves.
@@ -350,6 +359,12 @@ impl Symbol {
                 line(centre + gap, right, colour(look))?;
                 draw_marker(canvas, (centre, middle), look, MarkerFill::Full)?;
             }
+            Self::Square(shade) => {
+                let corners = [(centre - MARKER, middle - MARKER), (centre + MARKER, middle + MARKER)];
+                canvas.draw(&Rectangle::new(corners, shade.filled()))?;
+            }
+            Self::Disc(shade) => canvas.draw(&Circle::new((centre, middle), MARKER, shade.filled()))?,
+            Self::Ring(shade) => canvas.draw(&Circle::new((centre, middle), MARKER, shade.stroke_width(FINE)))?,
             Self::Area(shade) => {
                 let half = (TEXT_SIZE / 2) as i32;
                 let corners = [(left, middle - half), (right, middle + half)];

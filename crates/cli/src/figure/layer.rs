@@ -3,6 +3,7 @@
 use plotters::prelude::*;
 
 use super::axis::{Axis, Fit};
+use super::caption::{Way, draw_caption, exaggeration};
 use super::chart::{self, Chart, Context, Curve, LEGEND_LINE, Legend, Stroke, Symbol, draw_axes};
 use super::{Backend, COLOURS, Canvas, DrawResult, FINE, Figure, INK};
 use asperity_study::decimals::with_prefix;
@@ -59,15 +60,19 @@ impl<'a> LayerPicture<'a> {
     }
 
     fn legend(&self, width: u32) -> Legend {
-        let touches = [Touch::Sticks, Touch::Slips, Touch::Free].map(|touch| (touch.name(), colour(touch)));
+        let touches = [Touch::Sticks, Touch::Slips, Touch::Free].map(|touch| (touch.name(), symbol(touch)));
         let flash = self.history.has_flash().then_some(("flash temperature", FLASH));
-        let areas = touches.into_iter().chain(flash).chain([("rubber", RUBBER), ("profile", ROAD)]);
-        Legend::new(areas.map(|(name, colour)| (name, Symbol::Area(colour))), width)
+        let areas = flash.into_iter().chain([("rubber", RUBBER), ("profile", ROAD)]);
+        Legend::new(touches.into_iter().chain(areas.map(|(name, colour)| (name, Symbol::Area(colour)))), width)
+    }
+
+    fn z_axis(&self) -> Axis {
+        let (low, high) = self.span.heights;
+        Axis::linear("z", "m", [low, high].into_iter(), Fit::Tight)
     }
 
     fn draw_layer<B: Backend>(&self, canvas: &Canvas<B>, elements: &[Element]) -> DrawResult {
-        let (low, high) = self.span.heights;
-        let (x, z) = (self.x_axis("x"), Axis::linear("z", "m", [low, high].into_iter(), Fit::Tight));
+        let ((low, high), x, z) = (self.span.heights, self.x_axis("x"), self.z_axis());
         let mut context = chart::context(canvas, "", &x, &z)?;
         let place = |x_m: f64, z_m: f64| {
             // What is far above or below is outside of the panel.
@@ -156,6 +161,15 @@ fn colour(touch: Touch) -> RGBColor {
     }
 }
 
+/// As [`draw_mass`] draws it.
+fn symbol(touch: Touch) -> Symbol {
+    match touch {
+        Touch::Free => Symbol::Ring(FREE),
+        Touch::Slips => Symbol::Disc(SLIPS),
+        Touch::Sticks => Symbol::Square(STICKS),
+    }
+}
+
 /// What lies between a line and a height.
 fn area(line: &[(f64, f64)], to: f64, shade: RGBColor) -> Polygon<(f64, f64)> {
     let ends = line.first().into_iter().chain(line.last()).map(|point| (point.0, to));
@@ -186,7 +200,7 @@ fn draw_mass<B: Backend>(context: &mut Context<'_, B>, place: (f64, f64), touch:
 impl Figure for LayerPicture<'_> {
     fn size(&self) -> (u32, u32) {
         let forces = if self.has_forces { FORCES } else { 0 };
-        (1000, LEGEND_LINE / FINE + LAYER + BARS * self.bar_panels() + forces)
+        (1000, 2 * LEGEND_LINE / FINE + LAYER + BARS * self.bar_panels() + forces)
     }
 
     fn title(&self) -> &str {
@@ -197,11 +211,14 @@ impl Figure for LayerPicture<'_> {
         let legend = self.legend(canvas.dim_in_pixel().0);
         let (above, below) = canvas.split_vertically(legend.height());
         legend.draw(&above)?;
+        let (caption, below) = below.split_vertically(LEGEND_LINE);
         let forces = if self.has_forces { FORCES * FINE } else { 0 };
         let (below, lowest) = below.split_vertically(below.dim_in_pixel().1 - forces);
         let bars = BARS * self.bar_panels() * FINE;
         let (layer, bars) = below.split_vertically(below.dim_in_pixel().1 - bars);
         let elements: Vec<Element> = self.history.elements(self.row).collect();
+        let stretched = exaggeration(&layer, &self.x_axis("x"), &self.z_axis());
+        draw_caption(&caption, stretched, Way::of(self.history.slides(self.row)))?;
         self.draw_layer(&layer, &elements)?;
         let panels = bars.split_evenly((self.bar_panels() as usize, 1));
         let (quantity, unit) = self.history.load_unit();

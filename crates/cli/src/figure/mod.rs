@@ -1,6 +1,7 @@
 //! Figures: charts drawn with plotters, as SVG or PNG by their files' names.
 
 mod axis;
+mod caption;
 mod chart;
 mod difference;
 mod ladders;
@@ -26,11 +27,13 @@ use plotters::style::register_font;
 use plotters::style::text_anchor::{HPos, VPos};
 use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingErrorKind};
 
+pub(crate) use caption::RUBBER_SLIDES;
 pub(crate) use chart::{Curve, Stroke};
 pub(crate) use ladders::{Ladder, LadderPanel, Ladders, Rung};
 pub(crate) use layer::LayerPicture;
 pub(crate) use panels::{
-    Below, LinearPanel, LinearStack, Panel, PanelRow, ProfileCurves, ProfilePicture, SideBySide, Stacked, TimeHistory,
+    Below, ContactCurves, LinearPanel, LinearStack, Panel, PanelRow, ProfileCurves, ProfilePicture, SideBySide,
+    Stacked, TimeHistory,
 };
 pub(crate) use patch::PatchHistory;
 pub(crate) use plot::plot_files;

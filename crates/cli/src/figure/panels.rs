@@ -4,7 +4,8 @@ use asperity::outputs::{Output, Snapshot, Variable, variables};
 use asperity::scene::{OutputGroup, Scene};
 
 use super::axis::{Axis, Fit, is_loggable};
-use super::chart::{Chart, Curve, Legend, Stroke, Symbol};
+use super::caption::{Way, draw_caption, exaggeration};
+use super::chart::{Chart, Curve, LEGEND_LINE, Legend, Stroke, Symbol};
 use super::{Backend, Canvas, DrawResult, FINE, Figure};
 
 /// The height of a title, pixels.
@@ -184,6 +185,29 @@ impl Figure for LinearStack {
     fn draw<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {
         let canvases = canvas.split_evenly((self.panels.len(), 1));
         self.panels.iter().zip(&canvases).try_for_each(|(panel, canvas)| panel.chart(self.x).draw_with_legend(canvas))
+    }
+}
+
+/// The rubber above a profile that it slides on, and below it what is given over the same axis.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ContactCurves(pub(crate) LinearStack);
+
+impl Figure for ContactCurves {
+    fn size(&self) -> (u32, u32) {
+        let (width, height) = self.0.size();
+        (width, height + LEGEND_LINE / FINE)
+    }
+
+    fn draw<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {
+        let (above, below) = canvas.split_vertically(LEGEND_LINE);
+        if let (Some(heights), Some(panel)) =
+            (self.0.panels.first(), below.split_evenly((self.0.panels.len(), 1)).first())
+        {
+            let chart = heights.chart(self.0.x);
+            let (_, panel) = panel.split_vertically(chart.legend(panel).height());
+            draw_caption(&above, exaggeration(&panel, &chart.x, &chart.y), Some(Way::Right))?;
+        }
+        self.0.draw(&below)
     }
 }
 

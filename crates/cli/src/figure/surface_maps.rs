@@ -5,12 +5,11 @@ use plotters::coord::ranged1d::Ranged as _;
 use plotters::prelude::*;
 
 use super::axis::{Axis, Fit, rounded_down};
+use super::caption::{Way, draw_arrow};
 use super::chart::{LEGEND_LINE, MARGIN};
 use super::maps::{draw_colour_bar, fitted};
 use super::raster::Raster;
-use super::{
-    Backend, COLOURS, Canvas, DrawResult, FINE, Figure, GRID, INK, LINE_WIDTH, TEXT_SIZE, text_style, text_width,
-};
+use super::{Backend, COLOURS, Canvas, DrawResult, FINE, Figure, GRID, INK, TEXT_SIZE, text_style, text_width};
 use asperity_study::decimals::with_prefix;
 
 /// The most pixels of a map, side by side and below each other.
@@ -154,11 +153,7 @@ impl SurfaceMaps {
         let name = with_prefix(length, length, "m") + &self.stretched();
         let start = end + gap + text_width(&name, TEXT_SIZE) as i32 + 2 * gap;
         canvas.draw(&Text::new(name, (end + gap, text_top), text_style(TEXT_SIZE)))?;
-        let (tip, head) = (start + 8 * MARGIN as i32, MARGIN as i32);
-        canvas.draw(&PathElement::new([(start, y), (tip - head, y)], INK.stroke_width(LINE_WIDTH)))?;
-        canvas.draw(&Polygon::new([(tip, y), (tip - 2 * head, y - head), (tip - 2 * head, y + head)], INK.filled()))?;
-        canvas.draw(&Text::new(self.arrow, (tip + gap, text_top), text_style(TEXT_SIZE)))?;
-        Ok(())
+        draw_arrow(canvas, (start, y), Way::Right, self.arrow)
     }
 
     /// Of a map that is drawn wider or longer than it is, in what direction the scale bar lies.

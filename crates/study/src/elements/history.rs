@@ -3,7 +3,7 @@
 use asperity::outputs::{Output, Snapshot};
 use asperity::scene::{Scene, Surface};
 
-use super::fields::ElementFields;
+use super::fields::{ElementField, ElementFields};
 
 /// What the masses did, row by row.
 #[derive(Debug)]
@@ -97,6 +97,11 @@ impl ElementHistory {
         self.reach = places.fold(self.reach, |(low, high), x| (low.min(x), high.max(x)));
     }
 
+    /// The rows and the outputs of the masses themselves.
+    pub fn into_rows_and_fields(self) -> (Vec<Instant>, Vec<ElementField>) {
+        (self.rows, self.fields.into_fields())
+    }
+
     /// The outputs of the masses.
     pub fn fields(&self) -> &ElementFields {
         &self.fields
@@ -149,6 +154,13 @@ impl ElementHistory {
         let mut rows: Vec<usize> = (0..=parts).map(|part| part * last / parts).collect();
         rows.dedup();
         rows
+    }
+
+    /// How far the carrier came along x within the row before, or of the first row comes within the next one, m: which
+    /// way it slides there.
+    pub fn slides(&self, row: usize) -> f64 {
+        let (from, to) = (row.saturating_sub(1), row.max(1));
+        self.rows.get(from..=to).map_or(0.0, |ends| ends[ends.len() - 1].u - ends[0].u)
     }
 
     /// What is seen along x while u = 0: a little more than where the masses are, m.
@@ -267,6 +279,15 @@ mod tests {
         // At 0, 0.25, 0.5, 0.75 and 1 s: the last four are among the ten rows after 0.1 s.
         assert_eq!(history.evenly_in_time(5), [0, 12, 14, 17, 20]);
         assert_eq!((history.row_at(0.033), history.row_at(9.0)), (Some(3), Some(20)));
+    }
+
+    #[test]
+    fn a_layer_slides_as_its_carrier_came_there() {
+        let mut history = history();
+        (history.rows[1].u, history.rows[2].u) = (1e-3, -1e-3);
+        assert_eq!([0, 1, 2, 3, 4].map(|row| history.slides(row)), [1e-3, 1e-3, -2e-3, 1e-3, 0.0]);
+        history.rows.truncate(1);
+        assert_eq!(history.slides(0), 0.0);
     }
 
     #[test]

@@ -2,6 +2,8 @@
 
 mod fields;
 mod history;
+mod page;
 
 pub use fields::{ElementField, ElementFields};
 pub use history::{Element, ElementHistory, Instant, Span, Touch};
+pub use page::animation;

@@ -1,6 +1,7 @@
 //! What there is in a scene, in an element's table and in a patch, in lines: what is printed of them, and what the
 //! documentation of an FMU says.
 
+mod described;
 mod fine;
 mod foundation;
 mod friction;
@@ -13,6 +14,7 @@ mod scene;
 mod table;
 mod words;
 
+pub use described::{described, described_patch};
 pub use fine::{FineFrictionCurve, MIDDLE as MIDDLE_PRESSURE};
 pub use friction::FallingFriction;
 pub use json::DescribedScene;

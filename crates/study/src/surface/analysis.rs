@@ -1,5 +1,6 @@
 //! The analysis of a surface, and of what smoothing and splitting take away.
 
+use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
 use asperity::scene::{Band, PowerLaw, RoughnessSpectrum, Spectrum, Surface};
@@ -46,6 +47,9 @@ impl FinerWaves {
     }
 }
 
+/// A relative difference of wave numbers that counts as rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// The analysis of a profile, as JSON has it.
 #[derive(Debug, Serialize)]
 pub struct SurfaceAnalysis {
@@ -79,5 +83,13 @@ impl SurfaceAnalysis {
             if surface.is_periodic() { "over one period, as it is" } else { "without tilt, under a Hann window" };
         let map = MapAnalysis::of(surface, wavelengths);
         Self { statistics, removed: None, finer: None, map, law, taken: format!("{points}{window}"), spectrum: bands }
+    }
+
+    /// Wave numbers (rad/m) and densities (m³) of the power law, at the bands of the spectrum down to its shortest wave;
+    /// none without one.
+    pub fn law_curve(&self) -> Vec<[f64; 2]> {
+        let Some(law) = self.law else { return Vec::new() };
+        let covered = self.spectrum.iter().map(|band| band.wave_number);
+        covered.filter(|q| q * law.wavelengths[0] <= TAU * (1.0 + ROUNDING)).map(|q| [q, law.density(q)]).collect()
     }
 }

@@ -21,7 +21,7 @@ pub(crate) enum ArraysError {
 
 /// Writes the rows' times, displacements and forces, the fields of the masses with a line for each row, the masses'
 /// positions at rest, the area that each stands for where the scene gives it, and the data points of the profile.
-pub(crate) fn write(history: &ElementHistory, path: &Path) -> Result<(), ArraysError> {
+pub(crate) fn write_arrays(history: &ElementHistory, path: &Path) -> Result<(), ArraysError> {
     let of_rows = |value: fn(&Instant) -> f64| history.rows().iter().map(value).collect::<Vec<_>>();
     let lines = [
         Array::line("time", of_rows(|row| row.time)),

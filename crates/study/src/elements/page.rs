@@ -1,14 +1,11 @@
 //! The animation of a run as a page for a browser: one file, its numbers in it.
 
-use std::path::Path;
-
-use asperity_study::elements::{Element, ElementHistory, Span, Touch};
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde::Serialize;
 
-use crate::files::{self, FileError};
-use asperity_study::html::fill;
+use super::history::{Element, ElementHistory, Span, Touch};
+use crate::html::fill;
 
 const TEMPLATE: &str = include_str!("animation.html");
 
@@ -94,11 +91,14 @@ fn reals(values: impl Iterator<Item = f64>) -> String {
     BASE64_STANDARD.encode(values.flat_map(f64::to_le_bytes).collect::<Vec<_>>())
 }
 
-/// Writes the page.
-pub(crate) fn write(history: &ElementHistory, path: &Path) -> Result<(), FileError> {
-    let json = serde_json::to_string(&page(history)).map_err(|error| FileError::picture(path, &error))?;
+/// The page as text.
+///
+/// # Errors
+/// Where its numbers cannot be written as JSON, which does not happen in memory.
+pub fn animation(history: &ElementHistory) -> serde_json::Result<String> {
+    let json = serde_json::to_string(&page(history))?;
     // In a script, `</script>` in the scene's name would end it.
-    files::write(path, fill(TEMPLATE, &[("run", json.replace('<', "\\u003c"))]))
+    Ok(fill(TEMPLATE, &[("run", json.replace('<', "\\u003c"))]))
 }
 
 fn page(history: &ElementHistory) -> Page<'_> {
@@ -175,8 +175,7 @@ fn profile(history: &ElementHistory, rows: &[usize]) -> Profile {
 mod tests {
     use asperity::scene::Scene;
 
-    use asperity_study::elements::Instant;
-
+    use super::super::history::Instant;
     use super::*;
 
     #[test]

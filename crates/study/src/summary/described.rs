@@ -1,0 +1,31 @@
+//! What `describe` says of a scene and of a patch.
+
+use std::sync::Arc;
+
+use asperity::patch::Patch;
+use asperity::scene::Scene;
+use asperity::simulation::{Simulation, SimulationError};
+use asperity_fmi::FmuModel;
+
+use super::patch::patch_rows;
+use super::scene::scene_rows;
+use crate::labelled::{LabelledLine, labelled};
+use crate::runner::start;
+
+/// The summary of a scene, with how its tables were read and the memory of its FMU.
+///
+/// # Errors
+/// Where no run can start with it.
+pub fn described(scene: &Scene) -> Result<Vec<LabelledLine>, SimulationError> {
+    Simulation::new(scene, &start(scene, 0.0))?;
+    let title = scene.description.as_ref().map_or_else(|| scene.name.clone(), |text| format!("{}: {text}", scene.name));
+    let bytes = FmuModel::memory(&Arc::new(scene.clone()));
+    let memory = ("Memory", format!("at most {} MiB an instance of the FMU", bytes.div_ceil(1 << 20)));
+    let tables = labelled("Tables", scene.notes.iter().map(|read| read.text.clone()));
+    Ok([vec![("Scene", title)], scene_rows(scene), tables, vec![memory]].concat())
+}
+
+/// The summary of a patch.
+pub fn described_patch(patch: &Patch) -> Vec<LabelledLine> {
+    [vec![("Name", patch.name().to_owned())], patch_rows(patch)].concat()
+}

@@ -1,0 +1,81 @@
+//! Whether friction and area depend on a scene's spacing, length or on chance.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use asperity_study::converge::{ConvergeError, ConvergenceOptions, ConvergenceStudy, Ended, Findings};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::background::{Task, in_background};
+use crate::errors::Raise as _;
+use crate::scene::Scene;
+use crate::sweep::sliding;
+
+/// Makes all runs of a study; `None` where nobody waits for them any more.
+fn find(study: &ConvergenceStudy, task: &Task) -> Result<Option<Findings>, ConvergeError> {
+    let (done, all) = (AtomicUsize::new(0), AtomicUsize::new(1));
+    let begun = |round: &asperity_study::converge::Round| all.store(round.all.max(1), Ordering::Relaxed);
+    let found = study.run(Vec::new(), begun, |_| {
+        let done = 1 + done.fetch_add(1, Ordering::Relaxed);
+        // What one round tells of the next ones is a lower bound.
+        task.report((done as f64 / all.load(Ordering::Relaxed) as f64).min(1.0));
+        if task.is_stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    match found {
+        Ok(findings) => Ok(Some(findings)),
+        Err(Ended::Stopped(())) => Ok(None),
+        Err(Ended::Refused(error)) => Err(error.into()),
+    }
+}
+
+/// The study of a scene.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+pub(crate) fn converge<'py>(
+    py: Python<'py>,
+    scene: &Scene,
+    pressure: f64,
+    speed: f64,
+    error: f64,
+    seeds: Option<u32>,
+    method: Option<&str>,
+    points: Option<u32>,
+    most_points: Option<u32>,
+    distance: Option<f64>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let method = sliding(method, points, None, distance)?.method;
+    let options = ConvergenceOptions { pressure, speed, error, seeds, method, points, most_points, distance };
+    let (data, text) = (Arc::clone(&scene.scene), scene.text.clone());
+    let (file, set) = (scene.file.clone(), scene.settings.clone());
+    let found = in_background(py, progress, move |task| {
+        let study = ConvergenceStudy::new(&data, (&text, &file), &set, options)?;
+        Ok(find(&study, task)?.map(|findings| (study, findings)))
+    })?;
+    let found = found.map_err(|error: ConvergeError| error.raise())?;
+    // It is only stopped where nobody waits.
+    let (study, findings) = found.ok_or_else(|| PyValueError::new_err("stopped"))?;
+    as_dictionary(py, &study, &findings)
+}
+
+fn as_dictionary<'py>(py: Python<'py>, study: &ConvergenceStudy, findings: &Findings) -> PyResult<Bound<'py, PyDict>> {
+    let verdict = &findings.verdict;
+    let rows: String = findings.changes().iter().map(|(run, change)| run.line(*change)).collect();
+    let (found, open) = (PyDict::new(py), PyDict::new(py));
+    for one in &verdict.open {
+        open.set_item(one.source.name(), one.shares.map(|pair| (pair.friction, pair.area)))?;
+    }
+    let ladder = findings.ladder();
+    let coarsest = verdict.coarsest.map(|halvings| Some(ladder.get(halvings?)?.dimensions.spacing));
+    found.set_item("text", study.header().text(Some(&verdict.sentence())) + &rows)?;
+    found.set_item("parts", study.parts().name())?;
+    found.set_item("is_converged", verdict.is_converged())?;
+    found.set_item("verdict", verdict.sentence())?;
+    found.set_item("open", open)?;
+    found.set_item("coarsest", coarsest)?;
+    found.set_item("warnings", study.warning().into_iter().collect::<Vec<_>>())?;
+    Ok(found)
+}
