@@ -3,6 +3,7 @@
 pub(crate) mod sweep_values;
 mod values;
 
+use std::convert::Infallible;
 use std::ffi::OsString;
 use std::ops::{Deref, RangeInclusive};
 use std::path::{Path, PathBuf};
@@ -20,9 +21,16 @@ use sweep_values::{Shard, Values};
 pub(crate) use values::{Condition, FitVertical, FitWeight, PlotAxis};
 use values::{
     Frequencies, Tolerances, animation, arrays, column_unit, count, expansion, fit_error, free_parameter, frequency,
-    key_and_value, length, moment, picture, picture_or_table, poisson_ratio, powers, pressure, seconds, seeds, share,
-    speed, sweep_method, table_or_arrays, temperature, wavelengths, wlf_constants,
+    key_and_value, length, moment, picture, picture_or_table, poisson_ratio, powers, pressure, renamed, seconds, seeds,
+    share, speed, sweep_method, table_or_arrays, temperature, wavelengths, wlf_constants,
 };
+
+/// What stands below the help of a command: a line that runs in a checkout of the repository.
+macro_rules! example {
+    ($line:literal) => {
+        concat!("Example, in a checkout of the repository:\n  ", $line)
+    };
+}
 
 /// Simulates rubber on a rough surface and packs the simulation as an FMU.
 #[derive(Debug, Parser)]
@@ -81,20 +89,26 @@ pub(crate) enum Command {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = example!("asperity completions bash"))]
 pub(crate) struct Completions {
     /// The shell.
     pub(crate) shell: clap_complete::Shell,
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = example!("asperity manual -o man"))]
 pub(crate) struct Manual {
     /// The folder to write the pages to; it is created if it does not exist.
     #[arg(short, long, value_name = "FOLDER")]
     pub(crate) output: PathBuf,
 }
 
+// A name means the same in all commands that have it: `points` those of the surface's period, `error` what a study of
+// convergence may leave open, `data` measured friction. Names that commands had besides are refused by the new ones, or
+// stay as aliases where users' scripts have them by the specification.
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("simulated").required(true).args(["scene", "patch"])))]
+#[command(after_help = example!("asperity simulate scenes/tread-block/tread-block.toml -o block.csv --plot block.svg"))]
 pub(crate) struct Simulate {
     /// The scene file.
     #[arg(value_name = "SCENE.toml")]
@@ -111,8 +125,9 @@ pub(crate) struct Simulate {
     #[arg(short, long, value_name = "OUT.csv")]
     output: Option<PathBuf>,
     /// Number of result rows for each phase of the excitation.
-    #[arg(long, value_name = "N", default_value_t = 50, value_parser = count, conflicts_with = "patch")]
-    pub(crate) points: u32,
+    #[arg(long, alias = "points", value_name = "N", default_value_t = 50, value_parser = count)]
+    #[arg(conflicts_with = "patch")]
+    pub(crate) rows: u32,
     #[command(flatten)]
     pub(crate) set: Set,
     /// Plots forces, contacts and dissipation over time, as SVG or PNG according to the file name.
@@ -169,6 +184,7 @@ impl Deref for Set {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = example!("asperity plot block.csv --y F_x --y F_z -o forces.svg"))]
 pub(crate) struct Plot {
     /// Result files, or tables of asperity sweep or converge; each gives one curve for every --y.
     #[arg(value_name = "FILE.csv", required = true)]
@@ -213,6 +229,7 @@ pub(crate) struct Plot {
 
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("described").required(true).args(["scene", "patch"])))]
+#[command(after_help = example!("asperity describe scenes/road/road.toml"))]
 pub(crate) struct Describe {
     /// The scene file.
     #[arg(value_name = "SCENE.toml")]
@@ -234,6 +251,7 @@ pub(crate) struct Describe {
 
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("input").required(true)))]
+#[command(after_help = example!("asperity pack scenes/tread-block/tread-block.toml -o block.fmu"))]
 pub(crate) struct Pack {
     /// The scene file.
     #[arg(value_name = "SCENE.toml", group = "input")]
@@ -250,9 +268,9 @@ pub(crate) struct Pack {
     #[arg(long, value_name = "SCENE.toml", conflicts_with = "scene")]
     pub(crate) check: Option<PathBuf>,
     /// Maximum number of points, or of elements of a patch, that --check compares with the layer.
-    #[arg(long, value_name = "N", default_value_t = 12, value_parser = count, requires = "check")]
+    #[arg(long, alias = "points", value_name = "N", default_value_t = 12, value_parser = count, requires = "check")]
     #[arg(conflicts_with = "scene")]
-    pub(crate) points: u32,
+    pub(crate) check_points: u32,
     /// The FMU to write.
     #[arg(short, long, value_name = "OUT.fmu")]
     pub(crate) output: PathBuf,
@@ -267,6 +285,7 @@ pub(crate) struct Pack {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = example!("asperity fit docs/guide/dma.csv --wlf 7.52,119.75,293.15 -o compound.csv"))]
 pub(crate) struct Fit {
     /// The measured moduli, as text or a workbook (xlsx, xls, ods): columns, by their names and units, of frequency, E'
     /// and E'' or tan delta (or G', G''; or |E*| and delta), and temperature if it varies; or of time and E(t). Other
@@ -278,7 +297,9 @@ pub(crate) struct Fit {
     pub(crate) output: PathBuf,
     /// The admissible error of the fit: the root mean square of the relative errors of E' and E'' at all points.
     #[arg(long, value_name = "E", default_value_t = 0.02, value_parser = fit_error)]
-    pub(crate) error: f64,
+    pub(crate) fit_error: f64,
+    #[arg(long = "error", hide = true, value_parser = renamed("--error", "--fit-error"))]
+    _error: Option<Infallible>,
     /// Constants of the Williams-Landel-Ferry equation, which shifts rows at other temperatures to TREF: C1 (1), C2
     /// (K), TREF (K). Default: shift factors are found where the curves overlap, and constants for them.
     #[arg(long, value_name = "C1,C2,TREF", value_parser = wlf_constants)]
@@ -327,6 +348,7 @@ pub(crate) struct Fit {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = example!("asperity material scenes/road/road.toml --temperature 40°C -o moduli.svg"))]
 pub(crate) struct Material {
     /// The scene file.
     #[arg(value_name = "SCENE.toml")]
@@ -347,6 +369,7 @@ pub(crate) struct Material {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = example!("asperity report scenes/stiff/stiff.toml --tolerances 1e-3..1e-5 --stress 0 -o report"))]
 pub(crate) struct Report {
     /// The scene files. Of several, each has its report in a folder of its name, and one page shows all.
     #[arg(value_name = "SCENE.toml", required = true)]
@@ -359,7 +382,9 @@ pub(crate) struct Report {
     pub(crate) tolerances: Tolerances,
     /// Number of rows for each phase of the excitation at which runs are compared.
     #[arg(long, value_name = "N", default_value_t = 50, value_parser = count)]
-    pub(crate) points: u32,
+    pub(crate) rows: u32,
+    #[arg(long = "points", hide = true, value_parser = renamed("--points", "--rows"))]
+    _points: Option<Infallible>,
     /// Most timings of each run, done for short runs; long ones are timed three times. The least and the spread are
     /// reported.
     #[arg(long, value_name = "N", default_value_t = 25, value_parser = count)]
@@ -379,6 +404,7 @@ pub(crate) struct Report {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = example!("asperity surface docs/guide/road.txt --missing fill --tilt remove -o road.svg"))]
 pub(crate) struct Surface {
     /// The profile: text with columns x and z; an areal file, X3P, SDF, SUR, OpenCRG or text of Gwyddion; or
     /// a scene, whose surface is analysed.
@@ -488,7 +514,7 @@ const OF_A_SCENE: [&str; 12] = [
     "temperatures",
     "method",
     "points",
-    "error",
+    "friction_error",
     "distance",
     "shard",
     "master",
@@ -498,6 +524,9 @@ const OF_A_SCENE: [&str; 12] = [
 
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("input").required(true)))]
+#[command(after_help = example!(
+    "asperity sweep scenes/road/road.toml --speeds 1e-4..10/11 --pressures 3bar \\\n      --temperatures 5°C,20°C,40°C -o friction.csv"
+))]
 pub(crate) struct Sweep {
     /// The scene file; its excitation and outputs are not used.
     #[arg(value_name = "SCENE.toml", group = "input")]
@@ -558,7 +587,9 @@ pub(crate) struct Sliding {
     pub(crate) points: Option<u32>,
     /// Admissible standard error of the friction coefficient, relative to it, with --method layer. Default: 5e-3.
     #[arg(long, value_name = "SHARE", value_parser = share)]
-    pub(crate) error: Option<f64>,
+    pub(crate) friction_error: Option<f64>,
+    #[arg(long = "error", hide = true, value_parser = renamed("--error", "--friction-error"))]
+    _error: Option<Infallible>,
     /// Maximum sliding distance in m for a point to become steady, with --method layer. Default: 100 blocks; a block is a
     /// whole number of profile periods or layer lengths.
     #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
@@ -566,6 +597,9 @@ pub(crate) struct Sliding {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = example!(
+    "asperity calibrate docs/guide/measured.toml --data docs/guide/measured.csv \\\n      --free friction.rate_shear.strength=1e6..2e7 -o docs/guide/fitted.toml"
+))]
 pub(crate) struct Calibrate {
     /// The scene file, in the material form; its excitation and outputs are not used.
     #[arg(value_name = "SCENE.toml")]
@@ -607,6 +641,7 @@ pub(crate) struct Calibrate {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = example!("asperity compare friction.csv --data docs/guide/measured.csv"))]
 pub(crate) struct Compare {
     /// The table of asperity sweep, over pressures.
     #[arg(value_name = "TABLE.csv")]
@@ -631,6 +666,7 @@ pub(crate) struct SteadyState {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = example!("asperity contact scenes/two-maxima/two-maxima.toml --pressure 2bar --speed 0.1 -o contact.png"))]
 pub(crate) struct Contact {
     /// The scene file, in the material form with a foundation "half_space" or "layer" and a periodic surface; its excitation
     /// and outputs are not used.
@@ -647,13 +683,14 @@ pub(crate) struct Contact {
     #[arg(short, long, value_name = "OUT.png", value_parser = picture())]
     pub(crate) output: PathBuf,
     /// All points to write: x, y, height, pressure, gap, as a table or, with .npz, as arrays of numpy with a row for each y.
-    #[arg(long, value_name = "OUT.csv|.npz", value_parser = table_or_arrays())]
-    pub(crate) data: Option<PathBuf>,
+    #[arg(long, alias = "data", value_name = "OUT.csv|.npz", value_parser = table_or_arrays())]
+    pub(crate) write: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) set: Set,
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = example!("asperity converge scenes/two-maxima/two-maxima.toml --pressure 2bar --speed 0.1 -o study.csv"))]
 pub(crate) struct Converge {
     /// The scene file, in the material form; its excitation and outputs are not used.
     #[arg(value_name = "SCENE.toml")]
@@ -704,6 +741,19 @@ mod tests {
     #[test]
     fn the_program_says_its_own_name() {
         assert_eq!(Arguments::command().render_version(), concat!("asperity ", env!("CARGO_PKG_VERSION"), "\n"));
+    }
+
+    /// Also those that a test cannot run.
+    #[test]
+    fn examples_are_understood() {
+        let mut command = Arguments::command();
+        command.build();
+        for of in command.get_subcommands().filter(|of| !of.is_hide_set() && of.get_name() != "help") {
+            let help = of.get_after_help().map(ToString::to_string).unwrap_or_default();
+            let example = help.lines().skip(1).collect::<Vec<_>>().join(" ").replace('\\', " ");
+            let parsed = Arguments::try_parse_from(example.split_whitespace());
+            assert!(parsed.is_ok() && example.contains(&format!("asperity {}", of.get_name())), "{parsed:?}");
+        }
     }
 
     #[test]
