@@ -91,7 +91,8 @@ fn a_plot_compares_two_files_in_words() {
 fn help_begins_with_what_the_command_does() {
     let help = run(asperity().arg("--help"));
     let commands = help.lines().filter_map(|line| line.strip_prefix("  ")?.split_once("  "));
-    let commands: Vec<_> = commands.filter(|(name, _)| !name.starts_with(['-', ' ']) && *name != "help").collect();
+    let commands: Vec<_> =
+        commands.filter(|(name, _)| !name.is_empty() && !name.starts_with(['-', ' ']) && *name != "help").collect();
     assert_eq!(commands.len(), 15, "{help}");
     for (name, summary) in commands {
         let first = run(asperity().args([name, "--help"]));
@@ -128,7 +129,7 @@ fn examples_run() {
     }
 }
 
-/// Help is as wide as the terminal, or 100 characters.
+/// Help is as wide as the terminal.
 #[test]
 fn help_fits_the_terminal() {
     let widest = |columns: &str| {
@@ -136,7 +137,7 @@ fn help_fits_the_terminal() {
         let (options, _) = help.split_once("Example").unwrap();
         options.lines().filter(|line| !line.starts_with("Usage")).map(|line| line.chars().count()).max().unwrap()
     };
-    assert!(widest("60") <= 60 && (80..=100).contains(&widest("100")) && widest("300") <= 100);
+    assert!(widest("60") <= 60 && (80..=100).contains(&widest("100")) && widest("200") > 100);
 }
 
 /// One name, one meaning: names that an option had are refused by those that it has, but for those that specified command
@@ -156,7 +157,7 @@ fn options_that_were_renamed_say_so() {
     let rows = |option: &str| {
         let out = folder.join("out.csv");
         run(asperity().args(["simulate", &sinusoid(), option, "3", "-o"]).arg(&out));
-        fs::read_to_string(&out).unwrap()
+        fs::read_to_string(&out).unwrap().lines().count()
     };
     assert_eq!(rows("--points"), rows("--rows"));
 }
@@ -211,6 +212,7 @@ fn a_setting_that_is_refused_says_which_keys_there_are() {
     ] {
         let message = refused(setting);
         assert!(message.contains(wanted) && message.lines().count() == 1, "{setting}: {message}");
+        assert!(message.matches("did you mean").count() <= 1, "{setting}: {message}");
     }
 }
 

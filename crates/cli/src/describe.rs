@@ -10,13 +10,13 @@ use asperity_study::decimals::rounded;
 use asperity_study::runner::start;
 use asperity_study::settings::Setting;
 use asperity_study::summary::{
-    DescribedScene, FineFrictionCurve, MIDDLE_PRESSURE, missing_backing, patch_rows, scene_rows,
+    DescribedScene, FineFrictionCurve, MIDDLE_PRESSURE, missing_backing, patch_rows, scene_rows, short_scene_rows,
 };
 
 use super::cli::Describe;
 use super::figure::{Below, Curve, Figure as _, Panel, PanelRow, SideBySide, Stacked, Stroke};
 use super::files::{FileError, check_outputs, load, load_patch, print, table_lines};
-use super::terminal::{lines, warn};
+use super::terminal::{LabelledLine, is_verbose, labelled, lines, screen_lines, warn};
 
 /// `asperity describe` failed.
 #[derive(Debug, thiserror::Error)]
@@ -51,7 +51,7 @@ pub(crate) fn describe_patch(path: &Path, set: &[Setting]) -> Result<(), FileErr
     let patch = load_patch(path, set)?;
     missing_backing(&patch).iter().for_each(|warning| warn(warning));
     let title = ("Name", patch.name().to_owned());
-    print(&lines(&[vec![title], patch_rows(&patch)].concat()))
+    print(&screen_lines(&[vec![title], patch_rows(&patch)].concat()))
 }
 
 fn json(scene: &Scene) -> Result<String, DescribeError> {
@@ -62,9 +62,21 @@ fn text(scene: &Scene) -> Result<String, DescribeError> {
     // A scene that no run can start with is refused.
     Simulation::new(scene, &start(scene, 0.0))?;
     let title = scene.description.as_ref().map_or_else(|| scene.name.clone(), |text| format!("{}: {text}", scene.name));
+    if !is_verbose() {
+        return Ok(screen_lines(&[vec![("Scene", title)], short_scene_rows(scene), assumed(scene), more()].concat()));
+    }
     let bytes = FmuModel::memory(&Arc::new(scene.clone()));
     let memory = ("Memory", format!("at most {} MiB an instance of the FMU", bytes.div_ceil(1 << 20)));
     Ok(lines(&[vec![("Scene", title)], scene_rows(scene), table_lines(scene), vec![memory]].concat()))
+}
+
+/// What was assumed of the tables that were read.
+fn assumed(scene: &Scene) -> Vec<LabelledLine> {
+    labelled("Tables", scene.notes.iter().filter(|read| read.assumed).map(|read| read.text.clone()))
+}
+
+fn more() -> Vec<LabelledLine> {
+    vec![("More", "-v: links, their elements and what reduce replaces, outputs, tables, the bands' law, memory".into())]
 }
 
 /// The stiffness of the links over that of the body that they stand for, over wavelength; `None` in the direct form.

@@ -53,7 +53,8 @@ pub(crate) enum Command {
     Simulate(Simulate),
     /// Plots columns of result files and tables.
     Plot(Plot),
-    /// Summarises a scene: what it contains, what it leaves out, and the constants derived from it.
+    /// Summarises a scene on a screen: what it contains, what is computed and what is left out; with -v also the constants
+    /// derived from it.
     Describe(Describe),
     /// Packs a scene, or a point-contact element or a contact patch from a sweep table, as an FMI 2.0 co-simulation
     /// FMU.

@@ -10,6 +10,7 @@ mod motion;
 mod patch;
 mod reduction;
 mod scene;
+mod short;
 mod table;
 mod words;
 
@@ -18,4 +19,5 @@ pub use friction::FallingFriction;
 pub use json::DescribedScene;
 pub use patch::{missing_backing, patch_rows};
 pub use scene::scene_rows;
+pub use short::short_scene_rows;
 pub use table::table_rows;
