@@ -20,7 +20,7 @@ class Master:
 
     def __init__(self, method: str, rates: bool, body: Body, layers: list, h: float):
         self.advance, self.rates, self.h = getattr(self, method), rates, h
-        # What a layer does when it is told values only: go on as it came, or to the value.
+        # What a layer does when it is told values only: go on as it came, until the next value is known, or to the value.
         extrapolation = "linear" if method == "jacobi" else "hold"
         self.body = body
         self.layers = [Layer(path, mirrored, extrapolation) for path, mirrored in layers]

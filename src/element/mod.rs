@@ -7,6 +7,7 @@
 //! elastic at each speed and dissipates nothing.
 
 mod backing;
+mod clearance;
 mod grid;
 mod jenkins;
 mod law;
@@ -25,6 +26,7 @@ mod table_format;
 #[cfg(test)]
 mod tests;
 
+pub use clearance::Clearance;
 pub use grid::{Load, OperatingPoint, SweepGrid};
 pub use law_points::{ElementLaw, LawPoints};
 pub use left_out::{LeftOut, left_out};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::law::{Law, LawAtSpeed};
+use super::clearance::Clearance;
 use super::quantity::Quantity;
 use super::table::Table;
 use crate::outputs::{Dependencies, Output, Variable, variable};
@@ -13,6 +13,7 @@ use crate::scene::{Extrapolation, Parameter, ParameterError, Problem, TableExtra
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointContact {
     table: Arc<Table>,
+    clearance: Clearance,
     /// The temperature, K; 0 where the table has none.
     temperature: f64,
     table_extrapolation: TableExtrapolation,
@@ -27,6 +28,7 @@ impl PointContact {
         let temperature = temperatures.get(temperatures.len() / 2).copied().unwrap_or(0.0);
         Self {
             temperature,
+            clearance: Clearance::new(&table),
             table: Arc::new(table),
             table_extrapolation: TableExtrapolation::Refuse,
             extrapolation: Extrapolation::default(),
@@ -45,19 +47,7 @@ impl PointContact {
 
     /// A displacement w (m) just above the first touch at any speed and temperature of the table.
     pub fn clear_displacement(&self) -> f64 {
-        let temperatures = &self.table.grid.temperatures;
-        let speeds = &self.table.grid.speeds;
-        let (mut touch, mut closest) = (f64::INFINITY, f64::NEG_INFINITY);
-        for temperature in temperatures.iter().copied().chain(temperatures.is_empty().then_some(0.0)) {
-            let law = Law::new(&self.table, temperature);
-            for curve in speeds.iter().map(|&speed| LawAtSpeed::new(&law, speed)) {
-                (touch, closest) = (curve.touch.min(touch), curve.closest().max(closest));
-            }
-        }
-        // A round number, higher by less than a tenth of the way that the table covers, is easier to read.
-        let decade = (closest - touch).log10().floor() - 1.0;
-        let digits = ((-touch - self.table.rest_separation) / 10.0_f64.powf(decade)).floor() + 1.0;
-        format!("{digits}e{decade}").parse().unwrap_or(0.0)
+        self.clearance.displacement(self.table.rest_separation)
     }
 
     /// What a motion beyond the table does.

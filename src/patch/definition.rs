@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::face::{Face, Points, Section, Tread};
-use crate::element::{Load, Node, Quantity, ResampledLaw, Table, TableError};
+use crate::element::{Clearance, Load, Node, Quantity, ResampledLaw, Table, TableError};
 use crate::scene::{
     Backing, Extrapolation, FaceHeat, FaceShape, FmuOptions, Grid, NotDoubled, Parameter, ParameterError, PatchFile,
     PatchGroup, Problem, SceneError, TableExtrapolation, Value,
@@ -49,6 +49,7 @@ pub struct Patch {
     file: Arc<PatchFile>,
     files: Arc<[PathBuf]>,
     table: Arc<Table>,
+    clearance: Clearance,
     pub(super) face: Arc<Face>,
     pub(super) nominal_area: f64,
     temperature: f64,
@@ -107,6 +108,7 @@ impl Patch {
             backing: file.backing,
             extrapolation: file.extrapolation,
             files: file.files().into(),
+            clearance: Clearance::new(&table),
             table: Arc::new(table),
             file: Arc::new(file),
         })
@@ -272,18 +274,7 @@ impl Patch {
 
     /// A height (m) just above the touch, where nothing touches at any temperature of the table when the body is level.
     pub fn clear_height(&self) -> f64 {
-        let temperatures = &self.table.grid.temperatures;
-        let all = temperatures.iter().copied().chain(temperatures.is_empty().then_some(self.temperature));
-        let touches = all.map(|kelvin| ResampledLaw::earliest_touch_of(&self.table, kelvin));
-        let touch = touches.fold(f64::INFINITY, f64::min);
-        let lowest = match &*self.face {
-            Face::Points(points) => points.z.iter().copied().fold(f64::INFINITY, f64::min),
-            Face::Tread(tread) => tread.section.at(0.0).0[1] + tread.offset[2],
-        };
-        let step = touch.abs().max(1e-6);
-        // A round number, a little higher, is easier to read.
-        let digits = 10.0_f64.powf(step.log10().floor() - 1.0);
-        (((-touch - lowest) / digits).floor() + 1.0) * digits
+        self.clearance.displacement(self.face.lowest())
     }
 
     pub(super) fn law(&self) -> ResampledLaw {

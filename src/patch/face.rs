@@ -113,4 +113,12 @@ impl Face {
             Self::Tread(tread) => (tread.columns + 1) * tread.rows.len(),
         }
     }
+
+    /// z of its lowest point in the body's axes, m.
+    pub(super) fn lowest(&self) -> f64 {
+        match self {
+            Self::Points(points) => points.z.iter().copied().fold(f64::INFINITY, f64::min),
+            Self::Tread(tread) => tread.section.at(0.0).0[1] + tread.offset[2],
+        }
+    }
 }

@@ -431,4 +431,44 @@ mod tests {
             assert!([2, 5].into_iter().all(|threads| state_after(threads) == one), "{outputs}");
         }
     }
+
+    /// A wheel that rolls on and on within a microsecond goes through the plane again and again. By 300 rad, or by as much as
+    /// the number of substeps allows, no more work is done than a step may take; a step that would take more is refused, and
+    /// the run stays.
+    #[test]
+    fn a_step_that_rolls_on_and_on_is_given_up_by_its_work() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch");
+        let heat = "heat = { conductivity = 0.25, capacity = 1700.0, density = 1100.0, share = 0.5 }";
+        for (nx, ny, outputs, rest) in
+            [(12, 4, "forces", ""), (24, 4, "tangent", ""), (24, 4, "forces", heat), (90, 40, "forces", "")]
+        {
+            let text = format!(
+                "name = \"rolled\"\ntable = {{ path = \"block.table.csv\" }}\n[patch]\nshape = \"cylinder\"\nradius = 0.3\n\
+                 length = 0.015\nwidth = 0.01\nnx = {nx}\nny = {ny}\ntransport = true\n{rest}\n[fmu]\n\
+                 outputs = [\"{outputs}\"]"
+            );
+            let patch = Patch::parse(&text, &folder.join("patch.toml")).unwrap();
+            let (temperature, most) = (patch.temperature(), max_work(patch.count()));
+            let pose = Pose { place: [0.0, 0.0, 0.29999], angles: [0.0; 3] };
+            let mut run = PatchRun::new(&patch, &PatchStart { pose, temperature, ..PatchStart::default() }).unwrap();
+            let allowed = 0.099 * max_substeps(patch.count());
+            for turn in [300.0_f64.min(allowed), allowed] {
+                let change = [0.0, 0.0, 0.0, -turn, 0.0, 0.0];
+                let body = PoseMotion { start: pose.coordinates(), change, duration: 1e-6 };
+                let (tread, work) = (run.tread_motion(0.0), WorkCounter::new(most));
+                let (substeps, heat) = (run.substeps(tread, turn).unwrap(), run.step_heat(temperature));
+                let face = Arc::clone(&run.patch.face);
+                let step = FaceMotion { face: &face, body, tread, substeps, tread_speed: 0.0, heat, work: &work };
+                run.advance_springs(&step);
+                // A little more than that: a block of elements finds out after a part.
+                assert!(work.done() as f64 <= 1.05 * most, "{nx} x {ny} by {turn}: {} of {most}", work.done());
+                let before = run.save();
+                let rates = change.map(|change| change / 1e-6);
+                let outcome = run.advance(&PatchMotion { duration: 1e-6, rates, transport_speed: 0.0, temperature });
+                let given_up = matches!(outcome, Err(MotionError::TooMuchWork { .. }));
+                assert_eq!(given_up, work.is_exceeded(), "{nx} x {ny} by {turn}: {outcome:?}");
+                assert!(if given_up { run.save() == before } else { turn < allowed }, "{nx} x {ny} by {turn}");
+            }
+        }
+    }
 }

@@ -27,4 +27,10 @@ impl WorkCounter {
     pub(super) fn is_exceeded(&self) -> bool {
         self.done.load(Ordering::Relaxed) > self.most
     }
+
+    /// The work done.
+    #[cfg(test)]
+    pub(super) fn done(&self) -> u64 {
+        self.done.load(Ordering::Relaxed)
+    }
 }

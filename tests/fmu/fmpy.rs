@@ -104,6 +104,54 @@ fn the_same_scene_gives_the_same_bytes() {
     assert!(pack() == pack());
 }
 
+/// Names without structure, which the program says: what masters make of them is valid, and the run has the same bits.
+#[test]
+fn flat_names_change_nothing_but_the_names() {
+    let folder = scratch("fmpy-flat");
+    let source = root().join("tests/reference/patch");
+    for file in ["wheel.toml", "winkler.table.csv"] {
+        fs::copy(source.join(file), folder.join(file)).unwrap();
+    }
+    let packed = |name: &str, options: &[&str]| {
+        let fmu = folder.join(name);
+        let mut pack = asperity();
+        pack.args(["pack", "--patch"]).arg(folder.join("wheel.toml")).arg("-o").arg(&fmu).args(options);
+        (run(pack.arg("--library").arg(library())), fmu)
+    };
+    let (said, own) = packed("own.fmu", &[]);
+    assert!(!said.contains("flat"), "{said}");
+    let (said, flat) = packed("flat.fmu", &["--flat-names"]);
+    assert!(
+        said.contains("flat, such as transport_speed for transport.speed; messages keep transport.speed"),
+        "{said}"
+    );
+    validate(&flat);
+    let described = "import sys, fmpy; d = fmpy.read_model_description(sys.argv[1]); \
+                     print(d.variableNamingConvention, *[v.name for v in d.modelVariables])";
+    let names = |fmu: &Path| run(Command::new(python()).args(["-c", described]).arg(fmu));
+    let (names, flat_names) = (names(&own), names(&flat));
+    assert!(
+        names.starts_with("structured ") && names.contains(" force.x ") && !flat_names.contains(['.', '[', ']', ','])
+    );
+    assert_eq!(names.replacen("structured", "flat", 1).replace('.', "_"), flat_names);
+    // It comes down and rolls.
+    let result = |fmu: &Path, speed: &str| {
+        let (motion, result) = (folder.join("motion.csv"), fmu.with_extension("csv"));
+        let z = |time: f64| 0.3 - 4e-5 * (time / 0.01).min(1.0);
+        let row = |i: u32| [f64::from(i) * 1e-3, 0.02 * f64::from(i), z(f64::from(i) * 1e-3), 0.05 * f64::from(i)];
+        Table::new(["time", "x", "z", speed], (0..=30).map(|i| row(i).to_vec())).write(&motion);
+        let [fmu, motion, output] = [fmu, &motion, &result].map(|path| path.to_str().unwrap());
+        fmpy(&["simulate", fmu, "--input-file", motion, "--output-file", output, "--output-interval", "1e-3"]);
+        fs::read_to_string(output).unwrap()
+    };
+    let (found, right) = (result(&flat, "transport_speed"), result(&own, "transport.speed"));
+    let rows = |text: &str| text.lines().skip(1).map(str::to_owned).collect::<Vec<_>>();
+    assert_eq!(rows(&found), rows(&right));
+    let last = Table::read(&own.with_extension("csv"));
+    assert!(last.column("force.z").last().is_some_and(|force| *force > 0.0));
+    assert!(found.starts_with(&right.lines().next().unwrap().replace('.', "_")), "{}", found.lines().next().unwrap());
+}
+
 /// Whatever is given as a library is packed as it is.
 #[test]
 fn an_fmu_has_the_libraries_of_all_platforms_named() {

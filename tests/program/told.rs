@@ -95,3 +95,30 @@ fn friction_that_no_rubber_has_is_told_with_the_key_that_is_missing() {
         assert!(warned.contains("give surface.fine the waves that the profile lacks"), "{command:?} {warned}");
     }
 }
+
+/// The excitation begins under a load that presses; the FMU's input of it starts at 0, where the constant part pulls, and a
+/// carrier on nothing is nowhere at rest.
+#[test]
+fn start_values_from_which_no_run_begins_are_told() {
+    let folder = scratch("told-start");
+    let scene = |load: &str| {
+        format!(
+            "name = 'hung'\nlayer = {{ masses = 4, spacing = 1e-4, mass = 1e-7, initial = 'relaxed', \
+             vertical = {{ stiffness = 2e3, damping = 8e-3 }}, horizontal = {{ stiffness = 1e3, damping = 8e-3 }} }}\n\
+             surface = {{ kind = 'flat' }}\nfriction = {{ coulomb = 0.3 }}\n\
+             carrier = {{ z = {{ mass = 1e-4, load = {load}, initial = 'equilibrium' }} }}\n\
+             [[excitation]]\nduration = 1e-3\nload = 0.05\nu_rate = 0.05\n"
+        )
+    };
+    let told_of = |load: &str| {
+        fs::write(folder.join("hung.toml"), scene(load)).unwrap();
+        let done = told(&["pack", "hung.toml", "-o", "hung.fmu", "--library", "hung.toml"], &folder);
+        assert!(done.status.success(), "{}", text(&done.stderr));
+        text(&done.stderr)
+    };
+    let warned = told_of("-0.02");
+    let expected =
+        "the FMU does not initialise at its start values: carrier.z.initial = \"equilibrium\" under a load of -0.02 N";
+    assert!(warned.contains(expected) && warned.contains("set others before initialisation ends"), "{warned}");
+    assert!(!told_of("0.02").contains("initialise"));
+}

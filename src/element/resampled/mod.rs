@@ -165,11 +165,6 @@ impl ResampledLaw {
         cells * (pressures * at_pressure + starts + size_of::<u64>())
     }
 
-    /// As [`earliest_touch`](Self::earliest_touch), of `table` at `temperature` (K).
-    pub fn earliest_touch_of(table: &Table, temperature: f64) -> f64 {
-        Law::new(table, temperature).earliest_touch()
-    }
-
     /// Whether elements have temperatures of their own.
     #[inline(always)]
     pub fn has_planes(&self) -> bool {

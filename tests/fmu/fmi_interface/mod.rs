@@ -15,6 +15,7 @@ mod master;
 mod material;
 mod patch;
 mod provisional;
+mod provisional_states;
 mod states;
 mod stepping;
 mod values;

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use asperity::element::{Node, Quantity, Table};
 use asperity::patch::COORDINATES;
 
 use crate::common::root;
@@ -450,6 +451,20 @@ fn start_values_initialise() {
         }
         assert_eq!(fmu.real(across), 0.0);
     }
+    // So does a patch, which starts no higher above its table than the table goes.
+    let table = Table::load(&root().join("tests/reference/patch/block.table.csv")).unwrap();
+    let (shape, count) = (table.grid.clone(), table.grid.count());
+    let (speeds, loads) = (shape.speeds.len(), shape.loads.len());
+    let node = |i: usize| Node { temperature: i / (speeds * loads), load: i / speeds % loads, speed: i % speeds };
+    let separations = (0..count).map(|i| table.value(Quantity::Separation, node(i)));
+    let (closest, farthest) =
+        separations.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), s| (s.min(low), s.max(high)));
+    let fmu = pad();
+    assert_eq!((fmu.setup(0.0), fmu.enter()), (OK, OK));
+    let z = fmu.real("z");
+    assert!(z > farthest && z < 2.0 * farthest - closest, "{z}: {farthest} to {closest}");
+    assert_eq!((fmu.set_real("z", closest), fmu.exit()), (OK, OK));
+    assert!(fmu.real("force.z") > 0.0);
     // A little lower it bears.
     let fmu = Fmu::of_table(&Grid::plain().text(), false);
     assert_eq!(fmu.enter(), OK);

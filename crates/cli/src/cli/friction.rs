@@ -11,7 +11,8 @@ use super::values::{free_parameter, picture};
 
 #[derive(Debug, Args)]
 #[command(after_help = example!(
-    "asperity calibrate docs/guide/measured.toml --data docs/guide/measured.csv \\\n      --free friction.rate_shear.strength=1e6..2e7 -o docs/guide/fitted.toml"
+    "asperity calibrate docs/guide/measured.toml --data docs/guide/measured.csv \\\n\
+    \x20     --free friction.rate_shear.strength=1e6..2e7 -o docs/guide/fitted.toml"
 ))]
 pub(crate) struct Calibrate {
     /// The scene file, in the material form; its excitation and outputs are not used.
