@@ -133,7 +133,7 @@ simulate() {
     base=${output%.fmu}
     [ -x "$target/venv/bin/python" ] || echo "Installing fmpy and matplotlib into target/venv ..." >&2
     python=$("$root/tests/python/environment.sh" "$target/venv")
-    "$asperity" simulate "$scene" -o "$base.csv" --points 200
+    "$asperity" simulate "$scene" -o "$base.csv" --rows 200
     "$python" "$root/tests/python/drive.py" "$output" "$base.csv" -o "$base.fmu.csv"
     "$python" "$root/tests/python/show.py" "$base.fmu.csv" -o "$base.png" --title "$name, simulated in fmpy" \
         --against "$base.csv"

@@ -75,7 +75,7 @@ class Bench:
             toml = self.scene(scene, ".counted.toml" if counted else ".toml")
             settings = (f"solver.relative_tolerance={tolerance:g}", f"solver.method={program.method}")
             sets = [word for setting in settings for word in ("--set", setting)]
-            return [self.asperity, "simulate", toml, "-o", output, "--points", str(POINTS), *sets]
+            return [self.asperity, "simulate", toml, "-o", output, "--rows", str(POINTS), *sets]
         options = [output, f"{tolerance:g}", "--points", str(POINTS)]
         if program.name == SUNDIALS:
             return [self.sundials, self.scene(scene, ".txt"), *options, "--variant", program.method]

@@ -86,7 +86,7 @@ def by_asperity(program, folder, pressures):
         return timed(lambda: subprocess.run([*command, "-o", "table.csv"], cwd=folder, check=True, capture_output=True))
 
     seconds = (sweep(pressures) - sweep(pressures[:1])) / (len(pressures) - 1)
-    point = ["--pressure", str(float(pressures[COMPARED])), "--speed", "1e-3", "-o", "point.png", "--data", "point.npz"]
+    point = ["--pressure", str(float(pressures[COMPARED])), "--speed", "1e-3", "-o", "point.png", "--write", "point.npz"]
     subprocess.run([program, "-q", "contact", "scene.toml", *point], cwd=folder, check=True, capture_output=True)
     return seconds, np.load(folder / "point.npz")["pressure"]
 

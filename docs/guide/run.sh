@@ -30,7 +30,7 @@ if [ "${2:-}" = --sled ]; then
     "$asperity" plot sled-layer.csv sled-element.csv --y F_x --labels layer,element -o sled.svg
     exit
 fi
-"$asperity" simulate block.toml -o block.csv --points 200 --plot block.svg --contact 4e-3=contact.svg
+"$asperity" simulate block.toml -o block.csv --rows 200 --plot block.svg --contact 4e-3=contact.svg
 "$asperity" sweep block.toml --speeds 1e-4..10/11 --pressures 1e5,2e5,4e5 -o block.sweep.csv --plot sweep.svg
 "$asperity" converge "$root/tests/reference/half-plane/rough.toml" --pressure 1e5 --speed 0.1 --points 128 \
     -o rough.converge.csv --plot converge.svg

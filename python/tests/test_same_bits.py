@@ -25,7 +25,7 @@ def test_a_run_is_that_of_the_program(name, tmp_path):
     file = SCENES / f"{name}.toml"
     program("simulate", file, "-o", "out.csv", "--points", 20, folder=tmp_path)
     written = np.genfromtxt(tmp_path / "out.csv", delimiter=",", names=True, deletechars="", dtype=np.float64)
-    result = asperity.Scene.from_toml(file).simulate(points=20)
+    result = asperity.Scene.from_toml(file).simulate(rows=20)
     # Processor time is no result.
     names = [column for column in result if column != "solver.run_time"]
     assert set(names) <= set(written.dtype.names) and len(names) > 4

@@ -102,11 +102,11 @@ def test_a_motion_is_followed_row_by_row(small):
     result = small.simulate(motion=motion)
     np.testing.assert_allclose(result.time, motion["time"], rtol=1e-15)
     # The scene's own excitation is the same motion.
-    np.testing.assert_allclose(result["F_z"][-1], small.simulate(points=1)["F_z"][-1], rtol=1e-9)
+    np.testing.assert_allclose(result["F_z"][-1], small.simulate(rows=1)["F_z"][-1], rtol=1e-9)
 
 
 def test_results_go_to_pandas_xarray_and_pictures(small):
-    result = small.simulate(points=10, elements=True, times=[1.23e-3])
+    result = small.simulate(rows=10, elements=True, times=[1.23e-3])
     assert 1.23e-3 in result.time and len(result) == 22
     assert result.elements["mode"].dtype == np.int64 and result.elements["x"].shape == (22, 8)
     frame, data = result.to_pandas(), result.to_xarray()
@@ -120,7 +120,7 @@ def test_results_go_to_pandas_xarray_and_pictures(small):
 
 def test_progress_is_told_and_may_end_the_run(block):
     told = []
-    block.sweep([0.1, 1.0], [1e5], method="layer", error=0.5, progress=told.append)
+    block.sweep([0.1, 1.0], [1e5], method="layer", friction_error=0.5, progress=told.append)
     assert all(0.0 <= done <= 1.0 for done in told)
 
     def refuse(done):
@@ -246,3 +246,14 @@ def test_a_key_that_is_missing_for_friction_to_be_that_of_rubber_is_named():
         scene.sweep([0.1], [1e5])
     with pytest.warns(UserWarning, match="without surface.fine"):
         scene.contact(1e5, 0.1)
+
+
+def test_keywords_of_old_are_refused_by_their_new_names(small):
+    refused = {
+        "points is now rows": lambda: small.simulate(points=3),
+        "error is now friction_error": lambda: small.sweep([1.0], [1e5], error=0.1),
+        "error is now fit_error": lambda: asperity.fit("none.csv", error=0.1),
+    }
+    for message, call in refused.items():
+        with pytest.raises(TypeError, match=message):
+            call()

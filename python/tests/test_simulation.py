@@ -20,7 +20,7 @@ def pressed(scene):
 
 
 def test_steps_are_those_of_a_run(small):
-    simulation, result = pressed(small), small.simulate(points=1)
+    simulation, result = pressed(small), small.simulate(rows=1)
     assert simulation["F_z"] == result["F_z"][1]
     simulation.advance(2e-3, u_rate=0.1)
     assert simulation["F_z"] == result["F_z"][2] and simulation.time == result.time[2]
@@ -115,7 +115,7 @@ def test_runs_in_threads_do_not_wait_for_each_other(small):
 LONG = {
     "simulate": "scene.with_keys({'solver.relative_tolerance': 1e-9}).simulate()",
     "advance": "asperity.Simulation(scene).advance(1e3, w=-1e-5, u_rate=0.1)",
-    "sweep": "scene.sweep([1e-3, 1e-2], [1e5], method='layer', error=1e-9, distance=1e3)",
+    "sweep": "scene.sweep([1e-3, 1e-2], [1e5], method='layer', friction_error=1e-9, distance=1e3)",
 }
 
 

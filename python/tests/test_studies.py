@@ -139,7 +139,7 @@ def test_a_comparison_is_that_of_the_program(block, tmp_path):
 def test_an_animation_is_that_of_the_program(small, tmp_path):
     file = small.save(tmp_path / "small.toml")
     program("simulate", file, "-o", "out.csv", "--points", 20, "--animate", "theirs.html", folder=tmp_path)
-    result = small.simulate(points=20, elements=True)
+    result = small.simulate(rows=20, elements=True)
     assert result.animate(tmp_path / "ours.html").read_bytes() == (tmp_path / "theirs.html").read_bytes()
     with pytest.raises(ValueError, match=r"ends in \.html"):
         result.animate(tmp_path / "ours.gif")
@@ -148,7 +148,7 @@ def test_an_animation_is_that_of_the_program(small, tmp_path):
 
 
 def test_the_contact_of_a_run_is_that_of_its_row(small):
-    result = small.simulate(points=4, elements=True, times=[1.5e-3])
+    result = small.simulate(rows=4, elements=True, times=[1.5e-3])
     row = int(np.flatnonzero(result.time == 1.5e-3)[0])
     contact = result.contact(1.5e-3)
     assert contact.time == 1.5e-3 and contact.slides > 0.0 and (contact.load_name, contact.load_unit) == (

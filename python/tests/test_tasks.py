@@ -22,7 +22,7 @@ def test_a_dma_as_a_data_frame(block):
     omega = np.geomspace(1e2, 1e7, 60)
     modulus = block.complex_modulus(omega)
     dma = pd.DataFrame({"frequency [Hz]": omega / (2 * np.pi), "E' [Pa]": modulus.real, "E'' [Pa]": modulus.imag})
-    fit = asperity.fit(dma, error=0.01)
+    fit = asperity.fit(dma, fit_error=0.01)
     scene = block.with_fit(fit)
     assert fit.error <= 0.01 and len(fit.plot().axes) == 2
     np.testing.assert_allclose(abs(scene.complex_modulus(omega)), abs(modulus), rtol=0.03)
@@ -62,7 +62,7 @@ def test_frames_of_an_animation(small):
     from matplotlib.animation import FuncAnimation
     from matplotlib.figure import Figure
 
-    result = small.simulate(points=20, elements=True)
+    result = small.simulate(rows=20, elements=True)
     x, z = result.elements["x"], result.elements["z"]
     axes = Figure().subplots()
     axes.plot(*result.profile)

@@ -66,7 +66,7 @@ def amplitude(program, folder, load, frequency, periods):
         "excitation[2].duration": MEASURED / frequency,
     }
     sets = [text for key, value in settings.items() for text in ("--set", f"{key}={value!r}")]
-    command = [program, "simulate", SCENE, "-o", result, "--points", str(ROWS), *sets]
+    command = [program, "simulate", SCENE, "-o", result, "--rows", str(ROWS), *sets]
     subprocess.run(command, check=True, capture_output=True)
     with open(result, newline="") as file:
         values = [float(row["carrier.u"]) for row in csv.DictReader(file)][-ROWS:]

@@ -11,7 +11,7 @@ mkdir -p "$folder"
 
 asperity=$("$root/scenes/program")
 for pressure in low middle high; do
-    "$asperity" simulate "$here/$pressure.toml" -o "$folder/$pressure.csv" --points 200
+    "$asperity" simulate "$here/$pressure.toml" -o "$folder/$pressure.csv" --rows 200
 done
 "$asperity" plot "$folder/low.csv" "$folder/middle.csv" "$folder/high.csv" --x u --y F_x --negate --from-motion \
     --labels "F_z = 0.05 N,F_z = 0.2 N,F_z = 0.6 N" --title "Tangential force against displacement" \

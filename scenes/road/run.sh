@@ -15,8 +15,8 @@ asperity=$("$root/scenes/program")
 "$asperity" sweep "$here/road.toml" --speeds 1e-5..10/25 --pressures 1e5,3e5,1e6 --temperatures 278.15,293.15,313.15 \
     -o "$folder/road.csv" --plot "$folder/sweep.svg" --master "$folder/master.svg"
 if [ "${2:-}" = --sweep ]; then exit; fi
-"$asperity" simulate "$here/slide.toml" -o "$folder/warm.csv" --points 400
+"$asperity" simulate "$here/slide.toml" -o "$folder/warm.csv" --rows 400
 # As if no heat reached the rubber.
-"$asperity" simulate "$here/slide.toml" --set material.heat.share=1e-9 -o "$folder/cold.csv" --points 400
+"$asperity" simulate "$here/slide.toml" --set material.heat.share=1e-9 -o "$folder/cold.csv" --rows 400
 "$asperity" plot "$folder/warm.csv" "$folder/cold.csv" --x u --y friction.coefficient --labels warm,cold \
     --title "Friction of the locked wheel" -o "$folder/slide.svg"

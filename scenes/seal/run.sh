@@ -10,4 +10,4 @@ folder=${1:-$root/target/seal}
 mkdir -p "$folder"
 
 asperity=$("$root/scenes/program")
-"$asperity" simulate "$here/seal.toml" -o "$folder/seal.csv" --points 400 --plot "$folder/seal.svg"
+"$asperity" simulate "$here/seal.toml" -o "$folder/seal.csv" --rows 400 --plot "$folder/seal.svg"

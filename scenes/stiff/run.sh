@@ -10,4 +10,4 @@ folder=${1:-$root/target/stiff}
 mkdir -p "$folder"
 
 asperity=$("$root/scenes/program")
-"$asperity" simulate "$here/stiff.toml" -o "$folder/stiff.csv" --points 400 --plot "$folder/stiff.svg"
+"$asperity" simulate "$here/stiff.toml" -o "$folder/stiff.csv" --rows 400 --plot "$folder/stiff.svg"

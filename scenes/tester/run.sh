@@ -10,7 +10,7 @@ folder=${1:-$root/target/tester}
 mkdir -p "$folder"
 
 asperity=$("$root/scenes/program")
-"$asperity" simulate "$here/tester.toml" -o "$folder/tester.csv" --points 4000
+"$asperity" simulate "$here/tester.toml" -o "$folder/tester.csv" --rows 4000
 "$asperity" plot "$folder/tester.csv" --y carrier.drive_x --labels tester --title "Force of the arm on the block" -o "$folder/force.svg"
 
 # The law of the ten masses together under 20 N: 6 N + 10 N exp(-0.3 log10(v/v_0)^2), constant up to v_0 = 1 mm/s.

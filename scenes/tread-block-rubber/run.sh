@@ -10,6 +10,6 @@ folder=${1:-$root/target/tread-block-rubber}
 mkdir -p "$folder"
 
 asperity=$("$root/scenes/program")
-"$asperity" simulate "$here/tread-block-rubber.toml" -o "$folder/tread-block-rubber.csv" --points 400
+"$asperity" simulate "$here/tread-block-rubber.toml" -o "$folder/tread-block-rubber.csv" --rows 400
 "$asperity" plot "$folder/tread-block-rubber.csv" --y friction.coefficient --y contact.ratio \
     --title "A warm tread block: friction, and the part of it that touches" -o "$folder/tread-block-rubber.svg"

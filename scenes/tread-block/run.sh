@@ -10,4 +10,4 @@ folder=${1:-$root/target/tread-block}
 mkdir -p "$folder"
 
 asperity=$("$root/scenes/program")
-"$asperity" simulate "$here/tread-block.toml" -o "$folder/tread-block.csv" --points 400 --plot "$folder/tread-block.svg"
+"$asperity" simulate "$here/tread-block.toml" -o "$folder/tread-block.csv" --rows 400 --plot "$folder/tread-block.svg"

@@ -11,5 +11,5 @@ mkdir -p "$folder"
 
 asperity=$("$root/scenes/program")
 "$asperity" sweep "$here/two-maxima.toml" --method layer --speeds 1e-5..20/15 --pressures 4e5 \
-    --temperatures 293.15,303.15 --distance 0.5 --error 0.02 -o "$folder/two-maxima.csv" \
+    --temperatures 293.15,303.15 --distance 0.5 --friction-error 0.02 -o "$folder/two-maxima.csv" \
     --plot "$folder/two-maxima.svg" --master "$folder/master.svg"

@@ -329,7 +329,8 @@ impl Patch {
     pub fn set_by_name(&mut self, name: &str, text: &str) -> Result<(), ParameterError> {
         let names = || self.parameters().into_iter().map(Parameter::name).collect();
         let parameter = self.parameters().into_iter().find(|parameter| parameter.name() == name);
-        let parameter = parameter.ok_or_else(|| ParameterError::new(name, Problem::Unknown { allowed: names() }))?;
+        let unknown = || Problem::Unknown { allowed: names(), similar: Vec::new() };
+        let parameter = parameter.ok_or_else(|| ParameterError::new(name, unknown()))?;
         let text = text.trim();
         let value = match parameter {
             Parameter::REFINE => text.parse().ok().map(Value::Integer),

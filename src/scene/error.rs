@@ -51,6 +51,8 @@ pub enum Problem {
     Unknown {
         /// Those that there are.
         allowed: Vec<String>,
+        /// Those that may be meant, by their whole paths.
+        similar: Vec<String>,
     },
     /// A required key is missing.
     Missing {
@@ -150,11 +152,18 @@ impl Problem {
         match self {
             Self::Syntax { reason } => format!("not TOML: {reason}"),
             Self::Unreadable { given, reason } => format!("{}cannot be read: {reason}", assignment(key, given)),
-            Self::Unknown { allowed } => format!("{key}: unknown; allowed: {}", allowed.join(", ")),
+            Self::Unknown { allowed, similar } => {
+                format!("{key}: unknown; allowed: {}{}", allowed.join(", "), did_you_mean(similar))
+            }
             Self::Missing { expected } => format!("{key}: missing; expected {expected}"),
             Self::Value { given, expected } => format!("{}expected {expected}", assignment(key, given)),
         }
     }
+}
+
+/// Names what may be meant in place of what was refused; nothing where nothing is like it.
+pub fn did_you_mean(similar: &[String]) -> String {
+    if similar.is_empty() { String::new() } else { format!("; did you mean {}?", similar.join(", ")) }
 }
 
 impl fmt::Display for Details {

@@ -46,7 +46,7 @@ use values::Word;
 pub use crate::tables::{LARGEST, SMALLEST};
 pub use axis::{Axis, ByAxis};
 pub use carrier::{CarrierBodies, CarrierBody, CarrierInitial, Input};
-pub use error::{ParameterError, Problem, SceneError};
+pub use error::{ParameterError, Problem, SceneError, did_you_mean};
 pub use excitation::{Force, Motion, Path, Phase};
 pub use fine_roughness::{
     FineBand, FineRoughness, FineWaves, ModulusFactors, RoughnessSpectrum, Softening, SofteningRow, SplitError,

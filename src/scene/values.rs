@@ -46,6 +46,18 @@ pub(super) fn words<T: Word>() -> String {
     format!("one of {}", quoted.join(", "))
 }
 
+/// The word in quotation marks within `expected` that looks most like `given`: hyphens, blanks and capitals do not count.
+pub(super) fn similar_word<'a>(given: &str, expected: &'a str) -> Option<&'a str> {
+    let plain = |word: &str| word.to_lowercase().replace(['-', '_', ' '], "");
+    let wanted = plain(given);
+    let most = 1 + wanted.chars().count() / 4;
+    let difference = |word: &&str| strsim::levenshtein(&wanted, &plain(word));
+    // Units and other short words are like too many.
+    let is_long = |word: &&str| word.chars().count() >= 4 || plain(word) == wanted;
+    let words = expected.split('"').skip(1).step_by(2).filter(|word| *word != given && is_long(word));
+    words.filter(|word| difference(word) <= most).min_by_key(difference)
+}
+
 impl fmt::Display for WholeRange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "a whole number from {} to {}", self.low, self.high)

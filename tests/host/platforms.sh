@@ -22,7 +22,7 @@ mkdir -p "$folder"
 for scene in "${scenes[@]}"; do
     base=$folder/$(basename "$scene" .toml)
     "$root/build-fmu.sh" "$scene" -o "$base.fmu" --all-platforms
-    "$target/release/asperity" simulate "$scene" -o "$base.csv" --points 100
+    "$target/release/asperity" simulate "$scene" -o "$base.csv" --rows 100
     for platform in linux64 win64; do
         "$python" "$here/run.py" "$base.fmu" "$base.csv" -o "$base.$platform.csv" --platform "$platform"
     done

@@ -260,7 +260,7 @@ fn result_files_are_drawn_over_each_other() {
 
 #[test]
 fn a_description_summarises_what_is_there_and_what_is_left_out() {
-    let text = run(asperity().arg("describe").arg(reference("free-chain")));
+    let text = run(asperity().args(["describe", "-v"]).arg(reference("free-chain")));
     for part in [
         "5 masses",
         "the paper's 2k + 4kn - 2n = 46 (k = 5, n = 2, every mass free)",
@@ -272,6 +272,34 @@ fn a_description_summarises_what_is_there_and_what_is_left_out() {
     ] {
         assert!(text.contains(part), "{part}: {text}");
     }
+}
+
+/// What it is, what is computed and what is left out of every scene; what follows from that with -v alone.
+#[test]
+fn a_description_is_a_screen() {
+    let folders = ["scenes", "tests/reference"].map(|folder| root().join(folder));
+    let within = |folder: &Path| fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect::<Vec<_>>();
+    let all = folders.iter().flat_map(|folder| within(folder));
+    let files = all.flat_map(|path| if path.is_dir() { within(&path) } else { vec![path] });
+    let mut described = 0;
+    for file in files.filter(|file| file.extension().is_some_and(|extension| extension == "toml")) {
+        let output = asperity().arg("describe").arg(&file).output().unwrap();
+        // A patch is described by --patch.
+        if !output.status.success() {
+            continue;
+        }
+        described += 1;
+        let text = String::from_utf8(output.stdout).unwrap();
+        let widest = text.lines().map(|line| line.chars().count()).max().unwrap();
+        assert!(text.lines().count() <= 40 && widest <= 100, "{file:?}, {widest} characters:\n{text}");
+        for label in ["Scene  ", "Layer  ", "Profile  ", "Solver  ", "Outputs  ", "Left out  ", "More  "] {
+            assert!(text.contains(label), "{file:?}: {label} in {text}");
+        }
+        assert!(!text.contains("Links  "), "{text}");
+    }
+    assert!(described > 30, "{described}");
+    let text = run(asperity().arg("describe").arg(reference("free-chain")));
+    assert!(text.contains("layer.vertical") || text.contains("friction"), "{text}");
 }
 
 #[test]
@@ -329,7 +357,7 @@ fn a_phase_ends_at_a_pressure_on_the_whole_layer() {
 fn a_description_of_a_material_has_the_derived_links_and_the_shift() {
     let folder = scratch("program-rubber");
     let scene = rubber(&folder, 1e4);
-    let text = run(asperity().arg("describe").arg(&scene));
+    let text = run(asperity().args(["describe", "-v"]).arg(&scene));
     for part in [
         "2 masses of 1e-6 kg",
         "0.001 m thick, 0.01 m wide, density 1000 kg/m³, Poisson's ratio 0.25",
@@ -391,7 +419,7 @@ fn a_description_says_which_maxwell_elements_are_replaced_and_why() {
     let describe = |excitation: &str| {
         let scene = folder.join("reduce.toml");
         fs::write(&scene, format!("name = 'a'\n{layer}\n{rest}\n{excitation}")).unwrap();
-        run(asperity().arg("describe").arg(&scene))
+        run(asperity().args(["describe", "-v"]).arg(&scene))
     };
     let text = describe("[[excitation]]\nduration = 1e-1");
     for part in [

@@ -102,7 +102,7 @@ fn moduli_of_known_terms_come_back() {
     for (known, low, high) in [(three(), -4, 6), (sixteen(), -5, 15), (sixteen(), -2, 7)] {
         let (data, frequencies) = (folder.join("dma.csv"), frequencies(low, high));
         write_moduli(&data, &known, &frequencies, || 1.0);
-        let found = found(&data, &["--error", "1e-4"]);
+        let found = found(&data, &["--fit-error", "1e-4"]);
         let difference = largest(&found, &known, &frequencies);
         assert!(difference < 1e-3, "{difference:e}");
         assert!(found.prony.len() <= known.prony.len());
@@ -122,7 +122,7 @@ fn noise_is_reported_and_its_mean_is_met() {
     let folder = scratch("fit-noise");
     let (data, frequencies) = (folder.join("dma.csv"), frequencies(-5, 15));
     write_moduli(&data, &sixteen(), &frequencies, noise(0.05));
-    let (output, result) = fit(&data, &["--error", "0.02"]);
+    let (output, result) = fit(&data, &["--fit-error", "0.02"]);
     assert_eq!(result.status.code(), Some(3), "written, but to be looked at");
     let message = String::from_utf8(result.stderr).unwrap();
     assert!(
@@ -136,7 +136,7 @@ fn noise_is_reported_and_its_mean_is_met() {
     // Some 33 unknowns for 202 figures: their own share of the noise is 5 % √(33/202) = 2 %, at the worst some times as
     // much.
     assert!(largest(&best, &sixteen(), &frequencies) < 0.1, "{}", largest(&best, &sixteen(), &frequencies));
-    let enough = found(&data, &["--error", "0.06"]);
+    let enough = found(&data, &["--fit-error", "0.06"]);
     assert!(enough.prony.len() <= 16, "{}", enough.prony.len());
 }
 
@@ -157,7 +157,7 @@ fn temperatures_make_one_curve() {
     }
     let latin: Vec<u8> = text.chars().map(|letter| u8::try_from(u32::from(letter)).unwrap()).collect();
     fs::write(&data, latin).unwrap();
-    let (_, printed) = fitted(&data, &["--wlf", "7.52,119.75,293.15", "--error", "1e-4"]);
+    let (_, printed) = fitted(&data, &["--wlf", "7.52,119.75,293.15", "--fit-error", "1e-4"]);
     assert!(printed.contains("233.15 to 353.15 K, shifted to 293.15 K"), "{printed}");
     let scene = Scene::load(&scene_of(&folder, &printed)).unwrap();
     let found = scene.material.unwrap();
@@ -200,7 +200,7 @@ fn constants_are_found_where_curves_overlap() {
     // scatter in 32 figures a temperature, five steps from the coldest to the hottest, some per cent are left.
     for (scatter, error, most) in [(0.01, "0.0105", 0.08), (0.0, "1e-3", 0.03)] {
         write(scatter);
-        let (_, result) = fit(&data, &["--error", error]);
+        let (_, result) = fit(&data, &["--fit-error", error]);
         let printed = String::from_utf8(result.stdout).unwrap();
         let found = Scene::load(&scene_of(&folder, &printed)).unwrap().material.unwrap();
         let wlf = found.wlf.unwrap();
@@ -220,7 +220,7 @@ fn constants_are_found_where_curves_overlap() {
     let shifts = folder.join("shifts.csv");
     let table = CELSIUS.map(|celsius| format!("{celsius};{}\n", log_factor(celsius))).concat();
     fs::write(&shifts, format!("T [°C];log a_T\n{table}")).unwrap();
-    let (_, printed) = fitted(&data, &["--shifts", shifts.to_str().unwrap(), "--error", "1e-3"]);
+    let (_, printed) = fitted(&data, &["--shifts", shifts.to_str().unwrap(), "--fit-error", "1e-3"]);
     assert!(printed.contains("wlf = { c1 = 7.52, c2 = 119.75, reference_temperature = 293.15"), "{printed}");
 }
 
@@ -280,14 +280,14 @@ fn the_file_says_what_it_was_fitted_to() {
     let folder = scratch("fit-file");
     let data = folder.join("dma.csv");
     write_moduli(&data, &three(), &frequencies(-4, 6), || 1.0);
-    let (output, _) = fitted(&data, &["--viscosity", "--error", "0.01"]);
+    let (output, _) = fitted(&data, &["--viscosity", "--fit-error", "0.01"]);
     let text = fs::read_to_string(output).unwrap();
     for line in
         ["# equilibrium_modulus = ", "# viscosity = 0 Pa s", "# source = dma.csv", "# data = 51 rows", "# error = "]
     {
         assert!(text.contains(line), "{line}: {text}");
     }
-    assert!(text.contains("# options = --error 0.01 --viscosity\n"), "{text}");
+    assert!(text.contains("# options = --fit-error 0.01 --viscosity\n"), "{text}");
     assert_eq!(text.lines().find(|line| !line.starts_with('#')), Some("relaxation_time [s],modulus [Pa]"));
 }
 
@@ -305,7 +305,7 @@ fn what_is_read_is_not_written_over_and_what_is_wrong_is_refused() {
     let picture = folder.join("out.svg");
     assert!(refused(&picture, &["--plot", picture.to_str().unwrap()]).contains("will not write"));
     let output = folder.join("out.csv");
-    assert!(refused(&output, &["--error", "0"]).contains("a number from 1e-12 to 0.5"));
+    assert!(refused(&output, &["--fit-error", "0"]).contains("a number from 1e-12 to 0.5"));
     assert!(refused(&output, &["--wlf", "1,2"]).contains("expected C1,C2,TREF"));
     fs::write(&data, "f [Hz],E' [MPa],E'' [MPa]\n1,2,-3\n").unwrap();
     let message = refused(&output, &[]);

@@ -70,7 +70,7 @@ fn commands(folder: &Path) -> Vec<(&'static str, Vec<String>, Vec<String>)> {
         ("plotted.svg", owned(&["plot", result, "--y", "F_x"]), owned(&["--title", "another"])),
         ("plotted.png", owned(&["plot", result, "--y", "F_x"]), owned(&["--title", "another"])),
         ("material.csv", owned(&["material", scene]), owned(&["--frequencies", "1..1e9"])),
-        ("fitted.csv", owned(&["fit", moduli, "--error", "0.1"]), owned(&["--viscosity"])),
+        ("fitted.csv", owned(&["fit", moduli, "--fit-error", "0.1"]), owned(&["--viscosity"])),
         ("surface.svg", owned(&["surface", profile]), owned(&["--smooth", "1e-5"])),
     ]
 }

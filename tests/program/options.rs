@@ -22,14 +22,14 @@ fn options_that_do_not_go_together_are_refused() {
     let lines = [
         "simulate a.toml -o x.csv --motion none.csv",
         "simulate a.toml -o x.csv --patch p.toml --motion m.csv",
-        "simulate --patch p.toml --motion m.csv -o x.csv --points 3",
+        "simulate --patch p.toml --motion m.csv -o x.csv --rows 3",
         "simulate --patch p.toml --motion m.csv -o x.csv --animate a.html",
         "simulate --patch p.toml --motion m.csv -o x.csv --contact 1=a.png",
         "simulate --patch p.toml --motion m.csv -o x.csv --elements a.npz",
         "describe a.toml --patch p.toml",
         "describe --patch p.toml --json",
         "describe --patch p.toml --plot x.svg",
-        "pack a.toml -o x.fmu --points 3",
+        "pack a.toml -o x.fmu --check-points 3",
         "pack a.toml -o x.fmu --table t.csv",
         "pack a.toml -o x.fmu --check a.toml",
         "surface a.csv --mirror --taper",
@@ -37,7 +37,7 @@ fn options_that_do_not_go_together_are_refused() {
         "surface a.csv --taper --periodic",
         "sweep a.toml --speeds 1 --forces 1 --pressures 1",
         "sweep a.toml --speeds 1 --forces 1 --shard 1/2 --plot x.svg",
-        "sweep --merge a.csv -o x.csv --error 0.1",
+        "sweep --merge a.csv -o x.csv --friction-error 0.1",
         "sweep --merge a.csv -o x.csv --set a=1",
         "sweep --merge a.csv -o x.csv --speeds 1",
         "sweep --merge a.csv -o x.csv --temperatures 300",
@@ -48,7 +48,9 @@ fn options_that_do_not_go_together_are_refused() {
         let message = refused(&line.split(' ').collect::<Vec<_>>());
         assert!(message.contains("cannot be used with"), "{line}: {message}");
     }
-    for line in ["simulate --patch p.toml -o x.csv", "pack --table t.csv -o x.fmu --points 3", "sweep --merge a.csv"] {
+    for line in
+        ["simulate --patch p.toml -o x.csv", "pack --table t.csv -o x.fmu --check-points 3", "sweep --merge a.csv"]
+    {
         let message = refused(&line.split(' ').collect::<Vec<_>>());
         assert!(message.contains("required arguments were not provided"), "{line}: {message}");
     }
@@ -89,13 +91,75 @@ fn a_plot_compares_two_files_in_words() {
 fn help_begins_with_what_the_command_does() {
     let help = run(asperity().arg("--help"));
     let commands = help.lines().filter_map(|line| line.strip_prefix("  ")?.split_once("  "));
-    let commands: Vec<_> = commands.filter(|(name, _)| !name.starts_with(['-', ' ']) && *name != "help").collect();
+    let commands: Vec<_> =
+        commands.filter(|(name, _)| !name.is_empty() && !name.starts_with(['-', ' ']) && *name != "help").collect();
     assert_eq!(commands.len(), 15, "{help}");
     for (name, summary) in commands {
         let first = run(asperity().args([name, "--help"]));
         let first = first.lines().next().unwrap();
         assert!(summary.trim().starts_with(first) || first.starts_with(summary.trim()), "{name}: {first}, {summary}");
     }
+}
+
+/// Every command's help ends with an example, and in this order they run: of a checkout with nothing else.
+#[test]
+fn examples_run() {
+    let folder = scratch("options-examples");
+    for path in ["scenes/tread-block", "scenes/road", "scenes/stiff", "scenes/two-maxima", "docs/guide"] {
+        fs::create_dir_all(folder.join(path)).unwrap();
+        for file in fs::read_dir(root().join(path)).unwrap().map(|entry| entry.unwrap()) {
+            if file.file_type().unwrap().is_file() {
+                fs::copy(file.path(), folder.join(path).join(file.file_name())).unwrap();
+            }
+        }
+    }
+    let commands = ["simulate", "plot", "describe", "pack", "fit", "material", "surface", "sweep", "converge"];
+    let commands = [&commands[..], &["calibrate", "compare", "contact", "completions", "manual", "report"]].concat();
+    for name in commands {
+        let help = run(asperity().args([name, "--help"]));
+        let (_, example) = help.split_once("Example, in a checkout of the repository:\n").unwrap();
+        let example = example.replace("\\\n", " ");
+        let mut words: Vec<&str> = example.split_whitespace().collect();
+        assert_eq!(words[..2], ["asperity", name], "{example}");
+        match name {
+            // Packing needs a library, which the FMU's tests build, and a report takes its time.
+            "pack" | "report" => assert!(folder.join(words[2]).is_file(), "{example}"),
+            _ => drop(run(asperity().current_dir(&folder).args(words.split_off(1)))),
+        }
+    }
+}
+
+/// Help is as wide as the terminal.
+#[test]
+fn help_fits_the_terminal() {
+    let widest = |columns: &str| {
+        let help = run(asperity().args(["sweep", "--help"]).env("COLUMNS", columns));
+        let (options, _) = help.split_once("Example").unwrap();
+        options.lines().filter(|line| !line.starts_with("Usage")).map(|line| line.chars().count()).max().unwrap()
+    };
+    assert!(widest("60") <= 60 && (80..=100).contains(&widest("100")) && widest("200") > 100);
+}
+
+/// One name, one meaning: names that an option had are refused by those that it has, but for those that specified command
+/// lines have.
+#[test]
+fn options_that_were_renamed_say_so() {
+    for (line, expected) in [
+        ("fit a.csv -o b.csv --error 0.1", "--error is now --fit-error"),
+        ("sweep a.toml --speeds 1 --error 0.1", "--error is now --friction-error"),
+        ("calibrate a.toml --data b.csv --free a=1..2 --error=0.1", "--error is now --friction-error"),
+        ("report a.toml -o b --points 3", "--points is now --rows"),
+    ] {
+        let message = refused(&line.split(' ').collect::<Vec<_>>());
+        assert!(message.contains(expected), "{line}: {message}");
+    }
+    let folder = scratch("options-renamed");
+    let rows = |option: &str| {
+        let out = folder.join("out.csv");
+        run(asperity().args(["simulate", &sinusoid(), option, "3", "-o"]).arg(&out));
+        fs::read_to_string(&out).unwrap().lines().count()
+    };
+    assert_eq!(rows("--points"), rows("--rows"));
 }
 
 /// All keys of a scene can be set, words without quotation marks, lists whole or by their elements; a run is that of the
@@ -148,6 +212,7 @@ fn a_setting_that_is_refused_says_which_keys_there_are() {
     ] {
         let message = refused(setting);
         assert!(message.contains(wanted) && message.lines().count() == 1, "{setting}: {message}");
+        assert!(message.matches("did you mean").count() <= 1, "{setting}: {message}");
     }
 }
 
@@ -206,7 +271,7 @@ fn tables_go_to_standard_output() {
         (&["simulate", &scene, "--points", "3", "--set", "fmu.outputs=['forces']"][..], "-o"),
         (&["material", rubber], "-o"),
         (&["sweep", flat, "--speeds", "0.1,1", "--forces", "0.5,1"], "-o"),
-        (&["fit", moduli, "--error", "0.2", "--plot", "fit.svg"], "-o"),
+        (&["fit", moduli, "--fit-error", "0.2", "--plot", "fit.svg"], "-o"),
         (&["surface", profile], "--write"),
         (&["surface", profile, "--mirror"], "--write"),
     ] {

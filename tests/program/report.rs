@@ -167,7 +167,7 @@ fn every_file_is_there_and_the_page_is_whole() {
 #[test]
 fn errors_fall_with_the_tolerance_down_to_what_the_reference_knows() {
     let folder = scratch("report-errors");
-    report(&root().join(SINUSOID), &folder, &["--repeat", "2", "--points", "20"]);
+    report(&root().join(SINUSOID), &folder, &["--repeat", "2", "--rows", "20"]);
     let rows = errors(&folder);
     let (reference, event) = (of_method(&rows, "reference"), of_method(&rows, "event"));
     assert_eq!((reference.len(), event.len()), (1, 9));
@@ -415,7 +415,7 @@ const FACTORS: [&str; 5] = ["stiffness", "mass", "relaxation_times", "speed", "c
 
 /// The cells of the scene under stress, without the ladders' runs; and the page.
 fn stressed(scene: &Path, folder: &Path, options: &[&str]) -> (Vec<Row>, String) {
-    let quick = ["--repeat", "1", "--points", "10", "--tolerances", "1e-6..1e-6", "--stress", "1"];
+    let quick = ["--repeat", "1", "--rows", "10", "--tolerances", "1e-6..1e-6", "--stress", "1"];
     report(scene, folder, &[&quick, options].concat());
     (rows(&folder.join("stress.csv")), fs::read_to_string(folder.join("index.html")).unwrap())
 }

@@ -129,7 +129,7 @@ fn each_method_says_what_it_is_for() {
     };
     for (options, expected) in [
         (&["--method", "layer", "--points", "64"][..], "--points: expected none with --method layer"),
-        (&["--error", "0.01"], "--error: expected none with --method steady"),
+        (&["--friction-error", "0.01"], "--friction-error: expected none with --method steady"),
         (&["--distance", "1"], "--distance: expected none with --method steady"),
         (&["--points", "4"], "--points: expected at least 16, found 4"),
         (&["--set", "carrier.z={ mass = 1.0 }"], "[carrier.z]"),
@@ -364,5 +364,7 @@ fn the_layers_spacing_is_no_matter_of_the_solver() {
     let sweep = ["sweep", "--force", "--speeds", "1e-2", "--pressures", "2e5", "-o", table.to_str().unwrap()];
     assert!(is_warned_of(&["describe"]));
     assert!(!is_warned_of(&sweep));
-    assert!(is_warned_of(&[&sweep[..], &["--method", "layer", "--error", "0.5", "--distance", "1e-5"]].concat()));
+    assert!(is_warned_of(
+        &[&sweep[..], &["--method", "layer", "--friction-error", "0.5", "--distance", "1e-5"]].concat()
+    ));
 }

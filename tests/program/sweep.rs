@@ -260,7 +260,10 @@ fn invalid_commands_are_refused() {
     );
     let set = ["--speeds", "1,2", "--forces", "1", "--set", "friction.coulomb=0.5"];
     assert!(asked(&set).contains("is the table of another sweep"));
-    assert!(asked(&["--speeds", "1,2", "--forces", "1", "--error", "0.1"]).contains("is the table of another sweep"));
+    assert!(
+        asked(&["--speeds", "1,2", "--forces", "1", "--friction-error", "0.1"])
+            .contains("is the table of another sweep")
+    );
     assert!(fs::read(&table).unwrap() == whole);
     assert!(
         refused(&[&scene, Path::new("-o"), &scene], &["--speeds", "1", "--forces", "1"]).contains("will not write")
@@ -304,7 +307,7 @@ fn two_maxima_move_with_the_temperature() {
             temperature,
             "--method",
             "layer",
-            "--error",
+            "--friction-error",
             "5e-3",
             "--distance",
             "0.5",

@@ -7,13 +7,13 @@ use asperity::simulation::SimulationError;
 use asperity_study::decimals::rounded;
 use asperity_study::settings::Setting;
 use asperity_study::summary::{
-    DescribedScene, FineFrictionCurve, MIDDLE_PRESSURE, described, described_patch, missing_backing,
+    DescribedScene, FineFrictionCurve, MIDDLE_PRESSURE, described, described_patch, described_shortly, missing_backing,
 };
 
 use super::cli::Describe;
 use super::figure::{Below, Curve, Figure as _, Panel, PanelRow, SideBySide, Stacked, Stroke};
 use super::files::{FileError, check_outputs, load, load_patch, print};
-use super::terminal::{lines, warn};
+use super::terminal::{LabelledLine, is_verbose, lines, screen_lines, warn};
 
 /// `asperity describe` failed.
 #[derive(Debug, thiserror::Error)]
@@ -47,7 +47,7 @@ pub(crate) fn describe(command: &Describe, path: &Path) -> Result<(), DescribeEr
 pub(crate) fn describe_patch(path: &Path, set: &[Setting]) -> Result<(), FileError> {
     let patch = load_patch(path, set)?;
     missing_backing(&patch).iter().for_each(|warning| warn(warning));
-    print(&lines(&described_patch(&patch)))
+    print(&screen_lines(&described_patch(&patch)))
 }
 
 fn json(scene: &Scene) -> Result<String, DescribeError> {
@@ -55,7 +55,14 @@ fn json(scene: &Scene) -> Result<String, DescribeError> {
 }
 
 fn text(scene: &Scene) -> Result<String, DescribeError> {
-    Ok(lines(&described(scene)?))
+    if is_verbose() {
+        return Ok(lines(&described(scene)?));
+    }
+    Ok(screen_lines(&[described_shortly(scene)?, more()].concat()))
+}
+
+fn more() -> Vec<LabelledLine> {
+    vec![("More", "-v: links, their elements and what reduce replaces, outputs, tables, the bands' law, memory".into())]
 }
 
 /// The stiffness of the links over that of the body that they stand for, over wavelength; `None` in the direct form.

@@ -42,7 +42,7 @@ impl From<&Fit> for FitOptions {
             frequency: command.frequency,
             poisson_ratio: command.poisson_ratio,
             shear: command.shear,
-            error: command.error,
+            error: command.fit_error,
             viscosity: command.viscosity,
             wlf: command.wlf,
             shifts: command.shifts.clone(),
@@ -80,7 +80,7 @@ pub(crate) fn fit(command: &Fit) -> Result<u8, FitError> {
         drawn(&fitted, &command.data).write(picture)?;
     }
     print_beside([&command.output], &summary(&fitted, command, picture.as_deref()))?;
-    if fitted.error() <= command.error {
+    if fitted.error() <= command.fit_error {
         return Ok(SUCCESS);
     }
     warn(&not_reached(&fitted, command));
@@ -89,8 +89,8 @@ pub(crate) fn fit(command: &Fit) -> Result<u8, FitError> {
 
 /// Why the error asked for was not reached: the data scatter, or known constants do not put them together.
 fn not_reached(fitted: &FittedModuli, command: &Fit) -> String {
-    let (wanted, reached) = (percent(command.error, 3), percent(fitted.error(), 3));
-    let scatter = || "the data scatter too much for less, and --error sets what is enough".to_owned();
+    let (wanted, reached) = (percent(command.fit_error, 3), percent(fitted.error(), 3));
+    let scatter = || "the data scatter too much for less, and --fit-error sets what is enough".to_owned();
     let contradiction = || fitted.consistency().filter(|found| found.is_contradiction()).map(contradiction);
     let why = fitted.blame().map(|why| with_flags(&why)).or_else(contradiction).unwrap_or_else(scatter);
     format!(
@@ -141,7 +141,7 @@ fn summary(fitted: &FittedModuli, command: &Fit, picture: Option<&Path>) -> Stri
     rows.push(("Glassy", format!("{} Pa, the sum of all moduli", short(glassy, 4))));
     rows.push(("Terms", terms(fitted)));
     rows.extend(errors(fitted, command));
-    rows.extend(consistency(fitted, command.error));
+    rows.extend(consistency(fitted, command.fit_error));
     rows.extend(shifts(fitted));
     let written = [Some(command.output.as_path()), picture].into_iter().flatten().map(named);
     rows.push(("Written", written.collect::<Vec<_>>().join(", ")));
@@ -169,7 +169,7 @@ fn errors(fitted: &FittedModuli, command: &Fit) -> Vec<LabelledLine> {
         (Test::Oscillation, FitWeight::Storage) => "E' alone",
         (Test::Oscillation, FitWeight::Loss) => "E'' alone",
     };
-    let (rms, requested) = (percent(fitted.error(), 3), percent(command.error, 3));
+    let (rms, requested) = (percent(fitted.error(), 3), percent(command.fit_error, 3));
     let mut rows = vec![
         ("Error", format!("{rms} rms of {counted}; {requested} requested")),
         ("", format!("{:<11}{:<11}{:<11}at", "", "rms", "largest")),

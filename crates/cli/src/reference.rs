@@ -52,7 +52,7 @@ fn page() -> String {
     page += &output_tables(&outputs_of_scenes());
     page += "\n## Outputs of a patch\n\nBy the groups of `[fmu] outputs`; those of `elements` are of each element, `element[i,j].…`. *only* names the key\nof `[patch]` without which there is no such output.\n";
     page += &output_tables(&outputs_of_patches());
-    page += "\n## Commands\n\nAll of them take `-q`, `--quiet`: results and warnings alone, neither notes nor progress; and `-v`,\n`--verbose`: every note where only some or their number would be printed.\n";
+    page += "\n## Commands\n\nAll of them take `-q`, `--quiet`: results and warnings alone, neither notes nor progress; and `-v`,\n`--verbose`: every note where only some or their number would be printed. The examples run in a checkout of the\nrepository.\n";
     let mut command = Arguments::command();
     command.build();
     for of in command.get_subcommands().filter(|of| !of.is_hide_set() && of.get_name() != "help") {
@@ -186,6 +186,11 @@ fn options(command: &Command) -> String {
         let option = format!("{}{values}", names.join(", "));
         let _ = writeln!(text, "| `{}` | {} |", option.trim(), cell(&format!("{meaning}{default}")));
     }
+    let example = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+    for line in example.lines().skip(1) {
+        let _ = write!(text, "\n  {line}");
+    }
+    text += "\n";
     text
 }
 

@@ -44,7 +44,7 @@ pub(crate) fn simulate(command: &Simulate, path: &Path) -> Result<(), SimulateEr
     if scene.excitation.is_empty() {
         warn("the scene has no [[excitation]]: the carrier rests, and the result file has the initial row only");
     }
-    Rows::PerPhase(command.points)
+    Rows::PerPhase(command.rows)
         .check(&scene, numbers_of_masses(&scene, command))
         .map_err(|error| SimulateError::Start(error.into()))?;
     let mut recorder = Recorder::new(&scene, command, &output)?;
@@ -125,7 +125,7 @@ fn write_frames(elements: &ElementHistory, path: &Path) -> Result<(), FileError>
 
 /// Runs the scene; what the run comes to.
 fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<Vec<LabelledLine>, SimulateError> {
-    let rows = Rows::PerPhase(command.points);
+    let rows = Rows::PerPhase(command.rows);
     let runner = Runner::new(recorder.shown(scene), rows, 0.0).map_err(SimulateError::Start)?;
     let mut runner = runner.with_rows_at(command.contact.iter().map(|&(time, _)| time).collect());
     let mut written = Ok(());

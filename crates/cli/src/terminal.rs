@@ -13,7 +13,16 @@ use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, P
 
 /// The lines as text, aligned after their labels, and broken between words where they are long.
 pub(crate) fn lines(lines: &[LabelledLine]) -> String {
-    let options = textwrap::Options::new(LINE_LENGTH).subsequent_indent(CONTINUED).break_words(false);
+    lines_within(lines, LINE_LENGTH)
+}
+
+/// As [`lines`], no longer than those of a screen.
+pub(crate) fn screen_lines(lines: &[LabelledLine]) -> String {
+    lines_within(lines, SCREEN)
+}
+
+fn lines_within(lines: &[LabelledLine], length: usize) -> String {
+    let options = textwrap::Options::new(length).subsequent_indent(CONTINUED).break_words(false);
     // Which files were written is a note.
     let is_said = |(label, _): &&LabelledLine| !(is_quiet() && *label == WRITTEN);
     lines
@@ -27,6 +36,8 @@ pub(crate) fn lines(lines: &[LabelledLine]) -> String {
 const WRITTEN: &str = "Written";
 /// Characters of a line.
 const LINE_LENGTH: usize = 120;
+/// Characters of a line of a summary on a screen.
+const SCREEN: usize = 100;
 /// What is before the continuation of a line.
 const CONTINUED: &str = "              ";
 

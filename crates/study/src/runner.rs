@@ -95,7 +95,7 @@ impl Rows {
         let columns = (1 + scene.inputs().len() + variables(scene).len() + more) as u64;
         let rows = self.count(scene);
         check_memory(rows.saturating_mul(columns).saturating_mul(BYTES), || {
-            format!("`points`: {rows} rows of {columns} numbers")
+            format!("`rows`: {rows} rows of {columns} numbers")
         })
     }
 

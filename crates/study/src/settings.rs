@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use asperity::patch::{Patch, PatchError};
-use asperity::scene::{ParameterError, Problem, Scene, SceneError, similar_keys};
+use asperity::scene::{ParameterError, Scene, SceneError};
 use asperity::tables::quantity_with_unit;
 use asperity_formats::Instruments;
 use toml_edit::{Array, DocumentMut, Item, Table, TableLike, Value};
@@ -23,8 +23,6 @@ pub enum OverrideError {
     NoElement { key: String, list: String, count: usize },
     #[error("{key}: {name} is {found} in the file")]
     NothingBelow { key: String, name: String, found: &'static str },
-    #[error("{problem}; did you mean {}?", .similar.join(", "))]
-    Unknown { key: String, problem: String, similar: Vec<String> },
     #[error("{problem}")]
     Refused { key: String, problem: String },
     #[error(transparent)]
@@ -38,7 +36,6 @@ impl OverrideError {
             Self::NotAPath { key }
             | Self::NoElement { key, .. }
             | Self::NothingBelow { key, .. }
-            | Self::Unknown { key, .. }
             | Self::Refused { key, .. } => key,
             Self::Parameter(error) => error.name(),
         }
@@ -106,12 +103,7 @@ fn refusal(error: SceneError, own: Option<SceneError>, file: &Path) -> Refusal<S
 
 /// A key of the text that was not refused before.
 fn refused(error: &SceneError) -> OverrideError {
-    let (problem, similar) = (error.without_place(), similar_keys(error.key()));
-    let key = error.key().to_owned();
-    match error.problem() {
-        Problem::Unknown { .. } if !similar.is_empty() => OverrideError::Unknown { key, problem, similar },
-        _ => OverrideError::Refused { key, problem },
-    }
+    OverrideError::Refused { key: error.key().to_owned(), problem: error.without_place() }
 }
 
 /// The text of a TOML file with keys set; what stands in files that it names stays there.

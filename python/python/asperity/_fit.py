@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
-from ._arguments import Floats, numbers
+from ._arguments import Floats, numbers, renamed
 from ._files import table_file
 
 if TYPE_CHECKING:
@@ -111,9 +111,10 @@ class Fit:
         return f"<asperity.Fit: {len(self.moduli)} terms, error {100 * self.error:.3g} %>"
 
 
+@renamed(error="fit_error")
 def fit(
     data: object,
-    error: float = 0.02,
+    fit_error: float = 0.02,
     *,
     viscosity: bool = False,
     wlf: tuple[float, float, float] | None = None,
@@ -135,7 +136,7 @@ def fit(
         data: The path of a table or a workbook, a DataFrame, or a mapping of names to arrays of shape (n,): frequency,
             E' and E'' or tan delta, and temperature if it varies; or time and E(t). Names have units, as in
             ``"frequency [Hz]"``.
-        error: Admissible root mean square of the relative errors.
+        fit_error: Admissible root mean square of the relative errors.
         viscosity: Whether to fit a viscosity in parallel to the terms too.
         wlf: C_1, C_2 (K) and T_ref (K), which shift rows at other temperatures; None: found where curves overlap.
         shifts: A table of shift factors in their place, with columns temperature and a_T.
@@ -157,7 +158,7 @@ def fit(
     with table_file(data) as path:
         native = _native.fit(
             path,
-            float(error),
+            float(fit_error),
             viscosity,
             wlf,
             None if shifts is None else Path(shifts),
@@ -173,7 +174,7 @@ def fit(
             float(expansion),
         )
     for text in native.warnings:
-        warnings.warn(text, stacklevel=2)
+        warnings.warn(text, stacklevel=3)
     if native.error > error:
-        warnings.warn(f"the error asked for, {error:g}, cannot be reached: it is {native.error:.3g}", stacklevel=2)
+        warnings.warn(f"the error asked for, {fit_error:g}, cannot be reached: it is {native.error:.3g}", stacklevel=3)
     return Fit(native)

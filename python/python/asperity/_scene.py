@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
-from ._arguments import Progress, axis, numbers, positive, shown, to_toml
+from ._arguments import Progress, axis, numbers, positive, renamed, shown, to_toml
 from ._files import table_file
 from ._library import options as library_options
 from ._library import warn_of_start
@@ -40,9 +40,10 @@ class Scene(SceneInputs):
         SceneError: Where a key or a value is refused: with file, line and key.
     """
 
+    @renamed(points="rows")
     def simulate(
         self,
-        points: int = 50,
+        rows: int = 50,
         motion: object = None,
         *,
         times: ArrayLike = (),
@@ -54,7 +55,7 @@ class Scene(SceneInputs):
         The interpreter's lock is released, and Ctrl-C ends the run.
 
         Args:
-            points: Number of rows for each phase; a motion has a row for each of its own.
+            rows: Number of rows for each phase; a motion has a row for each of its own.
             motion: What :meth:`with_motion` takes; None: the scene's excitation.
             times: Times of rows besides these, s, within the run.
             elements: Whether to keep position, forces and mode of every mass, for :meth:`Result.animate` and
@@ -67,21 +68,22 @@ class Scene(SceneInputs):
         from ._result import Result
 
         scene = self if motion is None else self.with_motion(motion)
-        if points < 1:
-            raise ValueError(f"points = {points}: expected 1 or more")
+        if rows < 1:
+            raise ValueError(f"rows = {rows}: expected 1 or more")
         if scene.duration <= 0.0:
             raise ValueError(f"{self.name}: the scene has no excitation to run along; expected motion=, or [[excitation]]")
         also_at = numbers("times", times)
         if not np.all((also_at >= 0.0) & (also_at <= scene.duration)):
             raise ValueError(f"times: expected numbers from 0 to {scene.duration:g} s, the end of the run")
-        found = _native.simulate(scene._native, points, also_at.tolist(), elements, shown(progress))
+        found = _native.simulate(scene._native, rows, also_at.tolist(), elements, shown(progress))
         (columns, units), (of_masses, mass_units), instants, said = found
         for text in said:
-            warnings.warn(text, stacklevel=2)
-        rows = len(columns["time"])
-        fields = {name: values.reshape(rows, -1) for name, values in of_masses.items()}
+            warnings.warn(text, stacklevel=3)
+        length = len(columns["time"])
+        fields = {name: values.reshape(length, -1) for name, values in of_masses.items()}
         return Result(scene.name, columns, {**mass_units, **units}, fields, scene.profile, scene, instants)
 
+    @renamed(error="friction_error")
     def sweep(
         self,
         speeds: ArrayLike,
@@ -91,7 +93,7 @@ class Scene(SceneInputs):
         forces: ArrayLike | None = None,
         method: Method | None = None,
         points: int | None = None,
-        error: float | None = None,
+        friction_error: float | None = None,
         distance: float | None = None,
         progress: Progress = False,
     ) -> Table:
@@ -107,7 +109,7 @@ class Scene(SceneInputs):
             method: "steady" solves for steady sliding, "layer" lets the layer slide until it is steady; None: "steady"
                 where the scene can be solved for.
             points: Points of a period along x, with "steady".
-            error: Admissible standard error of friction over it, with "layer"; None: 5e-3.
+            friction_error: Admissible standard error of friction over it, with "layer"; None: 5e-3.
             distance: Longest distance that a layer slides, m; None: 100 blocks.
             progress: True for a line on standard error, or a function of the fraction done.
 
@@ -124,17 +126,17 @@ class Scene(SceneInputs):
             None if temperatures is None else axis("temperatures", temperatures),
             method,
             points,
-            error,
+            friction_error,
             distance,
             shown(progress),
         )
         for warning in said:
-            warnings.warn(warning, stacklevel=2)
+            warnings.warn(warning, stacklevel=3)
         table = Table(text)
         failed = [status for status in table.status.ravel() if status not in ("steady", "full contact")]
         if failed:
             text = f"{len(failed)} of {table.status.size} points are not steady or failed, the first: {failed[0]}"
-            warnings.warn(f"{text}; Table.status says which", stacklevel=2)
+            warnings.warn(f"{text}; Table.status says which", stacklevel=3)
         return table
 
     def contact(self, pressure: float, speed: float, points: int | None = None) -> Contact:
@@ -238,7 +240,7 @@ class Scene(SceneInputs):
         *,
         method: Method | None = None,
         points: int | None = None,
-        error: float | None = None,
+        friction_error: float | None = None,
         distance: float | None = None,
     ) -> Calibration:
         """Fits numbers of the scene to measured friction.
@@ -251,7 +253,7 @@ class Scene(SceneInputs):
                 logarithm is fitted.
             method: As for :meth:`sweep`.
             points: As for :meth:`sweep`.
-            error: As for :meth:`sweep`.
+            friction_error: As for :meth:`sweep`.
             distance: As for :meth:`sweep`.
 
         Raises:
@@ -261,9 +263,9 @@ class Scene(SceneInputs):
 
         bounds = [(key, float(low), float(high)) for key, (low, high) in free.items()]
         with table_file(data) as path:
-            found = _native.calibrate(self._native, path, bounds, method, points, error, distance)
+            found = _native.calibrate(self._native, path, bounds, method, points, friction_error, distance)
         for text in found["warnings"]:
-            warnings.warn(text, stacklevel=2)
+            warnings.warn(text, stacklevel=3)
         settings = {one["key"]: to_toml(one["value"]) for one in found["parameters"]}
         return Calibration._of(found, self._changed(settings))
 

@@ -39,20 +39,53 @@ fn find_below(keys: &'static [Key], at: At, path: &str) -> Option<(&'static Key,
     }
 }
 
-/// The paths of other keys of a scene and of a patch that look like `given`, or end with it; elements of lists as
+/// The paths of other keys of a scene and of a patch that look most like `given`, or end with it; elements of lists as
 /// `[1]`.
 pub fn similar_keys(given: &str) -> Vec<String> {
     let all = rows(ROOT).into_iter().chain(rows(PATCH_ROOT)).map(|row| row.path.replace("[]", "[1]"));
-    let mut similar: Vec<String> = all.filter(|path| path != given && is_similar(given, path)).collect();
+    closest(given, all)
+}
+
+/// Those of `paths`, but `given` itself, that look most like it, or end with it.
+pub(in crate::scene) fn closest(given: &str, paths: impl Iterator<Item = String>) -> Vec<String> {
+    let difference = |path: &str| if is_end_of(given, path) { 0 } else { strsim::levenshtein(given, path) };
+    let similar = paths.filter(|path| path != given && is_similar(given, path)).map(|path| (difference(&path), path));
+    let mut similar: Vec<(usize, String)> = similar.collect();
     similar.sort_unstable();
     similar.dedup();
-    similar
+    let least = similar.first().map_or(0, |(difference, _)| *difference);
+    similar.into_iter().take_while(|(difference, _)| *difference == least).map(|(_, path)| path).collect()
+}
+
+/// The paths of keys with the name at the end of `given`, which is none of the file's, in its other tables; none where
+/// there are many.
+pub(in crate::scene) fn elsewhere(root: &'static [Key], form: Form, given: &str) -> Vec<String> {
+    /// Shorter names, such as x, say too little.
+    const LEAST_LETTERS: usize = 4;
+    const MANY: usize = 4;
+    let name = given.rsplit('.').next().unwrap_or_default();
+    let all = || rows(root).into_iter().filter(|row| row.path != RETIRED);
+    let of_form = |row: &KeyRow| row.key.form.is_none_or(|own| own == form);
+    let found: Vec<String> = all()
+        .filter(|row| row.key.name == name && of_form(row) && !row.path.starts_with(ROUGHNESS))
+        .map(|row| row.path.replace("[]", "[1]"))
+        .collect();
+    let is_of_another_kind = all().any(|row| without_numbers(given) == without_numbers(&row.path));
+    if is_of_another_kind || name.len() < LEAST_LETTERS || found.len() >= MANY { Vec::new() } else { found }
+}
+
+/// A path without the numbers of elements.
+fn without_numbers(path: &str) -> String {
+    path.chars().filter(|character| !character.is_ascii_digit()).collect()
 }
 
 /// Whether a few letters differ, or only the end of the path is given.
 pub(in crate::scene) fn is_similar(given: &str, name: &str) -> bool {
-    let end_of_path = name.strip_suffix(given).is_some_and(|start| start.ends_with('.'));
-    end_of_path || strsim::levenshtein(given, name) <= 1 + given.chars().count() / 8
+    is_end_of(given, name) || strsim::levenshtein(given, name) <= 1 + given.chars().count() / 8
+}
+
+fn is_end_of(given: &str, path: &str) -> bool {
+    path.strip_suffix(given).is_some_and(|start| start.ends_with('.'))
 }
 
 /// A key of a file, for a list of all keys.

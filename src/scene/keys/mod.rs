@@ -15,7 +15,7 @@ use super::{Scene, Unit};
 
 pub(super) use field::{At, Field};
 pub use list::{KeyEntry, patch_keys, scene_keys, similar_keys};
-pub(super) use list::{KeyRow, fields, find, is_similar, range_of};
+pub(super) use list::{KeyRow, closest, elsewhere, fields, find, is_similar, range_of};
 pub(super) use patch::{PATCH_ROOT, ShapeKind};
 pub(super) use scene_file::{RETIRED, ROOT};
 pub(super) use surface::SurfaceKind;

@@ -171,6 +171,6 @@ impl Scene {
         let names: Vec<String> = self.parameters().into_iter().map(Parameter::name).collect();
         let similar: Vec<String> = names.iter().filter(|other| keys::is_similar(name, other)).cloned().collect();
         let allowed = if similar.is_empty() { names } else { similar };
-        ParameterError::new(name, Problem::Unknown { allowed })
+        ParameterError::new(name, Problem::Unknown { allowed, similar: Vec::new() })
     }
 }

@@ -55,11 +55,11 @@ impl Scene {
     /// As for [`load`](Self::load).
     pub fn parse_with(text: &str, file: &FilePath, formats: &dyn SurfaceFormats) -> Result<Self> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let source = Source { file, text, form: Form::Direct, formats };
+        let source = Source { file, text, form: Form::Direct, keys: ROOT, formats };
         let document = source.parse()?;
         let document = document.get_ref();
         let form = if document.contains_key("material") { Form::Material } else { Form::Direct };
-        read_scene(TableReader::root(Source { form, ..source }, document, ROOT)?)
+        read_scene(TableReader::root(Source { form, ..source }, document)?)
     }
 }
 

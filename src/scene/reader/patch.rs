@@ -51,9 +51,9 @@ impl PatchFile {
     /// As for [`load`](Self::load).
     pub fn parse(text: &str, file: &FilePath) -> Result<Self> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let source = Source { file, text, form: Form::Direct, formats: &TextAlone };
+        let source = Source { file, text, form: Form::Direct, keys: PATCH_ROOT, formats: &TextAlone };
         let document = source.parse()?;
-        let mut root = TableReader::root(source, document.get_ref(), PATCH_ROOT)?;
+        let mut root = TableReader::root(source, document.get_ref())?;
         let name = read_name(&root.required("name")?)?;
         let table_entry = root.required("table")?;
         let mut table = table_entry.open()?;

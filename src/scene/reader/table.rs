@@ -8,7 +8,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::scene::error::{Location, Problem, SceneError};
 use crate::scene::keys::{self, Absent, Allowed, At, Field, Form, Key, Kinds};
-use crate::scene::values::{NumberRange, Value, Word, words};
+use crate::scene::values::{NumberRange, Value, Word, similar_word, words};
 use crate::scene::{Scene, SurfaceFormats};
 
 pub(super) type Result<T> = std::result::Result<T, SceneError>;
@@ -22,6 +22,8 @@ pub(super) struct Source<'a> {
     pub(super) file: &'a Path,
     pub(super) text: &'a str,
     pub(super) form: Form,
+    /// The keys that such a file has.
+    pub(super) keys: &'static [Key],
     /// What files of surfaces it may name beside text.
     pub(super) formats: &'a dyn SurfaceFormats,
 }
@@ -94,9 +96,12 @@ impl<'a> Entry<'a> {
         SceneError::new(self.location(), &self.path, problem)
     }
 
-    /// Refuses the value for not being what was `expected`.
+    /// Refuses the value for not being what was `expected`; of words in quotation marks, one that looks like it is named.
     pub(super) fn refuse(&self, expected: impl ToString) -> SceneError {
-        self.error(Problem::value(self.given(), expected))
+        let expected = expected.to_string();
+        let meant = self.value.as_str().and_then(|given| similar_word(given, &expected));
+        let hint = meant.map(|word| format!("; did you mean \"{word}\"?")).unwrap_or_default();
+        self.error(Problem::value(self.given(), expected + &hint))
     }
 
     pub(super) fn refuse_count(&self, count: usize, expected: &str) -> SceneError {
@@ -233,9 +238,9 @@ fn whole(value: &DeValue<'_>) -> Option<i64> {
 }
 
 impl<'a> TableReader<'a> {
-    /// The table of a whole file, which has these `keys`; they are checked.
-    pub(super) fn root(source: Source<'a>, table: &'a DeTable<'a>, keys: &'static [Key]) -> Result<Self> {
-        let root = Self { source, path: String::new(), offset: 0, table, keys, asked: Vec::new() };
+    /// The table of a whole file; its keys are checked.
+    pub(super) fn root(source: Source<'a>, table: &'a DeTable<'a>) -> Result<Self> {
+        let root = Self { source, path: String::new(), offset: 0, table, keys: source.keys, asked: Vec::new() };
         root.check_keys()?;
         Ok(root)
     }
@@ -278,11 +283,21 @@ impl<'a> TableReader<'a> {
         match names.filter(|(name, _)| !allowed.contains(name)).min_by_key(|(_, offset)| *offset) {
             Some((name, offset)) => {
                 let names = allowed.iter().filter(|name| self.full(name) != keys::RETIRED);
-                let problem = Problem::Unknown { allowed: names.copied().map(String::from).collect() };
+                let allowed: Vec<String> = names.copied().map(String::from).collect();
+                let problem = Problem::Unknown { similar: self.similar(name, &allowed), allowed };
                 Err(SceneError::new(self.source.location(offset), self.full(name), problem))
             }
             None => Ok(()),
         }
+    }
+
+    /// The paths of keys that an unknown one may stand for: in this table, else in another one of the file.
+    fn similar(&self, name: &str, allowed: &[String]) -> Vec<String> {
+        let given = self.full(name);
+        // Names of a letter or two are like too many.
+        let is_long = |other: &&String| name.len().min(other.len()) > 2;
+        let here = keys::closest(&given, allowed.iter().filter(is_long).map(|name| self.full(name)));
+        if here.is_empty() { keys::elsewhere(self.source.keys, self.source.form, &given) } else { here }
     }
 
     fn full(&self, name: &str) -> String {

@@ -43,11 +43,13 @@ fn bodies() {
             ("[carrier.x]\nmass = 1\ndamping = -2.0", &format!("3 carrier.x.damping = -2.0: expected {NOT_NEGATIVE}")),
             (
                 "[carrier.z]\nmass = 1\npull = 1",
-                "3 carrier.z.pull: unknown; allowed: mass, stiffness, damping, load, start, start_rate, initial",
+                "3 carrier.z.pull: unknown; allowed: mass, stiffness, damping, load, start, start_rate, initial; did you mean \
+                 carrier.x.pull, excitation[1].pull?",
             ),
             (
                 "[carrier.x]\nmass = 1\ninitial = 'equilibrium'",
-                "3 carrier.x.initial: unknown; allowed: mass, stiffness, damping, pull, start, start_rate",
+                "3 carrier.x.initial: unknown; allowed: mass, stiffness, damping, pull, start, start_rate; did you mean \
+                 layer.initial, carrier.z.initial?",
             ),
             ("[carrier.y]\nmass = 1", "1 carrier.y: unknown; allowed: x, z"),
             (

@@ -29,13 +29,13 @@ pub(crate) enum ContactCommandError {
 /// Solves for steady sliding, prints what it is, and writes the picture and the data.
 pub(crate) fn contact(command: &Contact) -> Result<(), ContactCommandError> {
     let scene = load_without_run(&command.scene, &command.set, |_| false)?;
-    let outputs: Vec<_> = [&command.output].into_iter().chain(&command.data).cloned().collect();
+    let outputs: Vec<_> = [&command.output].into_iter().chain(&command.write).cloned().collect();
     check_outputs(&outputs, scene.sources(&command.scene))?;
     let SteadyState { pressure, speed } = command.at;
     let solved = solve_contact(&scene, &ContactOptions { pressure, speed, points: command.points })?;
     let SolvedContact { surface, slide, fields, problem, warnings } = &solved;
     picture::write(surface, fields, slide.area, &command.output)?;
-    if let Some(path) = &command.data {
+    if let Some(path) = &command.write {
         let bytes = if ends_in(path, "npz") {
             data::npz(fields).map_err(|source| ContactCommandError::Data { path: path.clone(), source })?
         } else {
@@ -64,7 +64,7 @@ fn summary(scene: &Scene, command: &Contact, slide: &SteadySlide, fields: &Conta
     if let Some(flash) = slide.flash_mean {
         labelled.push(("Flash", format!("{} K above the mean of the surface", digits(flash))));
     }
-    let names: Vec<String> = [&command.output].into_iter().chain(&command.data).map(|path| named(path)).collect();
+    let names: Vec<String> = [&command.output].into_iter().chain(&command.write).map(|path| named(path)).collect();
     labelled.push(("Written", names.join(", ")));
     lines(&labelled)
 }

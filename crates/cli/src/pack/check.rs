@@ -26,7 +26,7 @@ pub(super) fn check_element(
 ) -> Result<Vec<LabelledLine>, PackError> {
     let check = ElementCheck::new(contact, load_without_run(scene, &[], |_| true)?)?;
     let folder = folder_beside(&command.output)?;
-    let points = check.points(command.points as usize, &Bars::new().watch()).map_err(CheckError::from)?;
+    let points = check.points(command.check_points as usize, &Bars::new().watch()).map_err(CheckError::from)?;
     write(&folder.join("points.csv"), points.table())?;
     errors_of_points(&points).write(&folder.join("errors.svg"))?;
     let mut lines = points.lines();
@@ -46,7 +46,7 @@ pub(super) fn check_element(
 /// Compares elements with their layers and the patch with a finer one, writes the results beside the FMU and summarises
 /// them.
 pub(super) fn check_patch(command: &Pack, patch: &Patch, scene: &Path) -> Result<Vec<LabelledLine>, PackError> {
-    let check = PatchCheck::new(patch, load_without_run(scene, &[], |_| true)?, command.points as usize)?;
+    let check = PatchCheck::new(patch, load_without_run(scene, &[], |_| true)?, command.check_points as usize)?;
     let folder = folder_beside(&command.output)?;
     let bars = Bars::new();
     let sliding = Sliding::run(&check, &bars.watch())?;

@@ -45,7 +45,7 @@ impl<'a> WrittenReport<'a> {
         let command = self.command;
         let options = ReportOptions {
             tolerances: command.tolerances.0.clone(),
-            points: command.points,
+            points: command.rows,
             repeat: command.repeat,
             stress: command.stress,
             stress_time: command.stress_time,

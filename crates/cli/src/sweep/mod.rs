@@ -154,7 +154,7 @@ fn run(command: &Sweep, plan: &SweepPlan, file: &TableFile, output: &Path) -> Re
 impl Sliding {
     /// What of it is not the command line's.
     pub(crate) fn options(&self) -> SlidingOptions {
-        let Self { method, points, error, distance } = *self;
+        let Self { method, points, friction_error: error, distance, .. } = *self;
         SlidingOptions { method, points, error, distance }
     }
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use asperity::element::OperatingPoint;
-use asperity::scene::{ParameterError, similar_keys};
+use asperity::scene::{ParameterError, did_you_mean, similar_keys};
 use asperity::tables::ContentError;
 use rmpfit::MPError;
 
@@ -80,7 +80,7 @@ pub enum ModelError {
 pub enum FreeParameterError {
     #[error(
         "`free` {key}: expected a number in the scene file, to start from; the file has none there{}",
-        similar_in_words(key)
+        did_you_mean(&similar_keys(key))
     )]
     NoNumber { key: String },
     #[error("`free` {key}: expected it once")]
@@ -93,11 +93,6 @@ pub enum FreeParameterError {
     HeatOfLayer { key: String },
     #[error("`free` {key}: {problem}")]
     Bound { key: String, problem: ModelError },
-}
-
-fn similar_in_words(key: &str) -> String {
-    let similar = similar_keys(key);
-    if similar.is_empty() { String::new() } else { format!("; did you mean {}?", similar.join(", ")) }
 }
 
 /// The table of measured friction does not go with the scene, or is none.

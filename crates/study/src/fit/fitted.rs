@@ -226,7 +226,7 @@ impl FittedModuli {
 
     /// The options that were given.
     fn options_in_words(&self) -> String {
-        let mut text = format!("`error` {}", plain(self.options.error));
+        let mut text = format!("`fit_error` {}", plain(self.options.error));
         if let Some(wlf) = self.options.wlf {
             text += &format!(" `wlf` {},{},{}", plain(wlf.c1), plain(wlf.c2), plain(wlf.reference_temperature));
         }

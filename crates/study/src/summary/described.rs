@@ -9,6 +9,7 @@ use asperity_fmi::FmuModel;
 
 use super::patch::patch_rows;
 use super::scene::scene_rows;
+use super::short::short_scene_rows;
 use crate::labelled::{LabelledLine, labelled};
 use crate::runner::start;
 
@@ -18,11 +19,25 @@ use crate::runner::start;
 /// Where no run can start with it.
 pub fn described(scene: &Scene) -> Result<Vec<LabelledLine>, SimulationError> {
     Simulation::new(scene, &start(scene, 0.0))?;
-    let title = scene.description.as_ref().map_or_else(|| scene.name.clone(), |text| format!("{}: {text}", scene.name));
     let bytes = FmuModel::memory(&Arc::new(scene.clone()));
     let memory = ("Memory", format!("at most {} MiB an instance of the FMU", bytes.div_ceil(1 << 20)));
     let tables = labelled("Tables", scene.notes.iter().map(|read| read.text.clone()));
-    Ok([vec![("Scene", title)], scene_rows(scene), tables, vec![memory]].concat())
+    Ok([vec![title(scene)], scene_rows(scene), tables, vec![memory]].concat())
+}
+
+/// The same on one screen: what it is, what is computed and left out, and what was assumed of its tables.
+///
+/// # Errors
+/// As for [`described`].
+pub fn described_shortly(scene: &Scene) -> Result<Vec<LabelledLine>, SimulationError> {
+    Simulation::new(scene, &start(scene, 0.0))?;
+    let assumed = scene.notes.iter().filter(|read| read.assumed).map(|read| read.text.clone());
+    Ok([vec![title(scene)], short_scene_rows(scene), labelled("Tables", assumed)].concat())
+}
+
+fn title(scene: &Scene) -> LabelledLine {
+    let text = scene.description.as_ref().map_or_else(|| scene.name.clone(), |text| format!("{}: {text}", scene.name));
+    ("Scene", text)
 }
 
 /// The summary of a patch.

@@ -33,6 +33,16 @@ pub(super) fn rows(scene: &Scene) -> Vec<String> {
     rows
 }
 
+/// Which waves there are below the profile, and what friction they give.
+pub(super) fn short_rows(scene: &Scene) -> Vec<String> {
+    let Some(fine) = &scene.fine else { return Vec::new() };
+    let mut rows = vec![fine.describe(), gradients(scene)];
+    if !scene.fine_bands().is_empty() && scene.layer.element_area().is_some() {
+        rows.extend(parts(scene));
+    }
+    rows
+}
+
 fn number(value: f64) -> String {
     decimal(rounded(value, 4), 1e-3..1e5)
 }
@@ -99,24 +109,37 @@ fn law_table(law: &FineFriction, area: f64) -> Vec<String> {
     std::iter::once(speeds_row("mu_h, A_r/A under")).chain(PRESSURES.map(row)).collect()
 }
 
-/// Friction by the theory over profile and bands: its parts, and what each decade of wavelengths gives.
-fn parts_table(scene: &Scene, fine: &FineRoughness) -> Vec<String> {
+/// Friction by the theory over profile and bands at each of [`SPEEDS`]; nothing where there is none.
+fn wholes(scene: &Scene) -> Option<[WholeFriction; 3]> {
     let wholes = SPEEDS.map(|speed| WholeFriction::new(scene, MIDDLE, speed));
-    let Some(last) = wholes.last().filter(|whole| whole.friction() > 0.0) else { return Vec::new() };
-    let row = |name: &str, of: &dyn Fn(&WholeFriction) -> f64| {
-        let share = |whole: &WholeFriction| format!("{:.1} %", 100.0 * of(whole) / whole.friction());
-        table_row(name, wholes.each_ref().map(share))
-    };
+    wholes.last().is_some_and(|last| last.friction() > 0.0).then_some(wholes)
+}
+
+/// A row of shares of friction.
+fn shares(wholes: &[WholeFriction; 3], name: &str, of: &dyn Fn(&WholeFriction) -> f64) -> String {
+    let share = |whole: &WholeFriction| format!("{:.1} %", 100.0 * of(whole) / whole.friction());
+    table_row(name, wholes.each_ref().map(share))
+}
+
+/// The parts of friction by the theory.
+fn parts(scene: &Scene) -> Vec<String> {
+    let Some(wholes) = wholes(scene) else { return Vec::new() };
     let friction = wholes.each_ref().map(|whole| format!("{:.3}", whole.friction()));
-    let mut rows = vec![
+    vec![
         format!("friction under {MIDDLE:.0e} Pa, by Persson's theory over profile and bands:"),
         speeds_row(""),
         table_row("friction", friction),
-        row("  profile", &|whole| whole.hysteresis(|wave| !wave.is_fine)),
-        row("  bands", &|whole| whole.hysteresis(|wave| wave.is_fine)),
-        row("  shear, coulomb", &|whole| whole.adhesion),
-    ];
-    if fine.hysteresis {
+        shares(&wholes, "  profile", &|whole| whole.hysteresis(|wave| !wave.is_fine)),
+        shares(&wholes, "  bands", &|whole| whole.hysteresis(|wave| wave.is_fine)),
+        shares(&wholes, "  shear, coulomb", &|whole| whole.adhesion),
+    ]
+}
+
+/// The parts of friction, and what each decade of wavelengths gives.
+fn parts_table(scene: &Scene, fine: &FineRoughness) -> Vec<String> {
+    let mut rows = parts(scene);
+    if let Some(wholes) = wholes(scene).filter(|_| fine.hysteresis) {
+        let [.., last] = &wholes;
         let decade = |wave_number: f64| (TAU / wave_number).log10().floor() as i32;
         let mut decades: Vec<i32> = last.by_wave.iter().map(|wave| decade(wave.wave_number)).collect();
         decades.sort_unstable();
@@ -125,7 +148,7 @@ fn parts_table(scene: &Scene, fine: &FineRoughness) -> Vec<String> {
         rows.extend(decades.into_iter().rev().map(|of| {
             let part = |whole: &WholeFriction| whole.hysteresis(|wave| decade(wave.wave_number) == of);
             let bar = "#".repeat((BAR * part(last) / last.friction()).round() as usize);
-            format!("{}  {bar}", row(&format!("  1e{} to 1e{of} m", of + 1), &part)).trim_end().to_owned()
+            format!("{}  {bar}", shares(&wholes, &format!("  1e{} to 1e{of} m", of + 1), &part)).trim_end().to_owned()
         }));
     }
     rows

@@ -21,6 +21,25 @@ pub(super) fn rows(scene: &Scene) -> Vec<String> {
     rows
 }
 
+/// What the links stand for, and how far their stiffness is from that.
+pub(super) fn short_rows(scene: &Scene) -> Vec<String> {
+    if scene.material.is_none() {
+        return Vec::new();
+    }
+    let of = |kind: LinkKind| {
+        let Quality { least, largest, rms, .. } = scene.quality(kind)?;
+        Some(format!(
+            "r {:<11} {least:.3} to {largest:.3} over the waves of the slopes; rms of r - 1 is {rms:.3}",
+            kind.name()
+        ))
+    };
+    let kinds: &[LinkKind] = match scene.layer.foundation {
+        Some(FoundationKind::HalfSpace) => &[LinkKind::Vertical],
+        _ => &[LinkKind::Vertical, LinkKind::Horizontal],
+    };
+    std::iter::once(title(scene)).chain(kinds.iter().filter_map(|kind| of(*kind))).collect()
+}
+
 fn title(scene: &Scene) -> String {
     match scene.layer.foundation.unwrap_or_default() {
         FoundationKind::Springs => {

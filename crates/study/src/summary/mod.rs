@@ -11,10 +11,11 @@ mod motion;
 mod patch;
 mod reduction;
 mod scene;
+mod short;
 mod table;
 mod words;
 
-pub use described::{described, described_patch};
+pub use described::{described, described_patch, described_shortly};
 pub use fine::{FineFrictionCurve, MIDDLE as MIDDLE_PRESSURE};
 pub use friction::FallingFriction;
 pub use json::DescribedScene;

@@ -37,7 +37,7 @@ pub fn scene_rows(scene: &Scene) -> Vec<LabelledLine> {
     rows
 }
 
-fn masses(scene: &Scene) -> String {
+pub(super) fn masses(scene: &Scene) -> String {
     let layer = &scene.layer;
     format!(
         "{} masses of {} kg, {} m apart from x = {} m, clearance {} m, {} at the start",
@@ -50,12 +50,12 @@ fn masses(scene: &Scene) -> String {
     )
 }
 
-fn roughness(scene: &Scene) -> String {
+pub(super) fn roughness(scene: &Scene) -> String {
     let heights = &scene.layer.roughness;
     if heights.is_empty() { LEFT_OUT.into() } else { format!("{} m peak to valley", number(peak_to_valley(heights))) }
 }
 
-fn body(scene: &Scene, material: &Material) -> String {
+pub(super) fn body(scene: &Scene, material: &Material) -> String {
     let thickness =
         scene.layer.thickness.map_or_else(|| "a half-space".into(), |size| format!("{} m thick", number(size)));
     format!(
@@ -66,7 +66,7 @@ fn body(scene: &Scene, material: &Material) -> String {
     )
 }
 
-fn series(material: &Material) -> String {
+pub(super) fn series(material: &Material) -> String {
     let glassy: f64 = material.prony.iter().map(|term| term.modulus).sum();
     format!(
         "E_∞ {} Pa, viscosity {}, {} Prony terms, glassy modulus {:.4e} Pa",
@@ -77,7 +77,7 @@ fn series(material: &Material) -> String {
     )
 }
 
-fn temperature(material: &Material) -> String {
+pub(super) fn temperature(material: &Material) -> String {
     let shift = |wlf: Wlf| {
         format!(
             "{} K, times given at {} K: a_T = {:.4e} (C_1 {}, C_2 {} K)",
@@ -133,7 +133,7 @@ fn order_as_coded(scene: &Scene) -> String {
     format!("as coded {order}: two coordinates and two velocities a mass, {maxwell} Maxwell variables")
 }
 
-fn profile(surface: &Surface) -> String {
+pub(super) fn profile(surface: &Surface) -> String {
     let length = surface.x()[surface.x().len() - 1] - surface.x()[0];
     let kind = if surface.is_periodic() { "periodic" } else { "natural" };
     format!(
@@ -173,7 +173,7 @@ fn solver(scene: &Scene) -> String {
     )
 }
 
-fn input(scene: &Scene) -> String {
+pub(super) fn input(scene: &Scene) -> String {
     let names: Vec<_> = scene.inputs().into_iter().map(Input::name).collect();
     let rule = match scene.extrapolation {
         Extrapolation::Linear => {

@@ -106,7 +106,7 @@ impl SlidingOptions {
         if let Some(lacks) = lacks {
             return Err(MethodError::Lacks(lacks));
         }
-        let of_the_layer = [(self.error.is_some(), "error"), (self.distance.is_some(), "distance")];
+        let of_the_layer = [(self.error.is_some(), "friction_error"), (self.distance.is_some(), "distance")];
         if let Some((_, option)) = of_the_layer.into_iter().find(|(is_given, _)| *is_given) {
             return Err(MethodError::OfTheLayer(option));
         }

@@ -1,0 +1,145 @@
+//! The arguments of `sweep`, `converge` and `contact`.
+
+use std::path::PathBuf;
+
+use asperity_study::sweep::SweepMethod;
+use clap::{ArgGroup, Args};
+
+use super::shared::{Set, Sliding, SteadyState};
+use super::sweep_values::{Shard, Values};
+use super::values::{count, length, picture, seeds, share, sweep_method, table_or_arrays};
+
+/// Options of a sweep that --merge does not take.
+const OF_A_SCENE: [&str; 12] = [
+    "speeds",
+    "pressures",
+    "forces",
+    "temperatures",
+    "method",
+    "points",
+    "friction_error",
+    "distance",
+    "shard",
+    "master",
+    "converged",
+    "set",
+];
+
+#[derive(Debug, Args)]
+#[command(group(ArgGroup::new("input").required(true)))]
+#[command(after_help = example!(
+    "asperity sweep scenes/road/road.toml --speeds 1e-4..10/11 --pressures 3bar \\\n      --temperatures 5°C,20°C,40°C -o friction.csv"
+))]
+pub(crate) struct Sweep {
+    /// The scene file; its excitation and outputs are not used.
+    #[arg(value_name = "SCENE.toml", group = "input")]
+    pub(crate) scene: Option<PathBuf>,
+    /// Speeds in m/s: a..b/n for n values evenly spaced in the logarithm, a list, or both, separated by commas.
+    #[arg(long, value_name = "VALUES", value_parser = Values::speeds, required_unless_present = "merge")]
+    pub(crate) speeds: Option<Values>,
+    /// Mean pressures in Pa, in the format of --speeds. Requires a scene in the material form.
+    #[arg(long, value_name = "VALUES", value_parser = Values::pressures, conflicts_with = "forces")]
+    pub(crate) pressures: Option<Values>,
+    /// Mean normal forces F_z of the whole layer in N, in place of pressures. Works with either form of scene.
+    #[arg(long, value_name = "VALUES", value_parser = Values::forces)]
+    pub(crate) forces: Option<Values>,
+    /// Temperatures in K: a..b/n for n evenly spaced values. Default: the scene's temperature.
+    #[arg(long, value_name = "VALUES", value_parser = Values::temperatures)]
+    pub(crate) temperatures: Option<Values>,
+    /// The table to write, - for standard output; an existing table of the same sweep is continued. Default: the
+    /// scene's file name with .sweep.csv.
+    #[arg(short, long, value_name = "TABLE.csv")]
+    pub(crate) output: Option<PathBuf>,
+    /// The plot to write, as SVG or PNG according to the file name. Points that are not steady, or not converged, are
+    /// hollow. Default: the table's name with .svg.
+    #[arg(long, value_name = "OUT.svg", value_parser = picture(), conflicts_with = "shard")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Also plots the master curve: friction over a_T v, the speed at the reference temperature of material.wlf.
+    #[arg(long, value_name = "OUT.svg", value_parser = picture(), conflicts_with = "shard")]
+    pub(crate) master: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) sliding: Sliding,
+    /// Computes only share I of N of the points, I from 1 to N.
+    #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
+    pub(crate) shard: Option<Shard>,
+    /// Merges the tables of shards, and the one at --output if it is of the same sweep.
+    #[arg(long, value_name = "TABLE.csv", num_args = 1.., group = "input", requires = "output")]
+    #[arg(conflicts_with_all = OF_A_SCENE)]
+    pub(crate) merge: Vec<PathBuf>,
+    /// The table of an asperity converge of the scene: what it found goes into the header. Default: the scene's file
+    /// name with .converge.csv, if there is such a file.
+    #[arg(long, value_name = "STUDY.csv")]
+    pub(crate) converged: Option<PathBuf>,
+    /// Replaces an existing table instead of continuing it.
+    #[arg(long)]
+    pub(crate) force: bool,
+    #[command(flatten)]
+    pub(crate) set: Set,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = example!("asperity converge scenes/two-maxima/two-maxima.toml --pressure 2bar --speed 0.1 -o study.csv"))]
+pub(crate) struct Converge {
+    /// The scene file, in the material form; its excitation and outputs are not used.
+    #[arg(value_name = "SCENE.toml")]
+    pub(crate) scene: PathBuf,
+    #[command(flatten)]
+    pub(crate) at: SteadyState,
+    /// Admissible change of friction and area, as a share of them, with the spacing halved, the length doubled or
+    /// another seed.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.05, value_parser = share)]
+    pub(crate) error: f64,
+    /// Number of seeds of a self-affine surface or roughness, the scene's own included. Default: 4.
+    #[arg(long, value_name = "N", value_parser = seeds)]
+    pub(crate) seeds: Option<u32>,
+    /// How steady sliding is found, as in a sweep. Default: as a sweep's.
+    #[arg(long, value_name = "METHOD", value_parser = sweep_method())]
+    pub(crate) method: Option<SweepMethod>,
+    /// Points of a period along x to begin with, with --method steady. Default: as of a sweep.
+    #[arg(long, value_name = "N", value_parser = count)]
+    pub(crate) points: Option<u32>,
+    /// Most masses, or points of the whole surface with --method steady, that the halved spacing may come to; with twice
+    /// the length there are twice as many. Default: 4096 masses, 2097152 points.
+    #[arg(long, value_name = "N", visible_alias = "most-masses", value_parser = count)]
+    pub(crate) most_points: Option<u32>,
+    /// The table to write, - for standard output; an existing table of the same study is continued. Default: the
+    /// scene's file name with .converge.csv.
+    #[arg(short, long, value_name = "TABLE.csv")]
+    pub(crate) output: Option<PathBuf>,
+    /// The plot to write, as SVG or PNG according to the file name. Default: the table's name with .svg.
+    #[arg(long, value_name = "OUT.svg", value_parser = picture())]
+    pub(crate) plot: Option<PathBuf>,
+    /// Maximum sliding distance in m for a run to become steady, with --method layer. Default: 100 blocks; a block is a
+    /// whole number of profile periods or layer lengths.
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
+    pub(crate) distance: Option<f64>,
+    /// Replaces an existing table instead of continuing it.
+    #[arg(long)]
+    pub(crate) force: bool,
+    #[command(flatten)]
+    pub(crate) set: Set,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = example!("asperity contact scenes/two-maxima/two-maxima.toml --pressure 2bar --speed 0.1 -o contact.png"))]
+pub(crate) struct Contact {
+    /// The scene file, in the material form with a foundation "half_space" or "layer" and a periodic surface; its excitation
+    /// and outputs are not used.
+    #[arg(value_name = "SCENE.toml")]
+    pub(crate) scene: PathBuf,
+    #[command(flatten)]
+    pub(crate) at: SteadyState,
+    /// Points of a period along x; of a map with those along y in proportion. Default: the surface's own, or of a profile 8
+    /// to its shortest wave where they are uneven or fewer.
+    #[arg(long, value_name = "N", value_parser = count)]
+    pub(crate) points: Option<u32>,
+    /// The picture to write, as SVG or PNG according to the file name: along a profile heights and pressure; of a map
+    /// pressure, gap and where it is touched.
+    #[arg(short, long, value_name = "OUT.png", value_parser = picture())]
+    pub(crate) output: PathBuf,
+    /// All points to write: x, y, height, pressure, gap, as a table or, with .npz, as arrays of numpy with a row for each y.
+    #[arg(long, alias = "data", value_name = "OUT.csv|.npz", value_parser = table_or_arrays())]
+    pub(crate) write: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) set: Set,
+}
