@@ -56,7 +56,9 @@ impl MeasuredModuli {
         }
         let (test, in_hertz, reduced) = (first.test(), first.in_hertz(), first.is_reduced());
         let mut points = Vec::new();
-        for table in &tables {
+        let (styles, decided) = ModuliTable::styles(&tables, text)?;
+        notes.extend(decided);
+        for (table, style) in tables.iter().zip(styles) {
             if (table.test(), table.is_reduced()) != (test, reduced) {
                 let expected = "tables of one kind in a file: all of oscillation, or all of relaxation";
                 return Err(refused(table.line, "another kind of table", expected));
@@ -64,7 +66,7 @@ impl MeasuredModuli {
             if tables.len() > 1 {
                 table.check_temperature()?;
             }
-            match table.add_points(text, reading, &mut points)? {
+            match table.add_points(text, style, reading, &mut points)? {
                 0 => (),
                 1 => notes.push("a row whose loss is 0, below what was measured, is left out".into()),
                 zeros => notes.push(format!("{zeros} rows whose loss is 0, below what was measured, are left out")),

@@ -3,7 +3,9 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use asperity::scene::Wlf;
-use asperity::tables::{ABOVE_ZERO, Block, ContentError, Line, NumberStyle, POSITIVE, Row, words};
+use asperity::tables::{
+    ABOVE_ZERO, Block, ContentError, DecimalSigns, Line, NumberStyle, POSITIVE, Row, UsedColumn, words,
+};
 
 use super::columns::{self, Column, Columns, Quantity, with_unit};
 use super::reading::{MeasuredPoint, Reading};
@@ -204,15 +206,31 @@ impl<'a> ModuliTable<'a> {
         named || (reading.shear && !names_letter(&modulus.text))
     }
 
+    /// How the numbers of each of the tables of a text are written, and what had to be decided.
+    pub(super) fn styles(tables: &[Self], text: &'a str) -> Result<(Vec<NumberStyle>, Vec<String>), ContentError> {
+        let signs = DecimalSigns::of(tables.iter().map(|table| &table.block), text);
+        let (mut styles, mut notes) = (Vec::new(), Vec::new());
+        for table in tables {
+            let of_curve = |curve: &'_ Curve| [curve.at.clone(), Some(curve.modulus.clone()), curve.loss.clone()];
+            let others = [&table.temperature, &table.shift, &table.vertical, &table.other_frequency, &table.tangent];
+            let all = table.curves.iter().flat_map(of_curve).chain(others.map(Clone::clone)).flatten();
+            let used: Vec<UsedColumn> = all.map(|column| column.used()).collect();
+            let (style, decided) = table.block.style_with(text, signs, &used)?;
+            styles.push(style);
+            notes.extend(decided.into_iter().map(|note| note.text));
+        }
+        Ok((styles, notes))
+    }
+
     /// Adds the points of all rows; how many are left out because their loss is 0.
     pub(super) fn add_points(
         &self,
-        text: &str,
+        text: &'a str,
+        mut style: NumberStyle,
         reading: &Reading<'_>,
         points: &mut Vec<MeasuredPoint>,
     ) -> Result<usize, ContentError> {
         let mut zeros = 0;
-        let mut style = self.block.style();
         for row in self.block.rows(text) {
             for curve in &self.curves {
                 match self.point(curve, &mut Numbers { row: &row, style: &mut style }, reading)? {
