@@ -124,7 +124,7 @@ impl<Q: Copy + PartialEq, const N: usize> Format<Q, N> {
     pub fn read<'a>(&self, text: &'a str) -> Result<Table<'a, Q, N>, ContentError> {
         let mut notes = Vec::new();
         let block = self.block(text, &mut notes)?;
-        let header = Header::read(&block, self.vocabulary, None);
+        let header = Header::read(&block, self.vocabulary, &[]);
         let columns = match header.names.is_empty() {
             true => self.unnamed(&block, &mut notes)?,
             false => self.named(&block, &header, &mut notes)?,

@@ -27,7 +27,7 @@ pub use columns::{Column, Header, ReadingNote, UnitRule};
 pub use error::{ContentError, NotText, assignment, shortened};
 pub use format::{Choice, Format, Others, Table, Wanted, behind_note};
 pub use head::Head;
-pub use headings::{Heading, HeadingUnit, Words, find_quantity, plain, words};
+pub use headings::{Condition, Heading, HeadingUnit, Words, find_quantity, plain, words};
 pub use lines::{Line, Separator};
 pub use numbers::{MISSING, MixedDecimals, NumberStyle, is_missing, number};
 pub use range::{ABOVE_ZERO, ANY, FINITE, LARGEST, NOT_NEGATIVE, NumberRange, POSITIVE, SMALLEST};
