@@ -18,6 +18,7 @@ mod headings;
 mod lines;
 mod numbers;
 mod range;
+mod sheets;
 mod text;
 mod thousands;
 mod units;
@@ -31,6 +32,7 @@ pub use headings::{Condition, Heading, HeadingUnit, Words, find_quantity, plain,
 pub use lines::{Line, Separator};
 pub use numbers::{MISSING, MixedDecimals, NumberStyle, is_missing, number};
 pub use range::{ABOVE_ZERO, ANY, FINITE, LARGEST, NOT_NEGATIVE, NumberRange, POSITIVE, SMALLEST};
+pub use sheets::{Sheets, text_or_sheet};
 pub use text::{Csv, Row, comments, decode, fields, quoted, rows};
 pub use thousands::{DecimalSigns, UsedColumn};
 pub use units::{Dimension, Unit, quantity, quantity_with_unit};

@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 use crate::scene::error::{Location, Problem, SceneError};
 use crate::scene::keys::{self, Absent, Allowed, At, Field, Form, Key, Kinds};
 use crate::scene::values::{NumberRange, Value, Word, words};
-use crate::scene::{Scene, SurfaceFormats};
+use crate::scene::{FileFormats, Scene};
 
 pub(super) type Result<T> = std::result::Result<T, SceneError>;
 
@@ -23,7 +23,7 @@ pub(super) struct Source<'a> {
     pub(super) text: &'a str,
     pub(super) form: Form,
     /// What files of surfaces it may name beside text.
-    pub(super) formats: &'a dyn SurfaceFormats,
+    pub(super) formats: &'a dyn FileFormats,
 }
 
 /// A value, its key and the key's full path.

@@ -142,7 +142,10 @@ impl Sheet<'_> {
 fn conditions_of(names: &[&str], units: &GivenUnits) -> Vec<Option<Condition>> {
     let settings: Vec<Option<Setting>> = names.iter().map(|name| setting(name, units)).collect();
     let bare = |found: &Option<Setting>| match found {
-        Some(Setting::Bare(text)) => text.split_once(['=', ':', ' ']).and_then(|(_, value)| number(value.trim(), true)),
+        Some(Setting::Bare(text)) => text
+            .split_once(['=', ':'])
+            .or_else(|| text.split_once(' '))
+            .and_then(|(_, value)| number(value.trim(), true)),
         _ => None,
     };
     let in_celsius = settings.iter().filter_map(bare).any(|value| value < Wlf::COLDEST);
