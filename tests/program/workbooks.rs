@@ -6,7 +6,7 @@ use std::path::Path;
 
 use zip::write::{SimpleFileOptions, ZipWriter};
 
-use crate::common::{asperity, run, scene, scratch};
+use crate::common::{asperity, run, scratch};
 use asperity::scene::Scene;
 
 /// A workbook with sheets of these names and rows, its fields parted by commas: numbers as such, words as text.
@@ -61,8 +61,8 @@ fn xlsx(sheets: &[(&str, &str)]) -> Vec<u8> {
 fn a_motion_in_a_workbook_is_that_of_its_text() {
     let folder = scratch("workbook-motion");
     let motion = "time [ms],u [mm],w [mm]\n0,0,0\n1.125,0.5,-0.02\n2.375,1.5,-0.02\n";
-    let block = fs::read_to_string(scene("tread-block/tread-block.toml")).unwrap();
-    let (rest, _) = block.split_once("[[excitation]]").unwrap();
+    let rest = "name = 'rig'\nlayer = { masses = 3, spacing = 1e-4, mass = 1e-6, vertical = { stiffness = 1e3, damping = 1e-2 }, \
+                horizontal = { stiffness = 1e3, damping = 1e-2 } }\nsurface = { kind = 'flat' }\nfriction = { coulomb = 0.5 }\n";
     let of_file = |file: &str| format!("{rest}[[excitation]]\nfile = '{file}'\n");
     fs::write(folder.join("rig.csv"), motion).unwrap();
     fs::write(folder.join("rig.xlsx"), xlsx(&[("about", "a rig,of ours"), ("log", motion)])).unwrap();
