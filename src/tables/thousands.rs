@@ -55,16 +55,16 @@ impl DecimalSigns {
             block.above.iter().for_each(|(_, line)| found.add_stated(line));
             let has_commas = block.separator.allows_decimal_comma();
             for (_, line) in block.lines(text) {
-                if found.point && (found.comma || !has_commas) {
+                let [of_point, of_comma] = [!found.point, !found.comma && has_commas];
+                if !(of_point || of_comma) {
                     break;
                 }
-                if !line.contains(['.', ',']) {
-                    continue;
-                }
-                let fields = block.separator.split(line);
-                let is_decimal = |sign| fields.iter().any(|field| Shape::of(field, sign) == Shape::Decimal);
-                found.point |= is_decimal('.');
-                found.comma |= has_commas && is_decimal(',');
+                let is_decimal = |sign: char| {
+                    line.contains(sign)
+                        && block.separator.split(line).iter().any(|field| Shape::of(field, sign) == Shape::Decimal)
+                };
+                found.point |= of_point && is_decimal('.');
+                found.comma |= of_comma && is_decimal(',');
             }
         }
         found
@@ -138,7 +138,7 @@ impl<'a> Block<'a> {
         };
         let (mut notes, mut thousands) = (Vec::new(), None);
         for &sign in signs {
-            let doubtful = columns.iter().map(|column| (column, self.doubtful(text, column.index, sign)));
+            let doubtful = columns.iter().zip(self.doubtful(text, columns, sign));
             let doubtful: Vec<(&UsedColumn, Doubtful)> = doubtful.filter(|(_, found)| found.first.is_some()).collect();
             let may_be = |(column, found): &(&UsedColumn, Doubtful)| column.at_stake && !found.others;
             if point || comma {
@@ -160,21 +160,20 @@ impl<'a> Block<'a> {
         Ok((self.style().with_thousands(thousands), notes))
     }
 
-    fn doubtful(&self, text: &'a str, index: usize, sign: char) -> Doubtful {
-        let mut found = Doubtful::default();
+    /// What each of the `columns` has.
+    fn doubtful(&self, text: &'a str, columns: &[UsedColumn], sign: char) -> Vec<Doubtful> {
+        let mut found: Vec<Doubtful> = columns.iter().map(|_| Doubtful::default()).collect();
+        if !self.lines(text).any(|(_, line)| line.contains(sign)) {
+            return found;
+        }
         for row in self.rows(text) {
-            let Some(field) = row.fields.get(index) else { continue };
-            match Shape::of(field, sign) {
-                Shape::Either => {
-                    found.numbers += 1;
-                    found.first.get_or_insert_with(|| (row.line, field.to_string()));
+            for (column, found) in columns.iter().zip(&mut found) {
+                if let Some(field) = row.fields.get(column.index) {
+                    found.add(row.line, field, sign);
                 }
-                Shape::Whole { three: true } => found.numbers += 1,
-                Shape::Other if number(field, true).is_none() => (),
-                Shape::Whole { .. } | Shape::Decimal | Shape::Other => {
-                    found.others = true;
-                    break;
-                }
+            }
+            if found.iter().all(|found| found.others) {
+                break;
             }
         }
         found
@@ -182,6 +181,18 @@ impl<'a> Block<'a> {
 }
 
 impl Doubtful {
+    fn add(&mut self, line: usize, field: &str, sign: char) {
+        match Shape::of(field, sign) {
+            Shape::Either => {
+                self.numbers += 1;
+                self.first.get_or_insert_with(|| (line, field.to_owned()));
+            }
+            Shape::Whole { three: true } => self.numbers += 1,
+            Shape::Other if number(field, true).is_none() => (),
+            Shape::Whole { .. } | Shape::Decimal | Shape::Other => self.others = true,
+        }
+    }
+
     /// The line and the text of the first number that may be either.
     fn shown(&self) -> (Option<usize>, &str) {
         self.first.as_ref().map_or((None, ""), |(line, field)| (Some(*line), field))

@@ -61,8 +61,10 @@ fn xlsx(sheets: &[(&str, &str)]) -> Vec<u8> {
 fn a_motion_in_a_workbook_is_that_of_its_text() {
     let folder = scratch("workbook-motion");
     let motion = "time [ms],u [mm],w [mm]\n0,0,0\n1.125,0.5,-0.02\n2.375,1.5,-0.02\n";
-    let rest = "name = 'rig'\nlayer = { masses = 3, spacing = 1e-4, mass = 1e-6, vertical = { stiffness = 1e3, damping = 1e-2 }, \
-                horizontal = { stiffness = 1e3, damping = 1e-2 } }\nsurface = { kind = 'flat' }\nfriction = { coulomb = 0.5 }\n";
+    let rest = "name = 'rig'\nlayer.masses = 3\nlayer.spacing = 1e-4\nlayer.mass = 1e-6\n\
+                layer.vertical = { stiffness = 1e3, damping = 1e-2 }\n\
+                layer.horizontal = { stiffness = 1e3, damping = 1e-2 }\n\
+                surface = { kind = 'flat' }\nfriction = { coulomb = 0.5 }\n";
     let of_file = |file: &str| format!("{rest}[[excitation]]\nfile = '{file}'\n");
     fs::write(folder.join("rig.csv"), motion).unwrap();
     fs::write(folder.join("rig.xlsx"), xlsx(&[("about", "a rig,of ours"), ("log", motion)])).unwrap();
