@@ -19,9 +19,7 @@ fn only_sheet<'s, T>(
     for (name, text) in filled {
         match read(text.as_bytes()) {
             Ok(content) => found.push((content, name, text)),
-            Err(error) => {
-                errors.push((text.len(), ContentError { key: format!("sheet {name}: {}", error.key), ..error }))
-            }
+            Err(error) => errors.push((text.len(), error.in_sheet(name))),
         }
     }
     if found.len() > 1 {

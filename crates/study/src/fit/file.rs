@@ -88,8 +88,7 @@ struct Sheet<'a> {
 impl Sheet<'_> {
     /// Its moduli at the temperature of its name, where the rows have none of their own.
     fn with_condition(self) -> Result<MeasuredModuli, ContentError> {
-        let named = |error: ContentError| ContentError { key: format!("sheet {}: {}", self.name, error.key), ..error };
-        let mut measured = self.measured.map_err(named)?;
+        let mut measured = self.measured.map_err(|error| error.in_sheet(self.name))?;
         if let Some(Condition { dimension: Dimension::Temperature, value }) = self.condition {
             let rows = measured.points.iter_mut().filter(|point| point.temperature.is_none());
             rows.for_each(|point| point.temperature = Some(value));
