@@ -61,8 +61,8 @@ pub use material::{Heat, Material, PronyTerm, Wlf, complex_stiffness};
 pub use parameters::Parameter;
 pub use patch_file::{Backing, FaceHeat, FaceShape, Grid, NotDoubled, PatchFile, PatchGroup, TableExtrapolation};
 pub use profile::{
-    Areal, Depth, Extract, LengthUnit, LoadedProfile, MeasuredPoints, MeasuredSurface, Missing, ProfileOptions,
-    SurfaceFormats, TextAlone, ThirdColumn, Tilt, UnknownWord, line_note,
+    Areal, Depth, Extract, FileFormats, LengthUnit, LoadedProfile, MeasuredPoints, MeasuredSurface, Missing,
+    ProfileOptions, TextAlone, ThirdColumn, Tilt, UnknownWord, line_note,
 };
 pub use regular_file::{read_file, read_text};
 pub use self_affine::SelfAffine;

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::blocks::Block;
 use super::error::{ContentError, shortened};
 use super::head::Head;
-use super::headings::{Heading, HeadingUnit, Words, without_condition};
+use super::headings::{Condition, Heading, HeadingUnit, Words, without_condition};
 use super::numbers::{MixedDecimals, NumberStyle, is_missing};
 use super::range::NumberRange;
 use super::text::Row;
@@ -29,8 +29,8 @@ pub struct Header<'a, Q> {
     pub line: Option<usize>,
     /// What the columns hold, as far as their names are in the vocabulary.
     pub headings: Vec<Option<Heading<Q>>>,
-    /// What the headings say of all numbers of their columns, `E' [MPa] @ 20 °C`; in SI units.
-    pub conditions: Vec<Option<f64>>,
+    /// What the headings say of all numbers of their columns, `E' [MPa] @ 20 °C`.
+    pub conditions: Vec<Option<Condition>>,
     /// As it was found.
     pub head: Head<'a>,
 }
@@ -49,10 +49,10 @@ pub enum UnitRule {
 }
 
 impl<'a, Q: Copy + PartialEq> Header<'a, Q> {
-    /// That of a block. Headings may name a quantity of the dimension `condition` beside their own.
-    pub fn read(block: &Block<'a>, vocabulary: &[Words<Q>], condition: Option<Dimension>) -> Self {
+    /// That of a block. Headings may name a quantity of one of the dimensions of `conditions` beside their own.
+    pub fn read(block: &Block<'a>, vocabulary: &[Words<Q>], conditions: &[Dimension]) -> Self {
         let parted = |name: &str| {
-            let found = condition.and_then(|dimension| without_condition(name, dimension));
+            let found = conditions.iter().find_map(|dimension| without_condition(name, *dimension));
             found.map_or_else(|| (name.to_owned(), None), |(name, value)| (name, Some(value)))
         };
         let head = block.head(&|name| Heading::parse(&parted(name).0, vocabulary).is_some());
@@ -172,8 +172,8 @@ pub struct Column<Q> {
     pub unit: Unit,
     /// Whether that was named, not assumed.
     pub names_unit: bool,
-    /// What its heading says of all its numbers, in SI units.
-    pub condition: Option<f64>,
+    /// What its heading says of all its numbers.
+    pub condition: Option<Condition>,
     /// Its numbers are logarithms to this base.
     pub logarithm: Option<f64>,
 }

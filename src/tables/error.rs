@@ -32,6 +32,13 @@ impl ContentError {
         self
     }
 
+    /// The error in a sheet of a workbook.
+    #[must_use]
+    pub fn in_sheet(self, name: &str) -> Self {
+        let key = if self.key.is_empty() { format!("sheet {name}") } else { format!("sheet {name}: {}", self.key) };
+        Self { key, ..self }
+    }
+
     /// The error with its place: `file:line: …`.
     pub fn within(&self, file: &Path) -> String {
         let line = self.line.map_or_else(String::new, |line| format!(":{line}"));

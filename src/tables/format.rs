@@ -6,6 +6,7 @@ use super::error::{ContentError, shortened};
 use super::headings::{Heading, Words};
 use super::lines::Line;
 use super::range::{ANY, NumberRange};
+use super::thousands::DecimalSigns;
 use super::units::Dimension;
 
 /// What a file with one table must hold.
@@ -130,7 +131,7 @@ impl<Q: Copy + PartialEq, const N: usize> Format<Q, N> {
     pub fn read<'a>(&self, text: &'a str) -> Result<Table<'a, Q, N>, ContentError> {
         let mut notes = Vec::new();
         let block = self.block(text, &mut notes)?;
-        let header = Header::read(&block, self.vocabulary, None);
+        let header = Header::read(&block, self.vocabulary, &[]);
         let columns = match header.names.is_empty() {
             true => self.unnamed(&block, &mut notes)?,
             false => self.named(&block, &header, &mut notes)?,
@@ -278,8 +279,10 @@ impl<Q: Copy + PartialEq, const N: usize> Format<Q, N> {
         }
     }
 
-    fn add_rows(&self, text: &str, block: &Block<'_>, table: &mut Table<'_, Q, N>) -> Result<(), ContentError> {
-        let mut style = block.style();
+    fn add_rows<'a>(&self, text: &'a str, block: &Block<'a>, table: &mut Table<'_, Q, N>) -> Result<(), ContentError> {
+        let used: Vec<_> = table.columns.iter().flatten().map(Column::used).collect();
+        let (mut style, notes) = block.style_with(text, DecimalSigns::of([block], text), &used)?;
+        table.notes.extend(notes);
         for row in block.rows(text) {
             let mut numbers = [0.0; N];
             for ((number, column), wanted) in numbers.iter_mut().zip(&table.columns).zip(&self.columns) {

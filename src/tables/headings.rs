@@ -174,13 +174,40 @@ impl Unit {
     }
 }
 
-/// A heading without what it says of all its column, as in `E' (MPa) @ 20 °C`, and that in SI units; `None` where it says
-/// nothing of this dimension.
-pub(super) fn without_condition(text: &str, dimension: Dimension) -> Option<(String, f64)> {
+/// What a heading says of all numbers of its column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Condition {
+    /// Which quantity it is.
+    pub dimension: Dimension,
+    /// What that is, in SI units.
+    pub value: f64,
+}
+
+/// A heading without what it says of all its column, as in `E' (MPa) @ 20 °C` and `E'' (f = 1 Hz)`, and that; `None` where
+/// it says nothing of this dimension.
+pub(super) fn without_condition(text: &str, dimension: Dimension) -> Option<(String, Condition)> {
+    /// What may stand before it: `E' at 20 °C`, `E', T = 20 °C`.
+    const WORDS: [&str; 10] = ["at", "bei", "T", "temp", "temperature", "f", "freq", "frequency", "ω", "omega"];
     let (place, value) = find_quantity(text, dimension)?;
-    let rest = format!("{} {}", &text[..place.start], &text[place.end..]).replace("()", "").replace("[]", "");
-    let rest = rest.trim().trim_end_matches(['@', ',', ';', '_', '-', '(', ' ']).trim_end_matches(" at").trim();
-    Some((rest.trim_start_matches(['@', ',', ';', '_', ':', ' ']).to_owned(), value))
+    let trimmed = |text: &'_ str| text.trim_end_matches(['@', ',', ';', '_', '-', ' ']).len();
+    let mut before = &text[..place.start];
+    before = &before[..trimmed(before)];
+    let (named, is_set) = before.strip_suffix(['=', ':']).map_or((before, false), |named| (named.trim_end(), true));
+    let start = named.rfind([' ', ',', ';', '_', '(', '[', '@']).map_or(0, |last| last + 1);
+    if WORDS.iter().any(|word| *word == &named[start..]) && (is_set || ["at", "bei"].contains(&&named[start..])) {
+        before = &named[..start];
+        before = &before[..trimmed(before)];
+    }
+    let mut behind = text[place.end..].trim_start_matches(['@', ',', ';', '_', ':', ' ']);
+    for (open, close) in [('(', ')'), ('[', ']')] {
+        if let (Some(outer), Some(rest)) = (before.strip_suffix(open), behind.strip_prefix(close)) {
+            (before, behind) = (outer.trim_end(), rest.trim_start());
+        }
+    }
+    let parted = if behind.starts_with([')', ']']) { "" } else { " " };
+    let name =
+        format!("{before}{parted}{behind}").trim().trim_end_matches(['@', ',', ';', '_', '-', '(', ' ']).to_owned();
+    Some((name, Condition { dimension, value }))
 }
 
 /// The bytes of a text from a number to the end of its unit of this dimension, and the number in SI units.
@@ -358,15 +385,29 @@ mod tests {
 
     #[test]
     fn headings_may_say_what_holds_for_their_column() {
-        let read = |text: &str| without_condition(text, Dimension::Temperature);
+        let read =
+            |text: &str, dimension| without_condition(text, dimension).map(|(name, condition)| (name, condition.value));
         for (text, name, kelvin) in [
             ("E' (MPa) @ 20 °C", "E' (MPa)", 293.15),
             ("E'' 313.15 K", "E''", 313.15),
             ("40C E' (MPa)", "E' (MPa)", 313.15),
+            ("E' at -10°C [MPa]", "E' [MPa]", 263.15),
+            ("E' (MPa, 20 °C)", "E' (MPa)", 293.15),
+            ("E' [MPa], T = 20 °C", "E' [MPa]", 293.15),
         ] {
-            assert_eq!(read(text), Some((name.to_owned(), kelvin)), "{text}");
+            assert_eq!(read(text, Dimension::Temperature), Some((name.to_owned(), kelvin)), "{text}");
         }
-        assert_eq!(read("E' at -10°C [MPa]").map(|(_, kelvin)| kelvin), Some(263.15));
-        assert_eq!((read("E' (MPa)"), read("N/mm2")), (None, None));
+        for (text, name, hertz) in [
+            ("E' 1 Hz", "E'", 1.0),
+            ("E'' (10 Hz) [MPa]", "E'' [MPa]", 10.0),
+            ("E'_0.5Hz_MPa", "E' MPa", 0.5),
+            ("tan(d) (f = 2 Hz)", "tan(d)", 2.0),
+            ("E' [MPa] @ 1 kHz", "E' [MPa]", 1e3),
+            ("1Hz E' [MPa]", "E' [MPa]", 1.0),
+        ] {
+            let omega = hertz * std::f64::consts::TAU;
+            assert_eq!(read(text, Dimension::Frequency), Some((name.to_owned(), omega)), "{text}");
+        }
+        assert_eq!((read("E' (MPa)", Dimension::Temperature), read("N/mm2", Dimension::Frequency)), (None, None));
     }
 }

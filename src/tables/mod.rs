@@ -6,8 +6,8 @@
 //! and gets a [`Table`] of numbers in SI units, notes of what was assumed, or a [`ContentError`].
 //!
 //! Where a new way to write tables belongs: encodings to `text`; separators, comments and rows to `lines`; signs in
-//! numbers to `numbers`; lines of names and units to `head`; names, units and what a heading says of its whole column
-//! (wide tables) to `headings`; what is done about columns and rows, for all clients at once, to `columns` and `format`.
+//! numbers to `numbers`, between thousands to `thousands`; lines of names and units to `head`; names, units and what a
+//! heading says of its whole column (wide tables) to `headings`; what is done about columns and rows, for all clients at once, to `columns` and `format`.
 
 mod blocks;
 mod columns;
@@ -18,7 +18,9 @@ mod headings;
 mod lines;
 mod numbers;
 mod range;
+mod sheets;
 mod text;
+mod thousands;
 mod units;
 
 pub use blocks::Block;
@@ -26,9 +28,11 @@ pub use columns::{Column, Header, ReadingNote, UnitRule};
 pub use error::{ContentError, NotText, assignment, shortened};
 pub use format::{Choice, Format, Others, Table, Wanted, behind_note};
 pub use head::Head;
-pub use headings::{Heading, HeadingUnit, Words, find_quantity, plain, words};
+pub use headings::{Condition, Heading, HeadingUnit, Words, find_quantity, plain, words};
 pub use lines::{Line, Separator};
 pub use numbers::{MISSING, MixedDecimals, NumberStyle, is_missing, number};
 pub use range::{ABOVE_ZERO, ANY, FINITE, LARGEST, NOT_NEGATIVE, NumberRange, POSITIVE, SMALLEST};
+pub use sheets::{Sheets, text_or_sheet};
 pub use text::{Csv, Row, comments, decode, fields, quoted, rows};
+pub use thousands::{DecimalSigns, UsedColumn};
 pub use units::{Dimension, Unit, quantity, quantity_with_unit};

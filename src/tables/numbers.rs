@@ -7,6 +7,8 @@ pub struct NumberStyle {
     decimal_comma: bool,
     points: bool,
     commas: bool,
+    /// The sign between thousands.
+    thousands: Option<char>,
 }
 
 /// A table has numbers with points and others with commas.
@@ -20,7 +22,13 @@ impl NumberStyle {
 
     /// That of a table whose numbers are still to be read.
     pub fn new(decimal_comma: bool) -> Self {
-        Self { decimal_comma, points: false, commas: false }
+        Self { decimal_comma, points: false, commas: false, thousands: None }
+    }
+
+    /// The same with a sign between thousands.
+    #[must_use]
+    pub(super) fn with_thousands(self, thousands: Option<char>) -> Self {
+        Self { thousands, ..self }
     }
 
     /// The number in a field, if it is one; it may be NaN.
@@ -28,6 +36,13 @@ impl NumberStyle {
     /// # Errors
     /// [`MixedDecimals`] where numbers before had the other sign.
     pub fn read(&mut self, field: &str) -> Result<Option<f64>, MixedDecimals> {
+        if let Some(sign) = self.thousands.filter(|sign| field.contains(*sign)) {
+            return self.read_plain(&field.replace(sign, ""));
+        }
+        self.read_plain(field)
+    }
+
+    fn read_plain(&mut self, field: &str) -> Result<Option<f64>, MixedDecimals> {
         let value = number(field, self.decimal_comma);
         if value.is_some() { self.add(field).map(|()| value) } else { Ok(None) }
     }
@@ -79,7 +94,7 @@ mod tests {
         for text in ["1.234,5", "1,234,5", "x", "", "E", "d5", "12:30"] {
             assert_eq!(number(text, true), None, "{text}");
         }
-        let mut style = NumberStyle { decimal_comma: true, points: false, commas: false };
+        let mut style = NumberStyle::new(true);
         let read = ["1.5", "2", "x", "1,234"].map(|field| style.read(field));
         assert_eq!(read, [Ok(Some(1.5)), Ok(Some(2.0)), Ok(None), Err(MixedDecimals)]);
     }

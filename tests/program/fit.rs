@@ -224,6 +224,52 @@ fn constants_are_found_where_curves_overlap() {
     assert!(printed.contains("wlf = { c1 = 7.52, c2 = 119.75, reference_temperature = 293.15"), "{printed}");
 }
 
+/// Moduli that change with temperature beside their shift: `--vertical` takes that out, by a column, by the density, or by
+/// the table of shifts.
+#[test]
+fn vertical_shifts_are_taken_out() {
+    let folder = scratch("fit-vertical");
+    let [data, shifts] = ["dma.csv", "shifts.csv"].map(|name| folder.join(name));
+    let kelvins = [273.15, 293.15, 313.15, 333.15];
+    let shift = |kelvin: f64| 10.0_f64.powf(-WLF[0] * (kelvin - WLF[2]) / (WLF[1] + kelvin - WLF[2]));
+    // Of natural rubber, from 0.94 to 1.11.
+    let b = |kelvin: f64| kelvin / WLF[2] / (1.0 + 6.6e-4 * (kelvin - WLF[2]));
+    let write = |name: &str, column: fn(f64) -> f64| {
+        let mut text = format!("T [K],f [Hz],E' [Pa],E'' [Pa]{name}\n");
+        for kelvin in kelvins {
+            for frequency in frequencies(-1, 2) {
+                let (storage, loss) = sixteen().complex_modulus(TAU * shift(kelvin) * frequency);
+                let column = if name.is_empty() { String::new() } else { format!(",{:e}", column(b(kelvin))) };
+                text += &format!("{kelvin},{frequency:e},{:e},{:e}{column}\n", b(kelvin) * storage, b(kelvin) * loss);
+            }
+        }
+        fs::write(&data, text).unwrap();
+    };
+    let row = |kelvin: f64| format!("{kelvin},{:e},{:e}\n", shift(kelvin), b(kelvin));
+    fs::write(&shifts, format!("T [K],a_T,b_T\n{}", kelvins.map(row).concat())).unwrap();
+    let difference = |options: &[&str]| {
+        let (_, result) = fit(&data, &[options, &["--error", "1e-3"]].concat());
+        let printed = String::from_utf8(result.stdout).unwrap();
+        let found = Scene::load(&scene_of(&folder, &printed)).unwrap().material.unwrap();
+        (largest(&found, &sixteen(), &frequencies(-1, 2)), String::from_utf8(result.stderr).unwrap())
+    };
+    let wlf = ["--wlf", "7.52,119.75,293.15"];
+    let by_table = ["--shifts", shifts.to_str().unwrap()];
+    for (name, column, options) in [
+        ("", (|b| b) as fn(f64) -> f64, &[wlf[0], wlf[1], "--vertical", "density"][..]),
+        (",b_T", |b| b, &wlf),
+        (",b_T", |b| 1.0 / b, &[wlf[0], wlf[1], "--vertical", "multiply"]),
+        ("", |b| b, &by_table),
+    ] {
+        write(name, column);
+        let (off, notes) = difference(options);
+        assert!(off < 5e-3 && notes.contains("moduli of other temperatures are"), "{options:?}: {off:e} {notes}");
+    }
+    write("", |b| b);
+    let (off, _) = difference(&wlf);
+    assert!(off > 0.02, "{off:e}");
+}
+
 /// Files as instruments write them, of this project's own making: what is read is on the picture, what is missing is
 /// said.
 #[test]

@@ -23,3 +23,4 @@ mod steady;
 mod surface;
 mod sweep;
 mod told;
+mod workbooks;

@@ -331,3 +331,17 @@ fn a_plot_has_a_chart_a_unit_and_draws_the_rows_asked_for() {
     let message = refused(&["--y", "friction", "--where", "pressure=1e5", "--where", "speed=5"]);
     assert!(message.contains("no row with speed = 5"), "{message}");
 }
+
+/// More rows of results, or of each run of a report, than any machine has memory for.
+#[test]
+fn counts_beyond_the_memory_are_refused() {
+    let folder = scratch("options-memory");
+    let block = root().join("scenes/tread-block/tread-block.toml");
+    for command in ["simulate", "report"] {
+        let output = folder.join(format!("{command}.csv"));
+        let arguments = [command, block.to_str().unwrap(), "-o", output.to_str().unwrap(), "--points", "4294967295"];
+        let message = refused(&arguments);
+        assert!(message.contains("--points: ") && message.contains("MB of memory"), "{command}: {message}");
+        assert!(!output.exists(), "{command}");
+    }
+}

@@ -68,6 +68,8 @@ fn quiet_runs_say_their_results_alone_and_results_on_standard_output_stay_alone(
     let quiet = spoken(&["-q", "simulate", &block, "-o", "out.csv"], &folder);
     assert!(text(&quiet.stdout).contains("Friction") && !text(&quiet.stdout).contains("Written"));
     assert_eq!(text(&quiet.stderr), "");
+    let quiet = spoken(&["-q", "material", &block, "-o", "moduli.csv"], &folder);
+    assert!(text(&quiet.stdout).contains("equilibrium") && !text(&quiet.stdout).contains("Written"));
     let piped = spoken(&["simulate", &block, "-o", "-"], &folder);
     assert_eq!(text(&piped.stdout), std::fs::read_to_string(folder.join("out.csv")).unwrap());
     assert!(text(&piped.stderr).contains("Friction"), "{}", text(&piped.stderr));

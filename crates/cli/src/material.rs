@@ -41,7 +41,8 @@ pub(crate) fn material(command: &Material) -> Result<(), MaterialError> {
         }
     }
     let names: Vec<String> = outputs.iter().map(|output| named(output)).collect();
-    Ok(print_beside(&outputs, &format!("{}Written     {}\n", summary(&responses, &scene), names.join(", ")))?)
+    let written = lines(&[("Written", names.join(", "))]);
+    Ok(print_beside(&outputs, &(summary(&responses, &scene) + &written))?)
 }
 
 /// In the working directory, named after the scene file.

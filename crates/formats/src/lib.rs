@@ -12,19 +12,28 @@ mod instruments;
 pub mod workbook;
 mod x3p;
 
-use asperity::scene::{MeasuredSurface, ProfileOptions, SurfaceFormats};
-use asperity::tables::ContentError;
+use std::path::Path;
 
-/// The formats of instruments: X3P, SDF, SUR, OpenCRG and text of Gwyddion.
+use asperity::scene::{FileFormats, MeasuredSurface, ProfileOptions};
+use asperity::tables::{ContentError, Sheets};
+
+/// The formats of instruments: X3P, SDF, SUR, OpenCRG and text of Gwyddion; and workbooks of tables.
 #[derive(Clone, Copy, Debug)]
 pub struct Instruments;
 
-impl SurfaceFormats for Instruments {
+impl FileFormats for Instruments {
     fn read(&self, bytes: &[u8], options: &ProfileOptions) -> Option<Result<MeasuredSurface, ContentError>> {
         if bytes.starts_with(b"PK\x03\x04") {
             Some(x3p::read(bytes, options))
         } else {
             instruments::read(bytes, options)
         }
+    }
+
+    fn sheets(&self, bytes: &[u8]) -> Option<Result<Sheets, ContentError>> {
+        let refused = |error: workbook::WorkbookError| {
+            ContentError::value(None, "", "a workbook", &format!("one that can be read: {error}"))
+        };
+        workbook::is_workbook(bytes, Path::new("")).then(|| workbook::sheets(bytes).map_err(refused))
     }
 }

@@ -237,9 +237,16 @@ fn of_range(range: &Range<Data>, name: String) -> Result<(String, String), Workb
     sheet.text(&name).map(|text| (name, text))
 }
 
+/// A number with more or less than three decimals, which could be taken for thousands.
+fn decimal(number: f64) -> String {
+    let text = format!("{number:?}");
+    let is_doubtful = text.split_once('.').is_some_and(|(_, decimals)| decimals.len() == 3);
+    if is_doubtful { text + "0" } else { text }
+}
+
 fn text_of(value: &Data) -> String {
     match value {
-        Data::Float(number) => format!("{number:?}"),
+        Data::Float(number) => decimal(*number),
         Data::Int(number) => number.to_string(),
         Data::String(text) => text.replace(['\t', '\n', '\r'], " "),
         Data::Bool(value) => value.to_string(),
@@ -320,9 +327,9 @@ mod tests {
 
     #[test]
     fn formulas_have_their_values_or_stand_as_they_are() {
-        let cells = "<row r=\"2\"><c r=\"B2\"><f>A1*2</f><v>7.5</v></c><c r=\"C2\" t=\"str\"><f>A1</f><v>x</v></c>\
+        let cells = "<row r=\"2\"><c r=\"B2\"><f>A1*2</f><v>7.125</v></c><c r=\"C2\" t=\"str\"><f>A1</f><v>x</v></c>\
                      <c r=\"D2\"><f>A1*3</f></c><c r=\"E2\" t=\"e\"><f>1/0</f><v>#DIV/0!</v></c></row>";
-        assert_eq!(text(&xlsx(cells)), "\n\t7.5\tx\t=A1*3\t#N/A\n");
+        assert_eq!(text(&xlsx(cells)), "\n\t7.1250\tx\t=A1*3\t#N/A\n");
     }
 
     #[test]

@@ -4,7 +4,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use asperity::patch::{Patch, PatchError};
-use asperity::scene::{Scene, SceneError, read_file, read_text};
+use asperity::scene::{FileFormats as _, Scene, SceneError, read_file, read_text};
+use asperity::tables::{ContentError, text_or_sheet};
+use asperity_formats::Instruments;
 
 use crate::settings::{self, OverrideError, Refusal, Setting};
 
@@ -83,6 +85,18 @@ pub fn text(path: &Path) -> Result<String, ReadError> {
 /// Where it cannot be read.
 pub fn bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
     read_file(path).map_err(|source| ReadError::Io { path: path.to_owned(), source })
+}
+
+/// What `read` makes of the bytes of a file of a table, or of a sheet of a workbook; then with a note of its name.
+///
+/// # Errors
+/// Those of `read`, and where several sheets could be meant.
+pub fn read_table<T>(
+    bytes: &[u8],
+    read: impl Fn(&[u8]) -> Result<T, ContentError>,
+) -> Result<(T, Option<String>), ContentError> {
+    let (content, sheet) = text_or_sheet(bytes, Instruments.sheets(bytes), read)?;
+    Ok((content, sheet.map(|(_, note)| note.text)))
 }
 
 /// The file's name without its folder.

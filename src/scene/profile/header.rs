@@ -61,7 +61,7 @@ impl<'a> Header<'a> {
         let is_known = |name: &str| Heading::parse(name, &VOCABULARY).is_some();
         let mut named = block.clone();
         named.above.retain(|(_, line)| !is_setting(line));
-        let mut table = TableHeader::read(&named, &VOCABULARY, None);
+        let mut table = TableHeader::read(&named, &VOCABULARY, &[]);
         // Words above such settings name the file, not its columns.
         let is_above = |names: usize| block.above.iter().any(|(line, text)| *line > names && is_setting(text));
         if table.line.is_some_and(is_above) && !table.names.iter().any(|name| is_known(name)) {

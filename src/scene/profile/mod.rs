@@ -1,6 +1,6 @@
 //! Measured profiles: files as they come from instruments, and what is done to them before they are a surface.
 //!
-//! Text holds columns x and z, see [`text`]; what is no text is read by the [`SurfaceFormats`] that a scene is read with.
+//! Text holds columns x and z, see [`text`]; what is no text is read by the [`FileFormats`] that a scene is read with.
 //! An FMU carries text in place of all that is no text of x and z.
 
 mod areal;
@@ -25,7 +25,7 @@ use super::regular_file::read_file;
 use super::seam::Seam;
 use super::surface::{Coordinate, Surface, check_points, remove_tilt};
 use super::{HeightMap, MapError};
-use crate::tables::{ContentError, ReadingNote, Unit, decode};
+use crate::tables::{ContentError, ReadingNote, Sheets, Unit, decode};
 use text::Content;
 
 /// A line of an areal measurement, as an FMU carries it: text in place of the file that it was taken from.
@@ -35,7 +35,7 @@ pub struct Extract {
     pub source: PathBuf,
     /// Its own name, beside that file.
     pub name: PathBuf,
-    /// Two columns, x and z in m.
+    /// Two columns, x and z in m; or a sheet of a workbook.
     pub text: String,
 }
 
@@ -62,11 +62,7 @@ impl Surface {
     ///
     /// # Errors
     /// [`SceneError`] with the file, the line, the column, what was given and what is allowed.
-    pub fn load(
-        path: &Path,
-        options: &ProfileOptions,
-        formats: &dyn SurfaceFormats,
-    ) -> Result<LoadedProfile, SceneError> {
+    pub fn load(path: &Path, options: &ProfileOptions, formats: &dyn FileFormats) -> Result<LoadedProfile, SceneError> {
         let bytes = read_file(path).map_err(|error| SceneError::unreadable(path, &error))?;
         let parsed = parse(&bytes, options, formats, false).map_err(|error| error.in_file(path.to_owned()))?;
         Ok(LoadedProfile { surface: parsed.surface, warnings: parsed.warnings, notes: parsed.notes })
@@ -89,7 +85,7 @@ pub(super) fn read(
     folder: &Path,
     path: &Path,
     options: &ProfileOptions,
-    formats: &dyn SurfaceFormats,
+    formats: &dyn FileFormats,
 ) -> Result<Profile, ReadFailure> {
     let (file, bytes) = match read_file(&folder.join(path)) {
         Ok(bytes) => (path.to_owned(), bytes),
@@ -127,7 +123,7 @@ struct Parsed {
 fn parse(
     bytes: &[u8],
     options: &ProfileOptions,
-    formats: &dyn SurfaceFormats,
+    formats: &dyn FileFormats,
     is_extract: bool,
 ) -> Result<Parsed, ContentError> {
     if is_extract {
@@ -218,21 +214,35 @@ pub struct MeasuredSurface {
     pub map: Option<Result<HeightMap, MapError>>,
 }
 
-/// The formats of files of surfaces that a scene is read with, beside text of columns.
-pub trait SurfaceFormats: fmt::Debug {
+/// The formats of files that a scene is read with, beside text of columns.
+pub trait FileFormats: fmt::Debug {
     /// The measurement that a file of these `bytes` holds; `None` of a file of another format.
     fn read(&self, bytes: &[u8], options: &ProfileOptions) -> Option<Result<MeasuredSurface, ContentError>>;
+
+    /// The sheets of a workbook of these `bytes`, as text; `None` of another file.
+    fn sheets(&self, bytes: &[u8]) -> Option<Result<Sheets, ContentError>>;
 }
 
 /// No format but text: that of the files in an FMU.
 #[derive(Clone, Copy, Debug)]
 pub struct TextAlone;
 
-impl SurfaceFormats for TextAlone {
+impl FileFormats for TextAlone {
     fn read(&self, bytes: &[u8], _: &ProfileOptions) -> Option<Result<MeasuredSurface, ContentError>> {
-        let is_archive = bytes.starts_with(b"PK\x03\x04");
-        is_archive.then(|| Err(ContentError::value(None, "", "a zip archive", "text of columns")))
+        is_archive(bytes).then(|| Err(no_archive()))
     }
+
+    fn sheets(&self, bytes: &[u8]) -> Option<Result<Sheets, ContentError>> {
+        is_archive(bytes).then(|| Err(no_archive()))
+    }
+}
+
+fn is_archive(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"PK\x03\x04")
+}
+
+fn no_archive() -> ContentError {
+    ContentError::value(None, "", "a zip archive", "text of columns")
 }
 
 /// Takes out what stands for no height, turns depths over, and converts to metres.

@@ -10,8 +10,8 @@ use super::header::{Header, VOCABULARY, note};
 use super::options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ThirdColumn};
 use super::roles::{EXPECTED_COLUMNS, Roles};
 use crate::tables::{
-    ANY, Block, ContentError, Heading, Line, NumberStyle, ReadingNote, Separator, behind_note, is_missing, number,
-    shortened,
+    ANY, Block, ContentError, DecimalSigns, Heading, Line, NumberStyle, ReadingNote, Separator, UsedColumn,
+    behind_note, is_missing, number, shortened,
 };
 
 /// What a file holds.
@@ -127,8 +127,14 @@ fn is_matrix(block: &Block<'_>, header: &Header<'_>, options: &ProfileOptions) -
 }
 
 /// A matrix of heights: a row is a line along x.
-fn matrix(text: &str, block: &Block<'_>, header: &Header<'_>, options: &ProfileOptions) -> Result<Areal, ContentError> {
-    let mut style = block.style();
+fn matrix<'a>(
+    text: &'a str,
+    block: &Block<'a>,
+    header: &Header<'_>,
+    options: &ProfileOptions,
+) -> Result<Areal, ContentError> {
+    let used: Vec<UsedColumn> = (0..block.columns).map(|index| UsedColumn::new(index, "z")).collect();
+    let (mut style, decided) = block.style_with(text, DecimalSigns::of([block], text), &used)?;
     let unit = options.z_unit.map(LengthUnit::unit).or(header.set[1]);
     let mut heights = Vec::with_capacity(block.rows * block.columns);
     for row in block.rows(text) {
@@ -143,6 +149,7 @@ fn matrix(text: &str, block: &Block<'_>, header: &Header<'_>, options: &ProfileO
     let mut areal = Areal::even("a matrix of heights", [block.columns, block.rows], [dx, dy], heights);
     areal.unit = unit;
     areal.notes.push(note("heights", unit));
+    areal.notes.extend(decided.into_iter().take(1));
     Ok(areal)
 }
 
@@ -170,6 +177,11 @@ impl<'a, 'b> PointsReader<'a, 'b> {
 
     /// The profile; or the map, where y takes several values.
     fn read(mut self, text: &'a str, header: &Header<'_>) -> Result<Content, ContentError> {
+        let used = [("x", self.roles.x), ("y", self.roles.y), ("z", Some(self.roles.z))];
+        let used: Vec<UsedColumn> = used.iter().filter_map(|(axis, i)| Some(UsedColumn::new((*i)?, axis))).collect();
+        let (style, decided) = self.block.style_with(text, DecimalSigns::of([self.block], text), &used)?;
+        self.style = style;
+        self.raw.notes.extend(decided);
         self.raw.units = header.units((self.roles.x, self.roles.z), self.options, &mut self.raw)?;
         let below: Vec<Line<'_>> = self.block.below(text).collect();
         let end = below.iter().rposition(|(_, line)| self.is_row(line)).map_or(0, |last| last + 1);

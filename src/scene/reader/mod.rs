@@ -12,9 +12,9 @@ use super::keys::{self, At, Form, ROOT};
 use super::prony_file::{ElasticConstants, PronySeries};
 use super::values::Word;
 use super::{
-    CarrierBodies, Extrapolation, FmuOptions, Foundation, FoundationKind, Friction, Heat, Layer, Link, LinkKind,
-    Material, MaxwellElement, OutputGroup, ParameterError, PronyTerm, RateShear, Scene, SceneError, Solver, Surface,
-    SurfaceFormats, TextAlone, Wlf, read_text, warnings,
+    CarrierBodies, Extrapolation, FileFormats, FmuOptions, Foundation, FoundationKind, Friction, Heat, Layer, Link,
+    LinkKind, Material, MaxwellElement, OutputGroup, ParameterError, PronyTerm, RateShear, Scene, SceneError, Solver,
+    Surface, TextAlone, Wlf, read_text, warnings,
 };
 use surface::Findings;
 use table::{Entry, Result, Source, TableReader};
@@ -35,7 +35,7 @@ impl Scene {
     ///
     /// # Errors
     /// As for [`load`](Self::load).
-    pub fn load_with(path: &FilePath, formats: &dyn SurfaceFormats) -> Result<Self> {
+    pub fn load_with(path: &FilePath, formats: &dyn FileFormats) -> Result<Self> {
         let text = read_text(path).map_err(|error| SceneError::unreadable(path, &error))?;
         Self::parse_with(&text, path, formats)
     }
@@ -53,7 +53,7 @@ impl Scene {
     ///
     /// # Errors
     /// As for [`load`](Self::load).
-    pub fn parse_with(text: &str, file: &FilePath, formats: &dyn SurfaceFormats) -> Result<Self> {
+    pub fn parse_with(text: &str, file: &FilePath, formats: &dyn FileFormats) -> Result<Self> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let source = Source { file, text, form: Form::Direct, keys: ROOT, formats };
         let document = source.parse()?;

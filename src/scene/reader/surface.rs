@@ -8,7 +8,7 @@ use crate::scene::profile::{self, Extract, ProfileOptions, ReadFailure};
 use crate::scene::seam::Seam;
 use crate::scene::surface::{Coordinate, check_points};
 use crate::scene::{Layer, MOST_HEIGHTS, SelfAffine, Surface, read_file as read_bytes, warnings};
-use crate::tables::{ContentError, ReadingNote};
+use crate::tables::{ContentError, ReadingNote, text_or_sheet};
 
 /// A number of points that is whole but for rounding is that number.
 const ROUNDING: f64 = 1.0e-9;
@@ -33,19 +33,36 @@ impl Findings {
         }
     }
 
-    /// What `parse` makes of the bytes of the file at `path`, which `entry` names, and of how it reads them.
+    /// What `parse` makes of the bytes of the file at `path`, which `entry` names, and of how it reads it. Of a workbook that
+    /// is a sheet, which is kept as an extract: where there is no such workbook, the extract may be there.
     pub(super) fn read_file<T>(
         &mut self,
         entry: &Entry<'_>,
         path: &FilePath,
-        parse: impl FnOnce(&[u8]) -> std::result::Result<(T, Vec<ReadingNote>), ContentError>,
+        parse: impl Fn(&[u8]) -> std::result::Result<(T, Vec<ReadingNote>), ContentError>,
     ) -> Result<T> {
-        let file = entry.source().folder().join(path);
-        let bytes = read_bytes(&file).map_err(|error| entry.unreadable(&error))?;
-        let (content, notes) =
-            parse(&bytes).map_err(|error| error.in_file(file).named_by(entry.location(), entry.path()))?;
+        let (folder, formats) = (entry.source().folder(), entry.source().formats);
+        let name = sheet_name(path);
+        let (file, bytes) = match read_bytes(&folder.join(path)) {
+            Ok(bytes) => (path.to_owned(), bytes),
+            Err(error) => {
+                let bytes = read_bytes(&folder.join(&name)).map_err(|_| entry.unreadable(&error))?;
+                (name.clone(), bytes)
+            }
+        };
+        let refused = |error: ContentError| error.in_file(folder.join(&file)).named_by(entry.location(), entry.path());
+        let ((content, notes), sheet) = text_or_sheet(&bytes, formats.sheets(&bytes), parse).map_err(refused)?;
+        match sheet {
+            Some((text, note)) => {
+                self.add_notes(path, vec![note]);
+                if !self.files.contains(&name) {
+                    self.extracts.push(Extract { source: path.to_owned(), name: name.clone(), text });
+                }
+                self.add_file(name);
+            }
+            None => self.add_file(file),
+        }
         self.add_notes(path, notes);
-        self.add_file(path.to_owned());
         Ok(content)
     }
 
@@ -55,6 +72,13 @@ impl Findings {
             self.files.push(path);
         }
     }
+}
+
+/// `rig.xlsx.sheet.txt` of `rig.xlsx`.
+fn sheet_name(path: &FilePath) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(".sheet.txt");
+    name.into()
 }
 
 /// The surface given by the table `entry`, without the roughness below it; the file that it names, if any, is added to

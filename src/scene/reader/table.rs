@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 use crate::scene::error::{Location, Problem, SceneError};
 use crate::scene::keys::{self, Absent, Allowed, At, Field, Form, Key, Kinds};
 use crate::scene::values::{NumberRange, Value, Word, similar_word, words};
-use crate::scene::{Scene, SurfaceFormats};
+use crate::scene::{FileFormats, Scene};
 
 pub(super) type Result<T> = std::result::Result<T, SceneError>;
 
@@ -25,7 +25,7 @@ pub(super) struct Source<'a> {
     /// The keys that such a file has.
     pub(super) keys: &'static [Key],
     /// What files of surfaces it may name beside text.
-    pub(super) formats: &'a dyn SurfaceFormats,
+    pub(super) formats: &'a dyn FileFormats,
 }
 
 /// A value, its key and the key's full path.

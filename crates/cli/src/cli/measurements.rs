@@ -65,7 +65,7 @@ pub(crate) struct Fit {
     /// The unit of a column, where its heading names none or another one, as in 'Temperature=°C'. May be repeated.
     #[arg(long, value_name = "COLUMN=UNIT", value_parser = column_unit)]
     pub(crate) unit: Vec<(String, asperity::tables::Unit)>,
-    /// The sheet of a workbook. Default: the only one with moduli.
+    /// The sheet of a workbook. Default: the only one with moduli, or all of those named by temperatures: 20C, -10 °C.
     #[arg(long, value_name = "NAME")]
     pub(crate) sheet: Option<String>,
     /// Ignores the column with this header, written exactly as in the file. May be repeated.

@@ -24,11 +24,22 @@ pub(super) struct WrittenReport<'a> {
     peers: Peers,
 }
 
+/// What is run.
+fn options(command: &Report) -> ReportOptions {
+    ReportOptions {
+        tolerances: command.tolerances.0.clone(),
+        points: command.rows,
+        repeat: command.repeat,
+        stress: command.stress,
+        stress_time: command.stress_time,
+    }
+}
+
 impl<'a> WrittenReport<'a> {
     /// Reads what is needed and checks it, before anything is run or written.
     pub(super) fn prepare(command: &'a Report, path: &'a Path, folder: &Path) -> Result<Self, ReportError> {
         let scene = load(path, &command.set)?;
-        SceneReport::check(&scene).map_err(ReportError::of(path))?;
+        SceneReport::check(&scene, &options(command)).map_err(ReportError::of(path))?;
         let taken: Vec<PathBuf> = scene.sources(path).into_iter().chain(command.peers.clone()).collect();
         let folder = ReportFolder::new(folder, &[ERRORS, JUDGEMENTS, COMMUNICATION], &taken)?;
         let peers = peers_of(command, path, &scene)?;
@@ -43,14 +54,7 @@ impl<'a> WrittenReport<'a> {
     /// Runs the scene and writes its report. Returns how its runs keep what they promise.
     pub(super) fn run(&self) -> Result<Vec<Judgement>, ReportError> {
         let command = self.command;
-        let options = ReportOptions {
-            tolerances: command.tolerances.0.clone(),
-            points: command.rows,
-            repeat: command.repeat,
-            stress: command.stress,
-            stress_time: command.stress_time,
-        };
-        let results = SceneReport::run(&self.scene, &options, &Bars::new().watch());
+        let results = SceneReport::run(&self.scene, &options(command), &Bars::new().watch());
         let results = results.map_err(ReportError::of(self.path))?;
         results.reference.warnings.iter().for_each(|warning| warn(warning));
         self.folder.create()?;

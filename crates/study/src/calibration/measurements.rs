@@ -5,7 +5,7 @@ use std::path::Path;
 use asperity::element::{Load, OperatingPoint};
 use asperity::tables::{
     ABOVE_ZERO, Choice, Column, ContentError, Dimension, FINITE, Format, Others, ReadingNote, Table, UnitRule, Wanted,
-    Words, decode,
+    Words, decode, words,
 };
 
 use super::curve_grid::left_out_in_words;
@@ -52,11 +52,13 @@ enum Quantity {
     Pressure,
     Force,
     Friction,
+    /// F_T beside F_N.
+    Tangential,
     Temperature,
     Deviation,
 }
 
-const FRICTION: Format<Quantity, 5> = Format {
+const FRICTION: Format<Quantity, 6> = Format {
     needs_names: true,
     others: Others::Tables,
     ..Format::new(
@@ -83,14 +85,20 @@ const FRICTION: Format<Quantity, 5> = Format {
             Words::new(
                 Quantity::Force,
                 Dimension::Force,
-                "force load fz fn normalkraft last",
-                "normal f z vertical mean",
+                "force load fz fn normalkraft last f+n f+z normal",
+                "normal f z n vertical mean measured",
             ),
             Words::new(
                 Quantity::Friction,
                 Dimension::Number,
                 "friction mu μ cof reibwert reibungszahl",
                 "coefficient of friction mean the measured",
+            ),
+            Words::new(
+                Quantity::Tangential,
+                Dimension::Force,
+                "ft fx fr friction tangential lateral traction reibkraft tangentialkraft f+T f+t f+x f+r",
+                "force f T t x r mean measured",
             ),
             Words::new(
                 Quantity::Temperature,
@@ -105,56 +113,63 @@ const FRICTION: Format<Quantity, 5> = Format {
                 choice: Choice::FirstQuantity,
                 ..Wanted::new(&[Quantity::Pressure, Quantity::Force], "pressure", "loads").within(ABOVE_ZERO)
             },
-            Wanted::new(&[Quantity::Friction], "friction", "friction").within(FINITE),
+            Wanted {
+                choice: Choice::FirstQuantity,
+                ..Wanted::new(&[Quantity::Friction, Quantity::Tangential], "friction", "friction").within(FINITE)
+            },
             Wanted {
                 unit: UnitRule::Named,
                 ..Wanted::new(&[Quantity::Temperature], "temperature", "temperatures").optional().within(ABOVE_ZERO)
             },
             Wanted::new(&[Quantity::Deviation], "sigma", "standard deviations").optional().within(ABOVE_ZERO),
+            Wanted::new(&[], "normal force", "normal forces").optional().within(ABOVE_ZERO),
         ],
-        "columns by their names with units: speed [m/s], pressure [bar] or force [N], friction; temperature [°C] and the \
-         standard deviation of friction where there are such",
+        "columns by their names with units: speed [m/s], pressure [bar] or force [N], friction, or F_T [N] beside the force; \
+         temperature [°C] and the standard deviation of friction where there are such",
     )
 };
 
 impl Measurements {
     /// Reads the table in the bytes of a file; forces are those on the whole layer, whose `area` (m²) makes pressures of
-    /// them.
+    /// them. Friction is a column of its own, or F_T over F_N.
     ///
     /// # Errors
     /// [`ContentError`] with the line, what was expected and what was found.
     pub fn parse(bytes: &[u8], area: f64) -> Result<Self, ContentError> {
         let text = decode(bytes)?;
-        let Table { columns, rows, lines, notes, .. } = FRICTION.read(&text)?;
-        let [_, load, friction_column, temperature, deviation] = &columns;
-        let is_said = |note: &ReadingNote| note.assumed || note.text.contains("left out");
-        let mut notes: Vec<String> = notes.into_iter().filter(is_said).map(|note| note.text).collect();
-        let is_force = load.as_ref().is_some_and(|column| column.quantity == Quantity::Force);
-        let to_pressure = if is_force { Load::Pressure { area }.at_force(1.0) } else { 1.0 };
-        if is_force {
+        let table = read_columns(&text)?;
+        let is_said = |note: &&ReadingNote| note.assumed || note.text.contains("left out");
+        let mut notes: Vec<String> = table.notes.iter().filter(is_said).map(|note| note.text.clone()).collect();
+        let has_forces = table.columns[1].as_ref().is_some_and(|column| column.quantity == Quantity::Force);
+        let to_pressure = if has_forces { Load::Pressure { area }.at_force(1.0) } else { 1.0 };
+        if has_forces {
             notes.push(format!("forces are those on the scene's whole layer, {area:.6e} m²"));
         }
-        let is_in = |column: Option<&Column<Quantity>>, unit| column.is_some_and(|column| column.unit.name == unit);
-        let is_relative = is_in(deviation.as_ref(), "%") && !is_in(friction_column.as_ref(), "%");
-        if is_relative {
-            notes.push("standard deviations in % are taken as parts of the friction".to_owned());
-        }
-        let row = |(&[speed, load, friction, kelvin, sigma], line): (&[f64; 5], usize)| {
-            let sigma = if is_relative { sigma * friction.abs() } else { sigma };
-            let (load, temperature) = (to_pressure * load, temperature.as_ref().map(|_| kelvin));
+        let forces = Forces::of(&table, area);
+        notes.extend(forces.iter().map(Forces::note));
+        let deviation = Deviation::of(&table, forces.is_some());
+        notes.extend(deviation.note());
+        let has_temperature = table.columns[3].is_some();
+        let row = |(row, line): (&[f64; 6], usize)| {
+            let &[speed, load, friction, kelvin, sigma, _] = row;
+            let friction = forces.as_ref().map_or(friction, |forces| forces.friction(row));
+            let (load, temperature) = (to_pressure * load, has_temperature.then_some(kelvin));
             let point = OperatingPoint { speed, load, temperature };
-            Measured { line, point, friction, sigma: deviation.as_ref().map(|_| sigma) }
+            Measured { line, point, friction, sigma: deviation.sigma(sigma, friction) }
         };
-        Ok(Self { rows: rows.iter().zip(lines).map(row).collect(), notes })
+        Ok(Self { rows: table.rows.iter().zip(table.lines.iter().copied()).map(row).collect(), notes })
     }
 
-    /// Reads the table in the file at `path`, as [`Self::parse`] does.
+    /// Reads the table in the file at `path`, text or a workbook, as [`Self::parse`] does.
     ///
     /// # Errors
     /// Where the file cannot be read, or the table in it is refused.
     pub fn read(path: &Path, area: f64) -> Result<Self, MeasuredFrictionError> {
         let refused = |error| MeasuredFrictionError::Content { path: path.to_owned(), error };
-        Self::parse(&files::bytes(path)?, area).map_err(refused)
+        let read = files::read_table(&files::bytes(path)?, |bytes| Self::parse(bytes, area));
+        let (mut measurements, sheet) = read.map_err(refused)?;
+        measurements.notes.splice(0..0, sheet);
+        Ok(measurements)
     }
 
     /// How many rows are left out with the points that have no result, which, and why; `None` where none is.
@@ -173,6 +188,102 @@ impl Measurements {
     /// Whether the table has temperatures.
     pub fn has_temperature(&self) -> bool {
         self.rows.iter().any(|row| row.point.temperature.is_some())
+    }
+}
+
+/// The columns of a text; where F_T stands beside a pressure, with F_N if there is such.
+fn read_columns(text: &str) -> Result<Table<'_, Quantity, 6>, ContentError> {
+    let table = FRICTION.read(text)?;
+    let holds = |place: usize, quantity| {
+        table.columns[place].as_ref().is_some_and(|column: &Column<Quantity>| column.quantity == quantity)
+    };
+    if !(holds(1, Quantity::Pressure) && holds(2, Quantity::Tangential)) {
+        return Ok(table);
+    }
+    let mut with_force = FRICTION;
+    with_force.columns[5].quantities = &[Quantity::Force];
+    with_force.read(text)
+}
+
+/// How forces make friction.
+#[derive(Debug)]
+struct Forces {
+    /// The place of F_N among the columns; `None` where the pressure makes it, with the area.
+    normal: Option<usize>,
+    area: f64,
+    /// -1 where F_T points backwards in all rows.
+    sign: f64,
+    names: [String; 2],
+}
+
+impl Forces {
+    /// `None` where friction is a column of its own.
+    fn of(table: &Table<'_, Quantity, 6>, area: f64) -> Option<Self> {
+        let label = |place: usize| table.columns[place].as_ref().map(Column::label);
+        let is_tangential = table.columns[2].as_ref()?.quantity == Quantity::Tangential;
+        let is_force =
+            |place: &usize| table.columns[*place].as_ref().is_some_and(|column| column.quantity == Quantity::Force);
+        let normal = [1, 5].into_iter().find(is_force);
+        let backwards = table.rows.iter().all(|row| row[2] <= 0.0);
+        let names = [label(2)?, label(normal.unwrap_or(1))?];
+        is_tangential.then_some(Self { normal, area, sign: if backwards { -1.0 } else { 1.0 }, names })
+    }
+
+    fn friction(&self, row: &[f64; 6]) -> f64 {
+        let normal = self.normal.map_or_else(|| row[1] * self.area, |place| row[place]);
+        self.sign * row[2] / normal
+    }
+
+    fn note(&self) -> String {
+        let [tangential, normal] = &self.names;
+        let over = match self.normal {
+            Some(_) => normal.clone(),
+            None => format!("{normal} on the scene's whole layer, {:.6e} m²", self.area),
+        };
+        let turned = if self.sign < 0.0 { ", which is below 0 throughout and is turned over" } else { "" };
+        format!("friction is {tangential} over {over}{turned}")
+    }
+}
+
+/// What is done with the column of standard deviations.
+#[derive(Debug)]
+enum Deviation {
+    None,
+    Absolute,
+    /// Parts of the friction.
+    Relative,
+    /// It may be that of a force: it is not used. Its name.
+    OfForce(String),
+}
+
+impl Deviation {
+    fn of(table: &Table<'_, Quantity, 6>, of_forces: bool) -> Self {
+        const FRICTION: [&str; 7] = ["friction", "mu", "μ", "cof", "reibwert", "coefficient", "reibungszahl"];
+        let Some(column) = &table.columns[4] else { return Self::None };
+        let in_percent = |column: &Column<Quantity>| column.unit.name == "%";
+        if in_percent(column) && !table.columns[2].as_ref().is_some_and(in_percent) {
+            return Self::Relative;
+        }
+        let names_friction = words(&column.text).iter().any(|word| FRICTION.contains(&word.as_str()));
+        if of_forces && !names_friction { Self::OfForce(column.label()) } else { Self::Absolute }
+    }
+
+    fn note(&self) -> Option<String> {
+        match self {
+            Self::Relative => Some("standard deviations in % are taken as parts of the friction".to_owned()),
+            Self::OfForce(label) => {
+                Some(format!("{label} is left out: it may be that of a force; that of friction is called std mu"))
+            }
+            Self::None | Self::Absolute => None,
+        }
+    }
+
+    fn sigma(&self, written: f64, friction: f64) -> Option<f64> {
+        match self {
+            Self::Absolute => Some(written),
+            Self::Relative => Some(written * friction.abs()),
+            Self::None | Self::OfForce(_) => None,
+        }
     }
 }
 
@@ -219,6 +330,36 @@ mod tests {
         }
         let relative = read("v [mm/s],p [kPa],mu,error [%]\n1,10,0.5,2\n").unwrap();
         assert!((relative.rows[0].sigma.unwrap() - 0.01).abs() < 1e-15 && relative.notes[0].contains("in %"));
+    }
+
+    /// 12 N over 40 N are 0.3; over 20 kPa on 2e-3 m², which are 40 N too.
+    #[test]
+    fn friction_is_f_t_over_f_n() {
+        let is_it = |measured: &Measurements| {
+            let Measured { point, friction, .. } = measured.rows[0];
+            (friction - 0.3).abs() < 1e-15 && (point.load / 2e4 - 1.0).abs() < 1e-12
+        };
+        for (names, numbers) in [
+            ("v [mm/s],F_N [N],F_T [N]", "1,40,12"),
+            ("v [mm/s],Fz [N],Fx [N]", "1,40,-12"),
+            ("v [mm/s],Normal force [kN],Friction force [N]", "1,0.04,12"),
+            ("v [mm/s],F_n [N],F_t [N],std [N]", "1,40,12,0.5"),
+            ("v [mm/s],p [kPa],F_N [N],Tangential force [N]", "1,20,40,12"),
+            ("v [mm/s],p [kPa],F_T [N]", "1,20,12"),
+        ] {
+            let text = format!("{names}\n{numbers}\n");
+            if names.contains("std") {
+                assert!(read(&text).unwrap_err().contains("unit of column 4 (std [N])"));
+                continue;
+            }
+            let measured = read(&text).unwrap();
+            assert!(is_it(&measured), "{names}: {:?}", measured.rows);
+            assert!(measured.notes.iter().any(|note| note.starts_with("friction is column ")), "{:?}", measured.notes);
+        }
+        let measured = read("v [mm/s],F_N [N],F_T [N],std\n1,40,12,0.5\n").unwrap();
+        assert!(measured.rows[0].sigma.is_none() && measured.notes.iter().any(|note| note.contains("may be that of")));
+        let both = read("v [mm/s],F_N [N],F_T [N],mu\n1,40,12,0.5\n").unwrap();
+        assert_eq!((both.rows[0].friction, &both.notes[0][..]), (0.5, "columns left out: F_T [N]"));
     }
 
     #[test]

@@ -168,7 +168,7 @@ impl Columns {
         ignored: &[String],
         units: &GivenUnits,
     ) -> Result<Option<Self>, ContentError> {
-        let header = Header::read(block, &VOCABULARY, Some(Dimension::Temperature));
+        let header = Header::read(block, &VOCABULARY, &[Dimension::Temperature, Dimension::Frequency]);
         let Some(line) = header.line else { return Ok(None) };
         let mut columns = Self { line, used: Vec::new(), left_out: Vec::new() };
         let is_unknown = |heading: &Heading<Quantity>| matches!(heading.unit, HeadingUnit::Unknown(_));

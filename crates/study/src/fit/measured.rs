@@ -56,7 +56,9 @@ impl MeasuredModuli {
         }
         let (test, in_hertz, reduced) = (first.test(), first.in_hertz(), first.is_reduced());
         let mut points = Vec::new();
-        for table in &tables {
+        let (styles, decided) = ModuliTable::styles(&tables, text)?;
+        notes.extend(decided);
+        for (table, style) in tables.iter().zip(styles) {
             if (table.test(), table.is_reduced()) != (test, reduced) {
                 let expected = "tables of one kind in a file: all of oscillation, or all of relaxation";
                 return Err(refused(table.line, "another kind of table", expected));
@@ -64,7 +66,7 @@ impl MeasuredModuli {
             if tables.len() > 1 {
                 table.check_temperature()?;
             }
-            match table.add_points(text, reading, &mut points)? {
+            match table.add_points(text, style, reading, &mut points)? {
                 0 => (),
                 1 => notes.push("a row whose loss is 0, below what was measured, is left out".into()),
                 zeros => notes.push(format!("{zeros} rows whose loss is 0, below what was measured, are left out")),
@@ -188,6 +190,16 @@ mod tests {
             "Point,Time [s],f [Hz],E' [MPa],E'' [MPa],Strain [%],T [°F]\na,1,2,3,0.6,9,68\n",
             "log f [Hz];log E' [Pa];tan(d);T [°C]\n0,30102999566398120;6,47712125471966244;0,2;20",
             "f [Hz];|E*| [MPa];delta [°];T [°C]\n2;3.0594117081556709;11.309932474020213;20",
+            "f [Hz],|E*| [kPa],tan(d),T [°C]\n2,3059.4117081556709,0.2,20",
+            "f [Hz],|E*| [MPa],delta [rad],T [°C]\n2,3.0594117081556709,0.19739555984988078,20",
+            "f [Hz],|E*| [MPa],phase (mrad),T [°C]\n2,3.0594117081556709,197.39555984988078,20",
+            "f [Hz],|G*| [MPa],phase angle (deg),T [°C]\n2,1.0198039027185569,11.309932474020213,20",
+            "f [Hz],E' [MPa],delta [°],T [°C]\n2,3,11.309932474020213,20",
+            "T [°C],E' [MPa] 2 Hz,E'' [MPa] 2 Hz,E' [MPa] 20 Hz,E'' [MPa] 20 Hz\n20,3,0.6,4,0.7\n",
+            "T;E' 2 Hz;E'' 2 Hz;E' 20 Hz;E'' 20 Hz\n°C;MPa;MPa;MPa;MPa\n20;3;0,6;4;0,7\n",
+            ",2 Hz,,20 Hz,\nT [°C],E' [MPa],E'' [MPa],E' [MPa],E'' [MPa]\n20,3,0.6,4,0.7\n",
+            "T [°C],E' (f = 2 Hz) [MPa],E' (f = 20 Hz) [MPa],tan d 2 Hz,tan d 20 Hz\n20,3,4,0.2,0.3\n",
+            "T [°C],E' [MPa] 2 Hz,tan d 2 Hz\n20,3,0.2\n",
             "Oscillation frequency\tDyn. Storage Modulus\tDyn. Loss Modulus\tTemperature\nHz\tksi\tpsi\t°C\n\
              2\t0.43511321319\t87.022642638\t20\n",
             ",20 °C,,30 °C,\nf [Hz],E' [MPa],E'' [MPa],E' [MPa],E'' [MPa]\n2,3,0.6,2,0.2\n",
@@ -210,6 +222,35 @@ mod tests {
         assert!(
             last.map(|points| points[1]).all(|point| point.temperature == Some(303.15) && point.sample.storage == 2e6)
         );
+    }
+
+    #[test]
+    fn a_column_a_frequency_has_points_at_each() {
+        let points = read("T [°C],E' 2 Hz [MPa],E'' 2 Hz [MPa],E' 20 Hz [MPa],E'' 20 Hz [MPa]\n20,3,1,5,2\n30,2,1,,\n");
+        let found: Vec<_> = points.points.iter().map(|row| (row.temperature, row.sample)).collect();
+        let row = |kelvin, hertz, storage, loss| (Some(kelvin), Sample { at: TAU * hertz, storage, loss });
+        let expected = [row(293.15, 2.0, 3e6, 1e6), row(293.15, 20.0, 5e6, 2e6), row(303.15, 2.0, 2e6, 1e6)];
+        assert_eq!(found, expected);
+        assert!(points.notes[0].ends_with("and so on for 2 frequencies"), "{:?}", points.notes);
+        for (text, message) in [
+            (
+                "T [°C],E' [Pa] 1 Hz,E' [Pa],E'' [Pa] 1 Hz,E'' [Pa]\n1,2,3,4,5\n",
+                "1: column 3 (E' [Pa]): expected its frequency",
+            ),
+            (
+                "T [°C],E' [Pa] 1 Hz,E' [Pa] 2 Hz,E'' [Pa] 1 Hz,E'' [Pa] 3 Hz\n1,2,3,4,5\n",
+                "1: column 5 (E'' [Pa] 3 Hz): expected one column of its kind at 2.0000 Hz",
+            ),
+            (
+                "f [Hz];E' [kPa];E'' [kPa]\n1;5.982;1.204\n10;12.004;2.310",
+                "2: column 2 (E' [kPa]) = \"5.982\": expected a line",
+            ),
+        ] {
+            assert!(refusal(text).starts_with(message), "{text}\n{}", refusal(text));
+        }
+        let decided = read("f [Hz];E' [kPa];E'' [kPa]\n0,1;5.982;1.204\n10;12.004;2.310");
+        assert_eq!(decided.points[0].sample.storage, 5982e3);
+        assert!(decided.notes.iter().any(|note| note.contains("5.982 is 5982")), "{:?}", decided.notes);
     }
 
     #[test]

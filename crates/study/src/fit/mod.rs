@@ -7,6 +7,7 @@
 mod columns;
 mod compound;
 mod consistency;
+mod curves;
 mod error;
 mod file;
 mod fitted;

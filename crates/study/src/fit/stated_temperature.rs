@@ -1,4 +1,4 @@
-//! Temperatures that stand above a table, not in a column: in the line above its names, in a line of settings.
+//! Temperatures and frequencies that stand above a table, not in a column: in the line above its names, in a line of settings.
 
 use asperity::scene::Wlf;
 use asperity::tables::{Block, ContentError, Dimension, Unit, find_quantity, number, words};
@@ -10,27 +10,31 @@ fn temperature(text: &str) -> Option<f64> {
     find_quantity(text, Dimension::Temperature).map(|(_, kelvin)| kelvin)
 }
 
-/// The temperatures in the line above the names: each holds to the next one.
-pub(super) fn temperatures_above(
+/// The temperatures or frequencies in the line above the names, in SI units: each holds to the next one.
+pub(super) fn conditions_above(
     block: &Block<'_>,
     names: usize,
     units: &GivenUnits,
+    dimension: Dimension,
 ) -> Result<Vec<Option<f64>>, ContentError> {
     let Some(&(line, text)) = block.above.iter().rev().find(|(line, _)| *line < names) else { return Ok(Vec::new()) };
     let Some(fields) = block.fields(text) else { return Ok(Vec::new()) };
-    let given = units.iter().map(|(_, unit)| *unit).find(is_of_temperature);
-    let of_line = given.or_else(|| unit_of(text));
+    let given = units.iter().map(|(_, unit)| *unit).find(|unit| unit.dimension == dimension);
+    let of_line = given.or_else(|| unit_of(text, dimension));
+    let is_kelvin = |value: f64| dimension == Dimension::Temperature && value >= Wlf::COLDEST;
     let (mut found, mut last) = (Vec::new(), None);
     for (index, field) in fields.iter().enumerate() {
-        let named = temperature(field);
+        let named = find_quantity(field, dimension).map(|(_, value)| value);
         let bare = number(field, block.separator.allows_decimal_comma());
         match (named, bare, of_line) {
-            (Some(kelvin), _, _) => last = Some(kelvin),
+            (Some(value), _, _) => last = Some(value),
             (None, Some(value), Some(unit)) => last = Some(unit.to_si(value)),
-            (None, Some(value), None) if value >= Wlf::COLDEST => last = Some(value),
+            (None, Some(value), None) if is_kelvin(value) => last = Some(value),
             (None, Some(_), None) => {
-                let expected =
-                    "a unit of temperature, as in 20 °C, above each pair of columns; or `unit` temperature=°C";
+                let expected = match dimension {
+                    Dimension::Frequency => "a unit of frequency, as in 1 Hz, above each pair of columns",
+                    _ => "a unit of temperature, as in 20 °C, above each pair of columns; or `unit` temperature=°C",
+                };
                 let key = format!("column {}", index + 1);
                 return Err(ContentError::value(Some(line), &key, &format!("\"{field}\""), expected));
             }
@@ -42,14 +46,10 @@ pub(super) fn temperatures_above(
     Ok(found)
 }
 
-/// The unit of temperature that a line names by itself, as in `T [°C],20,,40,`.
-fn unit_of(line: &str) -> Option<Unit> {
+/// The unit of a dimension that a line names by itself, as in `T [°C],20,,40,`.
+fn unit_of(line: &str, dimension: Dimension) -> Option<Unit> {
     let parts = line.split(|letter: char| letter.is_whitespace() || "[](),;:=/\t".contains(letter));
-    parts.filter_map(Unit::parse).find(is_of_temperature)
-}
-
-fn is_of_temperature(unit: &Unit) -> bool {
-    unit.dimension == Dimension::Temperature
+    parts.filter_map(Unit::parse).find(|unit| unit.dimension == dimension)
 }
 
 /// A temperature in a line of settings.
@@ -78,7 +78,7 @@ pub(super) fn setting(line: &str, units: &GivenUnits) -> Option<Setting> {
             return Some(Setting::Kelvin(kelvin));
         }
         let given = units.iter().find(|(name, _)| words(name) == found).map(|(_, unit)| *unit);
-        let unit = given.or_else(|| unit_of(name));
+        let unit = given.or_else(|| unit_of(name, Dimension::Temperature));
         let number = number(digits, true);
         Some(match (unit, number) {
             (Some(unit), Some(number)) => Setting::Kelvin(unit.to_si(number)),

@@ -3,25 +3,18 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use asperity::scene::Wlf;
-use asperity::tables::{ABOVE_ZERO, Block, ContentError, Line, NumberStyle, POSITIVE, Row, words};
+use asperity::tables::{
+    ABOVE_ZERO, Block, ContentError, DecimalSigns, Line, NumberStyle, POSITIVE, Row, UsedColumn, words,
+};
 
 use super::columns::{self, Column, Columns, Quantity, with_unit};
+use super::curves::{Chosen, Curve, twin};
 use super::reading::{MeasuredPoint, Reading};
 use super::sample::{Sample, Test};
-use super::stated_temperature::{Setting, setting, temperatures_above};
+use super::stated_temperature::{Setting, setting};
 
 /// E' of any rubber is above it, Pa: without a unit, a modulus below it is in another one.
 const SOFTEST: f64 = 1e3;
-
-/// One curve of a table: its columns. A table has one, or one for each temperature.
-#[derive(Clone, Debug)]
-struct Curve {
-    /// Frequency or time; `None` where it is given on the command line.
-    at: Option<Column>,
-    modulus: Column,
-    loss: Option<Column>,
-    temperature: Option<f64>,
-}
 
 /// A table of moduli in a file.
 #[derive(Debug)]
@@ -66,7 +59,7 @@ impl<'a> ModuliTable<'a> {
     fn with_own_header(block: &Block<'a>, reading: &Reading<'_>) -> Result<Option<Self>, ContentError> {
         use Quantity::{Loss, LossTangent, Set, SetTemperature, ShearLoss, ShiftFactor, Temperature, VerticalFactor};
         let Some(columns) = Columns::read(block, reading.ignored, reading.units)? else { return Ok(None) };
-        let Some(mut chosen) = Chosen::of(&columns, reading)? else { return Ok(None) };
+        let Some(mut chosen) = Chosen::of(&columns)? else { return Ok(None) };
         let other_frequency = chosen.take_other_frequency();
         let curves = chosen.curves(block, &columns, reading)?;
         let is_loss = |loss: &Column| matches!(loss.quantity, Loss | ShearLoss);
@@ -102,9 +95,8 @@ impl<'a> ModuliTable<'a> {
                 checked.map_err(|error| error.or("`unit` NAME=UNIT"))?;
             }
         }
-        let of_curve = |curve: &'_ Curve| [curve.at.clone(), Some(curve.modulus.clone()), curve.loss.clone()];
-        let used = self.curves.iter().flat_map(of_curve).flatten().chain(self.temperature.clone());
-        used.into_iter().try_for_each(|column| columns::check_unit(&column, &self.block, self.line))
+        let mut used = self.curves.iter().flat_map(Curve::columns).chain(&self.temperature);
+        used.try_for_each(|column| columns::check_unit(column, &self.block, self.line))
     }
 
     /// The temperature of a table whose rows have none: in its heading lines, `Temperature: 20 °C`.
@@ -159,11 +151,9 @@ impl<'a> ModuliTable<'a> {
         let used = [curve.at.as_ref(), Some(&curve.modulus), curve.loss.as_ref(), self.temperature.as_ref()];
         let read: Vec<String> = used.into_iter().flatten().map(name).collect();
         let many = if tables > 1 { format!("{tables} tables, the first with ") } else { String::new() };
-        let temperatures = if self.curves.len() > 1 {
-            format!(", and so on for {} temperatures", self.curves.len())
-        } else {
-            String::new()
-        };
+        let kind = if curve.frequency.is_some() { "frequencies" } else { "temperatures" };
+        let temperatures =
+            if self.curves.len() > 1 { format!(", and so on for {} {kind}", self.curves.len()) } else { String::new() };
         let mut notes = vec![format!("read {many}{}{temperatures}", read.join(", "))];
         notes.extend(used.into_iter().flatten().filter_map(|column| {
             Some(format!("{} names no unit: {} is assumed", name(column), column.assumed_unit()?))
@@ -204,15 +194,30 @@ impl<'a> ModuliTable<'a> {
         named || (reading.shear && !names_letter(&modulus.text))
     }
 
+    /// How the numbers of each of the tables of a text are written, and what had to be decided.
+    pub(super) fn styles(tables: &[Self], text: &'a str) -> Result<(Vec<NumberStyle>, Vec<String>), ContentError> {
+        let signs = DecimalSigns::of(tables.iter().map(|table| &table.block), text);
+        let (mut styles, mut notes) = (Vec::new(), Vec::new());
+        for table in tables {
+            let others = [&table.temperature, &table.shift, &table.vertical, &table.other_frequency, &table.tangent];
+            let all = table.curves.iter().flat_map(Curve::columns).chain(others.into_iter().flatten());
+            let used: Vec<UsedColumn> = all.map(Column::used).collect();
+            let (style, decided) = table.block.style_with(text, signs, &used)?;
+            styles.push(style);
+            notes.extend(decided.into_iter().map(|note| note.text));
+        }
+        Ok((styles, notes))
+    }
+
     /// Adds the points of all rows; how many are left out because their loss is 0.
     pub(super) fn add_points(
         &self,
-        text: &str,
+        text: &'a str,
+        mut style: NumberStyle,
         reading: &Reading<'_>,
         points: &mut Vec<MeasuredPoint>,
     ) -> Result<usize, ContentError> {
         let mut zeros = 0;
-        let mut style = self.block.style();
         for row in self.block.rows(text) {
             for curve in &self.curves {
                 match self.point(curve, &mut Numbers { row: &row, style: &mut style }, reading)? {
@@ -239,7 +244,7 @@ impl<'a> ModuliTable<'a> {
         }
         let at = match &curve.at {
             Some(column) => row.positive(column)?,
-            None => reading.frequency.unwrap_or(TAU),
+            None => curve.frequency.or(reading.frequency).unwrap_or(TAU),
         };
         self.check_other_frequency(at, row)?;
         let modulus = row.positive(&curve.modulus)?;
@@ -357,127 +362,4 @@ impl Numbers<'_> {
     fn refuse(&self, column: &Column, expected: &str) -> ContentError {
         column.refuse(self.row.line, column.field(self.row), expected)
     }
-}
-
-/// The columns by what they are for: frequencies or times, moduli, losses.
-#[derive(Debug)]
-struct Chosen {
-    at: Vec<Column>,
-    moduli: Vec<Column>,
-    losses: Vec<Column>,
-}
-
-impl Chosen {
-    /// `None` where there are no moduli.
-    fn of(columns: &Columns, reading: &Reading<'_>) -> Result<Option<Self>, ContentError> {
-        use Quantity::{
-            Complex, Frequency, Loss, LossTangent, Phase, Relaxation, ShearComplex, ShearLoss, ShearRelaxation,
-            ShearStorage, Storage, Time,
-        };
-        let (at, times) = (columns.first(&[&[Frequency]]), columns.first(&[&[Time]]));
-        let relaxed = columns.first(&[&[Relaxation], &[ShearRelaxation]]);
-        if at.is_empty() && !times.is_empty() && !relaxed.is_empty() {
-            return Ok(Some(Self { at: times, moduli: relaxed, losses: Vec::new() }));
-        }
-        let moduli = columns.first(&[&[Storage], &[ShearStorage], &[Complex], &[ShearComplex]]);
-        let kind = moduli.first().map(|column| column.quantity);
-        let losses = columns.first(match kind {
-            Some(Storage) => &[&[Loss], &[LossTangent], &[Phase]],
-            Some(ShearStorage) => &[&[ShearLoss], &[Loss], &[LossTangent], &[Phase]],
-            Some(_) => &[&[Phase], &[LossTangent]],
-            None => &[&[Loss], &[ShearLoss], &[LossTangent], &[Phase]],
-        });
-        let missing = |expected: &str| Err(ContentError::value(Some(columns.line), "", "", expected));
-        match (kind, losses.is_empty()) {
-            (None, true) => Ok(None),
-            (None, false) => missing("a column of the storage modulus: E' [MPa]"),
-            (Some(Complex | ShearComplex), true) => {
-                missing("a column of the phase beside |E*|: delta [°] or tan delta")
-            }
-            (Some(_), true) => missing("a column of the loss: E'' [MPa] or tan delta"),
-            _ if at.is_empty() && reading.frequency.is_none() => {
-                missing("a frequency column, f [Hz] or omega [rad/s]; or `frequency` 10Hz for all rows")
-            }
-            _ => Ok(Some(Self { at, moduli, losses })),
-        }
-    }
-
-    /// A second column of frequencies beside one of moduli.
-    fn take_other_frequency(&mut self) -> Option<Column> {
-        let has_two = self.at.len() == 2 && self.moduli.len() == 1 && self.at[0].quantity == Quantity::Frequency;
-        if has_two { self.at.pop() } else { None }
-    }
-
-    /// One curve, or a pair of columns for each temperature.
-    fn curves(&self, block: &Block<'_>, columns: &Columns, reading: &Reading<'_>) -> Result<Vec<Curve>, ContentError> {
-        let Self { at, moduli, losses } = self;
-        if let [modulus] = &moduli[..] {
-            return match twin(columns.line, at).or_else(|| twin(columns.line, losses)) {
-                Some(error) => Err(error),
-                None => Ok(vec![Curve {
-                    at: at.first().cloned(),
-                    modulus: modulus.clone(),
-                    loss: losses.first().cloned(),
-                    temperature: modulus.condition,
-                }]),
-            };
-        }
-        let fits = |count: usize| count == moduli.len();
-        if !(losses.is_empty() || fits(losses.len())) || !(at.len() <= 1 || fits(at.len())) {
-            let given =
-                format!("{} columns of moduli, {} of losses, {} of frequencies", moduli.len(), losses.len(), at.len());
-            let expected = "a pair of moduli a temperature, and one frequency or one for each";
-            return Err(ContentError::value(Some(columns.line), "", &given, expected));
-        }
-        let above = temperatures_above(block, columns.line, reading.units)?;
-        let pairs = Pairs { above: &above, line: columns.line };
-        let curve = |(i, modulus): (usize, &Column)| {
-            let temperature = pairs.temperature(modulus).ok_or_else(|| {
-                let expected = "its temperature, in its name (E' [MPa] 20 °C) or in the line above; or one column of a \
-                                kind: `ignore` NAME";
-                modulus.refuse(columns.line, "", expected)
-            })?;
-            let at = if at.len() == 1 { at.first().cloned() } else { pairs.partner(at, i, temperature)? };
-            let loss = pairs.partner(losses, i, temperature)?;
-            Ok(Curve { at, modulus: modulus.clone(), loss, temperature: Some(temperature) })
-        };
-        moduli.iter().enumerate().map(curve).collect()
-    }
-}
-
-/// Finds which columns belong together.
-struct Pairs<'c> {
-    /// The temperatures in the line above the names, K.
-    above: &'c [Option<f64>],
-    line: usize,
-}
-
-impl Pairs<'_> {
-    fn temperature(&self, column: &Column) -> Option<f64> {
-        column.condition.or_else(|| self.above.get(column.index).copied().flatten())
-    }
-
-    /// The column for place `i`, where its temperature is that one or none is named; else the only one of that
-    /// temperature.
-    fn partner(&self, columns: &[Column], i: usize, temperature: f64) -> Result<Option<Column>, ContentError> {
-        let Some(own) = columns.get(i) else { return Ok(None) };
-        if self.temperature(own).is_none_or(|other| other == temperature) {
-            return Ok(Some(own.clone()));
-        }
-        let mut alike = columns.iter().filter(|column| self.temperature(column) == Some(temperature));
-        match (alike.next(), alike.next()) {
-            (Some(found), None) => Ok(Some(found.clone())),
-            _ => {
-                let expected = format!("one column of its kind at {temperature:.2} K");
-                Err(own.refuse(self.line, "", &expected))
-            }
-        }
-    }
-}
-
-/// Two columns of one kind, where one is used, are one too many.
-fn twin(line: usize, columns: &[Column]) -> Option<ContentError> {
-    let [first, second, ..] = columns else { return None };
-    let expected = format!("one column of a kind: {} is there already; ignore one by `ignore` NAME", first.text);
-    Some(second.refuse(line, "", &expected))
 }

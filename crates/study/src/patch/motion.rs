@@ -7,7 +7,7 @@ use asperity::scene;
 use asperity::tables::{ContentError, Dimension, FINITE, Format, Others, Table, Wanted, Words, decode};
 
 use crate::csv::CsvError;
-use crate::files::bytes;
+use crate::files::{bytes, read_table};
 
 const TIME: &str = "time";
 const TRANSPORT: &str = "transport.speed";
@@ -89,10 +89,13 @@ impl MotionFile {
             format.columns[8] = format.columns[8].absent();
         }
         let bytes = bytes(path)?;
-        let text = decode(&bytes).map_err(|error| CsvError::content(path, error))?;
-        let table = format.read(&text).map_err(|error: ContentError| CsvError::content(path, error))?;
-        let Table { columns, rows, .. } = table;
-        let has_temperature = columns[8].is_some();
+        let read = |bytes: &[u8]| {
+            let text = decode(bytes)?;
+            let Table { columns, rows, .. } = format.read(&text)?;
+            Ok((rows, columns[8].is_some()))
+        };
+        let content = |error: ContentError| CsvError::content(path, error);
+        let ((rows, has_temperature), _) = read_table(&bytes, read).map_err(content)?;
         let row = |&[time, x, y, z, roll, pitch, yaw, transport_speed, temperature]: &[f64; 9]| MotionRow {
             time,
             pose: [x, y, z, roll, pitch, yaw],

@@ -1,5 +1,6 @@
 //! The report of a scene: its runs in every way.
 
+use asperity::math::{NotEnoughMemory, check_memory};
 use asperity::scene::{Parameter, Scene};
 
 use super::communication::{CommunicationLadder, CommunicationRow};
@@ -8,9 +9,11 @@ use super::reference::Reference;
 use super::robustness::Robustness;
 use super::scenes::watched;
 use super::tolerances::{ToleranceLadder, ToleranceRow};
+use super::trace::QUANTITIES;
 use super::weighed::WeighedRuns;
 use crate::progress::{Stopped, Watch};
 use crate::robustness::RunFailure;
+use crate::runner::Rows;
 
 /// What is run.
 #[derive(Clone, Debug)]
@@ -38,6 +41,8 @@ pub enum ReportError {
     #[error("no reference: not even the loosest tolerance comes to its end: {0}")]
     NoReference(RunFailure),
     #[error(transparent)]
+    Memory(#[from] NotEnoughMemory),
+    #[error(transparent)]
     Stopped(#[from] Stopped),
 }
 
@@ -57,12 +62,24 @@ pub struct SceneReport {
 }
 
 impl SceneReport {
-    /// Refuses a scene that cannot be run.
+    /// Refuses a scene that cannot be run, and more rows than the memory holds of all runs.
     ///
     /// # Errors
-    /// Where it has no excitation.
-    pub fn check(scene: &Scene) -> Result<(), ReportError> {
-        if scene.excitation.is_empty() { Err(ReportError::NoExcitation) } else { Ok(()) }
+    /// Where it has no excitation, or [`NotEnoughMemory`].
+    pub fn check(scene: &Scene, options: &ReportOptions) -> Result<(), ReportError> {
+        /// Of a row of a run: a time and what runs are compared by.
+        const BYTES: u64 = 8 * (1 + QUANTITIES.len() as u64);
+        /// Runs beside those of the tolerances by both methods and those of the threads.
+        const MORE: usize = 8;
+        if scene.excitation.is_empty() {
+            return Err(ReportError::NoExcitation);
+        }
+        let rows = Rows::PerPhase(options.points).count(scene);
+        let runs = 2 * options.tolerances.len() + rayon::current_num_threads() + MORE;
+        check_memory(rows.saturating_mul(BYTES).saturating_mul(runs as u64), || {
+            format!("`points`: {rows} rows of each of {runs} runs")
+        })?;
+        Ok(())
     }
 
     /// Runs the scene in every way.
@@ -70,7 +87,7 @@ impl SceneReport {
     /// # Errors
     /// Where it cannot be run, or `watch` stops it.
     pub fn run(scene: &Scene, options: &ReportOptions, watch: &Watch<'_>) -> Result<Self, ReportError> {
-        Self::check(scene)?;
+        Self::check(scene, options)?;
         let scene = watched(scene);
         let ReportOptions { tolerances, points, repeat, stress, stress_time } = options;
         let ladder = ToleranceLadder { tolerances, points: *points, repeat: *repeat };

@@ -2,6 +2,7 @@
 
 use asperity::math::{NotEnoughMemory, check_memory};
 use asperity::scene::{FoundationKind, HeightMap, Scene};
+use asperity::simulation::Simulation;
 
 use super::never_steady::{NeverSteady, check_can_be_steady};
 use super::search::StopBounds;
@@ -159,11 +160,38 @@ impl SlidingOptions {
     }
 }
 
+impl Method {
+    /// Checks that as many of `count` points of a sweep can be found at once as there are threads.
+    pub(super) fn check_threads(&self, scene: &Scene, count: usize) -> Result<(), NotEnoughMemory> {
+        let threads = rayon::current_num_threads().min(count);
+        check_memory(self.memory(scene).saturating_mul(threads as u64), || {
+            let of_each = match self {
+                Self::Steady(surface) => format!("`points`: {} x {} points", surface.size.nx, surface.size.ny),
+                Self::Layer => format!("layer.masses = {}", scene.layer.masses),
+            };
+            format!("{of_each} on each of {threads} threads")
+        })
+    }
+
+    /// Bytes that finding a point of a sweep takes.
+    fn memory(&self, scene: &Scene) -> u64 {
+        match self {
+            Self::Steady(surface) => memory_of_points([surface.size.nx, surface.size.ny]),
+            Self::Layer => Simulation::memory(scene) as u64,
+        }
+    }
+}
+
+/// Bytes of a surface of so many points, in the solver and what it finds.
+fn memory_of_points([nx, ny]: [usize; 2]) -> u64 {
+    /// Of a point.
+    const BYTES: u64 = 400;
+    (nx as u64).saturating_mul(ny as u64).saturating_mul(BYTES)
+}
+
 /// Checks that a surface of so many points can be solved for.
 fn check_points([nx, ny]: [usize; 2]) -> Result<(), NotEnoughMemory> {
-    /// Of a point, in the solver and what it finds.
-    const BYTES: u64 = 400;
-    check_memory((nx as u64).saturating_mul(ny as u64).saturating_mul(BYTES), || match ny {
+    check_memory(memory_of_points([nx, ny]), || match ny {
         1 => format!("`points`: {nx} points"),
         _ => format!("`points`: {nx} x {ny} points"),
     })
@@ -219,6 +247,13 @@ mod tests {
             let asked = SlidingOptions::of_table(Some(method)).map(|asked| (asked.method, asked.points));
             assert_eq!(asked, Some((Some(SweepMethod::Steady), points)), "{method}");
         };
+        // Points of each thread, and masses of it.
+        let (steady, _) = SlidingOptions::default().choose(&scene).unwrap();
+        assert_eq!(
+            (steady.memory(&scene), Method::Layer.memory(&scene)),
+            (16 * 400, Simulation::memory(&scene) as u64)
+        );
+        assert!(steady.check_threads(&scene, 1_000_000).is_ok());
         for points in [None, Some(24)] {
             let ours = SlidingOptions { points, ..SlidingOptions::default() };
             let (_, header) = ours.choose(&scene).unwrap();

@@ -70,6 +70,7 @@ impl SweepPlan {
         let temperatures = temperatures(options.temperatures.as_deref(), &scene)?;
         let grid = SweepGrid { speeds: options.speeds.clone(), loads, temperatures };
         method.check(&scene)?;
+        method.check_threads(&scene, grid.points().count())?;
         let scene = relevant(scene);
         let bounds = options.sliding.bounds();
         let header = TableHeader {
