@@ -1,6 +1,6 @@
 //! The longest step where a contact is unstable: on a crest of the profile, and where friction weakens with the speed.
 
-use crate::model::{Flash, Forces, LinkKind, Model, State};
+use crate::model::{Forces, LinkKind, Model, SlipHistory, State};
 
 /// Largest product of a step's length and the growth rate of an unstable contact.
 ///
@@ -67,8 +67,8 @@ fn fall_passed_over(model: &Model, start: &State, state: &State, forces: &Forces
     if before > 0.0 || after >= 0.0 {
         return None;
     }
-    let contact = forces.contact(model, i, state.velocity_x[i], &state.surface[i]);
-    let curve = model.friction.slip_curve(contact.normal, Flash::held(state.flash(i)))?;
+    let contact = forces.contact(model, state, i);
+    let curve = model.friction.slip_curve(contact.normal, &SlipHistory::even(state.flash(i)))?;
     Some(contact.q * contact.q * curve.steepest_fall(after.abs() * contact.q))
 }
 
@@ -79,8 +79,8 @@ fn longest(fastest: f64) -> f64 {
 /// q² ∂T/∂v_t of slipping mass `i`, N s/m: its friction as a damper along x; 0 where friction does not depend on the
 /// speed.
 fn slope(model: &Model, state: &State, forces: &Forces, i: usize) -> f64 {
-    let normal = forces.contact(model, i, state.velocity_x[i], &state.surface[i]).normal;
-    let Some(curve) = model.friction.slip_curve(normal, Flash::held(state.flash(i))) else { return 0.0 };
+    let normal = forces.contact(model, state, i).normal;
+    let Some(curve) = model.friction.slip_curve(normal, &SlipHistory::even(state.flash(i))) else { return 0.0 };
     let square = 1.0 + state.surface[i].slope * state.surface[i].slope;
     square * curve.with_slope(state.mode[i].direction() * state.velocity_x[i] * square.sqrt()).1
 }

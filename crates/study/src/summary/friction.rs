@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use asperity::model::{Flash, FrictionLaw};
+use asperity::model::{FrictionLaw, SlipHistory};
 use asperity::scene::{RateShear, Scene};
 
 use super::fine::MIDDLE;
@@ -50,7 +50,7 @@ impl FallingFriction {
         let normal = scene.layer.element_area().map_or(0.0, |area| MIDDLE * area);
         let per_decade = f64::from(Self::PER_DECADE);
         let speed = |exponent: i32| 10.0_f64.powf(f64::from(exponent) / per_decade);
-        let friction = |exponent: i32| law.slip(normal, speed(exponent), Flash::held(0.0)).force();
+        let friction = |exponent: i32| law.slip(normal, speed(exponent), &SlipHistory::even(0.0)).force();
         let fall = |at: i32| per_decade * (1.0 - friction(at + 1) / friction(at));
         let falls = Self::EXPONENTS.map(|at| (at, fall(at))).filter(|&(_, fall)| fall > Self::LEAST);
         let falls: Vec<(i32, f64)> = falls.collect();
