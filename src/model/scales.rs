@@ -111,6 +111,18 @@ impl Model {
         (square.sqrt(), damping)
     }
 
+    /// |K*(iω)| of a link of `kind` at the frequency ω (rad/s), N/m: K* = c + iωd + Σ c_j iωτ_j/(1 + iωτ_j).
+    pub fn dynamic_stiffness(&self, kind: LinkKind, frequency: f64) -> f64 {
+        let law = &self.links[kind];
+        let (mut real, mut imaginary) = (law.stiffness, frequency * law.damping);
+        for row in self.rows_of(kind) {
+            let z = frequency * row.relaxation_time;
+            let share = row.stiffness * z / (1.0 + z * z);
+            (real, imaginary) = (real + share * z, imaginary + share);
+        }
+        real.hypot(imaginary)
+    }
+
     /// The frequency of the body along `axis` on the glassy springs of the layer and on its drive, rad/s; the rate of
     /// its dampers, 1/s, where there are no springs, and that of a mass where there are no dampers either; 1 without a
     /// body.
