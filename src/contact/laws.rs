@@ -26,6 +26,9 @@ pub fn place_layer(model: &Model, state: &mut State, at: CarrierPosition, carrie
         } else {
             state.release(i);
         }
+        // As if the mass had always moved so.
+        let speed = state.tangential_speed(model, i, at.profile_position);
+        state.memory.get_mut(i).into_iter().for_each(|remembered| *remembered = speed);
     }
     place_dashpots(model, state);
 }
@@ -55,7 +58,7 @@ fn place_dashpots(model: &Model, state: &mut State) {
 pub fn free_unloaded(model: &Model, state: &mut State, at: CarrierPosition, forces: &Forces) {
     for i in 0..model.masses() {
         let touches = state.mode[i].in_contact() && model.rest_z[i] + at.w == state.surface[i].height;
-        if touches && forces.contact(model, i, state.velocity_x[i], &state.surface[i]).normal <= 0.0 {
+        if touches && forces.contact(model, state, i).normal <= 0.0 {
             state.release(i);
         }
     }
@@ -119,8 +122,9 @@ pub fn stop_reversed(model: &Model, state: &mut State, forces: &Forces, energies
     for i in 0..if model.friction.present { model.masses() } else { 0 } {
         let velocity = (state.velocity_x[i], state.velocity_z[i]);
         if has_reversed(state.mode[i], velocity.0) {
-            let contact = forces.contact(model, i, velocity.0, &state.surface[i]);
-            energies.add_friction(energy_at(model, velocity), model.friction.shares_at_rest(contact.normal));
+            let normal = forces.contact(model, state, i).normal;
+            let shares = model.friction.shares_at_rest(normal, &state.history(i));
+            energies.add_friction(energy_at(model, velocity), shares);
             (state.velocity_x[i], state.velocity_z[i]) = (0.0, 0.0);
         }
     }
@@ -159,7 +163,7 @@ pub(super) fn decide_mode(model: &Model, state: &mut State, forces: &Forces, i: 
 /// Lift where F_N < 0; a mass at rest sticks up to |f·t| = T(0) and breaks loose beyond; a slip goes on.
 fn decided(model: &Model, state: &State, forces: &Forces, i: usize) -> Mode {
     let (mode, v) = (state.mode[i], state.velocity_x[i]);
-    let contact = forces.contact(model, i, v, &state.surface[i]);
+    let contact = forces.contact(model, state, i);
     if contact.normal < 0.0 {
         return Mode::Free;
     }

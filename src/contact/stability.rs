@@ -1,6 +1,6 @@
 //! The longest step where a contact is unstable: on a crest of the profile, and where friction weakens with the speed.
 
-use crate::model::{Flash, Forces, LinkKind, Model, State};
+use crate::model::{Forces, LinkKind, Model, SlipHistory, State};
 
 /// Largest product of a step's length and the growth rate of an unstable contact.
 ///
@@ -38,6 +38,9 @@ fn weakening(model: &Model, start: Option<&State>, state: &State, forces: &Force
     if !model.friction.depends_on_speed() {
         return 0.0;
     }
+    if let Some(way) = model.friction.memory {
+        return weakening_with_memory(model, way, state, forces);
+    }
     let slope = |i| {
         let thrown_back = start.and_then(|start| fall_passed_over(model, start, state, forces, i));
         thrown_back.unwrap_or_else(|| slope(model, state, forces, i))
@@ -59,6 +62,23 @@ fn weakening(model: &Model, start: Option<&State>, state: &State, forces: &Force
     rate.max(frequency)
 }
 
+/// The rate, 1/s, at which a contact that remembers its speed over D = `way` (m) can grow unstable where friction falls
+/// over the speed: √(v |∂T/∂v|/(m D)), up to which an implicit step has one solution; 0 where the links keep even sliding
+/// stable, D |K*(iv/D)| > v |∂T/∂v| (docs/foundation.md, section 7).
+fn weakening_with_memory(model: &Model, way: f64, state: &State, forces: &Forces) -> f64 {
+    let slipping = (0..model.masses()).filter(|&i| state.mode[i].slips());
+    let falls = slipping.map(|i| {
+        let (contact, speed) = (forces.contact(model, state, i), state.memory[i]);
+        let curve = model.friction.slip_curve(contact.normal, &SlipHistory::even(state.flash(i)));
+        let fall = -speed * curve.map_or(0.0, |curve| curve.with_slope(speed).1);
+        if fall * BOUND_ACCURACY > model.bearable_fall(way, speed) { fall } else { 0.0 }
+    });
+    (falls.fold(0.0, f64::max) / (model.mass * way)).sqrt()
+}
+
+/// How far the bound of the way over which contacts are renewed may be off: the exact one is 0.7 to 1.6 times it.
+const BOUND_ACCURACY: f64 = 1.6;
+
 /// The steepest q² ∂T/∂v_t, N s/m, between rest and the speed of mass `i`, where it broke loose at the start of the
 /// step and runs backwards at its end; `None` elsewhere.
 fn fall_passed_over(model: &Model, start: &State, state: &State, forces: &Forces, i: usize) -> Option<f64> {
@@ -67,8 +87,8 @@ fn fall_passed_over(model: &Model, start: &State, state: &State, forces: &Forces
     if before > 0.0 || after >= 0.0 {
         return None;
     }
-    let contact = forces.contact(model, i, state.velocity_x[i], &state.surface[i]);
-    let curve = model.friction.slip_curve(contact.normal, Flash::held(state.flash(i)))?;
+    let contact = forces.contact(model, state, i);
+    let curve = model.friction.slip_curve(contact.normal, &SlipHistory::even(state.flash(i)))?;
     Some(contact.q * contact.q * curve.steepest_fall(after.abs() * contact.q))
 }
 
@@ -79,8 +99,8 @@ fn longest(fastest: f64) -> f64 {
 /// q² ∂T/∂v_t of slipping mass `i`, N s/m: its friction as a damper along x; 0 where friction does not depend on the
 /// speed.
 fn slope(model: &Model, state: &State, forces: &Forces, i: usize) -> f64 {
-    let normal = forces.contact(model, i, state.velocity_x[i], &state.surface[i]).normal;
-    let Some(curve) = model.friction.slip_curve(normal, Flash::held(state.flash(i))) else { return 0.0 };
+    let normal = forces.contact(model, state, i).normal;
+    let Some(curve) = model.friction.slip_curve(normal, &SlipHistory::even(state.flash(i))) else { return 0.0 };
     let square = 1.0 + state.surface[i].slope * state.surface[i].slope;
     square * curve.with_slope(state.mode[i].direction() * state.velocity_x[i] * square.sqrt()).1
 }
@@ -150,6 +170,8 @@ fn growth(model: &Model, state: &State, forces: &Forces, i: usize) -> f64 {
         return 0.0;
     }
     let (inertia, links) = (model.mass * (1.0 + square), x.damping + square * z.damping);
-    let damping = (links + slope(model, state, forces, i)).max(0.0);
+    // Within the growth of a position friction follows no remembered speed.
+    let of_friction = if model.friction.memory.is_some() { 0.0 } else { slope(model, state, forces, i) };
+    let damping = (links + of_friction).max(0.0);
     2.0 * excess / (damping + (damping * damping + 4.0 * inertia * excess).sqrt())
 }

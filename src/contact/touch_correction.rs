@@ -4,9 +4,7 @@
 use super::laws::{collision, decide_mode};
 use crate::integrator::{OpenEnd, Parabolas, StageValues, TimeSpan};
 use crate::math::bracketed_root;
-use crate::model::{
-    Carrier, CarrierPoint, ChannelEnergies, Flash, LinkKind, Mode, Model, SlipCurve, State, SurfacePoint,
-};
+use crate::model::{Carrier, CarrierPoint, ChannelEnergies, LinkKind, Mode, Model, SlipCurve, State, SurfacePoint};
 use crate::scene::{Axis, ByAxis};
 
 /// Accuracy of the instant of a touch, as a fraction of the step: the error of the parabola is larger.
@@ -175,28 +173,31 @@ impl<'a> TouchCorrection<'a> {
         let (s, time) = (surface.slope, rest.time);
         let q = (1.0 + s * s).sqrt();
         self.set_slip_velocity(i, v_t / q);
-        let contact = self.end.forces.contact(model, i, v_t / q, &surface);
+        let history = self.end.state.history(i);
+        let contact = self.end.forces.contact(model, self.end.state, i);
         let at_rest = if contact.normal < 0.0 { 0.0 } else { mode.direction() * contact.limit };
         let damping = |axis: Axis| self.damping(axis.link()) + 2.0 * self.passing(axis.lateral(), time);
         let damping = damping(Axis::X) + damping(Axis::Z) * s * s;
         let slowing = time * (damping / (q * q) + time * model.mass_stiffness()) / model.mass;
         // No term in κ: v_t contains already how the profile bends from the touch to here.
         let driving = contact.tangential + self.not_passed(i, rest);
-        let flash = Flash::held(self.end.state.flash(i));
-        let curve = model.friction.slip_curve(contact.normal, flash).filter(|_| contact.normal >= 0.0 && time > 0.0);
+        // Under a remembered speed friction is that of the limit.
+        let has_curve = history.memory.is_none() && contact.normal >= 0.0 && time > 0.0;
+        let curve = model.friction.slip_curve(contact.normal, &history).filter(|_| has_curve);
         let weight = model.mass * (1.0 + slowing) / time;
         let excess = curve.map_or(0.0, |curve| rate_excess(&curve, mode.direction(), v_t, driving - at_rest, weight));
         let friction = at_rest + excess;
+        let shares = model.friction.shares_at_rest(contact.normal, &history);
         let acceleration = (driving - friction) / model.mass;
         let after = v_t + time * acceleration / (1.0 + slowing);
         if model.friction.present && contact.normal >= 0.0 && mode.direction() * after < 0.0 {
             let distance = -0.5 * v_t * v_t / acceleration;
-            self.energies.channels.add_friction(friction * distance, model.friction.shares_at_rest(contact.normal));
+            self.energies.channels.add_friction(friction * distance, shares);
             self.stop_after(i, (distance - v_t * time) / q, time);
             return Speed { mean: distance / time, at_end: distance / time };
         }
         let mean = 0.5 * (v_t + after);
-        self.energies.channels.add_friction(friction * time * mean, model.friction.shares_at_rest(contact.normal));
+        self.energies.channels.add_friction(friction * time * mean, shares);
         self.set_slip_velocity(i, after / q);
         Speed { mean, at_end: after }
     }
@@ -281,7 +282,9 @@ impl<'a> TouchCorrection<'a> {
     /// Decides contact `j` anew by the forces as they are, and evaluates the rates of mass `j` anew.
     pub(super) fn decide(&mut self, j: usize) {
         decide_mode(self.step.model, self.end.state, self.end.forces, j);
-        self.end.rates.refresh(self.step.model, self.end.state, self.end.forces, j, &self.carrier);
+        let profile_position = self.step.carrier.profile_position + self.carrier.x.position;
+        let at = (&self.carrier, profile_position);
+        self.end.rates.refresh(self.step.model, self.end.state, self.end.forces, j, at);
     }
 }
 

@@ -12,6 +12,7 @@ use super::carrier_sums::{AxisSums, CarrierSums, LinkState, Placement};
 use super::dense_workspace::DenseWorkspace;
 use super::interpolation::{Interpolation, Velocities, parabola};
 use super::maxwell::by_rate;
+use super::memory;
 use super::method::{RungeKutta, Stages, TimeSpan};
 use super::parabolas::Parabolas;
 use super::stage_values::StageValues;
@@ -19,7 +20,8 @@ use super::tableau::{GAMMA, Weights};
 use super::tolerance::Tolerance;
 use crate::math::{BLOCK, dot, weighted_sum, with_widest_vectors};
 use crate::model::{
-    ByAxis, Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint,
+    ByAxis, Carrier, CarrierPoint, ContactForces, Flash, Forces, LinkKind, MaxwellRow, Mode, Model, SlipHistory,
+    SpeedMemory, State, SurfacePoint,
 };
 
 /// The interpolant of one step by the values at its stages.
@@ -91,6 +93,8 @@ impl<'a> DenseOutput<'a> {
             Velocities::BrokenLine => self.write_parabolas(theta, workspace, state),
         }
         self.method.heat.within(theta, &self.start.flash, self.stages(), &mut state.flash);
+        let at = (self.start, self.span, theta);
+        memory::within(self.model, at, self.stages(), workspace, &mut state.memory);
         let mut elements = &mut state.maxwell[..];
         for row in &self.model.rows {
             let (of_row, further) = elements.split_at_mut(row.kind.count(self.masses.len()));
@@ -207,8 +211,9 @@ impl<'a> DenseOutput<'a> {
                 }
                 mode => {
                     let (v, surface) = (state.velocity_x[i], &state.surface[i]);
-                    let contact = forces.contact(self.model, i, v, surface);
-                    missed(contact.acceleration(self.model, mode, v, surface, state.flash(i)), a_x, v_x, inertial.x)
+                    let contact = forces.contact(self.model, state, i);
+                    let of_forces = contact.acceleration(self.model, mode, v, surface, &state.history(i));
+                    missed(of_forces, a_x, v_x, inertial.x)
                 }
             };
             largest = largest.max(here);
@@ -385,7 +390,21 @@ impl<'a> DenseOutput<'a> {
             force.z += sign * self.link_force(LinkKind::LateralZ, link, &between, workspace);
         }
         let force = force + carrier.now.on_end(i, self.model.masses());
-        ContactForces::new(self.model, force, here.links.velocity.x, &here.surface)
+        let history = self.slip_history(i, theta, workspace);
+        ContactForces::new(self.model, force, here.links.velocity.x, &here.surface, &history)
+    }
+
+    /// What the past has left of mass `i` at the fraction `theta`, for which the weights of `workspace` are set, as far as
+    /// what sticks depends on it.
+    fn slip_history(&self, i: usize, theta: f64, workspace: &DenseWorkspace) -> SlipHistory {
+        let at = (self.start, self.span, theta);
+        match memory::of_mass_within(self.model, at, self.stages(), workspace, i) {
+            None => SlipHistory::default(),
+            Some(speed) => SlipHistory {
+                flash: Flash::held(self.method.heat.of_mass_within(theta, &self.start.flash, self.stages(), i)),
+                memory: Some(SpeedMemory::held(speed)),
+            },
+        }
     }
 
     /// The forces along x and z of the lateral links between mass `i` and the next at the fraction `theta`, N.

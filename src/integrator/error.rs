@@ -10,7 +10,7 @@ use super::stage_values::StageValues;
 use super::tableau::Tableau;
 use super::tolerance::{Rod, Tolerance, square};
 use crate::math::{Jet, dot, sum_of, sum_of_pairs, sum_of_triples, weighted_sum, with_widest_vectors};
-use crate::model::{Axis, BoundaryPowers, ByAxis, CarrierPoint, LinkKind, Model, State};
+use crate::model::{Axis, BoundaryPowers, ByAxis, CarrierPoint, LinkKind, Mode, Model, State};
 
 /// The shortest step over the stiffest period/2π in which energies are resolved. An enormous friction stops a mass in
 /// less, down to below the resolution of time; what it loses there is its kinetic energy.
@@ -162,7 +162,8 @@ impl ErrorTest<'_> {
         let mean = |sum: f64| (sum / tolerance.masses as f64).sqrt();
         let of_bodies = if model.has_bodies() { self.body_squares(model, &carrier_error, tolerance) } else { 0.0 };
         let motion_error = mean(sum).hypot(of_bodies.sqrt()).hypot(self.tableau.force_weight * of_forces.sqrt());
-        let creep = mean(self.creep_squares(model, tolerance, &workspace.v_x));
+        let creep =
+            mean(self.creep_squares(model, tolerance, &workspace.v_x) + self.memory_squares(model, h, tolerance));
         let error = motion_error.hypot(creep).hypot(self.tableau.energy_weight * of_energies.sqrt());
         ErrorEstimate { error, motion_error, carrier_error: mean(free) }
     }
@@ -175,6 +176,21 @@ impl ErrorTest<'_> {
         let allowed = CREEP_SLACK[self.modes as usize] * tolerance.relative;
         let of = |&i: &usize| square(velocity_error[i] / (allowed * self.end.velocity_x[i].abs().max(slowest)));
         self.contacts.iter().filter(|&&i| self.end.mode[i].slips()).map(of).sum()
+    }
+
+    /// The sum of squares of the errors of the speeds that the masses remember, in a step of length `h` (s), by what changes
+    /// friction, a function of ln v. What sticks ages without error.
+    fn memory_squares(&self, model: &Model, h: f64, tolerance: &Tolerance) -> f64 {
+        if model.friction.memory.is_none() {
+            return 0.0;
+        }
+        let (slowest, allowed) = (model.friction.creep_speed(), CREEP_SLACK[self.modes as usize] * tolerance.relative);
+        let of = |i: usize| {
+            let error: f64 =
+                self.stages.iter().zip(&self.tableau.error).map(|(at, weight)| weight * at.memory_rate[i]).sum();
+            square(h * error / (allowed * (self.end.memory[i] + slowest)))
+        };
+        (0..self.end.mode.len()).filter(|&i| self.end.mode[i] != Mode::Stick).map(of).sum()
     }
 
     /// The sum of squares of the errors of the flash temperatures, by what changes friction.

@@ -175,6 +175,17 @@ impl StageHeat {
         write(weights, start, stages.iter().map(heat_flux), flash);
     }
 
+    /// ϑ of mass `i` at the fraction `theta` of the step, K; 0 where friction heats nothing.
+    pub(super) fn of_mass_within(&self, theta: f64, start: &[f64], stages: &[StageValues], i: usize) -> f64 {
+        let masses = if self.terms.is_empty() { 1 } else { start.len() / self.terms.len() };
+        let part = |(term, part): (&FlashTerm, &f64)| {
+            let TermWeights { decay, flux } = self.at(term, theta);
+            let driven = flux.iter().zip(stages).map(|(weight, stage)| weight * stage.heat_flux[i]);
+            decay * part + driven.sum::<f64>()
+        };
+        self.terms.iter().zip(start.iter().skip(i).step_by(masses)).map(part).sum()
+    }
+
     /// Whether stage `i` is the end of the step.
     pub(super) fn ends_with(&self, i: usize) -> bool {
         i == self.tableau.last()

@@ -103,6 +103,7 @@ impl RungeKutta {
             let mut point = stages.prepare(step, i, s, moved, weights);
             self.maxwell.known_forces(i, &stages.rates[..i], &mut stages.solver.history.force);
             self.heat.prepare(i, &stages.rates[..i], &mut stages.solver.flash);
+            stages.solver.memory.prepare(state, (tableau.c[i], span.length, beta), &stages.rates[..i], weights);
             stages.guess(step, i, &self.coefficients.initial_guess);
             // The velocities at the stage, and their sensitivities.
             stages.solve(step, &mut point, i, s, convergence)?;

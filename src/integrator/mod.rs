@@ -16,6 +16,7 @@ mod heat;
 mod interpolation;
 mod layer_step;
 mod maxwell;
+mod memory;
 mod method;
 mod parabolas;
 mod polynomials;
@@ -126,7 +127,8 @@ impl Integrator {
         forces: &Forces,
         h: f64,
     ) {
-        start.rates.evaluate(model, &start.state, forces, self.event_driven().tableau().gamma() * h);
+        let (at, beta) = (carrier.position(s).profile_position, self.event_driven().tableau().gamma() * h);
+        start.rates.evaluate(model, &start.state, forces, at, beta);
         start.largest = start.largest.with(forces);
         if self.stages.tracks_energy {
             let point = carrier.at(s);
@@ -333,11 +335,18 @@ impl Integrator {
     /// Recomputes the tangents' rates at the start of a step, `s` seconds after the start of the carrier's motion, with
     /// the `forces` there: `None` where these are those at the end of the step just accepted, as a contact correction
     /// left them.
-    pub fn refresh_tangents(&mut self, model: &Model, start: &LayerState, forces: Option<&Forces>, s: f64) {
+    pub fn refresh_tangents(
+        &mut self,
+        model: &Model,
+        start: &LayerState,
+        (carrier, s): (&Carrier, f64),
+        forces: Option<&Forces>,
+    ) {
         let Stages { tangents, solver, .. } = &mut self.stages;
         let forces = forces.unwrap_or(&solver.forces);
+        let at = (s, carrier.position(s).profile_position);
         for tangent in tangents {
-            tangent.evaluate_rates(model, &start.state, forces, &start.rates.acceleration_x, s);
+            tangent.evaluate_rates(model, &start.state, forces, &start.rates.acceleration_x, at);
         }
     }
 

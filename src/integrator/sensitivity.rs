@@ -12,7 +12,8 @@ use super::heat::StageHeat;
 use super::stage::{SlipVariation, SlippingMass, StagePoint, StageSolver};
 use super::stage_values::StageValues;
 use crate::model::{
-    Axis, ByAxis, CarrierBody, Flash, Forces, Input, LinkKind, LinkMotion, Mode, Model, State, TangentsOf,
+    Axis, ByAxis, CarrierBody, Forces, Input, LinkKind, LinkMotion, Mode, Model, SlipFriction, SlipHistory,
+    SpeedMemory, State, SurfacePoint, TangentsOf,
 };
 
 /// The variation of the layer's state: dimensionless for positions, 1/s for velocities. Or its rate of change, each
@@ -29,6 +30,8 @@ struct Variation {
     v_z: Vec<f64>,
     /// Of the elongations a_j of the Maxwell elements.
     maxwell: Vec<f64>,
+    /// Of the remembered speeds.
+    memory: Vec<f64>,
     /// Of the parts ϑ_j of the flash temperatures, K; no rate of them is needed.
     flash: Vec<f64>,
     /// Of the displacements and speeds of the bodies along x and z.
@@ -68,17 +71,18 @@ struct LinkVariation {
 impl Variation {
     fn new(model: &Model) -> Self {
         let zero = vec![0.0; model.masses()];
-        let [maxwell, flash] = [model.maxwell_variables(), model.flash_variables()].map(|count| vec![0.0; count]);
+        let [maxwell, memory, flash] = [model.maxwell_variables(), model.memory_variables(), model.flash_variables()]
+            .map(|count| vec![0.0; count]);
         let (x, z, v_x) = (zero.clone(), zero.clone(), zero.clone());
-        Self { x, z, v_x, v_z: zero, maxwell, flash, bodies: ByAxis::default() }
+        Self { x, z, v_x, v_z: zero, maxwell, memory, flash, bodies: ByAxis::default() }
     }
 
-    fn parts(&self) -> [&[f64]; 5] {
-        [&self.x, &self.z, &self.v_x, &self.v_z, &self.maxwell]
+    fn parts(&self) -> [&[f64]; 6] {
+        [&self.x, &self.z, &self.v_x, &self.v_z, &self.maxwell, &self.memory]
     }
 
-    fn parts_mut(&mut self) -> [&mut [f64]; 5] {
-        [&mut self.x, &mut self.z, &mut self.v_x, &mut self.v_z, &mut self.maxwell]
+    fn parts_mut(&mut self) -> [&mut [f64]; 6] {
+        [&mut self.x, &mut self.z, &mut self.v_x, &mut self.v_z, &mut self.maxwell, &mut self.memory]
     }
 
     /// The motion of the links of masses that move so relative to the carrier, whose speeds are varied, too.
@@ -167,14 +171,14 @@ impl Sensitivity {
     }
 
     /// Puts the constraints of the contact modes into the variation at the start of a step, `s` seconds after the start
-    /// of the motion, and computes its rates there.
+    /// of the motion, and computes its rates there. The carrier is at `profile_position`, m.
     pub(super) fn evaluate_rates(
         &mut self,
         model: &Model,
         state: &State,
         forces: &Forces,
         accelerations: &[f64],
-        s: f64,
+        (s, profile_position): (f64, f64),
     ) {
         let carrier = self.carrier(model, s, &self.start.bodies);
         // Masses in contact stay on the profile, sticking ones where they are.
@@ -190,8 +194,15 @@ impl Sensitivity {
         }
         self.set_mass_rates(model, state, forces, accelerations);
         for i in 0..self.known_flash.len() {
-            let flash = Flash::held(state.flash(i));
-            self.heat_fluxes[0][i] = self.heat_flux(model, state, forces, i, flash, &self.start);
+            self.heat_fluxes[0][i] = self.heat_flux(model, state, forces, i, &state.history(i), &self.start);
+        }
+        // δv̇_s = (v_t δv_t - v_s δv_s)/D.
+        if let Some(way) = model.friction.memory {
+            for i in 0..model.masses() {
+                let driven = v_t_varied(model, state, profile_position, i, &self.start);
+                let remembered = state.memory[i] * self.start.memory[i];
+                self.stages[0].memory[i] = (driven - remembered) / way;
+            }
         }
         // δ of M U̇ = ΣF_i plus what acts from outside, the equation of motion behind [21].
         for axis in Axis::ALL {
@@ -213,22 +224,23 @@ impl Sensitivity {
     fn set_mass_rates(&mut self, model: &Model, state: &State, forces: &Forces, accelerations: &[f64]) {
         for i in 0..model.masses() {
             let on_mass = self.links.forces.on_mass(i);
-            let rates = &mut self.stages[0];
             let (x, v_x) = (self.start.x[i], self.start.v_x[i]);
-            (rates.x[i], rates.z[i]) = (v_x, self.start.v_z[i]);
-            rates.v_x[i] = match state.mode[i] {
+            let a_x = match state.mode[i] {
                 // m δẍ = δf_x.
                 Mode::Free => on_mass.x / model.mass,
                 Mode::Stick => 0.0,
                 // m q² δẍ by all that [6] has in it.
                 Mode::Forward | Mode::Backward => {
-                    let flash = Flash::held(state.flash(i));
-                    let (slip, friction) = SlippingMass::from_state(model, state, forces, i, accelerations[i], flash);
+                    let history = state.history(i);
+                    let (slip, friction) =
+                        SlippingMass::from_state(model, state, forces, i, accelerations[i], &history);
                     let by = SlipVariation { x, velocity: v_x, forces: on_mass };
-                    let of_flash = self.known_flash.get(i).map_or(0.0, |known| friction.by_flash * known);
-                    slip.variation(model, forces.on_mass(i), &by, &friction, of_flash) / (model.mass * slip.q2())
+                    let of_past = self.of_past(i, &friction, &self.start);
+                    slip.variation(model, forces.on_mass(i), &by, &friction, of_past) / (model.mass * slip.q2())
                 }
             };
+            let rates = &mut self.stages[0];
+            (rates.x[i], rates.z[i], rates.v_x[i]) = (v_x, self.start.v_z[i], a_x);
             // Of contacts it is not used: their ż follows from ẋ.
             rates.v_z[i] = on_mass.z / model.mass;
         }
@@ -283,13 +295,33 @@ impl Sensitivity {
         }
         self.set_masses(model, solver, point.beta, i);
         self.set_elements(model, point.beta, &self.carrier(model, s, &self.end.bodies), i);
-        // The heat of this stage enters δϑ of those behind it, and of the end.
+        // The friction of this stage enters δϑ of those behind it, and of the end.
         if !self.known_flash.is_empty() {
             self.set_heat(model, solver, s, i);
             if heat.ends_with(i) {
                 let fluxes = self.heat_fluxes.iter().map(Vec::as_slice);
                 heat.at_end(&self.start.flash, fluxes, &mut self.end.flash);
             }
+        }
+        self.set_memory(model, solver, point, i);
+    }
+
+    /// What friction changes by with the past of mass `i`, N, for the variation `of` the state in which the remembered
+    /// speeds are varied as far as they are known.
+    fn of_past(&self, i: usize, friction: &SlipFriction, of: &Variation) -> f64 {
+        let by = |derivative: f64, known: &[f64]| known.get(i).map_or(0.0, |known| derivative * known);
+        by(friction.by_flash, &self.known_flash) + by(friction.by_memory, &of.memory)
+    }
+
+    /// Computes the variations of the remembered speeds at stage `stage` from those of the masses.
+    fn set_memory(&mut self, model: &Model, solver: &StageSolver, point: &StagePoint, stage: usize) {
+        for i in 0..model.memory_variables() {
+            let Some(SpeedMemory { weight, .. }) = solver.memory.of_mass(i) else { continue };
+            // v_s + a v_s² = b + a v_t² varied.
+            let (state, known) = (&solver.state, self.end.memory[i]);
+            let driven = 2.0 * weight * v_t_varied(model, state, point.profile_position(), i, &self.end);
+            self.end.memory[i] = (known + driven) / (1.0 + 2.0 * weight * state.memory[i]);
+            self.stages[stage].memory[i] = (self.end.memory[i] - known) / point.beta;
         }
     }
 
@@ -299,25 +331,33 @@ impl Sensitivity {
         let carrier = self.carrier(model, s, &self.end.bodies);
         self.links.evaluate(model, &self.end, &carrier);
         for i in 0..model.masses() {
-            let flash = solver.flash.of_mass(i);
-            self.heat_fluxes[stage][i] = self.heat_flux(model, &solver.state, &solver.forces, i, flash, &self.end);
+            let history = solver.slip_history(i);
+            self.heat_fluxes[stage][i] = self.heat_flux(model, &solver.state, &solver.forces, i, &history, &self.end);
         }
     }
 
     /// The variation of the heat flux F_T v_t/A of mass `i`, W/m², for the variation `of` the state and those of the
     /// links' forces: δF_T = ∂T/∂F_N δF_N + ∂T/∂v_t δv_t + ∂T/∂ϑ δϑ.
-    fn heat_flux(&self, model: &Model, state: &State, forces: &Forces, i: usize, flash: Flash, of: &Variation) -> f64 {
+    fn heat_flux(
+        &self,
+        model: &Model,
+        state: &State,
+        forces: &Forces,
+        i: usize,
+        history: &SlipHistory,
+        of: &Variation,
+    ) -> f64 {
         let mode = state.mode[i];
         if !mode.slips() {
             return 0.0;
         }
-        let (slip, friction) = SlippingMass::from_state(model, state, forces, i, 0.0, flash);
+        let (slip, friction) = SlippingMass::from_state(model, state, forces, i, 0.0, history);
         // δF_N and δv_t by the motion along the profile and by δf.
         let by = SlipVariation { x: of.x[i], velocity: of.v_x[i], forces: self.links.forces.on_mass(i) };
         let contact = slip.contact_variation(model.mass, forces.on_mass(i), &by);
         let change = friction.by_normal * contact.normal
             + friction.by_speed * mode.direction() * contact.speed
-            + friction.by_flash * self.known_flash[i];
+            + self.of_past(i, &friction, of);
         // δQ = (v_t δT + T δv_t)/A, with v_t in the direction of slip.
         let v_t = mode.direction() * slip.speed();
         (change * v_t + friction.force() * mode.direction() * contact.speed) / model.element_area
@@ -343,12 +383,12 @@ impl Sensitivity {
             Mode::Stick => Vector2::zeros(),
             // The second line: -δR with δẋ = 0, in which ẍ is varied by δẋ* alone.
             Mode::Forward | Mode::Backward => {
-                let flash = solver.flash.of_mass(i);
+                let history = solver.slip_history(i);
                 let (slip, friction) =
-                    SlippingMass::from_state(model, &solver.state, &solver.forces, i, acceleration, flash);
+                    SlippingMass::from_state(model, &solver.state, &solver.forces, i, acceleration, &history);
                 let by = SlipVariation { x: self.end.x[i], velocity: 0.0, forces: on_mass };
-                let of_flash = self.known_flash.get(i).map_or(0.0, |known| friction.by_flash * known);
-                let varied = slip.variation(model, solver.forces.on_mass(i), &by, &friction, of_flash);
+                let of_past = self.of_past(i, &friction, &self.end);
+                let varied = slip.variation(model, solver.forces.on_mass(i), &by, &friction, of_past);
                 Vector2::new(varied + inertia * slip.q2() * v_x, 0.0)
             }
         }
@@ -468,6 +508,15 @@ pub(super) struct Solved<'a> {
     pub rates: &'a StageValues,
     pub point: &'a StagePoint,
     pub heat: &'a StageHeat,
+}
+
+/// v_t δv_t of mass `i` for the variation `of` the state, (m/s)², where the carrier is at `profile_position` (m): 0 where
+/// it sticks.
+fn v_t_varied(model: &Model, state: &State, profile_position: f64, i: usize, of: &Variation) -> f64 {
+    let SurfacePoint { slope, curvature, .. } = state.surface_under(model, i, profile_position);
+    let v = state.velocity_x[i];
+    // v_t² = (1 + s²) ẋ² and δs = κ δx.
+    (1.0 + slope * slope) * v * of.v_x[i] + slope * curvature * of.x[i] * v * v
 }
 
 /// sum += factor · term.

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::running_maxima::RunningMaxima;
 use crate::model::{
-    BoundaryPowers, ByAxis, ByLink, CarrierPoint, ContactForces, Flash, Forces, LinkKind, MaxwellRow, Mode, Model,
-    SlipCurve, State, SurfacePoint,
+    BoundaryPowers, ByAxis, ByLink, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, SlipCurve,
+    State, SurfacePoint, memory_rate,
 };
 
 /// The share of an explicit acceleration that friction may take away within the step without the implicit one in its
@@ -34,6 +34,8 @@ pub struct StageValues {
     pub normal: Vec<f64>,
     /// F_T v_t/A of the masses that slip, W/m², 0 of the others; empty where friction heats nothing.
     pub heat_flux: Vec<f64>,
+    /// v̇_s, the rates of the speeds that the masses remember, m/s²; empty where friction has no memory.
+    pub memory_rate: Vec<f64>,
     /// Margin to the next mode change along t: σẋ (m/s) of a slipping mass, T - |f·t| (N) of a sticking one;
     /// [`NO_LIMIT`] for a free mass, and where the scene has no friction.
     pub margin: Vec<f64>,
@@ -51,6 +53,7 @@ impl StageValues {
             elongation_rate: Forces::zeros_by_link(model),
             normal: zeros(),
             heat_flux: if model.flash.is_some() { zeros() } else { Vec::new() },
+            memory_rate: vec![0.0; model.memory_variables()],
             margin: zeros(),
         }
     }
@@ -71,6 +74,7 @@ impl StageValues {
             (&mut self.acceleration_z, &other.acceleration_z),
             (&mut self.normal, &other.normal),
             (&mut self.heat_flux, &other.heat_flux),
+            (&mut self.memory_rate, &other.memory_rate),
             (&mut self.margin, &other.margin),
         ];
         for (mine, theirs) in pairs {
@@ -82,13 +86,15 @@ impl StageValues {
     }
 
     /// Computes the rates that the forces give in `state`: the explicit first stage of a step whose implicit stages
-    /// have β = `beta` (s).
-    pub fn evaluate(&mut self, model: &Model, state: &State, forces: &Forces, beta: f64) {
+    /// have β = `beta` (s). The carrier is at `profile_position`, m.
+    pub fn evaluate(&mut self, model: &Model, state: &State, forces: &Forces, profile_position: f64, beta: f64) {
         self.clear_contacts();
         for i in 0..model.masses() {
-            self.evaluate_mass(model, state, forces, i);
+            self.evaluate_mass(model, state, forces, profile_position, i);
+            // Under a remembered speed friction has a value at the start that says what it does.
             if state.mode[i].slips()
-                && let Some(curve) = model.friction.slip_curve(self.normal[i], Flash::held(state.flash(i)))
+                && model.friction.memory.is_none()
+                && let Some(curve) = model.friction.slip_curve(self.normal[i], &state.history(i))
             {
                 self.soften(model, &curve, state, i, beta);
             }
@@ -117,32 +123,43 @@ impl StageValues {
     /// Computes the rates of mass `i` from the forces in `state`. Its contact force and margin are those of a free mass
     /// before.
     #[inline]
-    fn evaluate_mass(&mut self, model: &Model, state: &State, forces: &Forces, i: usize) {
+    fn evaluate_mass(&mut self, model: &Model, state: &State, forces: &Forces, profile_position: f64, i: usize) {
         let v = state.velocity_x[i];
         self.velocity_x[i] = v;
         self.velocity_z[i] = state.velocity_z[i];
+        if let (Some(rate), Some(way)) = (self.memory_rate.get_mut(i), model.friction.memory) {
+            *rate = memory_rate(way, state.tangential_speed(model, i, profile_position), state.memory[i]);
+        }
         let on_mass = forces.on_mass(i);
         let mode = state.mode[i];
         if mode == Mode::Free {
             self.acceleration_x[i] = on_mass.x / model.mass;
             self.acceleration_z[i] = on_mass.z / model.mass;
         } else {
-            let surface = &state.surface[i];
-            let contact = ContactForces::new(model, on_mass, v, surface);
-            self.acceleration_x[i] = contact.acceleration(model, mode, v, surface, state.flash(i));
+            let (surface, history) = (&state.surface[i], state.history(i));
+            let contact = ContactForces::new(model, on_mass, v, surface, &history);
+            self.acceleration_x[i] = contact.acceleration(model, mode, v, surface, &history);
             self.set_contact(model, i, mode, v, surface, &contact);
             if let Some(flux) = self.heat_flux.get_mut(i) {
-                let friction = contact.friction(model, mode, v, state.flash(i));
+                let friction = contact.friction(model, mode, v, &history);
                 *flux = if mode.slips() { friction.abs() * (v * contact.q).abs() / model.element_area } else { 0.0 };
             }
         }
     }
 
-    /// Recomputes the rates of mass `i` and of its links from the forces in `state` under the carrier.
-    pub fn refresh(&mut self, model: &Model, state: &State, forces: &Forces, i: usize, carrier: &CarrierPoint) {
+    /// Recomputes the rates of mass `i` and of its links from the forces in `state` under the carrier, which is at
+    /// `profile_position`, m.
+    pub fn refresh(
+        &mut self,
+        model: &Model,
+        state: &State,
+        forces: &Forces,
+        i: usize,
+        (carrier, profile_position): (&CarrierPoint, f64),
+    ) {
         (self.normal[i], self.margin[i]) = (NO_LIMIT, NO_LIMIT);
         self.heat_flux.get_mut(i).into_iter().for_each(|flux| *flux = 0.0);
-        self.evaluate_mass(model, state, forces, i);
+        self.evaluate_mass(model, state, forces, profile_position, i);
         for kind in LinkKind::ALL {
             let (velocity, carrier_rate) = if kind.is_along_x() {
                 (&state.velocity_x, carrier.x.speed)

@@ -7,7 +7,8 @@ use crate::math::dot;
 use crate::scene::{Axis, ByAxis};
 
 use super::{
-    Carrier, CarrierPoint, ContactForces, Forces, FrictionPower, FrictionShares, LinkKind, Mode, Model, State,
+    Carrier, CarrierPoint, ContactForces, Forces, FrictionPower, FrictionShares, LinkKind, Mode, Model, SlipHistory,
+    State,
 };
 
 /// Power through the channels, W.
@@ -134,14 +135,9 @@ impl BoundaryPowers {
         let mut power = FrictionPower::default();
         for i in (0..modes.len()).filter(|&i| model.friction.present && modes[i].slips() && velocity_x[i] != 0.0) {
             let contact = ContactForces::in_slip(model, normal[i], (velocity_x[i], velocity_z[i]));
-            // No part of a layer is computed alone where friction heats the contacts.
-            power.add(
-                &model.friction,
-                modes[i],
-                velocity_x[i],
-                &contact,
-                &contact.slip(model, modes[i], velocity_x[i], 0.0),
-            );
+            // No part of a layer is computed alone where friction heats the contacts or has a memory.
+            let friction = contact.slip(model, modes[i], velocity_x[i], &SlipHistory::default());
+            power.add(&model.friction, modes[i], velocity_x[i], &contact, &friction);
         }
         Self::with_powers(model, &power, -(on_carrier.x * carrier.x.speed + on_carrier.z * carrier.z.speed))
     }

@@ -15,10 +15,13 @@
 //! Where friction heats the contacts, speeds are those at the contact's own temperature, v a_T(T + ϑ)/a_T(T), with the
 //! [flash temperature](Flash) ϑ that friction itself raises. T(0) does not depend on it.
 //!
+//! Where contacts have a [memory](super::SpeedMemory), the speed that counts is the one that they remember, in slip and for
+//! the limit of what sticks.
+//!
 //! A law is what [`FrictionLaw`] answers: T(0), and the excess over it [in slip](SlipFriction), with the derivatives; its
 //! power, the shares of its parts, and what it takes in an impact.
 
-use super::{ContactQuantity, FineContact, FineFriction, Flash, RateShearLaw, SlipCurve, SpeedShift};
+use super::{ContactQuantity, FineContact, FineFriction, RateShearLaw, SlipCurve, SlipHistory, SpeedShift};
 use crate::scene::Scene;
 
 /// Changes up to this share of the speed are taken along the tangent instead of the curve.
@@ -41,6 +44,8 @@ pub struct FrictionLaw {
     pub(super) fine: Option<FineFriction>,
     /// How speeds count in contacts that friction heats; `None`: they stay at the layer's temperature.
     pub(super) shift: Option<SpeedShift>,
+    /// D, m, over which contacts are renewed, where friction depends on the speed that they remember.
+    pub memory: Option<f64>,
 }
 
 /// Friction T of a contact in slip, with what the heat that it makes adds to its derivatives.
@@ -64,6 +69,8 @@ pub struct SlipFriction {
     pub flash: f64,
     /// ∂T/∂ϑ by a change of the known part of ϑ, N/K.
     pub by_flash: f64,
+    /// ∂T by the known part of the remembered speed, N s/m; 0 without memory.
+    pub by_memory: f64,
     /// The part of a change of ϑ that heat makes of itself: ∂ϑ/∂T ∂T/∂ϑ. Beyond 1/2 a step has other solutions nearby.
     pub feedback: f64,
 }
@@ -127,7 +134,15 @@ impl FrictionLaw {
             rate_shear,
             fine,
             shift: SpeedShift::new(scene),
+            memory: None,
         }
+        .with_memory(scene.memory_way())
+    }
+
+    /// The law where contacts are renewed over the way D = `way`, m; 0: at once.
+    fn with_memory(self, way: f64) -> Self {
+        let memory = (way > 0.0 && self.depends_on_speed()).then_some(way);
+        Self { memory, ..self }
     }
 
     /// Whether it depends on the speed of slip.
@@ -158,35 +173,43 @@ impl FrictionLaw {
         self.coulomb * normal + rest
     }
 
-    /// The excess in slip over T(0) under the normal force F_N (N), at the flash temperature that goes with it; `None` where
-    /// friction does not depend on the speed.
+    /// The largest friction of a contact that sticks under F_N (N) with this history, N: [T(0)](Self::limit), with memory
+    /// T at the speed that it remembers.
     #[inline]
-    pub fn slip_curve(&self, normal: f64, flash: Flash) -> Option<SlipCurve<'_>> {
+    pub fn limit_with(&self, normal: f64, history: &SlipHistory) -> f64 {
+        if history.memory.is_none() { self.limit(normal) } else { self.slip(normal, 0.0, history).force() }
+    }
+
+    /// The excess in slip over T(0) under the normal force F_N (N), with what the past has left; `None` where friction
+    /// does not depend on the speed.
+    #[inline]
+    pub fn slip_curve(&self, normal: f64, history: &SlipHistory) -> Option<SlipCurve<'_>> {
         let fine = self.fine.as_ref().map(|fine| {
             let pressed = fine.under(normal);
             (pressed, pressed.at_rest())
         });
-        self.depends_on_speed().then_some(SlipCurve { law: self, fine, normal, flash })
+        self.depends_on_speed().then_some(SlipCurve { law: self, fine, normal, history: *history })
     }
 
     /// Friction under F_N (N) at the `speed` in the direction of slip, m/s. On roughness below the profile `limit` is then
     /// Coulomb's part alone and `excess` the rest, unless the mass has turned round: their sum is what counts.
     #[inline]
-    pub fn slip(&self, normal: f64, speed: f64, flash: Flash) -> SlipFriction {
+    pub fn slip(&self, normal: f64, speed: f64, history: &SlipHistory) -> SlipFriction {
+        let is_odd = history.memory.is_none();
         let fine = self.fine.as_ref().map(|fine| {
             let pressed = fine.under(normal);
-            (pressed, if speed < 0.0 { pressed.at_rest() } else { FineContact::default() })
+            (pressed, if speed < 0.0 && is_odd { pressed.at_rest() } else { FineContact::default() })
         });
-        match self.depends_on_speed().then_some(SlipCurve { law: self, fine, normal, flash }) {
+        match self.depends_on_speed().then_some(SlipCurve { law: self, fine, normal, history: *history }) {
             Some(curve) => curve.at(speed),
             None => {
-                let share = self.fine_contact(normal, speed, flash.known).share;
+                let share = self.fine_contact(normal, speed, history).share;
                 SlipFriction {
                     normal,
                     limit: self.limit(normal),
                     by_normal: self.coulomb + self.shear * share.by_normal,
                     share: share.value,
-                    flash: flash.known,
+                    flash: history.flash.known,
                     ..SlipFriction::default()
                 }
             }
@@ -194,19 +217,31 @@ impl FrictionLaw {
     }
 
     /// A correction `by` (m/s) of Newton's method at the `speed` of slip under F_N (N), as
-    /// [`SlipCurve::along_curve`] takes it; along the tangent where it is small.
-    pub fn along_curve(&self, normal: f64, flash: Flash, (speed, by): (f64, f64), weight: f64) -> f64 {
-        if by.abs() <= STRAIGHT * speed.abs() {
+    /// [`SlipCurve::along_curve`] takes it; along the tangent where it is small, and where a memory makes friction smooth.
+    pub fn along_curve(&self, normal: f64, history: &SlipHistory, (speed, by): (f64, f64), weight: f64) -> f64 {
+        if by.abs() <= STRAIGHT * speed.abs() || history.memory.is_some() {
             return speed + by;
         }
-        self.slip_curve(normal, flash).map_or(speed + by, |curve| curve.along_curve(speed, by, weight))
+        self.slip_curve(normal, history).map_or(speed + by, |curve| curve.along_curve(speed, by, weight))
     }
 
     /// v_c (m/s), up to which contacts on the roughness below the profile slip as at rest, at the flash temperature
-    /// `flash` (K); `None` without it.
+    /// `flash` (K); `None` without it, and where friction follows the remembered speed, which changes over a way.
     pub fn creep_end(&self, flash: f64) -> Option<f64> {
+        if self.memory.is_some() {
+            return None;
+        }
         let fine = self.fine.as_ref().filter(|fine| fine.depends_on_speed())?;
         Some(fine.creep_speed() / self.shift.map_or(1.0, |shift| shift.ratio(flash).0))
+    }
+
+    /// v_c at the layer's temperature, up to which friction is that at rest, m/s; 0 where it does not depend on the speed.
+    pub fn creep_speed(&self) -> f64 {
+        match (&self.rate_shear, &self.fine) {
+            (Some(law), _) => law.creep_speed(),
+            (None, Some(fine)) => fine.creep_speed(),
+            (None, None) => 0.0,
+        }
     }
 
     /// The law without its dependence on the speed, where it is linear in the normal force.
@@ -215,12 +250,13 @@ impl FrictionLaw {
         LinearFriction { normal: 0.0, coulomb: self.coulomb, shear: self.shear }
     }
 
-    /// What the roughness below the profile does in a contact under F_N (N) at the `speed` (m/s) and the flash temperature
-    /// `flash` (K): without it all of the area touches, and no hysteresis is added.
-    pub fn fine_contact(&self, normal: f64, speed: f64, flash: f64) -> FineContact {
+    /// What the roughness below the profile does in a contact under F_N (N) at the `speed` (m/s) with what the past has left:
+    /// without it all of the area touches, and no hysteresis is added.
+    pub fn fine_contact(&self, normal: f64, speed: f64, history: &SlipHistory) -> FineContact {
         let whole = ContactQuantity { value: 1.0, ..ContactQuantity::default() };
         let smooth = FineContact { share: whole, ..FineContact::default() };
-        let shift = self.shift.map_or(1.0, |shift| shift.ratio(flash).0);
+        let shift = self.shift.map_or(1.0, |shift| shift.ratio(history.flash.known).0);
+        let speed = history.memory.map_or(speed, |memory| memory.at(speed).value);
         self.fine.as_ref().map_or(smooth, |fine| fine.contact(normal, shift * speed))
     }
 
@@ -229,30 +265,35 @@ impl FrictionLaw {
         self.fine.as_ref().map_or(0.0, |fine| fine.largest_hysteresis(normal))
     }
 
-    /// The parts of T(0) under F_N (N): what a sticking force is shared out by.
-    pub fn shares_at_rest(&self, normal: f64) -> FrictionShares {
-        let (limit, coulomb) = (self.limit(normal), self.coulomb * normal.max(0.0));
+    /// The parts of the [largest friction](Self::limit_with) of what sticks under F_N (N): what its force is shared out by.
+    pub fn shares_at_rest(&self, normal: f64, history: &SlipHistory) -> FrictionShares {
+        let (limit, coulomb) = (self.limit_with(normal, history), self.coulomb * normal.max(0.0));
         if limit <= coulomb {
             return FrictionShares::default();
         }
-        let fine = self.hysteresis_at_rest(normal).value / limit;
+        let fine = self.hysteresis_at_rest(normal, history).value / limit;
         FrictionShares { shear: 1.0 - coulomb / limit - fine, fine }
     }
 
-    /// The derivatives of the [shares](Self::shares_at_rest) by F_N, 1/N, where that of T(0) is `by_normal`.
-    pub fn shares_by_normal(&self, normal: f64, by_normal: f64) -> FrictionShares {
-        let (limit, coulomb) = (self.limit(normal), self.coulomb);
+    /// The derivatives of the [shares](Self::shares_at_rest) by F_N, 1/N, where that of the largest friction is
+    /// `by_normal`.
+    pub fn shares_by_normal(&self, normal: f64, by_normal: f64, history: &SlipHistory) -> FrictionShares {
+        let (limit, coulomb) = (self.limit_with(normal, history), self.coulomb);
         if normal <= 0.0 || limit <= coulomb * normal {
             return FrictionShares::default();
         }
-        let hysteresis = self.hysteresis_at_rest(normal);
+        let hysteresis = self.hysteresis_at_rest(normal, history);
         let fine = (hysteresis.by_normal - hysteresis.value * by_normal / limit) / limit;
         FrictionShares { shear: coulomb * (normal * by_normal / limit - 1.0) / limit - fine, fine }
     }
 
-    /// μ_h(F_N, v_c) F_N, N.
-    fn hysteresis_at_rest(&self, normal: f64) -> ContactQuantity {
-        self.fine.as_ref().map_or(ContactQuantity::default(), |fine| fine.at_rest(normal).hysteresis)
+    /// The hysteresis of the waves that the profile lacks in that friction, N.
+    fn hysteresis_at_rest(&self, normal: f64, history: &SlipHistory) -> ContactQuantity {
+        match (&self.fine, history.memory) {
+            (None, _) => ContactQuantity::default(),
+            (Some(fine), None) => fine.at_rest(normal).hysteresis,
+            (Some(_), Some(_)) => self.fine_contact(normal, 0.0, history).hysteresis,
+        }
     }
 
     /// v_t (m/s) after an impact with the velocity v_n < 0 (m/s) along the normal: by its impulse J = -m v_n Coulomb's

@@ -21,15 +21,9 @@ impl FrictionPower {
     pub(super) fn evaluate(model: &Model, state: &State, forces: &Forces) -> Self {
         let mut power = Self::default();
         for i in (0..model.masses()).filter(|&i| model.friction.present && state.mode[i].slips()) {
-            let v = state.velocity_x[i];
-            let contact = forces.contact(model, i, v, &state.surface[i]);
-            power.add(
-                &model.friction,
-                state.mode[i],
-                v,
-                &contact,
-                &contact.slip(model, state.mode[i], v, state.flash(i)),
-            );
+            let (mode, v) = (state.mode[i], state.velocity_x[i]);
+            let contact = forces.contact(model, state, i);
+            power.add(&model.friction, mode, v, &contact, &contact.slip(model, mode, v, &state.history(i)));
         }
         power
     }

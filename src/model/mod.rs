@@ -6,6 +6,7 @@ mod carrier;
 mod contact;
 mod end_forces;
 mod energy;
+mod even_sliding;
 mod fine_friction;
 mod flash;
 mod forces;
@@ -14,6 +15,7 @@ mod friction_power;
 mod reduction;
 mod scales;
 mod slip_curve;
+mod slip_history;
 mod state;
 mod tangents;
 
@@ -23,6 +25,7 @@ pub use carrier::{
 pub use contact::ContactForces;
 pub use end_forces::EndForces;
 pub use energy::{BoundaryPowers, ChannelEnergies, Powers, elastic_energy, kinetic_energy, vertical_spring_energy_at};
+pub use even_sliding::EvenSliding;
 pub use fine_friction::{ContactQuantity, FineContact, FineFriction, PressedContact};
 pub use flash::{Flash, FlashKernel, FlashTerm, HeatParts, SURFACE_TERMS, SpeedShift, surface_kernel};
 pub use forces::{Forces, LinkLaw, LinkMotion, MaxwellRow};
@@ -30,6 +33,7 @@ pub use friction::{FrictionLaw, FrictionShares, LinearFriction, SlipFriction};
 pub use friction_power::FrictionPower;
 pub use reduction::{Reduction, Replaced, Replacement};
 pub use slip_curve::{RateShearLaw, SlipCurve};
+pub use slip_history::{RememberedSpeed, SlipHistory, SpeedMemory, aged, memory_rate};
 pub use state::{Mode, State};
 pub use tangents::{Tangents, TangentsOf};
 
@@ -249,6 +253,11 @@ impl Model {
     /// Number of the parts of the flash temperatures of the whole layer.
     pub fn flash_variables(&self) -> usize {
         self.flash.as_ref().map_or(0, |kernel| kernel.terms.len() * self.masses())
+    }
+
+    /// Number of the remembered speeds: one a mass, or none.
+    pub fn memory_variables(&self) -> usize {
+        if self.friction.memory.is_some() { self.masses() } else { 0 }
     }
 
     /// Number of Maxwell elements of the whole layer.

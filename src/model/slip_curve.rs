@@ -2,7 +2,10 @@
 
 use std::f64::consts::LN_10;
 
-use super::{FineContact, FineFriction, Flash, FrictionLaw, PressedContact, SlipFriction, SpeedShift};
+use super::{
+    FineContact, FineFriction, Flash, FrictionLaw, PressedContact, RememberedSpeed, SlipFriction, SlipHistory,
+    SpeedShift,
+};
 use crate::math::bracketed_root;
 use crate::scene;
 
@@ -42,6 +45,11 @@ impl RateShearLaw {
         self.plateau
     }
 
+    /// v_c, m/s.
+    pub fn creep_speed(&self) -> f64 {
+        self.creep_speed
+    }
+
     /// A τ_f(v), N, and -2b ln(v/v_0), the slope of its logarithm over ln v.
     fn whole(&self, speed: f64) -> (f64, f64) {
         let y = (speed * self.per_reference).ln();
@@ -70,7 +78,8 @@ impl RateShearLaw {
 }
 
 /// The excess of the friction in slip over that at rest, over the speed in the direction of slip, of one contact under
-/// a normal force that is held. It is odd, so that a mass that turns round is braked before its mode changes.
+/// a normal force that is held. It is odd, so that a mass that turns round is braked before its mode changes; with memory
+/// it is even, as there friction has its value at rest, too.
 #[derive(Clone, Copy, Debug)]
 pub struct SlipCurve<'a> {
     pub(super) law: &'a FrictionLaw,
@@ -78,7 +87,7 @@ pub struct SlipCurve<'a> {
     pub(super) fine: Option<(PressedContact<'a>, FineContact)>,
     /// F_N, N.
     pub(super) normal: f64,
-    pub(super) flash: Flash,
+    pub(super) history: SlipHistory,
 }
 
 /// Corrections of a flash temperature below this, K, are the last: friction is taken along its tangent over them, which
@@ -92,11 +101,7 @@ const MAX_FEEDBACK: f64 = 0.9;
 impl SlipCurve<'_> {
     /// The speed up to which there is no excess, m/s, where friction does not heat the contact.
     pub fn creep_speed(&self) -> f64 {
-        match (&self.law.rate_shear, &self.law.fine) {
-            (Some(law), _) => law.creep_speed,
-            (None, Some(fine)) => fine.creep_speed(),
-            (None, None) => 0.0,
-        }
+        self.law.creep_speed()
     }
 
     /// Bounds of the excess, N.
@@ -120,9 +125,18 @@ impl SlipCurve<'_> {
     /// Friction at the `speed` in the direction of slip, m/s.
     #[inline]
     pub fn at(&self, speed: f64) -> SlipFriction {
-        match &self.law.shift {
-            None => self.at_layer_temperature(speed),
-            Some(shift) => self.heated(shift, speed),
+        match (&self.law.shift, &self.history.memory) {
+            (None, None) => self.at_layer_temperature(speed),
+            (None, Some(memory)) => {
+                let RememberedSpeed { value, by_speed, by_base } = memory.at(speed);
+                let at = self.at_layer_temperature(value);
+                SlipFriction { by_speed: at.by_speed * by_speed, by_memory: at.by_speed * by_base, ..at }
+            }
+            (Some(shift), None) => {
+                let itself = RememberedSpeed { value: speed, by_speed: 1.0, by_base: 0.0 };
+                self.heated(shift, speed.abs(), 1.0, itself)
+            }
+            (Some(shift), Some(memory)) => self.heated(shift, speed.abs(), 1.0_f64.copysign(speed), memory.at(speed)),
         }
     }
 
@@ -158,15 +172,16 @@ impl SlipCurve<'_> {
         }
     }
 
-    /// Friction and the flash temperature that it raises, ϑ = known + gain T |v|, by Newton's method.
-    fn heated(&self, shift: &SpeedShift, speed: f64) -> SlipFriction {
-        let Flash { known, gain, guess } = self.flash;
-        let (mut flash, size, sign) = (guess, speed.abs(), 1.0_f64.copysign(speed));
+    /// Friction at the speed that `counts`, and the flash temperature that it raises with `size` = |v_t| (m/s), whose
+    /// derivative by the speed is `of_size`: ϑ = known + gain T |v_t|, by Newton's method.
+    fn heated(&self, shift: &SpeedShift, size: f64, of_size: f64, counts: RememberedSpeed) -> SlipFriction {
+        let Flash { known, gain, guess } = self.history.flash;
+        let (mut flash, sign) = (guess, 1.0_f64.copysign(counts.value));
         for _ in 0..MAX_FLASH_ITERATIONS {
             // Friction at this temperature is that at the layer's at another speed.
             let (ratio, by_flash) = shift.ratio(flash);
-            let at = self.at_layer_temperature(ratio * speed);
-            let by_flash = at.by_speed * (ratio * size) * by_flash;
+            let at = self.at_layer_temperature(ratio * counts.value);
+            let by_flash = at.by_speed * (ratio * counts.value.abs()) * by_flash;
             let friction = at.limit + sign * at.excess;
             let feedback = gain * size * by_flash;
             let correction = (known + gain * size * friction - flash) / (1.0 - feedback.min(MAX_FEEDBACK));
@@ -178,7 +193,8 @@ impl SlipCurve<'_> {
             return SlipFriction {
                 by_normal: own * at.by_normal,
                 excess: at.excess + sign * by_flash * correction,
-                by_speed: own * (ratio * at.by_speed + by_flash * gain * friction),
+                by_speed: own * (ratio * at.by_speed * counts.by_speed + by_flash * gain * friction * of_size),
+                by_memory: own * (ratio * at.by_speed * counts.by_base),
                 flash,
                 by_flash: own * by_flash,
                 feedback,
@@ -294,7 +310,16 @@ mod tests {
     fn friction(law: &scene::RateShear) -> FrictionLaw {
         let rate_shear = RateShearLaw::new(law);
         let shear = rate_shear.map_or(0.0, |law| law.plateau);
-        FrictionLaw { present: true, coulomb: 0.0, shear, has_parts: false, rate_shear, fine: None, shift: None }
+        FrictionLaw {
+            present: true,
+            coulomb: 0.0,
+            shear,
+            has_parts: false,
+            rate_shear,
+            fine: None,
+            shift: None,
+            memory: None,
+        }
     }
 
     fn laws() -> [FrictionLaw; 3] {
@@ -304,7 +329,7 @@ mod tests {
     }
 
     fn curve(law: &FrictionLaw) -> SlipCurve<'_> {
-        law.slip_curve(0.0, Flash::default()).unwrap_or_else(|| panic!("no law"))
+        law.slip_curve(0.0, &SlipHistory::default()).unwrap_or_else(|| panic!("no law"))
     }
 
     /// Speeds over eleven decades, from the creep speed of [`LAW`] on.

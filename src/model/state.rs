@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Axis, ByAxis, Model, SurfacePoint};
+use super::{Axis, ByAxis, Flash, Model, SlipHistory, SpeedMemory, SurfacePoint};
 
 /// The contact mode of a mass, with the conditions that hold in it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -77,6 +77,8 @@ pub struct State {
     /// The parts ϑ_j of the flash temperatures, K: of the term j of the kernel one for each mass, term after term; empty
     /// where friction heats nothing.
     pub flash: Vec<f64>,
+    /// The speeds v_s that the masses remember, m/s; empty where friction has no memory.
+    pub memory: Vec<f64>,
     /// The contact modes.
     pub mode: Vec<Mode>,
     /// The profile under each mass in contact; zeros for a free mass.
@@ -118,6 +120,30 @@ impl State {
         self.flash.iter().skip(i).step_by(self.mode.len()).sum()
     }
 
+    /// What the past of mass `i` has left of its flash temperature and remembered speed.
+    #[inline]
+    pub fn history(&self, i: usize) -> SlipHistory {
+        let memory = self.memory.get(i).map(|&speed| SpeedMemory::held(speed));
+        SlipHistory { flash: Flash::held(self.flash(i)), memory }
+    }
+
+    /// The profile under mass `i`, touching or free, where the carrier is at `profile_position`, m.
+    #[inline]
+    pub fn surface_under(&self, model: &Model, i: usize, profile_position: f64) -> SurfacePoint {
+        if self.mode[i].in_contact() {
+            self.surface[i]
+        } else {
+            model.surface_at(model.rest_x[i] + (profile_position + self.elongation_x[i]))
+        }
+    }
+
+    /// |v_t| = q |ẋ| of mass `i`, touching or free, m/s, where the carrier is at `profile_position`, m.
+    #[inline]
+    pub fn tangential_speed(&self, model: &Model, i: usize, profile_position: f64) -> f64 {
+        let slope = self.surface_under(model, i, profile_position).slope;
+        (1.0 + slope * slope).sqrt() * self.velocity_x[i].abs()
+    }
+
     /// All masses of `model` at rest and free.
     pub fn new(model: &Model) -> Self {
         let masses = model.masses();
@@ -129,6 +155,7 @@ impl State {
             velocity_z: zeros(),
             maxwell: vec![0.0; model.maxwell_variables()],
             flash: vec![0.0; model.flash_variables()],
+            memory: vec![0.0; model.memory_variables()],
             mode: vec![Mode::Free; masses],
             surface: vec![SurfacePoint::default(); masses],
         }
@@ -148,6 +175,7 @@ impl State {
         self.velocity_z.clone_from(&other.velocity_z);
         self.maxwell.clone_from(&other.maxwell);
         self.flash.clone_from(&other.flash);
+        self.memory.clone_from(&other.memory);
         self.mode.clone_from(&other.mode);
         self.surface.clone_from(&other.surface);
     }

@@ -7,7 +7,7 @@
 
 use super::Variable;
 use super::snapshot::{Evaluation, MassContact, Snapshot};
-use crate::model::{ContactForces, Flash, LinkKind, MaxwellRow, Mode, Model};
+use crate::model::{ContactForces, LinkKind, MaxwellRow, Mode, Model};
 use crate::scene::{Axis, ByAxis};
 
 /// A shift of the carrier: the changes that it makes in each link to it and on each mass.
@@ -135,13 +135,13 @@ impl Snapshot<'_> {
         let ByAxis { x: f_x, z: f_z } = shift.on_mass;
         let normal = (slope * f_x - f_z) / q;
         let law = &self.model.friction;
-        let by_normal = law.slip(pressing, contact.velocity.abs() * q, Flash::held(contact.flash)).by_normal;
+        let by_normal = law.slip(pressing, contact.velocity.abs() * q, &contact.history).by_normal;
         let on_fine = contact.fine(self.model);
         let (friction, shear, fine) = match mode {
             Mode::Stick => {
                 let friction = (f_x + slope * f_z) / q;
-                let shares = law.shares_at_rest(pressing);
-                let changes = law.shares_by_normal(pressing, by_normal);
+                let shares = law.shares_at_rest(pressing, &contact.history);
+                let changes = law.shares_by_normal(pressing, by_normal, &contact.history);
                 let part = |share: f64, change: f64| share * friction + tangential * change * normal;
                 (friction, part(shares.shear, changes.shear), part(shares.fine, changes.fine))
             }

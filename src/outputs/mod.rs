@@ -123,6 +123,8 @@ pub enum Output {
     ElementMode(usize),
     /// The flash temperature of mass `.0` (from 0), K.
     ElementFlash(usize),
+    /// The speed of slip that the contact of mass `.0` (from 0) remembers, m/s.
+    ElementSpeedRemembered(usize),
 }
 
 /// A quantity whose derivatives by the targets of the inputs are outputs.

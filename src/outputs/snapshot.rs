@@ -5,8 +5,8 @@ use std::cell::{Cell, OnceCell, RefCell};
 use super::{Counters, Energies, Monitored, Variable};
 use crate::integrator::InterpolatedLayer;
 use crate::model::{
-    BodyEnergy, Carrier, CarrierPoint, ContactForces, FineContact, Forces, FrictionShares, Mode, Model, Powers, State,
-    Tangents, elastic_energy, kinetic_energy,
+    BodyEnergy, Carrier, CarrierPoint, ContactForces, FineContact, Forces, FrictionShares, Mode, Model, Powers,
+    SlipHistory, State, Tangents, elastic_energy, kinetic_energy,
 };
 use crate::scene::{Axis, ByAxis};
 
@@ -197,6 +197,11 @@ impl<'a> Snapshot<'a> {
         self.state().flash(i)
     }
 
+    /// The speed that mass `i` remembers, m/s.
+    pub(super) fn remembered_speed(&self, i: usize) -> f64 {
+        self.state().memory.get(i).copied().unwrap_or(0.0)
+    }
+
     /// The largest flash temperature of all masses, K.
     pub(super) fn flash_largest(&self) -> f64 {
         (0..self.model.masses()).map(|i| self.flash(i)).fold(0.0, f64::max)
@@ -264,8 +269,8 @@ impl<'a> Snapshot<'a> {
             mode,
             velocity,
             slope: surface.slope,
-            flash: state.flash(i),
-            forces: forces.contact(self.model, i, velocity, surface),
+            history: state.history(i),
+            forces: forces.contact(self.model, state, i),
         })
     }
 
@@ -286,21 +291,21 @@ pub(super) struct MassContact {
     pub(super) velocity: f64,
     /// s.
     pub(super) slope: f64,
-    /// ϑ, K.
-    pub(super) flash: f64,
+    /// What its past has left.
+    pub(super) history: SlipHistory,
     pub(super) forces: ContactForces,
 }
 
 impl MassContact {
     /// F_T, N.
     fn friction(&self, model: &Model) -> f64 {
-        let Self { mode, velocity, flash, .. } = *self;
-        if model.friction.present { self.forces.friction(model, mode, velocity, flash) } else { 0.0 }
+        let Self { mode, velocity, ref history, .. } = *self;
+        if model.friction.present { self.forces.friction(model, mode, velocity, history) } else { 0.0 }
     }
 
     /// What the roughness below the profile does in it.
     pub(super) fn fine(&self, model: &Model) -> FineContact {
-        model.friction.fine_contact(self.forces.normal, self.velocity * self.forces.q, self.flash)
+        model.friction.fine_contact(self.forces.normal, self.velocity * self.forces.q, &self.history)
     }
 
     /// The parts of the `friction` (N), N: of a sticking mass, as the parts of the largest friction at rest share it.
@@ -308,7 +313,7 @@ impl MassContact {
         let (law, normal) = (&model.friction, self.forces.normal);
         match self.mode {
             Mode::Stick => {
-                let shares = law.shares_at_rest(normal);
+                let shares = law.shares_at_rest(normal, &self.history);
                 FrictionShares { shear: shares.shear * friction, fine: shares.fine * friction }
             }
             mode if law.present => {

@@ -186,7 +186,7 @@ macro_rules! tangent {
 
 /// All outputs, in the order of the result files within their groups.
 #[rustfmt::skip]
-pub(super) static TABLE: [OutputRow; 77] = {
+pub(super) static TABLE: [OutputRow; 78] = {
     use OutputType::{Integer, Real};
     use OutputGroup::{Carrier, Contact, Dissipation, Energy, Forces, Friction, Solver, Tangent as Tangents};
     use Unit::{
@@ -368,6 +368,9 @@ pub(super) static TABLE: [OutputRow; 77] = {
         mass(Output::ElementFlash, "flash", Real, Kelvin, "Flash temperature of mass",
             |now, i| now.at.flash(i))
             .only_where(Scene::has_heat),
+        mass(Output::ElementSpeedRemembered, "speed_remembered", Real, MeterPerSecond, "Speed of slip that friction follows of mass",
+            |now, i| now.at.remembered_speed(i))
+            .only_where(Scene::has_memory),
     ]
 };
 

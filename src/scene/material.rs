@@ -246,6 +246,27 @@ impl Scene {
         self.shear_force().is_some() || self.rate_shear().is_some()
     }
 
+    /// Whether friction in the contacts depends on the speed of slip.
+    pub fn friction_depends_on_speed(&self) -> bool {
+        self.rate_shear().is_some() || self.fine.as_ref().is_some_and(|fine| fine.waves.has_bands())
+    }
+
+    /// The way D over which contacts are renewed where their friction depends on the speed, m: as the scene says, else
+    /// [`DEFAULT_MEMORY`](Self::DEFAULT_MEMORY) of a material; 0: none, friction is that at the speed of slip.
+    pub fn memory_way(&self) -> f64 {
+        let of_form = if self.material.is_some() { Self::DEFAULT_MEMORY } else { 0.0 };
+        self.friction.as_ref().and_then(|friction| friction.memory).unwrap_or(of_form)
+    }
+
+    /// Whether friction follows the speed that contacts remember, and not that of slip.
+    pub fn has_memory(&self) -> bool {
+        self.memory_way() > 0.0 && self.friction_depends_on_speed()
+    }
+
+    /// The way over which contacts of rubber are renewed where a scene does not say it, m: of the order of the diameter of
+    /// what touches.
+    pub const DEFAULT_MEMORY: f64 = 50.0e-6;
+
     /// Whether friction heats the contacts.
     pub fn has_heat(&self) -> bool {
         self.material.as_ref().is_some_and(|material| material.heat.is_some())
@@ -304,6 +325,7 @@ impl Scene {
                 ..layer
             };
             if let Some(friction) = &mut scene.friction {
+                friction.memory = Some(self.memory_way());
                 (friction.shear_force, friction.shear_strength) = (self.shear_force(), None);
                 friction.rate_shear = self.rate_shear();
             }

@@ -200,6 +200,8 @@ pub struct Friction {
     pub shear_strength: Option<f64>,
     /// Rate-dependent shear strength.
     pub rate_shear: Option<RateShear>,
+    /// The way D over which contacts are renewed, m, 0: at once; `None` see [`Scene::memory_way`].
+    pub memory: Option<f64>,
 }
 
 /// Shear strength that depends on the speed: A τ_f(v) = A τ_f0 exp(-c [log10(v/v_0)]²) of one mass in contact, constant

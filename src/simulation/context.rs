@@ -212,7 +212,8 @@ impl Context {
 
     /// The tangents' rates from the forces evaluated last.
     fn refresh_tangents(&mut self) {
-        self.integrator.refresh_tangents(&self.model, &self.state.layer, Some(&self.forces), self.state.s);
+        let carrier = (&self.state.carrier, self.state.s);
+        self.integrator.refresh_tangents(&self.model, &self.state.layer, carrier, Some(&self.forces));
     }
 
     /// Includes the energies in the largest so far, by which errors are measured.

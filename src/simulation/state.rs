@@ -274,12 +274,12 @@ fn check_layer(found: &LayerState, expected: &LayerState) -> Result<(), Simulati
 }
 
 /// The arrays of numbers of a layer and its rates.
-fn arrays(layer: &LayerState) -> [(&'static str, &[f64]); 17] {
-    let State { elongation_x, elongation_z, velocity_x, velocity_z, maxwell, flash, mode: _, surface: _ } =
+fn arrays(layer: &LayerState) -> [(&'static str, &[f64]); 19] {
+    let State { elongation_x, elongation_z, velocity_x, velocity_z, maxwell, flash, memory, mode: _, surface: _ } =
         &layer.state;
     let rates = &layer.rates;
     let StageValues { velocity_x: rate_x, velocity_z: rate_z, acceleration_x, acceleration_z, .. } = rates;
-    let StageValues { elongation_rate, normal, heat_flux, margin, .. } = rates;
+    let StageValues { elongation_rate, normal, heat_flux, memory_rate, margin, .. } = rates;
     let [vertical, horizontal, lateral_x, lateral_z] = &elongation_rate.0;
     [
         ("elongations along x", elongation_x),
@@ -288,6 +288,7 @@ fn arrays(layer: &LayerState) -> [(&'static str, &[f64]); 17] {
         ("velocities along z", velocity_z),
         ("Maxwell elongations", maxwell),
         ("flash temperatures", flash),
+        ("remembered speeds", memory),
         ("rates of positions along x", rate_x),
         ("rates of positions along z", rate_z),
         ("accelerations along x", acceleration_x),
@@ -298,6 +299,7 @@ fn arrays(layer: &LayerState) -> [(&'static str, &[f64]); 17] {
         ("elongation rates of lateral links along z", lateral_z),
         ("normal forces", normal),
         ("heat fluxes", heat_flux),
+        ("rates of remembered speeds", memory_rate),
         ("margins", margin),
     ]
 }

@@ -65,7 +65,7 @@ impl TimeStepping {
         state.counters.steps += 1;
         state.s = end;
         if context.modes_before != state.layer.state.mode {
-            integrator.refresh_tangents(model, &state.layer, None, end);
+            integrator.refresh_tangents(model, &state.layer, (&state.carrier, end), None);
             context.record_mode_changes();
         }
         context.record_largest_energy();

@@ -22,11 +22,14 @@ use std::ops::Range;
 use nalgebra::Vector2;
 
 use super::heat::StageFlash;
+use super::memory::StageMemory;
 use super::scheme::ContactModes;
 use super::stage_values::StageValues;
 use super::tolerance::{NEWTON_SHARE, Tolerance};
 use crate::math::{BlockTridiagonal, weighted_sum, with_widest_vectors};
-use crate::model::{ByAxis, ByLink, CarrierPoint, Forces, FrictionPower, LinkKind, LinkLaw, Mode, Model, State};
+use crate::model::{
+    ByAxis, ByLink, CarrierPoint, Forces, FrictionPower, LinkKind, LinkLaw, Mode, Model, SlipHistory, State,
+};
 use newton::{NeighbourWeights, RowShares, StageFriction, largest_of};
 
 pub(super) use border::{BodyHistory, Border};
@@ -91,7 +94,7 @@ pub(super) struct StagePoint {
 
 impl StagePoint {
     /// u at the stage as a position on the profile, m.
-    fn profile_position(&self) -> f64 {
+    pub(in crate::integrator) fn profile_position(&self) -> f64 {
         self.segment_start.x + self.carrier.x.position
     }
 
@@ -163,6 +166,8 @@ pub(super) struct StageSolver {
     friction: Vec<StageFriction>,
     /// Their flash temperatures at the stage.
     pub flash: StageFlash,
+    /// The speeds that the masses remember at the stage.
+    pub memory: StageMemory,
     rows: Vec<RowShares>,
     columns: Vec<NeighbourWeights>,
     pub system: BlockTridiagonal,
@@ -203,6 +208,7 @@ impl StageSolver {
             slip_runs: Vec::with_capacity(k.div_ceil(2)),
             friction: Vec::with_capacity(if model.friction.is_linear() { 0 } else { k }),
             flash: StageFlash::new(model),
+            memory: StageMemory::new(model),
             rows: vec![RowShares::default(); k],
             columns: vec![NeighbourWeights::default(); k],
             system: BlockTridiagonal::new(k),
@@ -210,6 +216,12 @@ impl StageSolver {
             factors: Factors::Outdated,
             iterations: 0,
         }
+    }
+
+    /// What is known of the past of mass `i` at the stage.
+    #[inline]
+    pub(super) fn slip_history(&self, i: usize) -> SlipHistory {
+        SlipHistory { flash: self.flash.of_mass(i), memory: self.memory.of_mass(i) }
     }
 
     /// Prepares the stages of a step from `state`, through which its `modes` are held or not.

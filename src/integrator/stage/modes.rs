@@ -2,7 +2,7 @@
 
 use super::super::scheme::ContactModes;
 use super::{StagePoint, StageSolver};
-use crate::model::{Mode, Model};
+use crate::model::{ContactForces, Mode, Model};
 
 impl StageSolver {
     /// Stops the slips that have reversed and breaks the sticks that hold more than T(0), by the velocities and forces
@@ -45,7 +45,8 @@ impl StageSolver {
         if mode.slips() {
             return if mode.direction() * v < 0.0 { Mode::Stick } else { mode };
         }
-        let contact = self.forces.contact(model, i, 0.0, &self.state.surface[i]);
+        let (surface, history) = (&self.state.surface[i], self.slip_history(i));
+        let contact = ContactForces::new(model, self.forces.on_mass(i), 0.0, surface, &history);
         let held = contact.tangential + model.mass * contact.q * self.history.velocity_x[i] / beta;
         if held.abs() > contact.limit.max(0.0) { Mode::along(held) } else { Mode::Stick }
     }

@@ -10,7 +10,7 @@ use super::slipping_mass::{ContactJacobian, SlipMotion, SlippingMass};
 use super::{MassHistory, StageSolver};
 use crate::math::with_widest_vectors;
 use crate::model::{
-    Axis, ByAxis, ByLink, ContactForces, Forces, LinearFriction, LinkLaw, Mode, Model, SlipFriction, State,
+    Axis, ByAxis, ByLink, ContactForces, Forces, LinearFriction, LinkLaw, Mode, Model, SlipFriction, SlipHistory, State,
 };
 
 impl StageSolver {
@@ -71,13 +71,14 @@ impl StageSolver {
 
     /// Evaluates the friction of the slipping masses, and writes their residuals, under a law that is not linear.
     fn slip_residuals(&mut self, model: &Model, beta: f64) {
-        let Self { state, history, forces, laws, weights, flash, .. } = self;
+        let Self { state, history, forces, laws, weights, flash, memory, .. } = self;
         let stage = Evaluated { model, state, history, forces, laws, weights, beta };
         let per_beta = 1.0 / beta;
         for (&i, slip) in self.slips.iter().zip(&mut self.friction) {
             // T at F_N and v_t of the last velocities; where it heats the contact, at the ϑ that it makes itself.
             let normal = if model.friction.is_linear_in_normal() { 0.0 } else { stage.normal(i) };
-            slip.friction = model.friction.slip(normal, stage.slip_speed(i), flash.of_mass(i));
+            let past = SlipHistory { flash: flash.of_mass(i), memory: memory.of_mass(i) };
+            slip.friction = model.friction.slip(normal, stage.slip_speed(i), &past);
             flash.set_guess(i, slip.friction.flash);
             // -R of [6] with the tangent of T(0) at F_N, which has its value there, ...
             let velocity = state.velocity_x[i];
@@ -418,7 +419,7 @@ impl StageSolver {
     /// curve itself. Returns the largest of them as the velocity, m/s, that the same force would change if friction did
     /// not depend on the speed: where the curve is steep, a small correction may still mean a large force.
     pub(super) fn correct_along_friction_curve(&mut self, model: &Model, beta: f64) -> f64 {
-        let Self { state, history, forces, laws, weights, flash, .. } = self;
+        let Self { state, history, forces, laws, weights, flash, memory, .. } = self;
         let stage = Evaluated { model, state, history, forces, laws, weights, beta };
         let mut largest: f64 = 0.0;
         for (&i, slip) in self.slips.iter().zip(&self.friction) {
@@ -432,7 +433,8 @@ impl StageSolver {
             let steepness = 1.0 + (mass.q2() * friction.by_speed / derivative_without).max(0.0);
             // v' of [10], with G/q² as the weight; back to δẋ.
             let (law, weight) = (&model.friction, derivative_without / mass.q2());
-            let corrected = law.along_curve(friction.normal, flash.of_mass(i), (speed, by), weight);
+            let past = SlipHistory { flash: flash.of_mass(i), memory: memory.of_mass(i) };
+            let corrected = law.along_curve(friction.normal, &past, (speed, by), weight);
             *right = (corrected - speed) / per_velocity;
             largest = largest.max(steepness * right.abs());
         }

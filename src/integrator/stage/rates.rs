@@ -6,7 +6,9 @@ use super::super::stage_values::{NO_LIMIT, StageValues};
 use super::newton::StageFriction;
 use super::{StagePoint, StageSolver};
 use crate::math::with_widest_vectors;
-use crate::model::{ByAxis, ContactForces, Forces, FrictionPower, LinkKind, LinkMotion, Mode, Model, State};
+use crate::model::{
+    ByAxis, ContactForces, Forces, FrictionPower, LinkKind, LinkMotion, Mode, Model, SlipHistory, State,
+};
 
 impl StageSolver {
     /// Writes the rates of the solved stage.
@@ -28,6 +30,7 @@ impl StageSolver {
         } else {
             self.set_contact_rates(model, rates);
         }
+        self.memory.write(model, point.profile_position(), &mut self.state, rates);
     }
 
     #[inline(always)]
@@ -48,7 +51,7 @@ impl StageSolver {
     fn set_stick_rates(&self, model: &Model, rates: &mut StageValues) {
         for &i in &self.sticks {
             let surface = &self.state.surface[i];
-            let contact = self.forces.contact(model, i, 0.0, surface);
+            let contact = ContactForces::new(model, self.forces.on_mass(i), 0.0, surface, &SlipHistory::default());
             (rates.acceleration_x[i], rates.acceleration_z[i]) = (0.0, 0.0);
             rates.margin[i] = contact.limit - contact.tangential.abs();
         }
@@ -69,7 +72,8 @@ impl StageSolver {
             let slip = if mode.slips() { slips.next() } else { None };
             let Some(StageFriction { friction, .. }) = slip else {
                 rates.acceleration_x[i] = 0.0;
-                rates.set_contact(model, i, mode, v, surface, &ContactForces::new(model, forces, v, surface));
+                let contact = ContactForces::new(model, forces, v, surface, &self.slip_history(i));
+                rates.set_contact(model, i, mode, v, surface, &contact);
                 continue;
             };
             let contact = ContactForces::without_limit(model.mass, forces, v, surface);

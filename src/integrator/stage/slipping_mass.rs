@@ -2,7 +2,7 @@
 //! tangents (docs/theory.md, sections 3, 4 and 8).
 
 use crate::model::{
-    ByAxis, ContactForces, Flash, Forces, LinearFriction, LinkLaw, Model, SlipFriction, State, SurfacePoint,
+    ByAxis, ContactForces, Forces, LinearFriction, LinkLaw, Model, SlipFriction, SlipHistory, State, SurfacePoint,
 };
 
 /// How the height of a slipping mass on the profile follows its ẋ.
@@ -108,13 +108,13 @@ impl SlippingMass {
         forces: &Forces,
         i: usize,
         acceleration: f64,
-        flash: Flash,
+        history: &SlipHistory,
     ) -> (Self, SlipFriction) {
         let (velocity, surface, sigma) = (state.velocity_x[i], &state.surface[i], state.mode[i].direction());
         // F_N from (9) needs no ẍ. A law that is linear in it is its own tangent at F_N = 0.
         let contact = ContactForces::without_limit(model.mass, forces.on_mass(i), velocity, surface);
         let normal = if model.friction.is_linear_in_normal() { 0.0 } else { contact.normal };
-        let friction = model.friction.slip(normal, sigma * (contact.q * velocity), flash);
+        let friction = model.friction.slip(normal, sigma * (contact.q * velocity), history);
         (Self::under(friction.tangent(), sigma, surface, SlipMotion { velocity, acceleration }), friction)
     }
 
@@ -153,14 +153,14 @@ impl SlippingMass {
     ///   m q² ẍ = (1 - σμs) f_x + (s + σμ) f_z - m κ ẋ² (s + σμ) - σ A τ_0 q - σ q B(σ q ẋ),
     ///
     /// with B the rate-dependent friction in excess of that at rest. This is the residual's derivative again, by
-    /// direction and with ẍ as the unknown. Friction itself changes by `of_flash` (N) with the known part of ϑ.
+    /// direction and with ẍ as the unknown. Friction itself changes by `of_past` (N) with what the past has left.
     pub(in crate::integrator) fn variation(
         &self,
         model: &Model,
         forces: ByAxis<f64>,
         by: &SlipVariation,
         friction: &SlipFriction,
-        of_flash: f64,
+        of_past: f64,
     ) -> f64 {
         let Self { s, kappa, velocity: v, share_x, share_z, .. } = *self;
         // The mass moves along the profile: δs = κ δx and δκ = z''' δx.
@@ -174,7 +174,7 @@ impl SlippingMass {
             - model.mass * (centripetal + 2.0 * s * ds * self.acceleration)
             - self.sigma_shear * s * ds / self.q
             - of_rate
-            - self.sigma * self.q * of_flash
+            - self.sigma * self.q * of_past
     }
 
     /// δF_N (N) and δv_t (m/s) for a variation `by` of its motion and of the links' `forces` on it, from

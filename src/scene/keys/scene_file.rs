@@ -176,6 +176,17 @@ const FRICTION: &[Key] = &[
         .default("0")
         .parameter(field!(|scene, _| scene.friction?.coulomb))
         .ahead(),
+    number(
+        "memory",
+        NOT_NEGATIVE,
+        Unit::Meter,
+        "Way of slip over which contacts are renewed, so that friction follows the speed; 0: at once",
+    )
+    .follows("50e-6 of a material, 0 in the direct form")
+    .parameter(field!(|scene, _| scene.friction?.memory).counting_as(|scene, _| {
+        let friction = scene.friction.as_ref().filter(|_| scene.friction_depends_on_speed());
+        friction.and_then(|_| scene.memory_way().value())
+    })),
     table("rate_shear", RATE_SHEAR),
     table("real_area", REAL_AREA).material(),
     number("shear_force", NOT_NEGATIVE, Unit::Newton, "Adhesive shear force of one mass in contact")

@@ -14,7 +14,7 @@ use super::known_laws::KnownLaws;
 use super::model::{Done, FrictionModel, FrictionParts, SceneAt, Task, groups};
 use crate::steady::persson::{ProfileWaves, Theory};
 use asperity::element::OperatingPoint;
-use asperity::model::Flash;
+use asperity::model::SlipHistory;
 use asperity::scene::{ElasticBody, Material, Scene, Surface};
 
 /// The theory over the free parameters.
@@ -53,7 +53,7 @@ impl<'a> TheoryModel<'a> {
         let law = self.laws.law(scene);
         let parts = |(point, theory): (&OperatingPoint, Theory)| {
             let normal = point.load / theory.area * area;
-            let slip = law.slip(normal, point.speed, Flash::held(0.0));
+            let slip = law.slip(normal, point.speed, &SlipHistory::even(0.0));
             let coefficient = |force: f64| force / normal;
             let (fine, all) = (coefficient(slip.hysteresis), coefficient(slip.force()));
             FrictionParts { profile: theory.friction, fine, shear: all - fine, area: theory.area }

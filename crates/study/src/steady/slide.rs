@@ -7,7 +7,7 @@ use super::krylov::Gmres;
 use super::linear::{gather, scatter};
 use super::surface::SurfaceGrid;
 use asperity::math::{dot, sum};
-use asperity::model::{Flash, FrictionLaw};
+use asperity::model::{FrictionLaw, SlipHistory};
 use asperity::scene::{ElasticBody, Material, Scene};
 
 /// Rubber at a temperature: what slides. It serves every surface, speed and pressure.
@@ -154,7 +154,7 @@ impl SlidingRubber {
 
     /// What a contact under a pressure (Pa) does at a speed (m/s) and a flash temperature, K.
     fn sliding(&self, pressure: f64, speed: f64, flash: f64) -> SlidingContact {
-        let at = self.friction.slip(pressure * self.element_area, speed, Flash::held(flash));
+        let at = self.friction.slip(pressure * self.element_area, speed, &SlipHistory::even(flash));
         let per_area = 1.0 / self.element_area;
         SlidingContact {
             friction: per_area * at.force(),

@@ -1,6 +1,6 @@
 //! How a contact warms by its own friction.
 
-use asperity::model::{Flash, FlashKernel, FrictionLaw};
+use asperity::model::{FlashKernel, FrictionLaw, SlipHistory};
 use asperity::scene::Scene;
 
 /// What friction has done to a contact.
@@ -31,7 +31,7 @@ impl Heating {
     /// T/F_N under a pressure (Pa) at a speed (m/s), `rise` (K) above the layer's temperature.
     fn friction(&self, pressure: f64, speed: f64, rise: f64) -> f64 {
         let normal = pressure * self.area;
-        self.law.slip(normal, speed, Flash::held(rise)).force() / normal
+        self.law.slip(normal, speed, &SlipHistory::even(rise)).force() / normal
     }
 
     /// After a contact of a length (m).
