@@ -14,5 +14,6 @@ mod reduce;
 mod reference;
 mod rows;
 mod steady;
+mod steady_slopes;
 mod step;
 mod tangent;

@@ -20,17 +20,21 @@ def sweep(
     forces: list[float] | None,
     temperatures: list[float] | None,
     method: str | None,
+    way: float | None,
     points: int | None,
     error: float | None,
     distance: float | None,
     progress: _Progress,
 ) -> tuple[str, list[str]]: ...
-def contact(scene: Scene, pressure: float, speed: float, points: int | None) -> dict[str, Any]: ...
+def contact(
+    scene: Scene, pressure: float, speed: float, way: float | None, points: int | None
+) -> dict[str, Any]: ...
 def calibrate(
     scene: Scene,
     data: Path,
     free: list[tuple[str, float, float]],
     method: str | None,
+    way: float | None,
     points: int | None,
     error: float | None,
     distance: float | None,

@@ -53,10 +53,11 @@ enum Quantity {
     Force,
     Friction,
     Temperature,
+    Way,
     Deviation,
 }
 
-const FRICTION: Format<Quantity, 5> = Format {
+const FRICTION: Format<Quantity, 6> = Format {
     needs_names: true,
     others: Others::Tables,
     ..Format::new(
@@ -98,6 +99,12 @@ const FRICTION: Format<Quantity, 5> = Format {
                 "T temp temperature temperatur t",
                 "sample mean rubber surface ambient track measured",
             ),
+            Words::new(
+                Quantity::Way,
+                Dimension::Length,
+                "way distance s weg gleitweg",
+                "sliding slid slip of the sample measured",
+            ),
         ],
         [
             Wanted::new(&[Quantity::Speed], "speed", "speeds").within(ABOVE_ZERO),
@@ -110,10 +117,14 @@ const FRICTION: Format<Quantity, 5> = Format {
                 unit: UnitRule::Named,
                 ..Wanted::new(&[Quantity::Temperature], "temperature", "temperatures").optional().within(ABOVE_ZERO)
             },
+            Wanted {
+                unit: UnitRule::Named,
+                ..Wanted::new(&[Quantity::Way], "way", "ways").optional().within(ABOVE_ZERO)
+            },
             Wanted::new(&[Quantity::Deviation], "sigma", "standard deviations").optional().within(ABOVE_ZERO),
         ],
-        "columns by their names with units: speed [m/s], pressure [bar] or force [N], friction; temperature [°C] and the \
-         standard deviation of friction where there are such",
+        "columns by their names with units: speed [m/s], pressure [bar] or force [N], friction; temperature [°C], the way \
+         slid [mm] and the standard deviation of friction where there are such",
     )
 };
 
@@ -126,7 +137,7 @@ impl Measurements {
     pub fn parse(bytes: &[u8], area: f64) -> Result<Self, ContentError> {
         let text = decode(bytes)?;
         let Table { columns, rows, lines, notes, .. } = FRICTION.read(&text)?;
-        let [_, load, friction_column, temperature, deviation] = &columns;
+        let [_, load, friction_column, temperature, way, deviation] = &columns;
         let is_said = |note: &ReadingNote| note.assumed || note.text.contains("left out");
         let mut notes: Vec<String> = notes.into_iter().filter(is_said).map(|note| note.text).collect();
         let is_force = load.as_ref().is_some_and(|column| column.quantity == Quantity::Force);
@@ -139,10 +150,10 @@ impl Measurements {
         if is_relative {
             notes.push("standard deviations in % are taken as parts of the friction".to_owned());
         }
-        let row = |(&[speed, load, friction, kelvin, sigma], line): (&[f64; 5], usize)| {
+        let row = |(&[speed, load, friction, kelvin, slid, sigma], line): (&[f64; 6], usize)| {
             let sigma = if is_relative { sigma * friction.abs() } else { sigma };
             let (load, temperature) = (to_pressure * load, temperature.as_ref().map(|_| kelvin));
-            let point = OperatingPoint { speed, load, temperature };
+            let point = OperatingPoint { speed, load, temperature, way: way.as_ref().map(|_| slid) };
             Measured { line, point, friction, sigma: deviation.as_ref().map(|_| sigma) }
         };
         Ok(Self { rows: rows.iter().zip(lines).map(row).collect(), notes })
@@ -170,6 +181,11 @@ impl Measurements {
         self.rows.iter().all(|row| row.sigma.is_some())
     }
 
+    /// Whether the table has ways.
+    pub fn has_way(&self) -> bool {
+        self.rows.iter().any(|row| row.point.way.is_some())
+    }
+
     /// Whether the table has temperatures.
     pub fn has_temperature(&self) -> bool {
         self.rows.iter().any(|row| row.point.temperature.is_some())
@@ -190,7 +206,7 @@ mod tests {
             read("sample;v [mm/s];p [bar];T [°C];mu;std\n1;10;2,5;20;0,8;0,02\n1;100;2,5;40;0,7;0,03\n").unwrap();
         let first = measured.rows[0];
         assert_eq!(first.line, 2);
-        assert_eq!(first.point, OperatingPoint { speed: 0.01, load: 2.5e5, temperature: Some(293.15) });
+        assert_eq!(first.point, OperatingPoint { speed: 0.01, load: 2.5e5, temperature: Some(293.15), way: None });
         assert_eq!((first.friction, first.sigma), (0.8, Some(0.02)));
         assert!(measured.has_sigma() && measured.has_temperature());
         assert_eq!(measured.notes, ["columns left out: sample"]);

@@ -20,6 +20,17 @@ const STEP: f64 = 0.4;
 /// Steps to either side of √(ω/D): what is beyond is e^-8 of the integral's scale.
 const REACH: i64 = 20;
 
+/// Steps to either side of 1/√(Dt): what is beyond is e^-12 of the integral's scale.
+const REACH_IN_TIME: i64 = 30;
+
+/// 1 - e^-x and x - (1 - e^-x).
+fn risen(x: f64) -> (f64, f64) {
+    let rise = -(-x).exp_m1();
+    // Where their difference would be of roundings, by its series.
+    let of_rise = if x < 1e-3 { x * x * (0.5 - x / 6.0 * (1.0 - 0.25 * x)) } else { x - rise };
+    (rise, of_rise)
+}
+
 /// How a surface warms under power that is even along its depth but for the waves that make it.
 #[derive(Clone, Debug)]
 pub struct HeatResponse {
@@ -65,6 +76,20 @@ impl HeatResponse {
             self.scale * STEP * Complex::new(real, omega * imaginary)
         };
         (1..=count).map(value).collect()
+    }
+
+    /// χ ∫_0^t κ and χ ∫_0^t ∫_0^t' κ at the time t (s), K m²/W and K m² s/W.
+    pub fn rises(&self, time: f64) -> [f64; 2] {
+        let middle = (-0.5 * (self.diffusivity * time).ln() / STEP).round() as i64;
+        let (mut once, mut twice) = (0.0, 0.0);
+        for place in middle - REACH_IN_TIME..=middle + REACH_IN_TIME {
+            let k = (STEP * place as f64).exp();
+            let (rate, weight) = (self.diffusivity * k * k, k * self.parts.share(k).powi(2));
+            let (rise, of_rise) = risen(rate * time);
+            once += weight * rise / rate;
+            twice += weight * of_rise / (rate * rate);
+        }
+        [once, twice].map(|sum| self.scale * STEP * sum)
     }
 
     /// The kernel that makes ϑ (K) of the power per area (W/m²) on the grid of `surface` at `speed`, m/s.
