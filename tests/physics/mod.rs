@@ -15,5 +15,6 @@ mod reference;
 mod rows;
 mod steady;
 mod steady_slopes;
+mod steady_way;
 mod step;
 mod tangent;

@@ -212,6 +212,15 @@ mod tests {
         assert_eq!(measured.notes, ["columns left out: sample"]);
     }
 
+    #[test]
+    fn ways_are_read_with_their_unit() {
+        let measured = read("v [m/s],p [bar],way [mm],mu\n1,2,20,0.8\n1,2,200,0.7\n").unwrap();
+        assert_eq!(measured.rows.iter().map(|row| row.point.way).collect::<Vec<_>>(), [Some(0.02), Some(0.2)]);
+        assert!(measured.has_way() && measured.notes.is_empty(), "{:?}", measured.notes);
+        let refusal = read("v [m/s],p [bar],way,mu\n1,2,20,0.8\n").unwrap_err();
+        assert!(refusal.starts_with("t.csv:1: unit of column 3 (way): expected it"), "{refusal}");
+    }
+
     /// 40 N on 2e-3 m² are 20 kPa; 5 % of 0.8 and 0.01 together are 0.0412.
     #[test]
     fn forces_make_pressures_and_deviations_are_assumed() {

@@ -125,7 +125,7 @@ impl ConvergenceStudy {
         let plan = plan(&options, &template)?;
         let warning = scene.hard_pressure("`pressure`", options.pressure).filter(|_| matches!(method, Method::Layer));
         method.check(scene)?;
-        let ConvergenceOptions { pressure, speed, error, distance, .. } = options;
+        let ConvergenceOptions { pressure, speed, way, error, distance, .. } = options;
         let of_method_alone = method.settings(&options.sliding(), || format!("{distance:?}"));
         let settings = format!("converge {pressure:?} {speed:?} {error:?} {of_method_alone}");
         let header = StudyHeader {
@@ -135,6 +135,7 @@ impl ConvergenceStudy {
             parts: template.parts(),
             pressure,
             speed,
+            way,
             error,
         };
         Ok(Self { template, plan, options, header, warning })
@@ -153,6 +154,11 @@ impl ConvergenceStudy {
     /// What is counted in a run.
     pub fn parts(&self) -> Parts {
         self.template.parts()
+    }
+
+    /// Whether the length is doubled; it is not where the solver has one period of a surface, of which there is no more.
+    pub fn has_length(&self) -> bool {
+        self.plan.has_length
     }
 
     /// Number of seeds, the scene's own included; `None` where it has none.

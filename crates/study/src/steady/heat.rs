@@ -130,4 +130,42 @@ mod tests {
             }
         }
     }
+
+    /// Of bands and surface: the rise by the terms of a layer's contacts is right within 1 %, and its integral is that of it.
+    #[test]
+    fn rises_are_those_of_the_kernel() {
+        let text = "name = 'h'\nlayer = { foundation = 'half_space', masses = 8, spacing = 1e-4, width = 1e-2 }\n\
+                    material = { density = 1100.0, poisson_ratio = 0.49, equilibrium_modulus = 5e6, prony = [ \
+                    { modulus = 2e7, relaxation_time = 1e-6 } ], \
+                    wlf = { c1 = 7.0, c2 = 120.0, reference_temperature = 293.0, temperature = 293.0 }, \
+                    heat = { conductivity = 0.25, capacity = 1700.0, share = 0.5 } }\n\
+                    friction = { shear_strength = 1e6 }\n\
+                    surface = { kind = 'sinusoid', amplitude = 1e-5, wavelength = 1e-3, \
+                    fine = { hurst = 0.8, rms_slope = 1.0, longest = 1e-3, shortest = 1e-6 } }";
+        let scene = Scene::parse(text, "heat.toml".as_ref()).unwrap_or_else(|error| unreachable!("{error}"));
+        let (Some(response), Some(kernel)) = (HeatResponse::new(&scene), asperity::model::FlashKernel::new(&scene))
+        else {
+            unreachable!("the scene has heat")
+        };
+        for time in [1e-5, 1e-3, 0.1, 10.0] {
+            let [rise, twice] = response.rises(time);
+            assert!((rise / kernel.rise(time) - 1.0).abs() < 1e-2, "{time}");
+            // Simpson's rule over √t, in which the rise is smooth.
+            let at = |i: usize| {
+                let root = (i as f64 / 64.0) * time.sqrt();
+                if i == 0 { 0.0 } else { 2.0 * root * response.rises(root * root)[0] }
+            };
+            let weight = |i: usize| {
+                if i == 0 || i == 64 {
+                    1.0
+                } else if i % 2 == 1 {
+                    4.0
+                } else {
+                    2.0
+                }
+            };
+            let simpson: f64 = (0..=64).map(|i| weight(i) * at(i)).sum::<f64>() * time.sqrt() / 192.0;
+            assert!((twice / simpson - 1.0).abs() < 1e-4, "{time}: {twice} for {simpson}");
+        }
+    }
 }
