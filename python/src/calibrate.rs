@@ -24,6 +24,7 @@ pub(crate) fn calibrate<'py>(
     data: PathBuf,
     free: Vec<(String, f64, f64)>,
     method: Option<&str>,
+    way: Option<f64>,
     points: Option<u32>,
     error: Option<f64>,
     distance: Option<f64>,
@@ -37,7 +38,7 @@ pub(crate) fn calibrate<'py>(
         set: scene.settings.clone(),
         free: free.into_iter().map(parameter).collect::<PyResult<_>>()?,
         data,
-        sliding: sliding(method, points, error, distance)?,
+        sliding: sliding(method, way, points, error, distance)?,
     };
     let text = scene.text.clone();
     let found = in_background(py, None, move |task| {

@@ -42,16 +42,17 @@ pub(crate) fn compare<'py>(py: Python<'py>, table: PathBuf, data: PathBuf) -> Py
 /// Of each curve its pressure and temperature, the table's points along it, and the lines of the measurements on it.
 fn curves<'py>(py: Python<'py>, comparison: &Comparison) -> PyResult<Bound<'py, PyList>> {
     let curves = PyList::empty(py);
-    for temperature in &comparison.grid.temperatures {
+    for condition in &comparison.grid.conditions {
         for pressure in &comparison.grid.pressures {
-            let is_on = |point: &OperatingPoint| comparison.grid.is_on(point, pressure, temperature);
+            let is_on = |point: &OperatingPoint| comparison.grid.is_on(point, pressure, condition);
             let swept = comparison.swept.iter().filter(|(point, _)| is_on(point));
             let mut points: Vec<(f64, f64)> = swept.map(|(point, friction)| (point.speed, *friction)).collect();
             points.sort_by(|a, b| a.0.total_cmp(&b.0));
             let on = comparison.within.iter().filter(|(row, _)| is_on(&row.point));
             let lines: Vec<usize> = on.map(|(row, _)| row.line).collect();
             if !lines.is_empty() {
-                curves.append((pressure.mean, temperature.map(|cluster| cluster.mean), points, lines))?;
+                let temperature = condition.temperature.map(|cluster| cluster.mean);
+                curves.append((pressure.mean, temperature, points, lines))?;
             }
         }
     }

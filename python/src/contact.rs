@@ -19,22 +19,24 @@ pub(crate) fn contact<'py>(
     scene: &Scene,
     pressure: f64,
     speed: f64,
+    way: Option<f64>,
     points: Option<u32>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (scene, options) = (Arc::clone(&scene.scene), ContactOptions { pressure, speed, points });
+    let (scene, options) = (Arc::clone(&scene.scene), ContactOptions { pressure, speed, way, points });
     let solved = in_background(py, None, move |_| solve_contact(&scene, &options))?;
     let SolvedContact { slide, fields, problem, warnings, .. } = solved.map_err(|error| error.raise())?;
     let found = PyDict::new(py);
     let (friction, separation) = (slide.friction(), slide.contact.separation);
     for (name, value) in [
-        ("friction", Some(friction)),
+        ("friction", friction),
         ("friction_profile", Some(slide.profile_hysteresis)),
         ("friction_fine", slide.fine_hysteresis),
-        ("friction_adhesion", Some(slide.adhesion)),
+        ("friction_adhesion", slide.adhesion),
         ("area", Some(slide.area)),
         ("area_real", slide.real_area),
         ("separation", Some(separation)),
         ("flash_mean", slide.flash_mean),
+        ("surface_rise", slide.surface_rise),
     ] {
         found.set_item(name, value)?;
     }

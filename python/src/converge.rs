@@ -42,13 +42,14 @@ pub(crate) fn converge<'py>(
     error: f64,
     seeds: Option<u32>,
     method: Option<&str>,
+    way: Option<f64>,
     points: Option<u32>,
     most_points: Option<u32>,
     distance: Option<f64>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let method = sliding(method, points, None, distance)?.method;
-    let options = ConvergenceOptions { pressure, speed, error, seeds, method, points, most_points, distance };
+    let method = sliding(method, way, points, None, distance)?.method;
+    let options = ConvergenceOptions { pressure, speed, error, seeds, method, way, points, most_points, distance };
     let (data, text) = (Arc::clone(&scene.scene), scene.text.clone());
     let (file, set) = (scene.file.clone(), scene.settings.clone());
     let found = in_background(py, progress, move |task| {

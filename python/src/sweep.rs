@@ -19,6 +19,7 @@ use crate::scene::Scene;
 /// How steady sliding is found, as Python has it.
 pub(crate) fn sliding(
     method: Option<&str>,
+    way: Option<f64>,
     points: Option<u32>,
     error: Option<f64>,
     distance: Option<f64>,
@@ -31,7 +32,7 @@ pub(crate) fn sliding(
             return Err(PyValueError::new_err(format!("method = {other:?}: expected \"steady\" or \"layer\"")));
         }
     };
-    Ok(SlidingOptions { method, points, error, distance })
+    Ok(SlidingOptions { method, way, points, error, distance })
 }
 
 /// All points of a sweep; `None` where nobody waits for them any more.
@@ -58,6 +59,7 @@ pub(crate) fn sweep(
     forces: Option<Vec<f64>>,
     temperatures: Option<Vec<f64>>,
     method: Option<&str>,
+    way: Option<f64>,
     points: Option<u32>,
     error: Option<f64>,
     distance: Option<f64>,
@@ -68,7 +70,7 @@ pub(crate) fn sweep(
         (None, Some(forces)) => Loads::Forces(forces),
         _ => return Err(PyValueError::new_err("expected pressures or forces, the loads to sweep over")),
     };
-    let options = SweepOptions { speeds, loads, temperatures, sliding: sliding(method, points, error, distance)? };
+    let options = SweepOptions { speeds, loads, temperatures, sliding: sliding(method, way, points, error, distance)? };
     let scene = Arc::clone(&scene.scene);
     let found = in_background(py, progress, move |task| {
         let plan = SweepPlan::new((*scene).clone(), &options, None)?;

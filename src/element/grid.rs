@@ -57,13 +57,16 @@ pub struct OperatingPoint {
     pub load: f64,
     /// Temperature, K; `None` where the scene has none.
     pub temperature: Option<f64>,
+    /// The way that rubber has slid which was that warm, m; `None`: its surface is, or that of the whole table.
+    pub way: Option<f64>,
 }
 
 impl OperatingPoint {
-    /// The point in words: `0.1 m/s, 200000 Pa, 293.15 K`.
+    /// The point in words: `0.1 m/s, 200000 Pa, 293.15 K, after 0.02 m`.
     pub fn describe(&self, load: Load) -> String {
         let temperature = self.temperature.map_or_else(String::new, |temperature| format!(", {temperature} K"));
-        format!("{} m/s, {} {}{temperature}", self.speed, self.load, load.unit())
+        let way = self.way.map_or_else(String::new, |way| format!(", after {way} m"));
+        format!("{} m/s, {} {}{temperature}{way}", self.speed, self.load, load.unit())
     }
 }
 
@@ -96,6 +99,7 @@ impl SweepGrid {
             speed: self.speeds[index % speeds],
             load: self.loads[index / speeds % loads],
             temperature: self.temperatures.get(index / speeds / loads).copied(),
+            way: None,
         }
     }
 
@@ -123,7 +127,7 @@ mod tests {
         let expected = [(1.0, 3.0, 5.0), (2.0, 3.0, 5.0), (1.0, 4.0, 5.0)];
         assert_eq!(points.len(), 8);
         for (point, (speed, load, temperature)) in points.iter().zip(expected) {
-            assert_eq!(*point, OperatingPoint { speed, load, temperature: Some(temperature) });
+            assert_eq!(*point, OperatingPoint { speed, load, temperature: Some(temperature), way: None });
         }
         assert!(points.iter().enumerate().all(|(index, point)| grid.index(point) == Some(index)));
         assert_eq!(grid.index(&OperatingPoint { temperature: None, ..points[0] }), None);

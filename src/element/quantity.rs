@@ -63,6 +63,8 @@ columns! {
     RealArea: "area_real [1]", NonNegative, Ignored;
     /// Mean flash temperature of what is in contact, above the mean of the surface, K.
     FlashMean: "flash_mean [K]", Any, Ignored;
+    /// How much warmer than the rubber was the surface is after the way of the sweep, K.
+    SurfaceRise: "surface_rise [K]", Any, Ignored;
     /// Power lost in dampers, W.
     DamperPower: "P_damper [W]", NonNegative, Optional;
     /// Power lost in Maxwell elements, W.

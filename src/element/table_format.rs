@@ -51,6 +51,8 @@ pub struct Basis {
     pub method: Option<String>,
     /// What the links stand for.
     pub foundation: Option<String>,
+    /// The way that rubber has slid of the temperature that a point has, in m; `None`: its surface has that.
+    pub way: Option<String>,
     /// The roughness below the profile's.
     pub fine: Option<String>,
     /// What a study of convergence found; `None` without one.
@@ -64,8 +66,8 @@ pub const CONVERGED: &str = "converged";
 
 impl Basis {
     fn lines(&self) -> impl Iterator<Item = String> {
-        let named =
-            BASIS_KEYS.into_iter().zip([&self.method, &self.foundation, &self.fine, &self.convergence, &self.held]);
+        let texts = [&self.method, &self.foundation, &self.way, &self.fine, &self.convergence, &self.held];
+        let named = BASIS_KEYS.into_iter().zip(texts);
         named.filter_map(|(key, text)| Some(format!("# {key} = {}", one_line(text.as_ref()?))))
     }
 
@@ -75,7 +77,7 @@ impl Basis {
     }
 }
 
-const BASIS_KEYS: [&str; 5] = ["method", "foundation", "fine", "convergence", "held"];
+const BASIS_KEYS: [&str; 6] = ["method", "foundation", "way", "fine", "convergence", "held"];
 
 impl TableHeader {
     /// The lines of the header, the names of the columns included.
@@ -304,8 +306,8 @@ impl TableText {
 
     /// What the numbers rest on, as far as the table says.
     pub(super) fn basis(&self) -> Basis {
-        let [method, foundation, fine, convergence, held] = BASIS_KEYS.map(|key| self.header.get(key).cloned());
-        Basis { method, foundation, fine, convergence, held }
+        let [method, foundation, way, fine, convergence, held] = BASIS_KEYS.map(|key| self.header.get(key).cloned());
+        Basis { method, foundation, way, fine, convergence, held }
     }
 
     /// The header of a table as a sweep writes it.
@@ -382,6 +384,7 @@ impl TableText {
             speed: positive(column(0)?)?,
             load: positive(column(1)?)?,
             temperature: if fields[temperature].is_empty() { None } else { Some(positive(temperature)?) },
+            way: None,
         })
     }
 

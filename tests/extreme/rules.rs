@@ -1,6 +1,6 @@
 //! What must hold of every run.
 
-use asperity::model::Model;
+use asperity::model::{Model, SlipHistory};
 use asperity::outputs::{Output, Variable};
 use asperity::scene::{RateShear, Scene};
 use asperity::simulation::SimulationState;
@@ -108,7 +108,7 @@ impl Limits {
     /// |F_T| ≤ T, but for the tolerance within which a break is located and the row's own error.
     fn friction(&self, normal: f64, friction: f64, mode: f64) -> Option<String> {
         // On the area that touches at rest: the rubber is no softer in slip.
-        let share = self.model.friction.fine_contact(normal.max(0.0), 0.0, 0.0).share.value;
+        let share = self.model.friction.fine_contact(normal.max(0.0), 0.0, &SlipHistory::default()).share.value;
         let limit = self.friction.0 * normal.max(0.0)
             + share * (self.friction.1 + self.rate_limit(mode))
             + self.model.friction.largest_hysteresis(normal);
@@ -116,11 +116,16 @@ impl Limits {
         (friction.abs() > limit + slack).then(|| format!("|F_T| = {:.2e} above {limit:.2e}", friction.abs()))
     }
 
-    /// A τ_f(v_c) of a mass that sticks, the largest A τ_f(v) of another, N.
+    /// A τ_f(v_c) of a mass that sticks and remembers no speed, the largest A τ_f(v) of another, N.
     fn rate_limit(&self, mode: f64) -> f64 {
         self.rate_shear.map_or(0.0, |law| {
             let decades = (law.creep_speed() / law.reference_speed).log10();
-            law.force.unwrap_or(0.0) * if mode == 2.0 { (-law.sharpness * decades * decades).exp() } else { 1.0 }
+            law.force.unwrap_or(0.0)
+                * if mode == 2.0 && self.model.friction.memory.is_none() {
+                    (-law.sharpness * decades * decades).exp()
+                } else {
+                    1.0
+                }
         })
     }
 

@@ -14,5 +14,7 @@ mod reduce;
 mod reference;
 mod rows;
 mod steady;
+mod steady_slopes;
+mod steady_way;
 mod step;
 mod tangent;

@@ -368,3 +368,60 @@ fn the_layers_spacing_is_no_matter_of_the_solver() {
         &[&sweep[..], &["--method", "layer", "--friction-error", "0.5", "--distance", "1e-5"]].concat()
     ));
 }
+
+/// A scene with heat on a map, on few points of it.
+fn of_road() -> [String; 3] {
+    [reference("steady/steady-road.toml").display().to_string(), "--points".into(), "32".into()]
+}
+
+/// The way is in the header and in the fingerprint, the rise in the rows; several ways make one table, and a picture.
+#[test]
+fn rubber_warms_over_a_way() {
+    let folder = scratch("steady-way");
+    let [scene, points @ ..] = of_road();
+    let options = ["--speeds", "0.1,1", "--pressures", "3e5", &points[0], &points[1]];
+    let table = folder.join("way.csv");
+    let text = sweep(scene.as_ref(), &table, &[&options[..], &["--way", "0.02"]].concat());
+    assert!(text.contains("# way = 0.02 m\n"), "{text}");
+    let rows = Table::read(&table);
+    assert!(rows.number(1, "surface_rise") > rows.number(0, "surface_rise") && rows.number(0, "surface_rise") > 1.0);
+    let other =
+        refused(&[&["sweep", &scene, "-o", table.to_str().unwrap(), "--way", "0.03"][..], &options[..]].concat());
+    assert!(other.contains("another sweep"), "{other}");
+
+    let (ways, picture) = (folder.join("ways.csv"), folder.join("ways.svg"));
+    let given = ["--ways", "1mm..20mm/3", "--plot", picture.to_str().unwrap()];
+    let text = sweep(scene.as_ref(), &ways, &[&options[..], &given].concat());
+    assert!(text.starts_with("way [m],speed [m/s],"), "{text}");
+    let all = Table::read(&ways);
+    assert_eq!(all.len(), 6);
+    assert_eq!((all.number(5, "way"), all.number(5, "friction")), (0.02, rows.number(1, "friction")));
+    assert!(fs::read_to_string(&picture).unwrap().contains("way in m"));
+}
+
+#[test]
+fn a_way_is_refused_of_the_layer_and_without_heat() {
+    let [scene, ..] = of_road();
+    let at = ["--speeds", "1", "--pressures", "3e5", "--way", "0.02"];
+    let of_layer = refused(&[&["sweep", &scene, "--method", "layer"][..], &at].concat());
+    assert!(of_layer.contains("--way: expected none where the layer slides (as asked for)"), "{of_layer}");
+    let cold = refused(&[&["sweep", reference("steady/steady-map.toml").to_str().unwrap()][..], &at].concat());
+    assert!(cold.contains("--way: the scene has no material.heat"), "{cold}");
+}
+
+/// Coulomb's friction of 3 jams on slopes above a third; the area is there all the same.
+#[test]
+fn a_table_says_where_it_jams() {
+    let folder = scratch("steady-jams");
+    let table = folder.join("table.csv");
+    let output = asperity()
+        .args(["sweep", reference("steady/steady-ridges.toml").to_str().unwrap(), "-o", table.to_str().unwrap()])
+        .args(["--speeds", "0.1", "--pressures", "3e5", "--set", "friction.coulomb=3"])
+        .output()
+        .unwrap();
+    assert!(!output.status.success());
+    let rows = Table::read(&table);
+    assert!(rows.text(0, "status").starts_with("jams at "), "{}", rows.text(0, "status"));
+    assert!(["friction", "friction_adhesion", "P_friction"].iter().all(|name| rows.text(0, name).is_empty()));
+    assert!(rows.number(0, "contact_ratio") > 0.1 && rows.number(0, "friction_hysteresis") > 0.0);
+}

@@ -1,7 +1,7 @@
 //! Measured friction beside that of a model: the picture, and how far points are off.
 
 use asperity::element::OperatingPoint;
-use asperity_study::calibration::{Cluster, CurveGrid, Measured, in_words};
+use asperity_study::calibration::{Cluster, Condition, CurveGrid, Measured, in_words};
 use asperity_study::decimals::{as_given, rounded};
 
 use super::figure::{Curve, Panel, PanelRow, SideBySide, Stroke};
@@ -27,15 +27,17 @@ pub(crate) struct ModelCurves {
     pub(crate) points: Vec<(OperatingPoint, f64)>,
 }
 
-/// Measured points with bars of a standard deviation to each side, and curves: a panel a temperature and a colour a
-/// pressure, or of one temperature a panel a pressure.
+/// Measured points with bars of a standard deviation to each side, and curves: a panel a temperature and way, and a colour
+/// a pressure, or of one temperature and way a panel a pressure.
 pub(crate) fn picture(title: &str, grid: &CurveGrid, measured: &[Measured], curves: &[ModelCurves]) -> SideBySide {
-    let kelvin = |temperature: &Option<Cluster>| {
-        temperature.map(|cluster| format!("{} K", rounded(cluster.mean, 5))).unwrap_or_default()
+    let held = |condition: &Condition| {
+        let kelvin = condition.temperature.map(|cluster| format!("{} K", rounded(cluster.mean, 5)));
+        let way = condition.way.map(|way| format!("after {}", as_given(rounded(way, 4), "m")));
+        kelvin.into_iter().chain(way).collect::<Vec<_>>().join(", ")
     };
     let pascal = |pressure: &Cluster| as_given(rounded(pressure.mean, 4), "Pa");
-    let of = |pressure: &Cluster, temperature: &Option<Cluster>, look: usize, name: String| {
-        let is_on = |point: &OperatingPoint| grid.is_on(point, pressure, temperature);
+    let of = |pressure: &Cluster, condition: &Condition, look: usize, name: String| {
+        let is_on = |point: &OperatingPoint| grid.is_on(point, pressure, condition);
         let rows = measured.iter().filter(|row| is_on(&row.point));
         let bar = |row: &Measured| {
             let (speed, sigma) = (row.point.speed, row.sigma_or_assumed());
@@ -59,21 +61,18 @@ pub(crate) fn picture(title: &str, grid: &CurveGrid, measured: &[Measured], curv
         let all = curves.iter().map(curve).chain(rows.map(bar)).chain([rings]);
         if has_data { all.collect() } else { Vec::new() }
     };
-    let panels = match &grid.temperatures[..] {
-        [temperature] => {
+    let panels = match &grid.conditions[..] {
+        [condition] => {
             let each = grid.pressures.iter();
-            each.map(|pressure| Panel {
-                title: pascal(pressure),
-                curves: of(pressure, temperature, 0, kelvin(temperature)),
-            })
-            .collect()
+            each.map(|pressure| Panel { title: pascal(pressure), curves: of(pressure, condition, 0, held(condition)) })
+                .collect()
         }
         several => several
             .iter()
-            .map(|temperature| {
+            .map(|condition| {
                 let each = grid.pressures.iter().enumerate();
-                let curves = each.flat_map(|(look, pressure)| of(pressure, temperature, look, pascal(pressure)));
-                Panel { title: kelvin(temperature), curves: curves.collect() }
+                let curves = each.flat_map(|(look, pressure)| of(pressure, condition, look, pascal(pressure)));
+                Panel { title: held(condition), curves: curves.collect() }
             })
             .collect(),
     };

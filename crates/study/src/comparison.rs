@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use asperity::element::{Load, OperatingPoint, Quantity};
 
 use crate::calibration::{CurveGrid, Measured, MeasuredFrictionError, Measurements, left_out_in_words};
-use crate::sweep::SweepTable;
+use crate::sweep::{SweepTable, way_of};
 
 /// A table cannot be compared with measurements.
 #[derive(Debug, thiserror::Error)]
@@ -49,6 +49,9 @@ pub enum NoFriction {
     /// It lies beyond its points.
     #[error("the table does not reach there")]
     Beyond,
+    /// The measurement has another way than the table.
+    #[error("the table is of another way, or of none")]
+    OtherWay,
     /// A point beside it has no result, but this status.
     #[error("the table has no result beside it: {0}")]
     Failed(String),
@@ -164,7 +167,11 @@ fn beside(axis: &[f64], value: f64, scale: fn(f64) -> f64) -> Option<Vec<(f64, f
 impl SweptFriction<'_> {
     /// Friction at a point, unless it is beyond the table or beside a point of it without a result.
     fn at(&self, point: &OperatingPoint) -> Result<f64, NoFriction> {
-        let grid = &self.table.header.grid;
+        let header = &self.table.header;
+        if point.way.is_some() && point.way != way_of(&header.basis) {
+            return Err(NoFriction::OtherWay);
+        }
+        let grid = &header.grid;
         let speeds = beside(&grid.speeds, point.speed, f64::ln).ok_or(NoFriction::Beyond)?;
         let loads = beside(&grid.loads, point.load, f64::ln).ok_or(NoFriction::Beyond)?;
         let temperatures: Vec<(Option<f64>, f64)> = match point.temperature {
@@ -180,7 +187,7 @@ impl SweptFriction<'_> {
         for &(temperature, of_temperature) in &temperatures {
             for &(load, of_load) in &loads {
                 for &(speed, of_speed) in &speeds {
-                    let corner = OperatingPoint { speed, load, temperature };
+                    let corner = OperatingPoint { speed, load, temperature, way: None };
                     friction += of_temperature * of_load * of_speed * self.on_grid(&corner)?;
                 }
             }

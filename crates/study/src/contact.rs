@@ -55,6 +55,8 @@ pub struct ContactOptions {
     pub pressure: f64,
     /// Sliding speed, m/s.
     pub speed: f64,
+    /// The way that rubber as warm as the scene has slid, m; `None`: its surface is as warm.
+    pub way: Option<f64>,
     /// Points of a period along x; `None`: as [`SlidingOptions::points`].
     pub points: Option<u32>,
 }
@@ -66,18 +68,24 @@ pub struct ContactOptions {
 pub fn solve_contact(scene: &Scene, options: &ContactOptions) -> Result<SolvedContact, ContactError> {
     NotPossible::check("speed", "m/s", &[options.speed])?;
     NotPossible::check("pressure", "Pa", &[options.pressure])?;
-    let sliding =
-        SlidingOptions { method: Some(SweepMethod::Steady), points: options.points, ..SlidingOptions::default() };
+    let sliding = SlidingOptions {
+        method: Some(SweepMethod::Steady),
+        way: options.way,
+        points: options.points,
+        ..SlidingOptions::default()
+    };
     // What is asked for is chosen or refused.
     let (Method::Steady(surface), _) = sliding.choose(scene)? else { return Err(ContactError::NoMaterial) };
     let rubber = SlidingRubber::new(scene).ok_or(ContactError::NoMaterial)?;
     let mut solver = SteadySolver::new(surface);
-    let slide = solver.slide(&rubber, options.speed, options.pressure);
+    let slide = solver.slide_over(&rubber, options.speed, options.pressure, options.way);
     let surface = solver.surface().clone();
     let (fields, problem) = (ContactFields::new(&surface, &slide), slide.problem());
     let place = format!("at {} m/s, {} Pa", options.speed, options.pressure);
     let area = slide.real_area.unwrap_or(slide.area);
-    let warnings = implausible(scene, [FoundFriction { place, friction: slide.friction(), area: Some(area) }]);
+    let rise = slide.flash_mean.map(|flash| flash + slide.surface_rise.unwrap_or(0.0));
+    let found = slide.friction().map(|friction| FoundFriction { place, friction, area: Some(area), rise });
+    let warnings = implausible(scene, found);
     Ok(SolvedContact { surface, slide, fields, problem, warnings })
 }
 

@@ -1,5 +1,7 @@
 //! Friction and areas of contact that no rubber has, and which key of the scene is missing or mistaken.
 
+use std::cmp::Ordering;
+
 use asperity::element::{Load, OperatingPoint, Quantity, TableRow};
 use asperity::scene::{Friction, Scene};
 
@@ -7,6 +9,8 @@ use crate::decimals::rounded;
 
 /// No rubber is known to have a friction coefficient above it.
 const LARGEST_FRICTION: f64 = 3.0;
+/// No rubber stands more, K.
+const LARGEST_RISE: f64 = 150.0;
 /// A real area that is this part of the nominal one is all of it.
 const WHOLE: f64 = 0.99;
 
@@ -19,6 +23,8 @@ pub struct FoundFriction {
     pub friction: f64,
     /// Area that touches over the nominal one, 1: with the roughness below the profile where the scene has it.
     pub area: Option<f64>,
+    /// How warm contacts are on the average above the scene's temperature, K; `None` where friction heats nothing.
+    pub rise: Option<f64>,
 }
 
 impl FoundFriction {
@@ -26,7 +32,8 @@ impl FoundFriction {
     pub fn of_row(row: &TableRow, load: Load) -> Option<Self> {
         let friction = row.value(Quantity::Friction).filter(|_| row.is_result())?;
         let area = row.value(Quantity::RealArea).or(row.value(Quantity::ContactRatio));
-        Some(Self { place: at(&row.point, load), friction, area })
+        let rise = row.value(Quantity::FlashMean).map(|flash| flash + row.value(Quantity::SurfaceRise).unwrap_or(0.0));
+        Some(Self { place: at(&row.point, load), friction, area, rise })
     }
 }
 
@@ -59,7 +66,17 @@ pub fn implausible(scene: &Scene, found: impl IntoIterator<Item = FoundFriction>
             ),
         }
     });
-    largest.into_iter().chain(touching).collect()
+    let is_hot = |one: &&FoundFriction| one.rise.is_some_and(|rise| rise > LARGEST_RISE);
+    let hot: Vec<&FoundFriction> = found.iter().filter(is_hot).collect();
+    let hottest = hot.iter().max_by(|a, b| a.rise.partial_cmp(&b.rise).unwrap_or(Ordering::Equal)).map(|hottest| {
+        format!(
+            "contacts are {} K above the temperature of the scene {}{}, more than {LARGEST_RISE} K, which rubber does not stand",
+            rounded(hottest.rise.unwrap_or_default(), 3),
+            hottest.place,
+            more(hot.len())
+        )
+    });
+    largest.into_iter().chain(touching).chain(hottest).collect()
 }
 
 const NO_FINE: &str = "without surface.fine the profile counts as smooth between its points, and the shear strength acts on all \
@@ -127,6 +144,7 @@ mod tests {
             place: "at 1 m/s".into(),
             friction,
             area: Some(area),
+            rise: None,
         });
         implausible(&scene(surface, friction), found)
     }
@@ -145,6 +163,19 @@ mod tests {
         let fine = format!("{SINE}, fine = {{ hurst = 0.8, rms_slope = 0.3, longest = 1e-4, shortest = 1e-6 }}");
         assert!(said(&fine, shear, &[(1.0, 0.999)])[0].contains("surface.fine.shortest"));
         assert!(said(SINE, "coulomb = 5", &[(5.0, 1.0)])[0].ends_with("friction.coulomb = 5"));
+    }
+
+    #[test]
+    fn contacts_that_rubber_does_not_stand_are_said() {
+        let found = |rise| FoundFriction { place: "at 3 m/s".into(), friction: 1.0, area: Some(0.1), rise: Some(rise) };
+        let scene = scene(SINE, "coulomb = 0.5");
+        assert_eq!(implausible(&scene, [found(149.0)]), [""; 0]);
+        let said = implausible(&scene, [found(160.0), found(199.2), found(20.0)]);
+        assert_eq!(said.len(), 1);
+        assert!(
+            said[0].starts_with("contacts are 199 K above the temperature of the scene at 3 m/s and at one more"),
+            "{said:?}"
+        );
     }
 
     /// Glass is smooth, and Coulomb's friction has no area.

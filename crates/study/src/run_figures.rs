@@ -65,7 +65,7 @@ pub fn implausible_run(scene: &Scene, figures: &RunFigures, simulation: &mut Sim
         _ => value(Output::ContactCount).map(|count| count / scene.layer.masses as f64),
     };
     let place = "over the run".to_owned();
-    implausible(scene, [FoundFriction { place, friction, area }])
+    implausible(scene, [FoundFriction { place, friction, area, rise: None }])
 }
 
 /// What a run cost.

@@ -21,14 +21,15 @@ class Contact:
         height: Heights of the surface about their mean, m, shape (ny, nx).
         pressure: Pressures, Pa, shape (ny, nx); 0 where nothing touches.
         gap: Gaps between rubber and surface, m, shape (ny, nx).
-        friction: Friction coefficient, 1.
+        friction: Friction coefficient, 1; None where it jams.
         friction_profile: The part of it by the slopes of the surface, 1.
         friction_fine: The part by the waves that the surface lacks, 1; None where it lacks none that rub.
-        friction_adhesion: The part by what acts in the contacts else, 1.
+        friction_adhesion: The part by what acts in the contacts else, 1; None where it jams.
         area: Points in contact over all, 1.
         area_real: Area that touches with the waves that the surface lacks over the whole, 1; None without them.
         separation: Distance of the mean planes of rubber and surface, m.
         flash_mean: Mean flash temperature over the contact, K; None where friction heats nothing.
+        surface_rise: How much warmer the surface is than the rubber was before, K; None without a way.
         status: "steady", or why the values cannot be relied on.
     """
 
@@ -37,14 +38,15 @@ class Contact:
     height: Floats
     pressure: Floats
     gap: Floats
-    friction: float
+    friction: float | None
     friction_profile: float
     friction_fine: float | None
-    friction_adhesion: float
+    friction_adhesion: float | None
     area: float
     area_real: float | None
     separation: float
     flash_mean: float | None
+    surface_rise: float | None
     status: str
 
     @classmethod
@@ -60,4 +62,5 @@ class Contact:
         return contact(self.x, self.y, self.height, self.pressure, self.gap)
 
     def __repr__(self) -> str:
-        return f"<asperity.Contact: friction {self.friction:.4g}, area {self.area:.4g}, {self.status}>"
+        friction = "none" if self.friction is None else f"{self.friction:.4g}"
+        return f"<asperity.Contact: friction {friction}, area {self.area:.4g}, {self.status}>"

@@ -22,12 +22,15 @@ def sweep(
     forces: list[float] | None,
     temperatures: list[float] | None,
     method: str | None,
+    way: float | None,
     points: int | None,
     error: float | None,
     distance: float | None,
     progress: _Progress,
 ) -> tuple[str, list[str]]: ...
-def contact(scene: Scene, pressure: float, speed: float, points: int | None) -> dict[str, Any]: ...
+def contact(
+    scene: Scene, pressure: float, speed: float, way: float | None, points: int | None
+) -> dict[str, Any]: ...
 def converge(
     scene: Scene,
     pressure: float,
@@ -35,6 +38,7 @@ def converge(
     error: float,
     seeds: int | None,
     method: str | None,
+    way: float | None,
     points: int | None,
     most_points: int | None,
     distance: float | None,
@@ -51,6 +55,7 @@ def calibrate(
     data: Path,
     free: list[tuple[str, float, float]],
     method: str | None,
+    way: float | None,
     points: int | None,
     error: float | None,
     distance: float | None,

@@ -92,6 +92,7 @@ class Scene(SceneInputs):
         *,
         forces: ArrayLike | None = None,
         method: Method | None = None,
+        way: float | None = None,
         points: int | None = None,
         friction_error: float | None = None,
         distance: float | None = None,
@@ -108,6 +109,8 @@ class Scene(SceneInputs):
             forces: Mean normal forces of the whole layer, N, in place of pressures.
             method: "steady" solves for steady sliding, "layer" lets the layer slide until it is steady; None: "steady"
                 where the scene can be solved for.
+            way: The way slid so far, m: the scene's temperature is that of the rubber before it slid; None: of the surface
+                around its contacts. With "steady", of a scene with material.heat.
             points: Points of a period along x, with "steady".
             friction_error: Admissible standard error of friction over it, with "layer"; None: 5e-3.
             distance: Longest distance that a layer slides, m; None: 100 blocks.
@@ -125,6 +128,7 @@ class Scene(SceneInputs):
             None if forces is None else axis("forces", forces),
             None if temperatures is None else axis("temperatures", temperatures),
             method,
+            None if way is None else positive("way", way),
             points,
             friction_error,
             distance,
@@ -139,7 +143,9 @@ class Scene(SceneInputs):
             warnings.warn(f"{text}; Table.status says which", stacklevel=3)
         return table
 
-    def contact(self, pressure: float, speed: float, points: int | None = None) -> Contact:
+    def contact(
+        self, pressure: float, speed: float, points: int | None = None, *, way: float | None = None
+    ) -> Contact:
         """Where the rubber touches in steady sliding, and how hard.
 
         The scene has to be in the material form with a foundation "half_space" or "layer" and a periodic surface.
@@ -149,13 +155,16 @@ class Scene(SceneInputs):
             speed: Speed, m/s.
             points: Points of a period along x; None: the surface's own, or of a profile 8 to its shortest wave where
                 they are uneven or fewer.
+            way: As for :meth:`sweep`.
 
         Raises:
             SceneError: Where the scene cannot be solved for.
         """
         from ._contact import Contact
 
-        found = _native.contact(self._native, positive("pressure", pressure), positive("speed", speed), points)
+        slid = None if way is None else positive("way", way)
+        at = (positive("pressure", pressure), positive("speed", speed))
+        found = _native.contact(self._native, *at, slid, points)
         for warning in found.pop("warnings"):
             warnings.warn(warning, stacklevel=2)
         return Contact._of(found)
@@ -168,6 +177,7 @@ class Scene(SceneInputs):
         error: float = 0.05,
         seeds: int | None = None,
         method: Method | None = None,
+        way: float | None = None,
         points: int | None = None,
         most_points: int | None = None,
         distance: float | None = None,
@@ -184,6 +194,7 @@ class Scene(SceneInputs):
             error: The change of friction and of area that is small enough, as a share of them.
             seeds: Number of seeds, the scene's own included; None: 4 where it has any.
             method: As for :meth:`sweep`.
+            way: As for :meth:`sweep`.
             points: Points of a period along x to begin with, with "steady".
             most_points: Most masses, or points of the surface, that are tried; None: 4096 masses, 2097152 points.
             distance: As for :meth:`sweep`.
@@ -201,6 +212,7 @@ class Scene(SceneInputs):
             positive("error", error),
             seeds,
             method,
+            None if way is None else positive("way", way),
             points,
             most_points,
             distance,
@@ -239,6 +251,7 @@ class Scene(SceneInputs):
         free: Mapping[str, tuple[float, float]],
         *,
         method: Method | None = None,
+        way: float | None = None,
         points: int | None = None,
         friction_error: float | None = None,
         distance: float | None = None,
@@ -247,11 +260,12 @@ class Scene(SceneInputs):
 
         Args:
             data: The path of a table, a DataFrame, or a mapping of names to arrays of shape (n,): speed, pressure (or
-                force on the whole layer) and friction; temperature and the standard deviation of friction if there are
-                any. Names have units, as in ``"speed [mm/s]"``; without one, SI.
+                force on the whole layer) and friction; temperature, the way slid and the standard deviation of friction
+                if there are any. Names have units, as in ``"speed [mm/s]"``; without one, SI.
             free: Keys of the scene to fit, each with its bounds (low, high); of positive bounds a decade apart the
                 logarithm is fitted.
             method: As for :meth:`sweep`.
+            way: As for :meth:`sweep`, where the data has no column of it.
             points: As for :meth:`sweep`.
             friction_error: As for :meth:`sweep`.
             distance: As for :meth:`sweep`.
@@ -263,7 +277,8 @@ class Scene(SceneInputs):
 
         bounds = [(key, float(low), float(high)) for key, (low, high) in free.items()]
         with table_file(data) as path:
-            found = _native.calibrate(self._native, path, bounds, method, points, friction_error, distance)
+            slid = None if way is None else positive("way", way)
+            found = _native.calibrate(self._native, path, bounds, method, slid, points, friction_error, distance)
         for text in found["warnings"]:
             warnings.warn(text, stacklevel=3)
         settings = {one["key"]: to_toml(one["value"]) for one in found["parameters"]}

@@ -24,7 +24,6 @@ impl Scene {
     /// What of this scene is outside the range in which the links stand for the rubber's surface.
     pub(in crate::scene) fn foundation_warnings(&self) -> Vec<String> {
         let mut found = self.link_warnings();
-        found.extend(self.foundation.as_ref().and_then(steep_slopes));
         found.extend(self.far_springs());
         found.extend(self.foundation.as_ref().and_then(|foundation| foundation.no_support(self.layer.masses)));
         found
@@ -62,6 +61,7 @@ impl Scene {
             self.waves_below_the_spacing(foundation),
             self.hard_pressure("until_pressure", self.largest_pressure()),
             self.short_layer(),
+            steep_slopes(foundation),
         ];
         found.into_iter().flatten().collect()
     }

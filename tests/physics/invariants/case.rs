@@ -128,8 +128,9 @@ fn carrier(text: SceneText, scene: &Scene, axis: Axis) -> SceneText {
 }
 
 fn friction(text: SceneText, friction: &Friction) -> SceneText {
-    let Friction { coulomb, shear_force, shear_strength: _, rate_shear } = friction;
-    let text = text.numbers("friction", &[("coulomb", *coulomb), ("shear_force", *shear_force)]);
+    let Friction { coulomb, shear_force, shear_strength: _, rate_shear, memory } = friction;
+    let numbers = [("coulomb", *coulomb), ("shear_force", *shear_force), ("memory", *memory)];
+    let text = text.numbers("friction", &numbers);
     let Some(RateShear { force, strength: _, reference_speed, sharpness, creep_speed }) = *rate_shear else {
         return text;
     };

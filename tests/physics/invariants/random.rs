@@ -229,11 +229,14 @@ fn friction(scales: Scales) -> impl Strategy<Value = Friction> {
     let both = (coulomb.clone(), shear.clone()).prop_map(|(mu, force)| (Some(mu), Some(force)));
     let constant =
         prop_oneof![coulomb.prop_map(|mu| (Some(mu), None)), shear.prop_map(|force| (None, Some(force))), both];
-    (constant, option::weighted(0.4, rate_shear(scales))).prop_map(|((coulomb, shear_force), rate_shear)| Friction {
+    let memory = option::weighted(0.4, decades(-3.0..1.0).prop_map(move |part| part * scales.height));
+    let all = (constant, option::weighted(0.4, rate_shear(scales)), memory);
+    all.prop_map(|((coulomb, shear_force), rate_shear, memory)| Friction {
         coulomb,
         shear_force,
         shear_strength: None,
         rate_shear,
+        memory,
     })
 }
 

@@ -130,7 +130,7 @@ fn one_contact_within_a_step_is_that_of_the_whole_state() {
         forces.evaluate(&stepper.model, &within, &stepper.carrier.at(theta * 1e-3));
         let mut workspace = DenseWorkspace::new(&stepper.model);
         for i in (0..within.mode.len()).filter(|&i| within.mode[i].in_contact()) {
-            let expected = forces.contact(&stepper.model, i, within.velocity_x[i], &within.surface[i]);
+            let expected = forces.contact(&stepper.model, &within, i);
             let found = stepper.dense(1e-3).contact(i, theta, &mut workspace);
             // Sums of some twenty forces up to 1e3 N in another order.
             let error = (found.normal - expected.normal).abs().max((found.tangential - expected.tangential).abs());

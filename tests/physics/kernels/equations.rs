@@ -136,7 +136,7 @@ fn rates_agree_with_the_dense_matrices() {
         let carrier = CarrierPoint { x: moving(motion.1.x), z: moving(motion.1.y), ..CarrierPoint::default() };
         let (mut forces, mut rates) = (Forces::new(&model), StageValues::new(&model));
         forces.evaluate(&model, &state, &carrier);
-        rates.evaluate(&model, &state, &forces, 1e-12);
+        rates.evaluate(&model, &state, &forces, 0.0, 1e-12);
         state.mode.iter().for_each(|&mode| modes[(mode.number() + 1) as usize] += 1);
         // Some twenty terms are added in another order, and the dense system has condition numbers of some 10.
         let worst = difference(&matrices, &model, &state, &rates, motion);

@@ -208,6 +208,7 @@ pub fn one_mass(maxwell: usize) -> State {
         velocity_z: zeros(1),
         maxwell: zeros(maxwell),
         flash: Vec::new(),
+        memory: Vec::new(),
         mode: vec![Mode::Free],
         surface: vec![SurfacePoint::default()],
     }

@@ -45,6 +45,10 @@ pub(crate) struct Sliding {
     /// foundation is "half_space" or "layer" and the surface periodic and not flat; else layer.
     #[arg(long, value_name = "METHOD", value_parser = sweep_method())]
     pub(crate) method: Option<SweepMethod>,
+    /// The way slid so far, in m: the scene's temperature is that of the rubber before it slid, not that of the surface around
+    /// its contacts. With --method steady, of a scene with material.heat.
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
+    pub(crate) way: Option<f64>,
     /// Points of a period along x, with --method steady; of a map with those along y in proportion. Default: the surface's
     /// own, or of a profile 8 to its shortest wave where they are uneven or fewer.
     #[arg(long, value_name = "N", value_parser = count)]

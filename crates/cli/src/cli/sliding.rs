@@ -59,6 +59,11 @@ pub(crate) struct Sweep {
     pub(crate) master: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) sliding: Sliding,
+    /// Several ways in m, in the format of --speeds: the table has a column way [m], and friction is plotted over the way. It
+    /// is not to be packed or continued.
+    #[arg(long, value_name = "VALUES", value_parser = Values::ways)]
+    #[arg(conflicts_with_all = ["way", "shard", "merge", "master", "converged"])]
+    pub(crate) ways: Option<Values>,
     /// Computes only share I of N of the points, I from 1 to N.
     #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
     pub(crate) shard: Option<Shard>,
@@ -95,6 +100,10 @@ pub(crate) struct Converge {
     /// How steady sliding is found, as in a sweep. Default: as a sweep's.
     #[arg(long, value_name = "METHOD", value_parser = sweep_method())]
     pub(crate) method: Option<SweepMethod>,
+    /// The way slid so far, in m: the scene's temperature is that of the rubber before it slid, not that of the surface around
+    /// its contacts. With --method steady, of a scene with material.heat.
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
+    pub(crate) way: Option<f64>,
     /// Points of a period along x to begin with, with --method steady. Default: as of a sweep.
     #[arg(long, value_name = "N", value_parser = count)]
     pub(crate) points: Option<u32>,
@@ -129,6 +138,10 @@ pub(crate) struct Contact {
     pub(crate) scene: PathBuf,
     #[command(flatten)]
     pub(crate) at: SteadyState,
+    /// The way slid so far, in m: the scene's temperature is that of the rubber before it slid, not that of the surface around
+    /// its contacts. Of a scene with material.heat.
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
+    pub(crate) way: Option<f64>,
     /// Points of a period along x; of a map with those along y in proportion. Default: the surface's own, or of a profile 8
     /// to its shortest wave where they are uneven or fewer.
     #[arg(long, value_name = "N", value_parser = count)]

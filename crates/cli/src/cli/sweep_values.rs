@@ -32,6 +32,11 @@ impl Values {
         Self::parse(text, Spacing::Logarithmic, Dimension::Pressure)
     }
 
+    /// Ways, in m or with their unit, as [`speeds`](Self::speeds).
+    pub(crate) fn ways(text: &str) -> Result<Self, String> {
+        Self::parse(text, Spacing::Logarithmic, Dimension::Length)
+    }
+
     /// Forces, in N or with their unit, as [`speeds`](Self::speeds).
     pub(crate) fn forces(text: &str) -> Result<Self, String> {
         Self::parse(text, Spacing::Logarithmic, Dimension::Force)

@@ -32,7 +32,7 @@ pub(crate) fn contact(command: &Contact) -> Result<(), ContactCommandError> {
     let outputs: Vec<_> = [&command.output].into_iter().chain(&command.write).cloned().collect();
     check_outputs(&outputs, scene.sources(&command.scene))?;
     let SteadyState { pressure, speed } = command.at;
-    let solved = solve_contact(&scene, &ContactOptions { pressure, speed, points: command.points })?;
+    let solved = solve_contact(&scene, &ContactOptions { pressure, speed, way: command.way, points: command.points })?;
     let SolvedContact { surface, slide, fields, problem, warnings } = &solved;
     picture::write(surface, fields, slide.area, &command.output)?;
     if let Some(path) = &command.write {
@@ -54,17 +54,23 @@ fn summary(scene: &Scene, command: &Contact, slide: &SteadySlide, fields: &Conta
         ("Scene", format!("{}, {} Pa at {} m/s", scene.name, command.at.pressure, command.at.speed)),
         ("Contact", format!("{} of the area, pressure up to {} Pa", digits(slide.area), digits(largest))),
         ("Separation", format!("{} m between the mean planes", digits(slide.contact.separation))),
-        (
-            "Friction",
-            format!("{}, of it {} by the slopes of the surface", digits(slide.friction()), {
-                digits(slide.profile_hysteresis)
-            }),
-        ),
+        ("Friction", friction_line(slide)),
     ];
+    if let (Some(rise), Some(way)) = (slide.surface_rise, command.way) {
+        labelled.push(("Surface", format!("{} K warmer than the rubber was {way} m before", digits(rise))));
+    }
     if let Some(flash) = slide.flash_mean {
         labelled.push(("Flash", format!("{} K above the mean of the surface", digits(flash))));
     }
     let names: Vec<String> = [&command.output].into_iter().chain(&command.write).map(|path| named(path)).collect();
     labelled.push(("Written", names.join(", ")));
     lines(&labelled)
+}
+
+fn friction_line(slide: &SteadySlide) -> String {
+    let profile = rounded(slide.profile_hysteresis, 4);
+    match slide.friction() {
+        Some(friction) => format!("{}, of it {profile} by the slopes of the surface", rounded(friction, 4)),
+        None => format!("none, as it jams; {profile} by the slopes of the surface"),
+    }
 }

@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use asperity_study::converge::{ConvergeError, ConvergenceOptions, ConvergenceStudy, Ended, Findings, Round, RunRow};
 
-use super::cli::Converge;
+use super::cli::{Converge, SteadyState};
 use super::draft::TablePlace;
 use super::figure::Figure as _;
 use super::files::{FileError, check_outputs, default_output, load_without_run, picture_beside, print_beside, read};
@@ -71,8 +71,9 @@ pub(crate) fn converge(command: &Converge) -> Result<u8, ConvergeCommandError> {
 }
 
 fn options(command: &Converge) -> ConvergenceOptions {
-    let Converge { at, error, seeds, method, points, most_points, distance, .. } = *command;
-    ConvergenceOptions { pressure: at.pressure, speed: at.speed, error, seeds, method, points, most_points, distance }
+    let Converge { at, way, error, seeds, method, points, most_points, distance, .. } = *command;
+    let SteadyState { pressure, speed } = at;
+    ConvergenceOptions { pressure, speed, way, error, seeds, method, points, most_points, distance }
 }
 
 /// Makes what is missing beside `runs` and shows how far it is.

@@ -92,7 +92,11 @@ pub(super) fn judgement(study: &ConvergenceStudy, findings: &Findings) -> String
     let mut all: Vec<LabelledLine> = Vec::new();
     all.extend(ladder.last().and_then(|run| hysteresis(run)).map(|line| ("Hysteresis", line)));
     all.extend(labelled("Persson", ladder.last().iter().flat_map(|run| theories(&run.theories))));
-    all.extend(labelled("Open", verdict.open.iter().map(|open| open_line(open, study.seeds()))));
+    let no_length = (!study.has_length()).then(|| {
+        let name = Source::Length.name();
+        format!("{name:<9}not varied: the surface is one period, and there is no more of it")
+    });
+    all.extend(labelled("Open", verdict.open.iter().map(|open| open_line(open, study.seeds())).chain(no_length)));
     all.extend(labelled("Coarsest", coarsest(&ladder, study.parts(), verdict, study.header().error)));
     all.push(("Verdict", verdict.sentence()));
     lines(&all)

@@ -3,6 +3,7 @@
 mod plot;
 mod printed;
 mod table_file;
+mod ways;
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -40,6 +41,8 @@ pub(crate) enum SweepCommandError {
     NoMaster,
     #[error("{}: not a study of this scene's convergence: {problem}", .path.display())]
     NotAStudy { path: PathBuf, problem: NotAStudy },
+    #[error("{}: is there, and a table over --ways is not continued: name another -o, or give --force to replace it", .0.display())]
+    IsThere(PathBuf),
     #[error("{failed} of {total} points are not steady or failed: the column status in {} says why", named(.path))]
     NotSteady { failed: usize, total: usize, path: PathBuf },
 }
@@ -65,7 +68,10 @@ fn merge(command: &Sweep, output: &PathBuf) -> Result<(), SweepCommandError> {
 
 fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCommandError> {
     let scene = load_without_run(path, &command.set, |scene| !command.sliding.options().solves(scene))?;
-    let output = command.output.clone().unwrap_or_else(|| default_output(path, "sweep.csv"));
+    let output = command
+        .output
+        .clone()
+        .unwrap_or_else(|| default_output(path, if command.ways.is_some() { "ways.csv" } else { "sweep.csv" }));
     let picture = picture(command, &output);
     let study = study_file(command.converged.as_ref(), path);
     let taken = scene.sources(path).into_iter().chain(study.clone()).collect();
@@ -74,6 +80,9 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
         Some(path) => Some((path.as_path(), wlf(&scene).ok_or(SweepCommandError::NoMaster)?)),
         None => None,
     };
+    if let Some(ways) = &command.ways {
+        return over_ways(command, &scene, &options(command, speeds)?, (&ways.0, &output, picture.as_deref()));
+    }
     let convergence = study_verdict(study.as_deref(), &scene.name)?;
     let plan = SweepPlan::new(scene, &options(command, speeds)?, convergence)?;
     plan.warning().iter().for_each(|warning| warn(&with_flags(warning)));
@@ -90,6 +99,22 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
     drop(file);
     place.finish()?;
     finish(&output, &table, picture.as_deref(), master)
+}
+
+/// Sweeps over several ways.
+fn over_ways(
+    command: &Sweep,
+    scene: &Scene,
+    options: &SweepOptions,
+    (ways, output, picture): (&[f64], &PathBuf, Option<&Path>),
+) -> Result<(), SweepCommandError> {
+    if output.exists() && !command.force {
+        return Err(SweepCommandError::IsThere(output.to_owned()));
+    }
+    let [total, failed] = ways::sweep(scene, options, ways, (output, picture))?;
+    let files = [output.as_path()].into_iter().chain(picture).map(named).collect::<Vec<_>>().join(", ");
+    print_beside([output], &lines(&[("Points", format!("{total}, at {} ways", ways.len())), ("Written", files)]))?;
+    if failed == 0 { Ok(()) } else { Err(SweepCommandError::NotSteady { failed, total, path: output.to_owned() }) }
 }
 
 /// The table of the study named, or of the one that `asperity converge` has written for the scene; `None` without one.
@@ -154,8 +179,8 @@ fn run(command: &Sweep, plan: &SweepPlan, file: &TableFile, output: &Path) -> Re
 impl Sliding {
     /// What of it is not the command line's.
     pub(crate) fn options(&self) -> SlidingOptions {
-        let Self { method, points, friction_error: error, distance, .. } = *self;
-        SlidingOptions { method, points, error, distance }
+        let Self { method, way, points, friction_error: error, distance, .. } = *self;
+        SlidingOptions { method, way, points, error, distance }
     }
 }
 

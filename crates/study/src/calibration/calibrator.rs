@@ -219,7 +219,7 @@ impl Calibrator<'_> {
 fn found_at(problem: &Problem, frictions: &[FrictionParts]) -> Vec<FoundFriction> {
     let found = |(point, parts): (&OperatingPoint, &FrictionParts)| {
         let (place, friction) = (format!("at {}", in_words(point)), parts.friction());
-        FoundFriction { place, friction, area: Some(parts.area) }
+        FoundFriction { place, friction, area: Some(parts.area), rise: None }
     };
     problem.points.iter().zip(frictions).map(found).collect()
 }

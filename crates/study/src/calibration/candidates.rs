@@ -23,10 +23,17 @@ pub(super) fn candidates(scene: &Scene, measured: &[OperatingPoint], asked: &Can
         }
         _ => vec![None],
     };
+    let mut ways: Vec<Option<f64>> = Vec::new();
+    for point in measured {
+        if !ways.contains(&point.way) {
+            ways.push(point.way);
+        }
+    }
     let mut points = Vec::new();
     for &temperature in &temperatures {
         for &load in &pressures {
-            points.extend(speeds.iter().map(|&speed| OperatingPoint { speed, load, temperature }));
+            let at = |way| speeds.iter().map(move |&speed| OperatingPoint { speed, load, temperature, way });
+            points.extend(ways.iter().flat_map(|&way| at(way)));
         }
     }
     points

@@ -12,6 +12,7 @@ pub fn in_words(point: &OperatingPoint) -> String {
         speed: rounded(point.speed, 4),
         load: rounded(point.load, 4),
         temperature: point.temperature.map(|temperature| rounded(temperature, 5)),
+        way: point.way.map(|way| rounded(way, 4)),
     };
     point.describe(Load::Pressure { area: 1.0 })
 }
@@ -63,13 +64,37 @@ impl Cluster {
     }
 }
 
-/// Pressures and temperatures that belong to one curve.
+/// What is held along a curve beside the pressure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Condition {
+    /// Temperature, K; `None` of data without any.
+    pub temperature: Option<Cluster>,
+    /// The way slid, m; `None` of data without any.
+    pub way: Option<f64>,
+}
+
+impl Condition {
+    fn all(temperatures: Vec<Option<Cluster>>, ways: Vec<Option<f64>>) -> Vec<Self> {
+        let with = |temperature| ways.iter().map(move |&way| Self { temperature, way });
+        temperatures.into_iter().flat_map(with).collect()
+    }
+
+    fn has(&self, point: &OperatingPoint) -> bool {
+        let is_as_warm = match (self.temperature, point.temperature) {
+            (Some(cluster), Some(temperature)) => cluster.has(temperature),
+            _ => true,
+        };
+        is_as_warm && self.way == point.way
+    }
+}
+
+/// Pressures, temperatures and ways that belong to one curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurveGrid {
     /// Pressures, Pa.
     pub pressures: Vec<Cluster>,
-    /// Temperatures, K; one that is `None` of data without any.
-    pub temperatures: Vec<Option<Cluster>>,
+    /// What else was held along a curve.
+    pub conditions: Vec<Condition>,
     /// The least and the largest speed.
     speeds: (f64, f64),
 }
@@ -83,9 +108,14 @@ impl CurveGrid {
             true => vec![None],
             false => Cluster::all(temperatures, |a, b| b > a + 3.0).into_iter().map(Some).collect(),
         };
-        let speeds =
-            points.map(|point| point.speed).fold((f64::MAX, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
-        Self { pressures, temperatures, speeds }
+        let speeds = points
+            .clone()
+            .map(|point| point.speed)
+            .fold((f64::MAX, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
+        let mut ways: Vec<Option<f64>> = points.map(|point| point.way).collect();
+        ways.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+        ways.dedup();
+        Self { pressures, conditions: Condition::all(temperatures, ways), speeds }
     }
 
     /// `count` speeds over those of the data on each of the curves.
@@ -93,21 +123,18 @@ impl CurveGrid {
         let (low, high) = self.speeds;
         let speed = |i: u32| rounded(low * (high / low).powf(f64::from(i) / f64::from(count - 1)), 6);
         let speeds: Vec<f64> = if low < high { (0..count).map(speed).collect() } else { vec![low] };
-        let of = |pressure: &Cluster, temperature: &Option<Cluster>| {
-            let (load, temperature) = (pressure.mean, temperature.map(|temperature| temperature.mean));
-            speeds.iter().map(|&speed| OperatingPoint { speed, load, temperature }).collect::<Vec<_>>()
+        let of = |pressure: &Cluster, condition: &Condition| {
+            let (load, temperature) = (pressure.mean, condition.temperature.map(|temperature| temperature.mean));
+            let way = condition.way;
+            speeds.iter().map(|&speed| OperatingPoint { speed, load, temperature, way }).collect::<Vec<_>>()
         };
-        let each = self.temperatures.iter().flat_map(|t| self.pressures.iter().map(move |p| (p, t)));
-        each.flat_map(|(pressure, temperature)| of(pressure, temperature)).collect()
+        let each = self.conditions.iter().flat_map(|c| self.pressures.iter().map(move |p| (p, c)));
+        each.flat_map(|(pressure, condition)| of(pressure, condition)).collect()
     }
 
-    /// Whether a point is on the curve of a pressure and a temperature.
-    pub fn is_on(&self, point: &OperatingPoint, pressure: &Cluster, temperature: &Option<Cluster>) -> bool {
-        let is_as_warm = match (temperature, point.temperature) {
-            (Some(cluster), Some(temperature)) => cluster.has(temperature),
-            _ => true,
-        };
-        pressure.has(point.load) && is_as_warm
+    /// Whether a point is on the curve of a pressure and what else is held.
+    pub fn is_on(&self, point: &OperatingPoint, pressure: &Cluster, condition: &Condition) -> bool {
+        pressure.has(point.load) && condition.has(point)
     }
 }
 
@@ -117,11 +144,13 @@ mod tests {
 
     #[test]
     fn values_that_are_nearly_alike_are_one_curve() {
-        let point = |load, kelvin| OperatingPoint { speed: 1.0, load, temperature: Some(kelvin) };
+        let point = |load, kelvin| OperatingPoint { speed: 1.0, load, temperature: Some(kelvin), way: None };
         let points = [point(1e5, 293.0), point(1.02e5, 294.5), point(3e5, 313.0), point(1e5, 293.0)];
         let grid = CurveGrid::new(points.iter());
-        assert_eq!((grid.pressures.len(), grid.temperatures.len()), (2, 2));
+        assert_eq!((grid.pressures.len(), grid.conditions.len()), (2, 2));
         assert!((grid.pressures[0].mean - 1.006_666e5).abs() < 1.0);
         assert_eq!(grid.points(5).len(), 4);
+        let slid = points.map(|point| OperatingPoint { way: Some(0.01 * point.load / 1e5), ..point });
+        assert_eq!(CurveGrid::new(slid.iter()).conditions.len(), 6, "three ways at two temperatures");
     }
 }

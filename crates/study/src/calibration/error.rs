@@ -107,6 +107,8 @@ pub enum MeasuredFrictionError {
     NoWlf(PathBuf),
     #[error("{}:{line}: {problem}", .path.display())]
     Temperature { path: PathBuf, line: usize, problem: ParameterError },
+    #[error("{}:{line}: {problem}", .path.display())]
+    Way { path: PathBuf, line: usize, problem: MethodError },
 }
 
 /// A calibration refuses the scene, the data or the parameters, or cannot go on.

@@ -127,6 +127,11 @@ impl<'a> FreeScene<'a> {
     pub fn measurements(&self) -> Result<Measurements, MeasuredFrictionError> {
         let path = &self.options.data;
         let mut measurements = Measurements::read(path, self.area)?;
+        for row in &mut measurements.rows {
+            row.point.way = row.point.way.or(self.options.sliding.way);
+            let checked = self.options.sliding.check_way(&self.scene, row.point.way);
+            checked.map_err(|problem| MeasuredFrictionError::Way { path: path.clone(), line: row.line, problem })?;
+        }
         let wlf = self.scene.material.as_ref().and_then(|material| material.wlf.as_ref());
         let Some(own) = wlf.map(|wlf| wlf.temperature) else {
             return match measurements.has_temperature() {
@@ -150,7 +155,7 @@ impl<'a> FreeScene<'a> {
     /// # Errors
     /// Where the scene cannot be written as JSON.
     pub fn fingerprint(&self) -> Result<String, serde_json::Error> {
-        let settings = self.method.settings(|| format!("{:?}", self.options.sliding.bounds()));
+        let settings = self.method.settings(&self.options.sliding, || format!("{:?}", self.options.sliding.bounds()));
         fingerprint(&relevant(self.scene.clone()), &format!("calibrate {settings}"))
     }
 }

@@ -55,10 +55,11 @@ enum Quantity {
     /// F_T beside F_N.
     Tangential,
     Temperature,
+    Way,
     Deviation,
 }
 
-const FRICTION: Format<Quantity, 6> = Format {
+const FRICTION: Format<Quantity, 7> = Format {
     needs_names: true,
     others: Others::Tables,
     ..Format::new(
@@ -106,6 +107,12 @@ const FRICTION: Format<Quantity, 6> = Format {
                 "T temp temperature temperatur t",
                 "sample mean rubber surface ambient track measured",
             ),
+            Words::new(
+                Quantity::Way,
+                Dimension::Length,
+                "way distance s weg gleitweg",
+                "sliding slid slip of the sample measured",
+            ),
         ],
         [
             Wanted::new(&[Quantity::Speed], "speed", "speeds").within(ABOVE_ZERO),
@@ -123,9 +130,13 @@ const FRICTION: Format<Quantity, 6> = Format {
             },
             Wanted::new(&[Quantity::Deviation], "sigma", "standard deviations").optional().within(ABOVE_ZERO),
             Wanted::new(&[], "normal force", "normal forces").optional().within(ABOVE_ZERO),
+            Wanted {
+                unit: UnitRule::Named,
+                ..Wanted::new(&[Quantity::Way], "way", "ways").optional().within(ABOVE_ZERO)
+            },
         ],
         "columns by their names with units: speed [m/s], pressure [bar] or force [N], friction, or F_T [N] beside the force; \
-         temperature [°C] and the standard deviation of friction where there are such",
+         temperature [°C], the way slid [mm] and the standard deviation of friction where there are such",
     )
 };
 
@@ -150,11 +161,12 @@ impl Measurements {
         let deviation = Deviation::of(&table, forces.is_some());
         notes.extend(deviation.note());
         let has_temperature = table.columns[3].is_some();
-        let row = |(row, line): (&[f64; 6], usize)| {
-            let &[speed, load, friction, kelvin, sigma, _] = row;
+        let has_way = table.columns[6].is_some();
+        let row = |(row, line): (&[f64; 7], usize)| {
+            let &[speed, load, friction, kelvin, sigma, _, slid] = row;
             let friction = forces.as_ref().map_or(friction, |forces| forces.friction(row));
             let (load, temperature) = (to_pressure * load, has_temperature.then_some(kelvin));
-            let point = OperatingPoint { speed, load, temperature };
+            let point = OperatingPoint { speed, load, temperature, way: has_way.then_some(slid) };
             Measured { line, point, friction, sigma: deviation.sigma(sigma, friction) }
         };
         Ok(Self { rows: table.rows.iter().zip(table.lines.iter().copied()).map(row).collect(), notes })
@@ -185,6 +197,11 @@ impl Measurements {
         self.rows.iter().all(|row| row.sigma.is_some())
     }
 
+    /// Whether the table has ways.
+    pub fn has_way(&self) -> bool {
+        self.rows.iter().any(|row| row.point.way.is_some())
+    }
+
     /// Whether the table has temperatures.
     pub fn has_temperature(&self) -> bool {
         self.rows.iter().any(|row| row.point.temperature.is_some())
@@ -192,7 +209,7 @@ impl Measurements {
 }
 
 /// The columns of a text; where F_T stands beside a pressure, with F_N if there is such.
-fn read_columns(text: &str) -> Result<Table<'_, Quantity, 6>, ContentError> {
+fn read_columns(text: &str) -> Result<Table<'_, Quantity, 7>, ContentError> {
     let table = FRICTION.read(text)?;
     let holds = |place: usize, quantity| {
         table.columns[place].as_ref().is_some_and(|column: &Column<Quantity>| column.quantity == quantity)
@@ -218,7 +235,7 @@ struct Forces {
 
 impl Forces {
     /// `None` where friction is a column of its own.
-    fn of(table: &Table<'_, Quantity, 6>, area: f64) -> Option<Self> {
+    fn of(table: &Table<'_, Quantity, 7>, area: f64) -> Option<Self> {
         let label = |place: usize| table.columns[place].as_ref().map(Column::label);
         let is_tangential = table.columns[2].as_ref()?.quantity == Quantity::Tangential;
         let is_force =
@@ -229,7 +246,7 @@ impl Forces {
         is_tangential.then_some(Self { normal, area, sign: if backwards { -1.0 } else { 1.0 }, names })
     }
 
-    fn friction(&self, row: &[f64; 6]) -> f64 {
+    fn friction(&self, row: &[f64; 7]) -> f64 {
         let normal = self.normal.map_or_else(|| row[1] * self.area, |place| row[place]);
         self.sign * row[2] / normal
     }
@@ -257,7 +274,7 @@ enum Deviation {
 }
 
 impl Deviation {
-    fn of(table: &Table<'_, Quantity, 6>, of_forces: bool) -> Self {
+    fn of(table: &Table<'_, Quantity, 7>, of_forces: bool) -> Self {
         const FRICTION: [&str; 7] = ["friction", "mu", "μ", "cof", "reibwert", "coefficient", "reibungszahl"];
         let Some(column) = &table.columns[4] else { return Self::None };
         let in_percent = |column: &Column<Quantity>| column.unit.name == "%";
@@ -301,10 +318,19 @@ mod tests {
             read("sample;v [mm/s];p [bar];T [°C];mu;std\n1;10;2,5;20;0,8;0,02\n1;100;2,5;40;0,7;0,03\n").unwrap();
         let first = measured.rows[0];
         assert_eq!(first.line, 2);
-        assert_eq!(first.point, OperatingPoint { speed: 0.01, load: 2.5e5, temperature: Some(293.15) });
+        assert_eq!(first.point, OperatingPoint { speed: 0.01, load: 2.5e5, temperature: Some(293.15), way: None });
         assert_eq!((first.friction, first.sigma), (0.8, Some(0.02)));
         assert!(measured.has_sigma() && measured.has_temperature());
         assert_eq!(measured.notes, ["columns left out: sample"]);
+    }
+
+    #[test]
+    fn ways_are_read_with_their_unit() {
+        let measured = read("v [m/s],p [bar],way [mm],mu\n1,2,20,0.8\n1,2,200,0.7\n").unwrap();
+        assert_eq!(measured.rows.iter().map(|row| row.point.way).collect::<Vec<_>>(), [Some(0.02), Some(0.2)]);
+        assert!(measured.has_way() && measured.notes.is_empty(), "{:?}", measured.notes);
+        let refusal = read("v [m/s],p [bar],way,mu\n1,2,20,0.8\n").unwrap_err();
+        assert!(refusal.starts_with("t.csv:1: unit of column 3 (way): expected it"), "{refusal}");
     }
 
     /// 40 N on 2e-3 m² are 20 kPa; 5 % of 0.8 and 0.01 together are 0.0412.

@@ -5,6 +5,8 @@ use std::fmt::{self, Debug, Formatter};
 use std::ops::ControlFlow;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use asperity::element::OperatingPoint;
+
 use super::error::{ModelError, NoSliding};
 use super::model::{Done, FrictionModel, Outcome, Task};
 
@@ -12,7 +14,7 @@ use super::model::{Done, FrictionModel, Outcome, Task};
 pub type NewOutcome<'a> = dyn Fn(&Task, &Outcome) -> ControlFlow<()> + Sync + 'a;
 
 /// The bits of a task.
-type Key = (Vec<u64>, [u64; 3]);
+type Key = (Vec<u64>, [u64; 4]);
 
 /// A model that finds nothing twice; what was found elsewhere can be given to it.
 pub struct Memo<'a> {
@@ -38,7 +40,8 @@ impl<'a> Memo<'a> {
 }
 
 fn key(task: &Task) -> Key {
-    let point = [task.point.speed, task.point.load, task.point.temperature.unwrap_or(f64::NAN)];
+    let OperatingPoint { speed, load, temperature, way } = task.point;
+    let point = [speed, load, temperature.unwrap_or(f64::NAN), way.unwrap_or(f64::NAN)];
     (task.parameters.iter().map(|value| value.to_bits()).collect(), point.map(f64::to_bits))
 }
 

@@ -32,7 +32,7 @@ mod theory_model;
 
 pub use calibrated::{CalibratedParameter, Calibration};
 pub use calibrator::{CalibrationStage, Calibrator, calibrate_scene};
-pub use curve_grid::{Cluster, CurveGrid, in_words, left_out_in_words};
+pub use curve_grid::{Cluster, Condition, CurveGrid, in_words, left_out_in_words};
 pub use error::{CalibrationError, FreeParameterError, MeasuredFrictionError, ModelError, NoSliding};
 pub use fit::{Fitted, Tolerance, minimise, starts_by_theory};
 pub use free_scene::FreeScene;

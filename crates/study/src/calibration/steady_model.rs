@@ -52,7 +52,7 @@ impl FrictionModel for SteadyModel<'_> {
                     Some(solver) if solver.surface() == grid => solver,
                     other => other.insert(SteadySolver::new(grid.clone())),
                 };
-                done(index, outcome(&solver.slide(rubber, point.speed, point.load)))
+                done(index, outcome(&solver.slide_over(rubber, point.speed, point.load, point.way)))
             },
         )
     }
@@ -69,7 +69,7 @@ fn outcome(slide: &SteadySlide) -> Outcome {
         _ => Ok(FrictionParts {
             profile: slide.profile_hysteresis,
             fine: slide.fine_hysteresis.unwrap_or(0.0),
-            shear: slide.adhesion,
+            shear: slide.adhesion.unwrap_or(0.0),
             area: slide.real_area.unwrap_or(slide.area),
         }),
     }

@@ -30,6 +30,8 @@ pub(super) struct State {
     pub(super) pressure: f64,
     /// Sliding speed, m/s.
     pub(super) speed: f64,
+    /// The way that rubber as warm as the scene has slid, m; `None`: its surface is as warm.
+    pub(super) way: Option<f64>,
 }
 
 /// Friction and area in steady sliding, solved for on so many points along x.
@@ -38,21 +40,23 @@ pub(super) fn solve(scene: &Scene, state: State, points: u64) -> Result<Measured
     let asked = SlidingOptions { method: Some(SweepMethod::Steady), points: Some(few), ..SlidingOptions::default() };
     let (Method::Steady(surface), _) = asked.choose(scene)? else { return Err(RunError::NotSolved) };
     let rubber = SlidingRubber::new(scene).ok_or(RunError::NotSolved)?;
-    let slide = SteadySolver::new(surface).slide(&rubber, state.speed, state.pressure);
+    let slide = SteadySolver::new(surface).slide_over(&rubber, state.speed, state.pressure, state.way);
     if let Some(problem) = slide.problem().filter(|problem| !problem.is_result()) {
         return Err(NotSteady::from(problem).into());
     }
+    // It does not jam.
+    let friction = slide.friction().unwrap_or_default();
     Ok(Measured {
-        mean: Pair { friction: slide.friction(), area: slide.area },
+        mean: Pair { friction, area: slide.area },
         error: Pair { friction: 0.0, area: 0.0 },
-        hysteresis: slide.profile_hysteresis + slide.fine_hysteresis.unwrap_or_default(),
+        hysteresis: slide.hysteresis.unwrap_or_default(),
     })
 }
 
 /// Friction and area of the layer in steady sliding, known to `bounds`.
 pub(super) fn slide(scene: &Scene, state: State, bounds: StopBounds) -> Result<Measured, RunError> {
     let area = scene.layer.area().ok_or(RunError::NoWidth)?;
-    let point = OperatingPoint { speed: state.speed, load: state.pressure, temperature: None };
+    let point = OperatingPoint { speed: state.speed, load: state.pressure, temperature: None, way: None };
     let sliding = steady_sliding(scene, &point, Load::Pressure { area }, bounds)?;
     Ok(Measured {
         mean: Pair { friction: sliding.friction(), area: sliding.contact_ratio },

@@ -26,6 +26,8 @@ pub struct ConvergenceOptions {
     pub pressure: f64,
     /// Speed of the runs, m/s.
     pub speed: f64,
+    /// The way that rubber as warm as the scene has slid, m; `None`: its surface is as warm.
+    pub way: Option<f64>,
     /// The change of friction and area that is small enough, as a share of them.
     pub error: f64,
     /// Number of seeds, the scene's own included; `None`: 4 where it has any.
@@ -44,11 +46,11 @@ pub struct ConvergenceOptions {
 impl ConvergenceOptions {
     /// How steady sliding is found.
     pub fn sliding(&self) -> SlidingOptions {
-        SlidingOptions { method: self.method, points: self.points, error: None, distance: self.distance }
+        SlidingOptions { method: self.method, way: self.way, points: self.points, error: None, distance: self.distance }
     }
 
     fn state(&self) -> State {
-        State { pressure: self.pressure, speed: self.speed }
+        State { pressure: self.pressure, speed: self.speed, way: self.way }
     }
 }
 
@@ -123,8 +125,8 @@ impl ConvergenceStudy {
         let plan = plan(&options, &template)?;
         let warning = scene.hard_pressure("`pressure`", options.pressure).filter(|_| matches!(method, Method::Layer));
         method.check(scene)?;
-        let ConvergenceOptions { pressure, speed, error, distance, .. } = options;
-        let of_method_alone = method.settings(|| format!("{distance:?}"));
+        let ConvergenceOptions { pressure, speed, way, error, distance, .. } = options;
+        let of_method_alone = method.settings(&options.sliding(), || format!("{distance:?}"));
         let settings = format!("converge {pressure:?} {speed:?} {error:?} {of_method_alone}");
         let header = StudyHeader {
             scene: scene.name.clone(),
@@ -133,6 +135,7 @@ impl ConvergenceStudy {
             parts: template.parts(),
             pressure,
             speed,
+            way,
             error,
         };
         Ok(Self { template, plan, options, header, warning })
@@ -151,6 +154,11 @@ impl ConvergenceStudy {
     /// What is counted in a run.
     pub fn parts(&self) -> Parts {
         self.template.parts()
+    }
+
+    /// Whether the length is doubled; it is not where the solver has one period of a surface, of which there is no more.
+    pub fn has_length(&self) -> bool {
+        self.plan.has_length
     }
 
     /// Number of seeds, the scene's own included; `None` where it has none.

@@ -162,6 +162,8 @@ pub struct StudyHeader {
     pub pressure: f64,
     /// The speed of the runs, m/s.
     pub speed: f64,
+    /// The way that rubber as warm as the scene has slid, m; `None`: its surface is as warm.
+    pub way: Option<f64>,
     /// The change of friction and area that is small enough, as a share of them.
     pub error: f64,
 }
@@ -178,6 +180,7 @@ impl StudyHeader {
             format!("# speed = {} m/s", real(self.speed)),
             format!("# error = {}", real(self.error)),
         ];
+        lines.extend(self.way.map(|way| format!("# way = {} m", real(way))));
         lines.extend(verdict.map(|verdict| format!("# verdict = {verdict}")));
         lines.push(self.columns());
         lines.join("\n") + "\n"

@@ -20,6 +20,17 @@ const STEP: f64 = 0.4;
 /// Steps to either side of √(ω/D): what is beyond is e^-8 of the integral's scale.
 const REACH: i64 = 20;
 
+/// Steps to either side of 1/√(Dt): what is beyond is e^-12 of the integral's scale.
+const REACH_IN_TIME: i64 = 30;
+
+/// 1 - e^-x and x - (1 - e^-x).
+fn risen(x: f64) -> (f64, f64) {
+    let rise = -(-x).exp_m1();
+    // Where their difference would be of roundings, by its series.
+    let of_rise = if x < 1e-3 { x * x * (0.5 - x / 6.0 * (1.0 - 0.25 * x)) } else { x - rise };
+    (rise, of_rise)
+}
+
 /// How a surface warms under power that is even along its depth but for the waves that make it.
 #[derive(Clone, Debug)]
 pub struct HeatResponse {
@@ -67,6 +78,20 @@ impl HeatResponse {
         (1..=count).map(value).collect()
     }
 
+    /// χ ∫_0^t κ and χ ∫_0^t ∫_0^t' κ at the time t (s), K m²/W and K m² s/W.
+    pub fn rises(&self, time: f64) -> [f64; 2] {
+        let middle = (-0.5 * (self.diffusivity * time).ln() / STEP).round() as i64;
+        let (mut once, mut twice) = (0.0, 0.0);
+        for place in middle - REACH_IN_TIME..=middle + REACH_IN_TIME {
+            let k = (STEP * place as f64).exp();
+            let (rate, weight) = (self.diffusivity * k * k, k * self.parts.share(k).powi(2));
+            let (rise, of_rise) = risen(rate * time);
+            once += weight * rise / rate;
+            twice += weight * of_rise / (rate * rate);
+        }
+        [once, twice].map(|sum| self.scale * STEP * sum)
+    }
+
     /// The kernel that makes ϑ (K) of the power per area (W/m²) on the grid of `surface` at `speed`, m/s.
     pub(super) fn kernel(&self, surface: &SurfaceGrid, speed: f64) -> Vec<Complex<f64>> {
         let (size, share) = (surface.size, surface.share_of_point());
@@ -103,6 +128,44 @@ mod tests {
                 // What the rule leaves out beyond its ends, e^-8.
                 assert!((value - exact).norm() < 1e-3 * exact.norm(), "{omega}: {value} for {exact}");
             }
+        }
+    }
+
+    /// Of bands and surface: the rise by the terms of a layer's contacts is right within 1 %, and its integral is that of it.
+    #[test]
+    fn rises_are_those_of_the_kernel() {
+        let text = "name = 'h'\nlayer = { foundation = 'half_space', masses = 8, spacing = 1e-4, width = 1e-2 }\n\
+                    material = { density = 1100.0, poisson_ratio = 0.49, equilibrium_modulus = 5e6, prony = [ \
+                    { modulus = 2e7, relaxation_time = 1e-6 } ], \
+                    wlf = { c1 = 7.0, c2 = 120.0, reference_temperature = 293.0, temperature = 293.0 }, \
+                    heat = { conductivity = 0.25, capacity = 1700.0, share = 0.5 } }\n\
+                    friction = { shear_strength = 1e6 }\n\
+                    surface = { kind = 'sinusoid', amplitude = 1e-5, wavelength = 1e-3, \
+                    fine = { hurst = 0.8, rms_slope = 1.0, longest = 1e-3, shortest = 1e-6 } }";
+        let scene = Scene::parse(text, "heat.toml".as_ref()).unwrap_or_else(|error| unreachable!("{error}"));
+        let (Some(response), Some(kernel)) = (HeatResponse::new(&scene), asperity::model::FlashKernel::new(&scene))
+        else {
+            unreachable!("the scene has heat")
+        };
+        for time in [1e-5, 1e-3, 0.1, 10.0] {
+            let [rise, twice] = response.rises(time);
+            assert!((rise / kernel.rise(time) - 1.0).abs() < 1e-2, "{time}");
+            // Simpson's rule over √t, in which the rise is smooth.
+            let at = |i: usize| {
+                let root = (i as f64 / 64.0) * time.sqrt();
+                if i == 0 { 0.0 } else { 2.0 * root * response.rises(root * root)[0] }
+            };
+            let weight = |i: usize| {
+                if i == 0 || i == 64 {
+                    1.0
+                } else if i % 2 == 1 {
+                    4.0
+                } else {
+                    2.0
+                }
+            };
+            let simpson: f64 = (0..=64).map(|i| weight(i) * at(i)).sum::<f64>() * time.sqrt() / 192.0;
+            assert!((twice / simpson - 1.0).abs() < 1e-4, "{time}: {twice} for {simpson}");
         }
     }
 }

@@ -6,22 +6,26 @@
 //!   p ≥ 0,   g = û + d - h ≥ 0,   p g = 0,   mean p = P,   û_q = p_q/(M(q_x v) K(q)) for q ≠ 0,
 //!
 //! with the plane modulus M, the stiffness K(q) of the body, and the separation d of the mean planes. Every point of the
-//! grid is a contact with a pressure, on which the law of friction acts, and heat moves along with the rubber
-//! (docs/steady.md).
+//! grid is a contact with a pressure, on which the law of friction acts along the surface, and heat moves along with the
+//! rubber (docs/steady.md).
 
 mod compliance;
 mod contact;
+mod flash;
 mod heat;
 mod krylov;
 mod linear;
 pub mod persson;
 mod resample;
+mod rubber;
 mod slide;
 mod surface;
 mod transform;
+mod way;
 
 pub use contact::Contact;
 pub use heat::HeatResponse;
-pub use slide::{SlideProblem, SlidingRubber, SteadySlide, SteadySolver};
+pub use rubber::SlidingRubber;
+pub use slide::{SlideProblem, SteadySlide, SteadySolver};
 pub use surface::SurfaceGrid;
 pub use transform::{Convolution, GridSize};

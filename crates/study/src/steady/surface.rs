@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use rustfft::num_complex::Complex;
+
 use super::resample::{self, transposed};
 use super::transform::{Convolution, GridSize};
 use asperity::math::sum;
@@ -102,13 +104,34 @@ impl SurfaceGrid {
 
     /// ∂h/∂x of the waves, at the points; that of two points a wave is 0 there.
     pub fn slopes(&self, convolution: &mut Convolution) -> Vec<f64> {
-        use rustfft::num_complex::Complex;
-        let size = self.size;
-        let factor = |column: usize| {
-            let slope = if size.is_shortest(column) { 0.0 } else { self.wave_number(column) };
-            Complex::new(0.0, slope * self.share_of_point())
-        };
-        let kernel: Vec<_> = (0..size.columns()).flat_map(|i| (0..size.ny).map(move |_| i)).map(factor).collect();
+        self.derivative(
+            convolution,
+            |column, _| {
+                if self.size.is_shortest(column) { 0.0 } else { self.wave_number(column) }
+            },
+        )
+    }
+
+    /// ∂h/∂y of the waves alike; of ridges 0.
+    pub fn slopes_across(&self, convolution: &mut Convolution) -> Vec<f64> {
+        let ny = self.size.ny;
+        if ny == 1 {
+            return vec![0.0; self.size.points()];
+        }
+        self.derivative(
+            convolution,
+            |_, row| {
+                if 2 * row == ny { 0.0 } else { TAU / self.width * self.size.wave_along_y(row) }
+            },
+        )
+    }
+
+    /// The derivative along the direction in which a wave of a column and a row has the `wave_number`.
+    fn derivative(&self, convolution: &mut Convolution, wave_number: impl Fn(usize, usize) -> f64) -> Vec<f64> {
+        let share = self.share_of_point();
+        let factor = |(column, row)| Complex::new(0.0, wave_number(column, row) * share);
+        let waves = (0..self.size.columns()).flat_map(|column| (0..self.size.ny).map(move |row| (column, row)));
+        let kernel: Vec<_> = waves.map(factor).collect();
         let mut slopes = self.heights.clone();
         convolution.apply(&mut slopes, &kernel);
         slopes

@@ -1,10 +1,12 @@
 //! How steady sliding is found: by solving for it, or by letting the layer slide until it is steady.
 
+use asperity::element::Basis;
 use asperity::math::{NotEnoughMemory, check_memory};
 use asperity::scene::{FoundationKind, HeightMap, Scene};
 use asperity::simulation::Simulation;
 
 use super::never_steady::{NeverSteady, check_can_be_steady};
+use super::not_possible::NotPossible;
 use super::search::StopBounds;
 use crate::steady::{GridSize, SurfaceGrid};
 
@@ -38,6 +40,15 @@ pub enum MethodError {
         "`{0}`: expected none with `method` steady, whose points have no scatter and no transient; give `method` layer"
     )]
     OfTheLayer(&'static str),
+    #[error(
+        "`way`: expected none where the layer slides ({0}): it is what `method` steady warms over; a layer with material.heat \
+         warms as it is simulated"
+    )]
+    WayOfTheLayer(&'static str),
+    #[error("`way`: the scene has no material.heat, so friction does not depend on the way")]
+    NoHeat,
+    #[error(transparent)]
+    Range(#[from] NotPossible),
     #[error("`points`: expected none with `method` layer, whose points are its masses")]
     OfTheSolver,
     #[error("surface: {0}; give `method` layer for the line of it that the layer slides on")]
@@ -55,6 +66,8 @@ pub enum MethodError {
 pub struct SlidingOptions {
     /// By solving for it, or by letting the layer slide; `None`: solved for where the scene can be.
     pub method: Option<SweepMethod>,
+    /// The way (m) that rubber as warm as the scene has slid, where it is solved for; `None`: its surface is as warm.
+    pub way: Option<f64>,
     /// Points of a period along x, where it is solved for; `None`: the surface's own, or of a profile 8 to its shortest
     /// wave where they are uneven or fewer.
     pub points: Option<u32>,
@@ -62,6 +75,19 @@ pub struct SlidingOptions {
     pub error: Option<f64>,
     /// Longest distance that a layer slides, m; `None`: 100 blocks.
     pub distance: Option<f64>,
+}
+
+/// The unit of the way in a table's header.
+const METRES: &str = " m";
+
+/// The way of a table, m, by its header; `None` without one.
+pub fn way_of(basis: &Basis) -> Option<f64> {
+    basis.way.as_ref()?.strip_suffix(METRES)?.parse().ok()
+}
+
+/// A way (m) as headers have it.
+pub(super) fn in_header(way: f64) -> String {
+    format!("{way:?}{METRES}")
 }
 
 /// Standard error of the layer's friction coefficient over it where none is given.
@@ -73,11 +99,11 @@ impl SlidingOptions {
         StopBounds { error: self.error.unwrap_or(LAYER_ERROR), distance: self.distance }
     }
 
-    /// What a table was asked for with this line of its header; `None` where a layer slid.
-    pub(super) fn of_table(method: Option<&str>) -> Option<Self> {
-        let mut numbers = method?.strip_prefix("steady")?.split(|c: char| !c.is_ascii_digit());
+    /// What a table was asked for with these lines of its header; `None` where a layer slid.
+    pub(super) fn of_table(basis: &Basis) -> Option<Self> {
+        let mut numbers = basis.method.as_ref()?.strip_prefix("steady")?.split(|c: char| !c.is_ascii_digit());
         let points = numbers.find_map(|number| number.parse().ok());
-        Some(Self { method: Some(SweepMethod::Steady), points, ..Self::default() })
+        Some(Self { method: Some(SweepMethod::Steady), points, way: way_of(basis), ..Self::default() })
     }
 
     /// Whether steady sliding of `scene` is solved for, without the layer.
@@ -90,6 +116,7 @@ impl SlidingOptions {
     /// # Errors
     /// Where the scene or another option does not go with the method that is asked for.
     pub fn choose(self, scene: &Scene) -> Result<(Method, String), MethodError> {
+        self.check_way(scene, self.way)?;
         let reason = (self.method == Some(SweepMethod::Layer)).then_some("as asked for").or_else(|| why_layer(scene));
         match (self.method, reason) {
             (Some(SweepMethod::Steady), _) | (None, None) => self.steady(scene),
@@ -98,6 +125,22 @@ impl SlidingOptions {
             }
             _ => Err(MethodError::OfTheSolver),
         }
+    }
+
+    /// Refuses a way (m) of a scene whose contacts do not warm, or slide as a layer.
+    ///
+    /// # Errors
+    /// Where a way is given.
+    pub fn check_way(self, scene: &Scene, way: Option<f64>) -> Result<(), MethodError> {
+        let Some(way) = way else { return Ok(()) };
+        NotPossible::check("way", "m", &[way])?;
+        if scene.material.as_ref().is_none_or(|material| material.heat.is_none()) {
+            return Err(MethodError::NoHeat);
+        }
+        if self.solves(scene) {
+            return Ok(());
+        }
+        Err(MethodError::WayOfTheLayer(why_layer(scene).unwrap_or("as asked for")))
     }
 
     fn steady(self, scene: &Scene) -> Result<(Method, String), MethodError> {
@@ -211,11 +254,12 @@ fn why_layer(scene: &Scene) -> Option<&'static str> {
 
 impl Method {
     /// What of the settings of a sweep its points depend on.
-    pub fn settings(&self, of_layer: impl FnOnce() -> String) -> String {
+    pub fn settings(&self, sliding: &SlidingOptions, of_layer: impl FnOnce() -> String) -> String {
+        let way = sliding.way.map_or_else(String::new, |way| format!(" after {way:?} m"));
         match self {
             // A scene knows the profile, not the map that it is a line of.
-            Self::Steady(surface) if surface.size.ny > 1 => format!("steady map {:?}", surface),
-            Self::Steady(surface) => format!("steady {}x{}", surface.size.nx, surface.size.ny),
+            Self::Steady(surface) if surface.size.ny > 1 => format!("steady on slopes, map {surface:?}{way}"),
+            Self::Steady(surface) => format!("steady on slopes, {}x{}{way}", surface.size.nx, surface.size.ny),
             Self::Layer => of_layer(),
         }
     }
@@ -244,8 +288,9 @@ mod tests {
                     surface = { kind = 'sinusoid', amplitude = 1e-5, wavelength = 1e-3, points_per_wavelength = 6 }";
         let scene = Scene::parse(text, "sine.toml".as_ref()).unwrap();
         let asked = |method: &str, points: Option<u32>| {
-            let asked = SlidingOptions::of_table(Some(method)).map(|asked| (asked.method, asked.points));
-            assert_eq!(asked, Some((Some(SweepMethod::Steady), points)), "{method}");
+            let basis = Basis { method: Some(method.to_owned()), way: Some(in_header(0.02)), ..Basis::default() };
+            let asked = SlidingOptions::of_table(&basis).map(|asked| (asked.method, asked.points, asked.way));
+            assert_eq!(asked, Some((Some(SweepMethod::Steady), points, Some(0.02))), "{method}");
         };
         // Points of each thread, and masses of it.
         let (steady, _) = SlidingOptions::default().choose(&scene).unwrap();
@@ -261,8 +306,7 @@ mod tests {
         }
         asked("steady, on the map's own 128 x 64 points", Some(128));
         asked("steady, on 256 x 128 points by the waves of the map, which has 128 x 64", Some(256));
-        assert!(
-            SlidingOptions::of_table(Some("layer: as asked for")).is_none() && SlidingOptions::of_table(None).is_none()
-        );
+        let of_layer = Basis { method: Some("layer: as asked for".into()), ..Basis::default() };
+        assert!([of_layer, Basis::default()].iter().all(|basis| SlidingOptions::of_table(basis).is_none()));
     }
 }

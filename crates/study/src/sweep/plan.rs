@@ -9,9 +9,10 @@ use asperity::scene::{FineRoughness, Scene, Wlf};
 use asperity::simulation::Interrupt;
 use rayon::prelude::*;
 
-use super::error::{NotPossible, SweepError};
+use super::error::SweepError;
 use super::load_search::separation_at_rest;
-use super::method::{Method, SlidingOptions};
+use super::method::{Method, SlidingOptions, in_header};
+use super::not_possible::NotPossible;
 use super::point;
 use super::scenes::{relevant, scene_at};
 use super::search::StopBounds;
@@ -75,16 +76,22 @@ impl SweepPlan {
         let scene = relevant(scene);
         let bounds = options.sliding.bounds();
         let header = TableHeader {
-            fingerprint: fingerprint(&scene, bounds, load, &method)?,
+            fingerprint: fingerprint(&scene, &options.sliding, load, &method)?,
             scene: scene.name.clone(),
             load,
             rest_separation: separation_at_rest(&scene),
-            basis: Basis { method: Some(of_method), ..basis(&scene, convergence) },
+            basis: Basis {
+                method: Some(of_method),
+                way: options.sliding.way.map(in_header),
+                ..basis(&scene, convergence)
+            },
             grid,
             low_end: None,
         };
         let solved = match method {
-            Method::Steady(surface) => Some(SolvedPoints::new(&scene, &header.grid.temperatures, surface)?),
+            Method::Steady(surface) => {
+                Some(SolvedPoints::new(&scene, &header.grid.temperatures, surface, options.sliding.way)?)
+            }
             Method::Layer => None,
         };
         Ok(Self { scene, header, bounds, solved, warning })
@@ -180,7 +187,7 @@ fn basis(scene: &Scene, convergence: Option<String>) -> Basis {
     let foundation = scene.layer.foundation.map(|kind| kind.word().to_owned());
     let fine = scene.fine.as_ref().map(FineRoughness::describe);
     let held = scene.carrier.z.map(|body| format!("load, on a carrier of {} kg", body.mass));
-    Basis { method: None, foundation, fine, convergence, held }
+    Basis { foundation, fine, convergence, held, ..Basis::default() }
 }
 
 fn loads(loads: &Loads, scene: &Scene) -> Result<(Load, Vec<f64>), SweepError> {
@@ -215,10 +222,15 @@ fn temperatures(asked: Option<&[f64]>, scene: &Scene) -> Result<Vec<f64>, SweepE
     Ok(values)
 }
 
-fn fingerprint(scene: &Scene, bounds: StopBounds, load: Load, method: &Method) -> Result<String, serde_json::Error> {
+fn fingerprint(
+    scene: &Scene,
+    sliding: &SlidingOptions,
+    load: Load,
+    method: &Method,
+) -> Result<String, serde_json::Error> {
     // The same for all temperatures: each point has its own.
     let scene = scene.with_temperature(0.0);
-    let StopBounds { error, distance } = bounds;
-    let settings = method.settings(|| format!("{error:?} {distance:?}"));
+    let StopBounds { error, distance } = sliding.bounds();
+    let settings = method.settings(sliding, || format!("{error:?} {distance:?}"));
     table::fingerprint(&scene, &format!("{} {settings}", load.name()))
 }

@@ -13,6 +13,8 @@ use crate::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 #[derive(Debug)]
 pub struct SolvedPoints {
     surface: SurfaceGrid,
+    /// The way that rubber as warm as a point has slid, m.
+    way: Option<f64>,
     /// The rubber at each temperature.
     rubbers: Vec<(Option<f64>, SlidingRubber)>,
     /// The area of the layer, m².
@@ -25,14 +27,19 @@ pub struct SolvedPoints {
 const FEW: f64 = 20.0;
 
 impl SolvedPoints {
-    pub(super) fn new(scene: &Scene, temperatures: &[f64], surface: SurfaceGrid) -> Result<Self, SweepError> {
+    pub(super) fn new(
+        scene: &Scene,
+        temperatures: &[f64],
+        surface: SurfaceGrid,
+        way: Option<f64>,
+    ) -> Result<Self, SweepError> {
         let temperatures: Vec<Option<f64>> =
             if temperatures.is_empty() { vec![None] } else { temperatures.iter().copied().map(Some).collect() };
         let rubber =
             |temperature: Option<f64>| Some((temperature, SlidingRubber::new(&scene.with_temperature(temperature))?));
         let rubbers = temperatures.into_iter().map(rubber).collect::<Option<Vec<_>>>().ok_or(SweepError::NoArea)?;
         let area = scene.layer.area().ok_or(SweepError::NoArea)?;
-        Ok(Self { surface, rubbers, area, idle: Mutex::new(Vec::new()) })
+        Ok(Self { surface, way, rubbers, area, idle: Mutex::new(Vec::new()) })
     }
 
     /// The row of a point.
@@ -65,7 +72,7 @@ impl SolvedPoints {
         let (_, rubber) = rubber.ok_or(NotSteady::NoTemperature)?;
         let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut solver = idle.unwrap_or_else(|| SteadySolver::new(self.surface.clone()));
-        let slide = solver.slide(rubber, point.speed, pressure);
+        let slide = solver.slide_over(rubber, point.speed, pressure, self.way);
         self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(solver);
         Ok(slide)
     }
@@ -80,21 +87,20 @@ impl SolvedPoints {
         let mut row = TableRow::new(point, PointStatus::new(slide.problem()));
         let power = |friction: f64| friction * pressure * self.area * point.speed;
         let viscous = slide.viscous_share.map(|share| share * power(slide.profile_hysteresis).max(0.0));
-        let hysteresis = slide.profile_hysteresis + slide.fine_hysteresis.unwrap_or(0.0);
-        let of_contacts = slide.fine_hysteresis.unwrap_or(0.0) + slide.adhesion;
         let values = [
-            (Quantity::Friction, Some(slide.friction().max(0.0))),
+            (Quantity::Friction, slide.friction().map(|friction| friction.max(0.0))),
             (Quantity::FrictionStandardError, Some(0.0)),
-            (Quantity::Hysteresis, Some(hysteresis)),
+            (Quantity::Hysteresis, slide.hysteresis),
             (Quantity::FineHysteresis, slide.fine_hysteresis),
-            (Quantity::Adhesion, Some(slide.adhesion)),
+            (Quantity::Adhesion, slide.adhesion),
             (Quantity::MeanLoad, Some(point.load)),
             (Quantity::ContactRatio, Some(slide.area)),
             (Quantity::RealArea, slide.real_area),
             (Quantity::FlashMean, slide.flash_mean),
+            (Quantity::SurfaceRise, slide.surface_rise),
             (Quantity::DamperPower, viscous),
             (Quantity::MaxwellPower, Some(power(slide.profile_hysteresis).max(0.0) - viscous.unwrap_or(0.0))),
-            (Quantity::FrictionPower, slide.has_friction.then(|| power(of_contacts))),
+            (Quantity::FrictionPower, slide.of_contacts().filter(|_| slide.has_friction).map(power)),
             (Quantity::Separation, Some(slide.contact.separation)),
             (Quantity::Stiffness, slide.tangential_stiffness.map(|stiffness| stiffness * self.area)),
         ];

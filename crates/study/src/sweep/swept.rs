@@ -52,9 +52,9 @@ impl Swept {
     /// # Errors
     /// Where the scene does not go with the method of the table.
     pub fn of_table(scene: &Scene, table: &Table, temperatures: &[f64]) -> Result<Self, SweepError> {
-        let Some(asked) = SlidingOptions::of_table(table.basis.method.as_deref()) else { return Ok(Self::Layer) };
+        let Some(asked) = SlidingOptions::of_table(&table.basis) else { return Ok(Self::Layer) };
         let (Method::Steady(surface), _) = asked.choose(scene)? else { return Ok(Self::Layer) };
-        let points = Box::new(SolvedPoints::new(&relevant(scene.clone()), temperatures, surface)?);
+        let points = Box::new(SolvedPoints::new(&relevant(scene.clone()), temperatures, surface, asked.way)?);
         Ok(Self::Solved { points, rest_separation: table.rest_separation })
     }
 
@@ -122,7 +122,7 @@ impl SweptPoint {
     }
 
     fn solved(slide: &SteadySlide, force_z: f64, speed: f64, rest_separation: f64) -> Self {
-        let drag = slide.friction().max(0.0) * force_z;
+        let drag = slide.friction().unwrap_or_default().max(0.0) * force_z;
         Self { w: slide.contact.separation - rest_separation, force_z, drag, power: drag * speed }
     }
 }

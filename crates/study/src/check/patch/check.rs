@@ -91,5 +91,5 @@ fn stick_length(contact: &PointContact, patch: &Patch, face: &TiltedFace) -> f64
 /// A speed at the temperature of a patch.
 pub(super) fn point(patch: &Patch, speed: f64) -> OperatingPoint {
     let has_temperature = !patch.table().grid.temperatures.is_empty();
-    OperatingPoint { speed, load: 0.0, temperature: has_temperature.then_some(patch.temperature()) }
+    OperatingPoint { speed, load: 0.0, temperature: has_temperature.then_some(patch.temperature()), way: None }
 }

@@ -1,0 +1,87 @@
+//! A sweep over the way: the tables of several ways as one, with a column of it, and friction over the way.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+
+use asperity::element::{OperatingPoint, Quantity, TableRow};
+use asperity::scene::Scene;
+use asperity_study::progress::Stop;
+use asperity_study::sweep::{SlidingOptions, SweepOptions, SweepPlan, SweepTable};
+
+use super::SweepCommandError;
+use crate::figure::{Curve, Figure as _, Panel, PanelRow, SideBySide, Stroke};
+use crate::files::write;
+use crate::flags::with_flags;
+use crate::terminal::{self, warn};
+
+/// Sweeps a scene over `ways` (m), writes table and picture, and returns how many points there are, and have no result.
+pub(super) fn sweep(
+    scene: &Scene,
+    options: &SweepOptions,
+    ways: &[f64],
+    (output, picture): (&Path, Option<&Path>),
+) -> Result<[usize; 2], SweepCommandError> {
+    let plan = |&way: &f64| {
+        let sliding = SlidingOptions { way: Some(way), ..options.sliding };
+        SweepPlan::new(scene.clone(), &SweepOptions { sliding, ..options.clone() }, None)
+    };
+    let plans = ways.iter().map(plan).collect::<Result<Vec<_>, _>>()?;
+    plans.iter().take(1).filter_map(SweepPlan::warning).for_each(|warning| warn(&with_flags(warning)));
+    let bar = terminal::bar((plans.len() * plans.first().map_or(0, |plan| plan.header().grid.count())) as u64);
+    let tables: Vec<SweepTable> = plans.iter().map(|plan| find(plan, || bar.inc(1))).collect();
+    bar.finish_and_clear();
+    for (plan, table) in plans.iter().zip(&tables) {
+        let found = plan.warnings(table.rows.iter().map(|stored| &stored.row));
+        found.iter().for_each(|warning| warn(&with_flags(warning)));
+    }
+    write(output, text(ways, &tables))?;
+    if let Some(picture) = picture {
+        self::picture(ways, &tables).write(picture)?;
+    }
+    let rows = || tables.iter().flat_map(|table| &table.rows);
+    Ok([rows().count(), rows().filter(|stored| !stored.row.is_result()).count()])
+}
+
+fn find(plan: &SweepPlan, found: impl Fn() + Sync) -> SweepTable {
+    let points: Vec<OperatingPoint> = plan.header().grid.points().collect();
+    let rows = Mutex::new(Vec::new());
+    let _: ControlFlow<()> = plan.find(&points, &Stop::default(), |row| {
+        rows.lock().unwrap_or_else(PoisonError::into_inner).push(row);
+        found();
+        ControlFlow::Continue(())
+    });
+    SweepTable::new(plan.header().clone(), rows.into_inner().unwrap_or_else(PoisonError::into_inner))
+}
+
+/// The rows of all ways below one line of names.
+fn text(ways: &[f64], tables: &[SweepTable]) -> String {
+    let names = tables.first().map(|table| table.header.text()).unwrap_or_default();
+    let names = names.lines().last().unwrap_or_default();
+    let rows = ways.iter().zip(tables).flat_map(|(way, table)| table.rows.iter().map(move |row| (way, row)));
+    let lines: String = rows.map(|(way, stored)| format!("{way:?},{}", stored.line())).collect();
+    format!("way [m],{names}\n{lines}")
+}
+
+/// Friction over the way: a panel for each load and temperature, a colour for each speed.
+fn picture(ways: &[f64], tables: &[SweepTable]) -> SideBySide {
+    let Some(first) = tables.first() else {
+        return SideBySide { title: String::new(), x_title: String::new(), rows: Vec::new() };
+    };
+    let grid = &first.header.grid;
+    let panel = |at: OperatingPoint| {
+        let curve = |(look, &speed): (usize, &f64)| {
+            let of = |row: &&TableRow| row.point == OperatingPoint { speed, ..at } && row.is_result();
+            let friction =
+                |table: &SweepTable| table.rows.iter().map(|stored| &stored.row).find(of)?.value(Quantity::Friction);
+            let points = ways.iter().zip(tables).filter_map(|(&way, table)| Some((way, friction(table)?)));
+            Curve { name: format!("{speed} m/s"), look, stroke: Stroke::Marked, points: points.collect() }
+        };
+        let title = at.describe(first.header.load);
+        let title = title.split_once(", ").map(|(_, rest)| rest.to_owned()).unwrap_or_default();
+        Panel { title, curves: grid.speeds.iter().enumerate().map(curve).collect() }
+    };
+    let panels = grid.points().step_by(grid.speeds.len()).map(panel).collect();
+    let row = PanelRow { y_title: "friction coefficient".into(), panels };
+    SideBySide { title: first.header.scene.clone(), x_title: "way in m".into(), rows: vec![row] }
+}
