@@ -18,7 +18,7 @@ use asperity::math::{dot, sum};
 /// Accuracy of ϑ over its largest.
 const FLASH_ACCURACY: f64 = 1.0e-5;
 /// The most steps for it, and the most iterations of one.
-const MOST_STEPS: usize = 400;
+pub(super) const MOST_STEPS: usize = 400;
 const MOST_ITERATIONS: usize = 40;
 /// The accuracy of a step over the residual.
 const STEP_ACCURACY: f64 = 0.05;
@@ -98,14 +98,14 @@ impl<'a> WarmingContact<'a> {
         self.share * sum(&warmth.power)
     }
 
-    /// How warm contacts are on a surface that warms so, from how warm they were.
-    pub(super) fn solve(&mut self, surface: SurfaceRise, mut now: Warmth) -> Warmth {
+    /// How warm contacts are on a surface that warms so, from how warm they were, in at most so many steps.
+    pub(super) fn solve(&mut self, surface: SurfaceRise, mut now: Warmth, most: usize) -> Warmth {
         self.kernel[0] = Complex::from(self.share * surface.gain);
         self.evaluate(&mut now, surface.known);
         let count = now.rises.len();
         let (mut step, mut left, mut power) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
         let (mut gmres, mut time_step) = (std::mem::take(&mut self.gmres), 1.0);
-        for _ in 0..MOST_STEPS {
+        for _ in 0..most {
             if now.is_solved {
                 break;
             }

@@ -2,7 +2,7 @@
 
 use super::compliance::{Compliance, viscous_losses};
 use super::contact::{Contact, ContactSolver};
-use super::flash::{RubbingContact, SurfaceRise, WarmingContact};
+use super::flash::{MOST_STEPS, RubbingContact, SurfaceRise, WarmingContact};
 use super::linear::scatter;
 use super::rubber::{SlidingContact, SlidingRubber, Slope};
 use super::surface::SurfaceGrid;
@@ -214,7 +214,7 @@ impl SteadySolver {
         let mut warming = WarmingContact::new(rubbing, heat, &surface, self.solver.convolution());
         let (warmth, rise) = match way {
             Some(way) => march(&mut warming, heat, speed, way),
-            None => (warming.solve(SurfaceRise::default(), warming.cold()), 0.0),
+            None => (warming.solve(SurfaceRise::default(), warming.cold(), MOST_STEPS), 0.0),
         };
         rubbed.heat_converged = warmth.is_solved;
         rubbed.flash_mean = Some(sum(&warmth.rises) / warmth.rises.len() as f64 - rise);

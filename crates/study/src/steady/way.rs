@@ -7,12 +7,15 @@
 //! with Q of each place from steady sliding there. The march goes over places even in ln s; Q is linear in t between them, and
 //! constant up to the first.
 
-use super::flash::{SurfaceRise, WarmingContact, Warmth};
+use super::flash::{MOST_STEPS, SurfaceRise, WarmingContact, Warmth};
 use super::heat::HeatResponse;
 
 /// The places of a march, and the first of them over the whole way.
 const PLACES: usize = 20;
 const FIRST: f64 = 1.0e-3;
+/// The most steps at a place but the last. At the first, where the surface is still cold, contacts often do not come to rest;
+/// what they make there counts little at the end.
+const STEPS_ON_THE_WAY: usize = 60;
 
 /// What came before a place: the times (s), and the mean powers there, W/m².
 #[derive(Debug, Default)]
@@ -37,20 +40,17 @@ impl Past {
     }
 }
 
-/// How warm contacts are after the `way` (m) at the `speed` (m/s), and by how much the whole surface has warmed, K; the march
-/// ends where they have no fixed point.
+/// How warm contacts are after the `way` (m) at the `speed` (m/s), and by how much the whole surface has warmed, K.
 pub(super) fn march(warming: &mut WarmingContact<'_>, heat: &HeatResponse, speed: f64, way: f64) -> (Warmth, f64) {
     let (mut past, mut warmth, mut rise) = (Past::default(), warming.cold(), 0.0);
     for place in 0..PLACES {
         let left = 1.0 - place as f64 / (PLACES - 1) as f64;
         let time = way / speed * FIRST.powf(left);
         let surface = past.rise(heat, time);
-        warmth = warming.solve(surface, warmth);
+        let most = if place + 1 == PLACES { MOST_STEPS } else { STEPS_ON_THE_WAY };
+        warmth = warming.solve(surface, warmth, most);
         let power = warming.mean_power(&warmth);
         rise = surface.known + surface.gain * power;
-        if !warmth.is_solved {
-            break;
-        }
         past.times.push(time);
         past.powers.push(power);
     }
