@@ -71,8 +71,7 @@ fn weakening_with_memory(model: &Model, way: f64, state: &State, forces: &Forces
         let (contact, speed) = (forces.contact(model, state, i), state.memory[i]);
         let curve = model.friction.slip_curve(contact.normal, &SlipHistory::even(state.flash(i)));
         let fall = -speed * curve.map_or(0.0, |curve| curve.with_slope(speed).1);
-        let held = way * model.dynamic_stiffness(LinkKind::Horizontal, speed / way);
-        if fall * BOUND_ACCURACY > held { fall } else { 0.0 }
+        if fall * BOUND_ACCURACY > model.bearable_fall(way, speed) { fall } else { 0.0 }
     });
     (falls.fold(0.0, f64::max) / (model.mass * way)).sqrt()
 }

@@ -4,9 +4,7 @@
 use super::laws::{collision, decide_mode};
 use crate::integrator::{OpenEnd, Parabolas, StageValues, TimeSpan};
 use crate::math::bracketed_root;
-use crate::model::{
-    Carrier, CarrierPoint, ChannelEnergies, LinkKind, Mode, Model, SlipCurve, State, SurfacePoint,
-};
+use crate::model::{Carrier, CarrierPoint, ChannelEnergies, LinkKind, Mode, Model, SlipCurve, State, SurfacePoint};
 use crate::scene::{Axis, ByAxis};
 
 /// Accuracy of the instant of a touch, as a fraction of the step: the error of the parabola is larger.

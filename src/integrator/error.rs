@@ -162,7 +162,8 @@ impl ErrorTest<'_> {
         let mean = |sum: f64| (sum / tolerance.masses as f64).sqrt();
         let of_bodies = if model.has_bodies() { self.body_squares(model, &carrier_error, tolerance) } else { 0.0 };
         let motion_error = mean(sum).hypot(of_bodies.sqrt()).hypot(self.tableau.force_weight * of_forces.sqrt());
-        let creep = mean(self.creep_squares(model, tolerance, &workspace.v_x) + self.memory_squares(model, h, tolerance));
+        let creep =
+            mean(self.creep_squares(model, tolerance, &workspace.v_x) + self.memory_squares(model, h, tolerance));
         let error = motion_error.hypot(creep).hypot(self.tableau.energy_weight * of_energies.sqrt());
         ErrorEstimate { error, motion_error, carrier_error: mean(free) }
     }
@@ -185,7 +186,8 @@ impl ErrorTest<'_> {
         }
         let (slowest, allowed) = (model.friction.creep_speed(), CREEP_SLACK[self.modes as usize] * tolerance.relative);
         let of = |i: usize| {
-            let error: f64 = self.stages.iter().zip(&self.tableau.error).map(|(at, weight)| weight * at.memory_rate[i]).sum();
+            let error: f64 =
+                self.stages.iter().zip(&self.tableau.error).map(|(at, weight)| weight * at.memory_rate[i]).sum();
             square(h * error / (allowed * (self.end.memory[i] + slowest)))
         };
         (0..self.end.mode.len()).filter(|&i| self.end.mode[i] != Mode::Stick).map(of).sum()

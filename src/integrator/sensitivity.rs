@@ -12,8 +12,8 @@ use super::heat::StageHeat;
 use super::stage::{SlipVariation, SlippingMass, StagePoint, StageSolver};
 use super::stage_values::StageValues;
 use crate::model::{
-    Axis, ByAxis, CarrierBody, Forces, Input, LinkKind, LinkMotion, Mode, Model, SlipFriction, SlipHistory, SpeedMemory,
-    State, SurfacePoint, TangentsOf,
+    Axis, ByAxis, CarrierBody, Forces, Input, LinkKind, LinkMotion, Mode, Model, SlipFriction, SlipHistory,
+    SpeedMemory, State, SurfacePoint, TangentsOf,
 };
 
 /// The variation of the layer's state: dimensionless for positions, 1/s for velocities. Or its rate of change, each
@@ -71,8 +71,8 @@ struct LinkVariation {
 impl Variation {
     fn new(model: &Model) -> Self {
         let zero = vec![0.0; model.masses()];
-        let [maxwell, memory, flash] =
-            [model.maxwell_variables(), model.memory_variables(), model.flash_variables()].map(|count| vec![0.0; count]);
+        let [maxwell, memory, flash] = [model.maxwell_variables(), model.memory_variables(), model.flash_variables()]
+            .map(|count| vec![0.0; count]);
         let (x, z, v_x) = (zero.clone(), zero.clone(), zero.clone());
         Self { x, z, v_x, v_z: zero, maxwell, memory, flash, bodies: ByAxis::default() }
     }

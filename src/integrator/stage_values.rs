@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::running_maxima::RunningMaxima;
 use crate::model::{
-    BoundaryPowers, ByAxis, ByLink, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, SlipCurve, State,
-    SurfacePoint, memory_rate,
+    BoundaryPowers, ByAxis, ByLink, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, SlipCurve,
+    State, SurfacePoint, memory_rate,
 };
 
 /// The share of an explicit acceleration that friction may take away within the step without the implicit one in its

@@ -84,7 +84,8 @@ impl ContactForces {
             return 0.0;
         }
         let centripetal = surface.slope * surface.curvature * velocity_x * velocity_x;
-        ((self.tangential - self.friction(model, mode, velocity_x, history)) / model.mass - centripetal / self.q) / self.q
+        ((self.tangential - self.friction(model, mode, velocity_x, history)) / model.mass - centripetal / self.q)
+            / self.q
     }
 }
 

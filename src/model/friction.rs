@@ -135,7 +135,8 @@ impl FrictionLaw {
             fine,
             shift: SpeedShift::new(scene),
             memory: None,
-        }.with_memory(scene.memory_way())
+        }
+        .with_memory(scene.memory_way())
     }
 
     /// The law where contacts are renewed over the way D = `way`, m; 0: at once.

@@ -6,6 +6,7 @@ mod carrier;
 mod contact;
 mod end_forces;
 mod energy;
+mod even_sliding;
 mod fine_friction;
 mod flash;
 mod forces;
@@ -24,6 +25,7 @@ pub use carrier::{
 pub use contact::ContactForces;
 pub use end_forces::EndForces;
 pub use energy::{BoundaryPowers, ChannelEnergies, Powers, elastic_energy, kinetic_energy, vertical_spring_energy_at};
+pub use even_sliding::EvenSliding;
 pub use fine_friction::{ContactQuantity, FineContact, FineFriction, PressedContact};
 pub use flash::{Flash, FlashKernel, FlashTerm, HeatParts, SURFACE_TERMS, SpeedShift, surface_kernel};
 pub use forces::{Forces, LinkLaw, LinkMotion, MaxwellRow};

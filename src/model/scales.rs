@@ -2,8 +2,8 @@
 //!
 //! All start from the glassy stiffness c + Σ c_j of each kind of link ([`Model::glassy`]), with every dashpot at rest.
 
-use super::{LinkKind, Model};
-use crate::scene::{Axis, ByLink, Link};
+use super::{LinkKind, LinkLaw, MaxwellRow, Model};
+use crate::scene::{Axis, ByLink, Link, MaxwellElement, complex_stiffness};
 
 impl Model {
     /// Stiffness of all links on one mass while the dashpots are at rest, N/m, lateral links counted twice: along x or
@@ -113,14 +113,11 @@ impl Model {
 
     /// |K*(iω)| of a link of `kind` at the frequency ω (rad/s), N/m: K* = c + iωd + Σ c_j iωτ_j/(1 + iωτ_j).
     pub fn dynamic_stiffness(&self, kind: LinkKind, frequency: f64) -> f64 {
-        let law = &self.links[kind];
-        let (mut real, mut imaginary) = (law.stiffness, frequency * law.damping);
-        for row in self.rows_of(kind) {
-            let z = frequency * row.relaxation_time;
-            let share = row.stiffness * z / (1.0 + z * z);
-            (real, imaginary) = (real + share * z, imaginary + share);
-        }
-        real.hypot(imaginary)
+        let LinkLaw { stiffness, damping } = self.links[kind];
+        let element =
+            |row: &MaxwellRow| MaxwellElement { stiffness: row.stiffness, relaxation_time: row.relaxation_time };
+        let (storage, loss) = complex_stiffness(stiffness, damping, self.rows_of(kind).map(element), frequency);
+        storage.hypot(loss)
     }
 
     /// The frequency of the body along `axis` on the glassy springs of the layer and on its drive, rad/s; the rate of

@@ -3,7 +3,8 @@
 use std::f64::consts::LN_10;
 
 use super::{
-    FineContact, FineFriction, Flash, FrictionLaw, PressedContact, RememberedSpeed, SlipFriction, SlipHistory, SpeedShift,
+    FineContact, FineFriction, Flash, FrictionLaw, PressedContact, RememberedSpeed, SlipFriction, SlipHistory,
+    SpeedShift,
 };
 use crate::math::bracketed_root;
 use crate::scene;
@@ -135,9 +136,7 @@ impl SlipCurve<'_> {
                 let itself = RememberedSpeed { value: speed, by_speed: 1.0, by_base: 0.0 };
                 self.heated(shift, speed.abs(), 1.0, itself)
             }
-            (Some(shift), Some(memory)) => {
-                self.heated(shift, speed.abs(), 1.0_f64.copysign(speed), memory.at(speed))
-            }
+            (Some(shift), Some(memory)) => self.heated(shift, speed.abs(), 1.0_f64.copysign(speed), memory.at(speed)),
         }
     }
 
@@ -311,7 +310,16 @@ mod tests {
     fn friction(law: &scene::RateShear) -> FrictionLaw {
         let rate_shear = RateShearLaw::new(law);
         let shear = rate_shear.map_or(0.0, |law| law.plateau);
-        FrictionLaw { present: true, coulomb: 0.0, shear, has_parts: false, rate_shear, fine: None, shift: None, memory: None }
+        FrictionLaw {
+            present: true,
+            coulomb: 0.0,
+            shear,
+            has_parts: false,
+            rate_shear,
+            fine: None,
+            shift: None,
+            memory: None,
+        }
     }
 
     fn laws() -> [FrictionLaw; 3] {

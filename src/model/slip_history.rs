@@ -75,3 +75,63 @@ pub fn memory_rate(way: f64, speed: f64, remembered: f64) -> f64 {
 pub fn aged(way: f64, remembered: f64, time: f64) -> f64 {
     remembered / (1.0 + remembered * time / (2.0 * way))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WAY: f64 = 5e-5;
+
+    /// v_s = v tanh(vt/2D + artanh(v_s0/v)) at a constant v, by implicit Euler steps: of order 1.
+    #[test]
+    fn a_constant_speed_is_followed_as_the_equation_says() {
+        let (speed, from, time) = (0.3_f64, 0.05_f64, 2e-4);
+        let exact = speed * (speed * time / (2.0 * WAY) + (from / speed).atanh()).tanh();
+        let error = |steps: u32| {
+            let weight = time / f64::from(steps) / (2.0 * WAY);
+            let end = (0..steps).fold(from, |base, _| SpeedMemory { base, weight }.at(speed).value);
+            (end - exact).abs()
+        };
+        let ratio = error(200) / error(400);
+        assert!((ratio - 2.0).abs() < 0.05, "{ratio}");
+        assert!(error(400) < 1e-3 * exact);
+    }
+
+    /// Whatever the speed its solution is positive and satisfies v_s + a v_s² = b + a v_t²; its derivatives are quotients'.
+    #[test]
+    fn the_remembered_speed_solves_its_equation() {
+        for (base, weight) in [(0.1, 0.0), (0.1, 5.0), (1e-9, 1e6), (-1e-3, 10.0), (-1.0, 10.0)] {
+            let memory = SpeedMemory { base, weight };
+            for speed in [-3.0, -1e-6, 0.0, 1e-3, 0.3, 20.0] {
+                let found = memory.at(speed);
+                let known = base + weight * speed * speed;
+                if known <= 0.0 {
+                    assert_eq!(found.value, 0.0);
+                    continue;
+                }
+                let left = found.value + weight * found.value * found.value;
+                assert!(found.value > 0.0 && (left - known).abs() < 1e-14 * known, "{memory:?} {speed}");
+                let quotient =
+                    |up: RememberedSpeed, down: RememberedSpeed, step: f64| (up.value - down.value) / (2.0 * step);
+                let (of_speed, of_base) = (1e-6 * speed.abs().max(1e-3), 1e-6 * known);
+                let by_speed = quotient(memory.at(speed + of_speed), memory.at(speed - of_speed), of_speed);
+                let moved = |by: f64| SpeedMemory { base: base + by, ..memory }.at(speed);
+                let by_base = quotient(moved(of_base), moved(-of_base), of_base);
+                // The third derivatives times the step squared, and roundings over the step.
+                let near = |found: f64, quotient: f64| (found - quotient).abs() < 1e-5 * (1.0 + quotient.abs());
+                assert!(near(found.by_speed, by_speed), "{memory:?} {speed}: {found:?} {by_speed}");
+                assert!(near(found.by_base, by_base), "{memory:?} {speed}: {found:?} {by_base}");
+            }
+        }
+    }
+
+    /// 1/v_s grows by t/2D at rest, in one step as in two.
+    #[test]
+    fn what_rests_ages() {
+        let (speed, time) = (2.0, 3e-3);
+        let whole = aged(WAY, speed, time);
+        assert!((1.0 / whole - (1.0 / speed + time / (2.0 * WAY))).abs() < 1e-12);
+        assert!((aged(WAY, aged(WAY, speed, 0.4 * time), 0.6 * time) / whole - 1.0).abs() < 1e-14);
+        assert_eq!(aged(WAY, 0.0, time), 0.0);
+    }
+}

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::context::Context;
-use super::tests::{WAVE, scene, scene_with_heat, scene_with_rate_shear, scene_with_real_area};
+use super::tests::{WAVE, scene, scene_with_heat, scene_with_memory, scene_with_rate_shear, scene_with_real_area};
 use crate::model::{ByAxis, Mode};
 use crate::outputs::{Output, dependencies, variables};
 use crate::scene::{LinkKind, Path, Scene};
@@ -53,7 +53,7 @@ fn moved(simulation: &Simulation, (du, dw): (f64, f64)) -> Simulation {
 /// Central: exact for all but the friction coefficient, being squares at most. That one has a kink at F_x = 0.
 #[test]
 fn directional_derivatives_are_those_of_a_difference_quotient() {
-    let scenes = [scene(), scene_with_rate_shear(), scene_with_real_area(), scene_with_heat()];
+    let scenes = [scene(), scene_with_rate_shear(), scene_with_memory(), scene_with_real_area(), scene_with_heat()];
     scenes.iter().for_each(directional_derivatives_are_quotients);
 }
 

@@ -30,6 +30,13 @@ pub(super) fn scene_with_rate_shear() -> Scene {
     Scene::parse(&TEXT.replace("shear_force = 5e-5", law), FilePath::new("rate-shear.toml")).unwrap()
 }
 
+/// The same whose contacts remember the speed.
+pub(super) fn scene_with_memory() -> Scene {
+    let law =
+        "shear_force = 5e-5\nmemory = 1e-6\nrate_shear = { force = 2e-4, reference_speed = 3e-3, sharpness = 0.1 }";
+    Scene::parse(&TEXT.replace("shear_force = 5e-5", law), FilePath::new("memory.toml")).unwrap()
+}
+
 /// Six masses of a material whose contacts touch on a part of their area.
 pub(super) fn scene_with_real_area() -> Scene {
     Scene::parse(&text_with_real_area(), FilePath::new("real-area.toml")).unwrap()

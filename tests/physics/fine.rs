@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use asperity::model::{FineFriction, Flash, FlashKernel, FrictionLaw};
+use asperity::model::{FineFriction, FlashKernel, FrictionLaw, SlipHistory};
 use asperity::scene::{Method, OutputGroup, Scene};
 use asperity::simulation::{Simulation, Start};
 
@@ -27,7 +27,7 @@ fn the_law_is_that_of_the_sums() {
         let (law, fine) = (FrictionLaw::new(&scene), FineFriction::new(&scene).unwrap());
         let normal = pressure * scene.layer.element_area().unwrap();
         let contact = fine.contact(normal, speed);
-        let whole = law.slip(normal, speed, Flash::default()).force();
+        let whole = law.slip(normal, speed, &SlipHistory::default()).force();
         let found = [contact.hysteresis.value / normal, contact.share.value, whole];
         for (name, found, expected) in
             [("friction", found[0], friction), ("area", found[1], share), ("T", found[2], force)]
@@ -80,7 +80,7 @@ fn run(name: &str, method: &str, tolerance: &str) -> Table {
 
 #[test]
 fn runs_are_those_of_the_reference() {
-    for name in ["fine-flat", "fine-rough"] {
+    for name in ["fine-flat", "fine-rough", "memory-flat", "memory-rough"] {
         for method in ["event", "step", "auto"] {
             // What the tables are off, and the tolerance.
             compare(name, &run(name, method, "1e-6"), 1e-3);
@@ -92,7 +92,13 @@ fn runs_are_those_of_the_reference() {
 #[test]
 fn heated_runs_are_those_of_the_reference() {
     // By time-stepping the hot one takes some 250 000 steps at 1e-6.
-    let runs = [("fine-heat", "1e-6"), ("fine-rough-heat", "1e-6"), ("fine-cool", "1e-6"), ("fine-hot", "1e-5")];
+    let runs = [
+        ("fine-heat", "1e-6"),
+        ("fine-rough-heat", "1e-6"),
+        ("fine-cool", "1e-6"),
+        ("fine-hot", "1e-5"),
+        ("memory-heat", "1e-6"),
+    ];
     for (name, of_step) in runs {
         for (method, tolerance) in [("event", "1e-6"), ("step", of_step), ("auto", "1e-6")] {
             // The kernel of the reference is off by 2e-3 of the rise; the instants of slips follow it.

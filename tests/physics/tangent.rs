@@ -75,6 +75,9 @@ const BOTH: &str = "friction = { coulomb = 0.2, shear_force = 1e-3 }";
 /// Masses that slip at 0.3 m/s do so where the shear strength falls with the speed, or where it rises.
 const FALLING: &str =
     "friction.coulomb = 0.2\nfriction.rate_shear = { force = 4e-3, reference_speed = 6e-2, sharpness = 1.0 }";
+/// Contacts that follow their speed over some slips as long as the layer's waves, or at once.
+const REMEMBERING: &str = "friction = { coulomb = 0.2, memory = 2e-5, rate_shear = { force = 4e-3, reference_speed = 6e-2, \
+                           sharpness = 1.0 } }";
 const RISING: &str = "friction.rate_shear = { force = 4e-3, reference_speed = 10.0, sharpness = 0.4 }";
 
 #[test]
@@ -95,7 +98,7 @@ fn sticking() {
 
 #[test]
 fn slipping() {
-    for friction in ["", COULOMB, BOTH, FALLING, RISING] {
+    for friction in ["", COULOMB, BOTH, FALLING, REMEMBERING, RISING] {
         let run = Run::new(&scene(friction), &[straight(4e-4, 0.0, -0.05), straight(1.01e-3, 0.3, 0.0)]);
         for duration in [1e-8, 1e-6, 1e-5] {
             run.check(&straight(duration, 0.3, 0.0));

@@ -3,6 +3,7 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
+use asperity::model::EvenSliding;
 use asperity::patch::Patch;
 use asperity::scene::Scene;
 
@@ -48,6 +49,7 @@ pub(crate) fn load_without_run(
     let mut unused = Vec::from_iter(scene.short_profile());
     if !layer_slides(&scene) {
         unused.extend(scene.link_warnings());
+        unused.extend(EvenSliding::warning(&scene));
     }
     scene.warnings.iter().filter(|warning| !unused.contains(warning)).for_each(|text| warn(text));
     print_assumptions(&scene);

@@ -14,6 +14,7 @@ use super::model::FmuModel;
 use super::resources::{self, PATCH_FILE, Resource, SCENE_FILE, TABLE_FILE};
 use super::variables::VariableTable;
 use asperity::element::{PointContact, Table};
+use asperity::model::EvenSliding;
 use asperity::patch::Patch;
 use asperity::scene::{Parameter, ParameterError, Scene, Value};
 
@@ -80,7 +81,9 @@ impl Definition {
         } else if path.ends_with(PATCH_FILE) {
             Patch::load(path)?.into()
         } else {
-            Scene::load(path)?.into()
+            let mut scene = Scene::load(path)?;
+            EvenSliding::warn_of(&mut scene);
+            scene.into()
         };
         Ok((definition, found))
     }

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use asperity::model::EvenSliding;
 use asperity::patch::{Patch, PatchError};
 use asperity::scene::{ParameterError, Problem, Scene, SceneError, similar_keys};
 use asperity::tables::quantity_with_unit;
@@ -69,6 +70,7 @@ pub fn scene(text: &str, file: &Path, set: &[Setting]) -> Result<Scene, Refusal<
     let parsed = Scene::parse_with(&edited, file, &Instruments);
     let mut scene = parsed.map_err(|error| refusal(error, Scene::parse_with(text, file, &Instruments).err(), file))?;
     set_in_named_files(&mut scene, &in_named_files).map_err(Refusal::Set)?;
+    EvenSliding::warn_of(&mut scene);
     Ok(scene)
 }
 

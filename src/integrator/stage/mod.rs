@@ -27,7 +27,9 @@ use super::scheme::ContactModes;
 use super::stage_values::StageValues;
 use super::tolerance::{NEWTON_SHARE, Tolerance};
 use crate::math::{BlockTridiagonal, weighted_sum, with_widest_vectors};
-use crate::model::{ByAxis, ByLink, CarrierPoint, Forces, FrictionPower, LinkKind, LinkLaw, Mode, Model, SlipHistory, State};
+use crate::model::{
+    ByAxis, ByLink, CarrierPoint, Forces, FrictionPower, LinkKind, LinkLaw, Mode, Model, SlipHistory, State,
+};
 use newton::{NeighbourWeights, RowShares, StageFriction, largest_of};
 
 pub(super) use border::{BodyHistory, Border};

@@ -6,7 +6,9 @@ use super::super::stage_values::{NO_LIMIT, StageValues};
 use super::newton::StageFriction;
 use super::{StagePoint, StageSolver};
 use crate::math::with_widest_vectors;
-use crate::model::{ByAxis, ContactForces, Forces, FrictionPower, LinkKind, LinkMotion, Mode, Model, SlipHistory, State};
+use crate::model::{
+    ByAxis, ContactForces, Forces, FrictionPower, LinkKind, LinkMotion, Mode, Model, SlipHistory, State,
+};
 
 impl StageSolver {
     /// Writes the rates of the solved stage.

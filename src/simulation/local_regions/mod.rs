@@ -88,7 +88,11 @@ impl LocalRegions {
     /// regions do not have.
     pub(super) fn new(model: &Model, settings: &Settings) -> Self {
         let Settings { method, tolerance, accounts, .. } = settings;
-        let have_none = *method == Method::Step || accounts.tangents || model.has_bodies() || model.flash.is_some() || model.friction.memory.is_some();
+        let have_none = *method == Method::Step
+            || accounts.tangents
+            || model.has_bodies()
+            || model.flash.is_some()
+            || model.friction.memory.is_some();
         let reach = if have_none { None } else { reach(model, tolerance.relative) };
         let least = reach.map(|reach| 2 * reach + 1).filter(|width| MIN_REGIONS * width <= model.masses());
         let max_masses = model.masses() / OF_MASSES;

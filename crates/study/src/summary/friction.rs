@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use asperity::model::{FrictionLaw, SlipHistory};
+use asperity::model::{EvenSliding, FrictionLaw, SlipHistory};
 use asperity::scene::{RateShear, Scene};
 
 use super::fine::MIDDLE;
@@ -23,6 +23,7 @@ pub(super) fn friction(scene: &Scene) -> Vec<LabelledLine> {
     let rate_shear = scene.rate_shear().map_or_else(|| LEFT_OUT.into(), |law| rate_shear_text(&law));
     let mut rows = vec![coulomb, shear, format!("rate_shear   {rate_shear}")];
     rows.extend(FallingFriction::of(scene).map(|falling| falling.describe()));
+    rows.extend(memory(scene));
     labelled("Friction", rows)
 }
 
@@ -62,13 +63,31 @@ impl FallingFriction {
 
     fn describe(&self) -> String {
         let to = self.to.map_or_else(String::new, |to| format!(" to {to:.1e} m/s"));
-        format!(
-            "falls over the speed from {:.1e} m/s{to}, by up to {:.0} % a decade: masses may stick and slip one by one there, in \
-             many steps",
-            self.from,
-            100.0 * self.steepest
-        )
+        format!("falls over the speed from {:.1e} m/s{to}, by up to {:.0} % a decade", self.from, 100.0 * self.steepest)
     }
+}
+
+/// The way over which contacts are renewed, and at the speeds of the excitation that for even sliding.
+fn memory(scene: &Scene) -> Vec<String> {
+    let speeds = EvenSliding::of(scene);
+    if speeds.is_empty() {
+        return Vec::new();
+    }
+    let area = scene.layer.element_area();
+    let row = |EvenSliding { speed, normal, least_memory }: EvenSliding| {
+        let under = area.map_or_else(String::new, |area| format!(" under {:.2} MPa", 1e-6 * normal / area));
+        let verdict = match least_memory {
+            0.0 => "slides evenly at any".to_owned(),
+            least if least > scene.memory_way() => format!("sticks and slips below {least:.1e} m"),
+            least => format!("slides evenly above {least:.1e} m"),
+        };
+        format!("             at {speed:.3e} m/s{under} {verdict}")
+    };
+    let way = match scene.memory_way() {
+        0.0 => "none: friction follows the speed at once".to_owned(),
+        way => format!("contacts are renewed over {} m", number(way)),
+    };
+    std::iter::once(format!("memory       {way}")).chain(speeds.into_iter().map(row)).collect()
 }
 
 /// The law of the contacts, for a material at its temperature.

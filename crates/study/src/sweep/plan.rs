@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use asperity::element::{Basis, Load, OperatingPoint, SweepGrid, TableHeader, TableRow};
 use asperity::math::check_memory;
+use asperity::model::{EvenSliding, Model};
 use asperity::scene::{FineRoughness, Scene, Wlf};
 use asperity::simulation::Interrupt;
 use rayon::prelude::*;
@@ -142,8 +143,26 @@ impl SweepPlan {
     /// What to look at in the rows: few points of the surface in contact, and friction that no rubber has.
     pub fn warnings<'a>(&self, rows: impl Iterator<Item = &'a TableRow> + Clone) -> Vec<String> {
         let few = self.solved.as_ref().and_then(|solved| solved.few_points(rows.clone(), &self.header));
-        let found = rows.filter_map(|row| FoundFriction::of_row(row, self.header.load));
-        few.into_iter().chain(implausible(&self.scene, found)).collect()
+        let found = rows.clone().filter_map(|row| FoundFriction::of_row(row, self.header.load));
+        let uneven = self.uneven(rows.clone());
+        few.into_iter().chain(implausible(&self.scene, found)).chain(uneven).collect()
+    }
+
+    /// The warning where a layer does not slide evenly at some of the rows.
+    fn uneven<'a>(&self, rows: impl Iterator<Item = &'a TableRow>) -> Option<String> {
+        if self.solved.is_some() || !self.scene.friction_depends_on_speed() {
+            return None;
+        }
+        let masses = self.scene.layer.masses as f64;
+        let at = |row: &TableRow| {
+            let (scene, point) = (scene_at(&self.scene, &row.point), &row.point);
+            let whole = match self.header.load {
+                Load::Pressure { area } => point.load * area,
+                Load::Force => point.load,
+            };
+            EvenSliding::at(&scene, &Model::new(&scene), point.speed, whole / masses)
+        };
+        EvenSliding::warning_among(&self.scene, rows.map(at))
     }
 }
 
