@@ -38,6 +38,7 @@ COLUMNS = {
     "contact_ratio": "1",
     "area_real": "1",
     "flash_mean": "K",
+    "surface_rise": "K",
     **{f"P_{channel}": "W" for channel in CHANNELS},
     "separation": "m",
     "tangential_stiffness": "N/m",

@@ -93,7 +93,7 @@ impl<'a> DenseOutput<'a> {
             Velocities::BrokenLine => self.write_parabolas(theta, workspace, state),
         }
         self.method.heat.within(theta, &self.start.flash, self.stages(), &mut state.flash);
-        let at = (self.start, self.span, theta);
+        let at = (self.start, self.span.length, theta);
         memory::within(self.model, at, self.stages(), workspace, &mut state.memory);
         let mut elements = &mut state.maxwell[..];
         for row in &self.model.rows {
@@ -397,7 +397,7 @@ impl<'a> DenseOutput<'a> {
     /// What the past has left of mass `i` at the fraction `theta`, for which the weights of `workspace` are set, as far as
     /// what sticks depends on it.
     fn slip_history(&self, i: usize, theta: f64, workspace: &DenseWorkspace) -> SlipHistory {
-        let at = (self.start, self.span, theta);
+        let at = (self.start, self.span.length, theta);
         match memory::of_mass_within(self.model, at, self.stages(), workspace, i) {
             None => SlipHistory::default(),
             Some(speed) => SlipHistory {

@@ -38,6 +38,12 @@ const WEIGHT_OF_FORCE_X: f64 = 4.0;
 /// these.
 const CREEP_SLACK: [f64; 2] = [10.0, 100.0];
 
+/// The relative error of the speed that a mass remembers, in relative tolerances.
+///
+/// Recommended 3 to 30. Friction changes by some tenths of itself with the logarithm of that speed; with 100 steps of 1e-2
+/// know no more than its magnitude.
+const MEMORY_SLACK: f64 = 10.0;
+
 /// The change of temperature, K, over which friction changes by a part of itself.
 const FLASH_SCALE: f64 = 10.0;
 
@@ -184,7 +190,7 @@ impl ErrorTest<'_> {
         if model.friction.memory.is_none() {
             return 0.0;
         }
-        let (slowest, allowed) = (model.friction.creep_speed(), CREEP_SLACK[self.modes as usize] * tolerance.relative);
+        let (slowest, allowed) = (model.friction.creep_speed(), MEMORY_SLACK * tolerance.relative);
         let of = |i: usize| {
             let error: f64 =
                 self.stages.iter().zip(&self.tableau.error).map(|(at, weight)| weight * at.memory_rate[i]).sum();

@@ -5,7 +5,6 @@
 //! solves at any v_t ([`SpeedMemory`]). What sticks ages by the exact solution.
 
 use super::dense_workspace::DenseWorkspace;
-use super::method::TimeSpan;
 use super::stage_values::StageValues;
 use crate::math::weighted_sum;
 use crate::model::{Mode, Model, SpeedMemory, State, aged, memory_rate};
@@ -69,10 +68,10 @@ impl StageMemory {
     }
 }
 
-/// Writes the speeds at the fraction `theta` of a step from `start`, for which the weights of `workspace` are set.
+/// Writes the speeds at the fraction `theta` of a step of length `h` (s) from `start`, for which the weights of `workspace` are set.
 pub(super) fn within(
     model: &Model,
-    (start, span, theta): (&State, TimeSpan, f64),
+    (start, h, theta): (&State, f64, f64),
     stages: &[StageValues],
     workspace: &DenseWorkspace,
     memory: &mut [f64],
@@ -83,34 +82,34 @@ pub(super) fn within(
     let rates = workspace.integral.iter().zip(stages).map(|(weight, stage)| (*weight, &stage.memory_rate[..]));
     weighted_sum(memory, std::iter::once((1.0, &start.memory[..])).chain(rates));
     for (i, memory) in memory.iter_mut().enumerate() {
-        *memory = exact_or(model, (start, span, theta), i, stages, *memory);
+        *memory = exact_or(model, (start, h, theta), i, stages, *memory);
     }
 }
 
 /// v_s of mass `i` alone there, m/s; `None` where friction has no memory.
 pub(super) fn of_mass_within(
     model: &Model,
-    (start, span, theta): (&State, TimeSpan, f64),
+    (start, h, theta): (&State, f64, f64),
     stages: &[StageValues],
     workspace: &DenseWorkspace,
     i: usize,
 ) -> Option<f64> {
     let remembered = start.memory.get(i)?;
     let gained = workspace.integral.iter().zip(stages).map(|(weight, stage)| weight * stage.memory_rate[i]);
-    Some(exact_or(model, (start, span, theta), i, stages, remembered + gained.sum::<f64>()))
+    Some(exact_or(model, (start, h, theta), i, stages, remembered + gained.sum::<f64>()))
 }
 
 /// v_s of mass `i`: the exact one if it sticks throughout, else the `interpolated` one.
 fn exact_or(
     model: &Model,
-    (start, span, theta): (&State, TimeSpan, f64),
+    (start, h, theta): (&State, f64, f64),
     i: usize,
     stages: &[StageValues],
     interpolated: f64,
 ) -> f64 {
     let sticks = start.mode[i] == Mode::Stick && stages.iter().all(|stage| stage.velocity_x[i] == 0.0);
     match model.friction.memory.filter(|_| sticks) {
-        Some(way) => aged(way, start.memory[i], theta * span.length),
+        Some(way) => aged(way, start.memory[i], theta * h),
         None => interpolated.max(0.0),
     }
 }

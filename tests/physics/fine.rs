@@ -128,7 +128,7 @@ fn heat_is_the_work_of_friction() {
 fn heated(friction: &str, fine: &str) -> Scene {
     let text = std::fs::read_to_string(file("fine-heat.toml")).unwrap();
     let (before, rest) = text.split_once("fine = {").unwrap();
-    let (_, rest) = rest.split_once("[friction]\nshear_strength = 1000000.0").unwrap();
+    let (_, rest) = rest.split_once("[friction]\nmemory = 0.0\nshear_strength = 1000000.0").unwrap();
     let text = format!("{before}fine = {{ {fine} }}\n{friction}\n{rest}");
     Scene::parse(&text, &file("heated.toml")).unwrap()
 }

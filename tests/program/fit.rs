@@ -248,7 +248,7 @@ fn vertical_shifts_are_taken_out() {
     let row = |kelvin: f64| format!("{kelvin},{:e},{:e}\n", shift(kelvin), b(kelvin));
     fs::write(&shifts, format!("T [K],a_T,b_T\n{}", kelvins.map(row).concat())).unwrap();
     let difference = |options: &[&str]| {
-        let (_, result) = fit(&data, &[options, &["--error", "1e-3"]].concat());
+        let (_, result) = fit(&data, &[options, &["--fit-error", "1e-3"]].concat());
         let printed = String::from_utf8(result.stdout).unwrap();
         let found = Scene::load(&scene_of(&folder, &printed)).unwrap().material.unwrap();
         (largest(&found, &sixteen(), &frequencies(-1, 2)), String::from_utf8(result.stderr).unwrap())

@@ -339,9 +339,9 @@ fn counts_beyond_the_memory_are_refused() {
     let block = root().join("scenes/tread-block/tread-block.toml");
     for command in ["simulate", "report"] {
         let output = folder.join(format!("{command}.csv"));
-        let arguments = [command, block.to_str().unwrap(), "-o", output.to_str().unwrap(), "--points", "4294967295"];
+        let arguments = [command, block.to_str().unwrap(), "-o", output.to_str().unwrap(), "--rows", "4294967295"];
         let message = refused(&arguments);
-        assert!(message.contains("--points: ") && message.contains("MB of memory"), "{command}: {message}");
+        assert!(message.contains("--rows: ") && message.contains("MB of memory"), "{command}: {message}");
         assert!(!output.exists(), "{command}");
     }
 }

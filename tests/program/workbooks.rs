@@ -99,7 +99,7 @@ fn sheets_named_by_temperature_are_one_set_of_data() {
     let (book, output) = (folder.join("dma.xlsx"), folder.join("out.csv"));
     let fit = |sheets: &[(&str, &str)]| {
         fs::write(&book, xlsx(sheets)).unwrap();
-        let options = ["--wlf", "7,120,293.15", "--error", "0.4"];
+        let options = ["--wlf", "7,120,293.15", "--fit-error", "0.4"];
         let result = asperity().arg("fit").arg(&book).arg("-o").arg(&output).args(options).output().unwrap();
         (String::from_utf8(result.stdout).unwrap(), String::from_utf8(result.stderr).unwrap())
     };

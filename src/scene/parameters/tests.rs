@@ -57,6 +57,7 @@ fn has_what_the_scene_names_in_its_order() {
         "layer.vertical.maxwell[2].relaxation_time",
         "layer.lateral_x.damping",
         "friction.shear_force",
+        "friction.memory",
         "friction.rate_shear.force",
         "friction.rate_shear.reference_speed",
         "friction.rate_shear.sharpness",

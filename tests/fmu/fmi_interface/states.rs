@@ -221,7 +221,7 @@ fn another_scene_or_format_is_refused_and_named() {
     assert!(refused(&fmu, &other.frozen()).contains("it is of another scene or another version"));
     let mut later = fmu.frozen();
     later[8] += 1;
-    assert!(refused(&fmu, &later).contains("its format is 12, expected 11"));
+    assert!(refused(&fmu, &later).contains("its format is 13, expected 12"));
     assert!(refused(&fmu, b"PK").contains("does not begin like one"));
 }
 

@@ -22,12 +22,14 @@ impl Row<'_> {
         self.record.rows[self.row][index]
     }
 
-    /// T(0) = μ F_N + A τ_0 + A τ_f(v_c) of a mass that sticks; the largest T(v) of another, N.
+    /// T(0) = μ F_N + A τ_0 + A τ_f(v_c) of a mass that sticks; the largest T(v) of another, or of one that remembers a
+    /// speed, N.
     fn limit(&self, normal: f64, mode: f64) -> f64 {
         let friction = self.case.scene.friction.clone().unwrap_or_default();
+        let at_rest = mode == 2.0 && friction.memory.is_none_or(|way| way == 0.0);
         let rate_shear = self.case.scene.rate_shear().map_or(0.0, |law| {
             let decades = (law.creep_speed() / law.reference_speed).log10();
-            law.force.unwrap_or(0.0) * if mode == 2.0 { (-law.sharpness * decades * decades).exp() } else { 1.0 }
+            law.force.unwrap_or(0.0) * if at_rest { (-law.sharpness * decades * decades).exp() } else { 1.0 }
         });
         friction.coulomb.unwrap_or(0.0) * normal + friction.shear_force.unwrap_or(0.0) + rate_shear
     }

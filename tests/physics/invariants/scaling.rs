@@ -29,6 +29,7 @@ impl Powers {
         match unit {
             Unit::One => 1.0,
             Unit::Meter => self.of(1, 0, 0),
+            Unit::MeterPerSecond => self.of(1, 0, -1),
             Unit::Second => self.of(0, 0, 1),
             Unit::Newton => self.of(1, 1, -2),
             Unit::Joule => self.of(2, 1, -2),
@@ -91,6 +92,8 @@ impl Powers {
         let [x, z] =
             [scene.surface.x(), scene.surface.z()].map(|points| points.iter().map(|value| value * length).collect());
         scene.surface = Surface::new(x, z, scene.surface.is_periodic());
+        let memory = scene.friction.iter_mut().flat_map(|friction| &mut friction.memory);
+        memory.for_each(|way| *way *= length);
         let shear = scene.friction.iter_mut().flat_map(|friction| &mut friction.shear_force);
         shear.for_each(|force| *force *= self.of(1, 1, -2));
         for law in scene.friction.iter_mut().flat_map(|friction| &mut friction.rate_shear) {

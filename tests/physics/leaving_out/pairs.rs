@@ -99,7 +99,12 @@ fn friction(whole: &Parts) -> [Pair; 4] {
         pair("friction", &of(None), &of(Some("coulomb = 0.0, shear_force = 0.0")), &["friction."]),
         pair("Coulomb", &of(Some("shear_force = 1e-4")), &of(Some("coulomb = 0.0, shear_force = 1e-4")), coulomb),
         pair("shear", &of(Some("coulomb = 0.3")), &of(Some("coulomb = 0.3, shear_force = 0.0")), shear),
-        pair("rate shear", &of(Some("coulomb = 0.3")), &of(Some(rate_shear)), &["friction.rate_shear."]),
+        pair(
+            "rate shear",
+            &of(Some("coulomb = 0.3")),
+            &of(Some(rate_shear)),
+            &["friction.rate_shear.", "friction.memory"],
+        ),
     ]
 }
 

@@ -17,7 +17,7 @@ fn what_is_probably_meant_is_said() {
         Scene::parse(&with_line(line, text), "a.toml".as_ref()).map(|_| ()).unwrap_err().to_string()
     };
     let meant = [
-        (4, "mases = 3", "did you mean layer.masses?"),
+        (4, "mases = 3", "did you mean layer.mass, layer.masses?"),
         (7, "coulomb = 0.3", "layer.coulomb: unknown"),
         (7, "coulomb = 0.3", "did you mean friction.coulomb?"),
         (21, "relative_tolerence = 1e-6", "did you mean solver.relative_tolerance?"),

@@ -110,7 +110,7 @@ const FRICTION: Format<Quantity, 7> = Format {
             Words::new(
                 Quantity::Way,
                 Dimension::Length,
-                "way distance s weg gleitweg",
+                "way distance weg gleitweg",
                 "sliding slid slip of the sample measured",
             ),
         ],

@@ -77,7 +77,7 @@ impl SceneReport {
         let rows = Rows::PerPhase(options.points).count(scene);
         let runs = 2 * options.tolerances.len() + rayon::current_num_threads() + MORE;
         check_memory(rows.saturating_mul(BYTES).saturating_mul(runs as u64), || {
-            format!("`points`: {rows} rows of each of {runs} runs")
+            format!("`rows`: {rows} rows of each of {runs} runs")
         })?;
         Ok(())
     }

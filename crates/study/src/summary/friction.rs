@@ -9,7 +9,8 @@ use super::fine::MIDDLE;
 use super::words::{LEFT_OUT, number, or_left_out};
 use crate::labelled::{LabelledLine, labelled};
 
-pub(super) fn friction(scene: &Scene) -> Vec<LabelledLine> {
+/// The friction of a scene; of the speeds of its excitation `all`, or that at which sliding is least even.
+pub(super) fn friction(scene: &Scene, all: bool) -> Vec<LabelledLine> {
     let Some(friction) = &scene.friction else { return vec![("Friction", LEFT_OUT.into())] };
     let coulomb = format!("coulomb      {}", or_left_out(friction.coulomb, ""));
     let shear = match friction.shear_strength {
@@ -23,7 +24,7 @@ pub(super) fn friction(scene: &Scene) -> Vec<LabelledLine> {
     let rate_shear = scene.rate_shear().map_or_else(|| LEFT_OUT.into(), |law| rate_shear_text(&law));
     let mut rows = vec![coulomb, shear, format!("rate_shear   {rate_shear}")];
     rows.extend(FallingFriction::of(scene).map(|falling| falling.describe()));
-    rows.extend(memory(scene));
+    rows.extend(memory(scene, all));
     labelled("Friction", rows)
 }
 
@@ -67,27 +68,35 @@ impl FallingFriction {
     }
 }
 
-/// The way over which contacts are renewed, and at the speeds of the excitation that for even sliding.
-fn memory(scene: &Scene) -> Vec<String> {
-    let speeds = EvenSliding::of(scene);
-    if speeds.is_empty() {
+/// The way over which contacts are renewed, and that for even sliding.
+fn memory(scene: &Scene, all: bool) -> Vec<String> {
+    if !scene.friction_depends_on_speed() {
         return Vec::new();
     }
     let area = scene.layer.element_area();
+    let way = scene.memory_way();
+    if !all {
+        let least_even = EvenSliding::of(scene).into_iter().max_by(|a, b| a.least_memory.total_cmp(&b.least_memory));
+        let needed = least_even.map_or_else(String::new, |at| {
+            let under = area.map_or_else(String::new, |area| format!(", {:.2} MPa", 1e-6 * at.normal / area));
+            format!("; even sliding takes {:.1e} m at {} m/s{under}", at.least_memory, number(at.speed))
+        });
+        return vec![format!("memory       {} m{needed}", number(way))];
+    }
     let row = |EvenSliding { speed, normal, least_memory }: EvenSliding| {
         let under = area.map_or_else(String::new, |area| format!(" under {:.2} MPa", 1e-6 * normal / area));
         let verdict = match least_memory {
             0.0 => "slides evenly at any".to_owned(),
-            least if least > scene.memory_way() => format!("sticks and slips below {least:.1e} m"),
+            least if least > way => format!("sticks and slips below {least:.1e} m"),
             least => format!("slides evenly above {least:.1e} m"),
         };
         format!("             at {speed:.3e} m/s{under} {verdict}")
     };
-    let way = match scene.memory_way() {
+    let renewed = match way {
         0.0 => "none: friction follows the speed at once".to_owned(),
         way => format!("contacts are renewed over {} m", number(way)),
     };
-    std::iter::once(format!("memory       {way}")).chain(speeds.into_iter().map(row)).collect()
+    std::iter::once(format!("memory       {renewed}")).chain(EvenSliding::of(scene).into_iter().map(row)).collect()
 }
 
 /// The law of the contacts, for a material at its temperature.

@@ -26,7 +26,7 @@ pub fn scene_rows(scene: &Scene) -> Vec<LabelledLine> {
     rows.extend(labelled("Foundation", foundation::rows(scene)));
     rows.extend(labelled("Order", [paper_order(scene), order_as_coded(scene)]));
     rows.push(("Profile", profile(&scene.surface)));
-    rows.extend(friction(scene));
+    rows.extend(friction(scene, true));
     rows.extend(labelled("Fine", fine::rows(scene)));
     rows.extend(labelled("Outputs", OutputGroup::ALL.map(|group| outputs(scene, group))));
     rows.push(("Solver", solver(scene)));

@@ -23,7 +23,7 @@ pub(super) fn short_scene_rows(scene: &Scene) -> Vec<LabelledLine> {
     rows.push(("Profile", profile(&scene.surface)));
     rows.extend(labelled(
         "Friction",
-        friction(scene).into_iter().map(|(_, text)| text).filter(|text| !is_left_out(text)),
+        friction(scene, false).into_iter().map(|(_, text)| text).filter(|text| !is_left_out(text)),
     ));
     rows.extend(labelled("Fine", fine::short_rows(scene)));
     rows.extend(carrier(scene));
