@@ -177,10 +177,14 @@ impl ErrorTest<'_> {
     /// The sum of squares of the errors of the velocities of slipping masses, by what changes the friction of the roughness
     /// below the profile, a function of ln v.
     fn creep_squares(&self, model: &Model, tolerance: &Tolerance, velocity_error: &[f64]) -> f64 {
-        let Some(creep_speed) = model.friction.creep_end(0.0) else { return 0.0 };
+        let Some(creep_speed) = model.friction.fine_creep_speed() else { return 0.0 };
         let slowest = creep_speed.max(UNRESOLVED * tolerance.velocity);
         let allowed = CREEP_SLACK[self.modes as usize] * tolerance.relative;
-        let of = |&i: &usize| square(velocity_error[i] / (allowed * self.end.velocity_x[i].abs().max(slowest)));
+        let of = |&i: &usize| {
+            let remembered = self.end.memory.get(i).copied().unwrap_or(0.0);
+            let speed = self.end.velocity_x[i].abs().max(slowest).max(remembered);
+            square(velocity_error[i] / (allowed * speed))
+        };
         self.contacts.iter().filter(|&&i| self.end.mode[i].slips()).map(of).sum()
     }
 

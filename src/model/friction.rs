@@ -225,6 +225,11 @@ impl FrictionLaw {
         self.slip_curve(normal, history).map_or(speed + by, |curve| curve.along_curve(speed, by, weight))
     }
 
+    /// v_c of the roughness below the profile at the layer's temperature, m/s, where friction on it depends on the speed.
+    pub fn fine_creep_speed(&self) -> Option<f64> {
+        Some(self.fine.as_ref().filter(|fine| fine.depends_on_speed())?.creep_speed())
+    }
+
     /// v_c (m/s), up to which contacts on the roughness below the profile slip as at rest, at the flash temperature
     /// `flash` (K); `None` without it, and where friction follows the remembered speed, which changes over a way.
     pub fn creep_end(&self, flash: f64) -> Option<f64> {

@@ -176,5 +176,6 @@ fn the_tread_block_in_rubber_is_converged() {
     // Of first order in the spacing: 9.6 %, and 4 % with the next halving.
     assert_relative("area", area, coarse_area, 0.1);
     let [loose_friction, _] = block(&[("relative_tolerance = 1.0e-3", "relative_tolerance = 1.0e-2")], &folder);
-    assert_relative("friction at 1e-2", loose_friction, friction, 1e-3);
+    // A fifth of the tolerance; where friction follows the speed at once steps are shorter, and it is 1e-4.
+    assert_relative("friction at 1e-2", loose_friction, friction, 3e-3);
 }
