@@ -10,10 +10,10 @@ pub type Sheets = Vec<(String, String)>;
 ///
 /// # Errors
 /// [`ContentError`] where none can be read, that of the longest; or several can.
-fn only_sheet<'s, T>(
-    sheets: &'s [(String, String)],
+fn only_sheet<T>(
+    sheets: &[(String, String)],
     read: impl Fn(&[u8]) -> Result<T, ContentError>,
-) -> Result<(T, &'s str, ReadingNote), ContentError> {
+) -> Result<(T, &str, ReadingNote), ContentError> {
     let filled = sheets.iter().filter(|(_, text)| !text.trim().is_empty());
     let (mut found, mut errors) = (Vec::new(), Vec::new());
     for (name, text) in filled {
