@@ -112,6 +112,10 @@ impl<T: Number> ElementBlock<T> {
         // Whether `end` holds the elements at the begin of the substep.
         let mut is_evaluated = false;
         for substep in step.substeps.iter() {
+            // Another block has found that the step is given up.
+            if step.work.is_exceeded() {
+                break;
+            }
             // None is on the face: there is nothing to do, and `end` falls behind.
             if !step.is_inside(self.start, self.count, substep) {
                 is_evaluated = false;
