@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Sweeps the compound over the road at three temperatures and pressures, slides the locked wheel and draws both: all in
-# FOLDER, by default target/road. With --sweep the wheel, which takes minutes, is left out.
+# FOLDER, by default target/road. With --sweep the wheel, which takes longer, is left out.
 #
 #   scenes/road/run.sh [FOLDER [--sweep]]
 set -euo pipefail
