@@ -175,6 +175,6 @@ def fit(
         )
     for text in native.warnings:
         warnings.warn(text, stacklevel=3)
-    if native.error > error:
+    if native.error > fit_error:
         warnings.warn(f"the error asked for, {fit_error:g}, cannot be reached: it is {native.error:.3g}", stacklevel=3)
     return Fit(native)
