@@ -68,9 +68,8 @@ fn weakening(model: &Model, start: Option<&State>, state: &State, forces: &Force
 fn weakening_with_memory(model: &Model, way: f64, state: &State, forces: &Forces) -> f64 {
     let slipping = (0..model.masses()).filter(|&i| state.mode[i].slips());
     let falls = slipping.map(|i| {
-        let (contact, speed) = (forces.contact(model, state, i), state.memory[i]);
-        let curve = model.friction.slip_curve(contact.normal, &SlipHistory::even(state.flash(i)));
-        let fall = -speed * curve.map_or(0.0, |curve| curve.with_slope(speed).1);
+        let (normal, speed) = (forces.contact(model, state, i).normal, state.memory[i]);
+        let fall = model.friction.fall(normal, speed, state.flash(i));
         if fall * BOUND_ACCURACY > model.bearable_fall(way, speed) { fall } else { 0.0 }
     });
     (falls.fold(0.0, f64::max) / (model.mass * way)).sqrt()

@@ -68,7 +68,8 @@ impl StageMemory {
     }
 }
 
-/// Writes the speeds at the fraction `theta` of a step of length `h` (s) from `start`, for which the weights of `workspace` are set.
+/// Writes the speeds at the fraction `theta` of a step of length `h` (s) from `start`, for which the weights of `workspace`
+/// are set.
 pub(super) fn within(
     model: &Model,
     (start, h, theta): (&State, f64, f64),

@@ -7,7 +7,7 @@ use std::f64::consts::{SQRT_2, TAU};
 
 use libm::erf;
 
-use super::{FrictionLaw, LinkKind, Model, SlipHistory};
+use super::{LinkKind, Model};
 use crate::math::bracketed_root;
 use crate::scene::{Phase, Scene};
 
@@ -37,7 +37,7 @@ impl Model {
     /// The way over which contacts under F_N (N) have to be renewed so that they slide evenly at `speed` (m/s), m; 0 where
     /// they do without.
     pub fn least_memory(&self, normal: f64, speed: f64) -> f64 {
-        let fall = fall(&self.friction, normal, speed);
+        let fall = self.friction.fall(normal, speed, 0.0);
         let residual = |log_way: f64| self.bearable_fall(log_way.exp(), speed) - fall;
         let ends = (WAYS.0.ln(), WAYS.1.ln());
         if fall <= 0.0 || residual(ends.0) >= 0.0 {
@@ -45,12 +45,6 @@ impl Model {
         }
         if residual(ends.1) <= 0.0 { WAYS.1 } else { bracketed_root(residual, ends, ACCURACY).exp() }
     }
-}
-
-/// v |∂T/∂v| where friction under F_N (N) falls at the speed v (m/s), N; below 0 where it rises.
-fn fall(law: &FrictionLaw, normal: f64, speed: f64) -> f64 {
-    let curve = law.slip_curve(normal, &SlipHistory::even(0.0));
-    -speed * curve.map_or(0.0, |curve| curve.with_slope(speed).1)
 }
 
 impl EvenSliding {

@@ -191,6 +191,13 @@ impl FrictionLaw {
         self.depends_on_speed().then_some(SlipCurve { law: self, fine, normal, history: *history })
     }
 
+    /// v |∂T/∂v| where friction under F_N (N) falls at the `speed` v (m/s) of even sliding, N, at the flash temperature
+    /// `flash`, K; below 0 where it rises, and 0 where it does not depend on the speed.
+    pub fn fall(&self, normal: f64, speed: f64, flash: f64) -> f64 {
+        let curve = self.slip_curve(normal, &SlipHistory::even(flash));
+        -speed * curve.map_or(0.0, |curve| curve.with_slope(speed).1)
+    }
+
     /// Friction under F_N (N) at the `speed` in the direction of slip, m/s. On roughness below the profile `limit` is then
     /// Coulomb's part alone and `excess` the rest, unless the mass has turned round: their sum is what counts.
     #[inline]

@@ -27,7 +27,6 @@ fn on_slopes(case: &str, scene: &Scene, surface: SurfaceGrid) {
             ("fine hysteresis", found.fine_hysteresis.unwrap_or(0.0), number("friction_fine [1]")),
             ("adhesion", found.adhesion.unwrap(), number("friction_adhesion [1]")),
         ] {
-            println!("{}: {found} for {expected}, {:.1e}", what(part), (found - expected) / whole);
             let allowed = (1e-3 * expected.abs()).max(1e-12);
             assert!((found - expected).abs() <= allowed, "{}: {found} for {expected}", what(part));
         }
@@ -67,7 +66,6 @@ fn coulombs_friction_on_a_sine_in_full_contact_has_a_closed_form() {
         let r = 1.0 / (1.0 - (mu * b).powi(2)).sqrt();
         // The hysteresis of the profile, (qa)² Im M/(4p), is that which the contacts multiply.
         let exact = mu * r + (r - 1.0) / mu + loss / (2.0 * p) * (1.0 + 1.0 / (mu * mu)) * (r - 1.0);
-        println!("{mu} {b} {speed}: {} for {exact}", friction(&found));
         assert_relative("friction", friction(&found), exact, 1e-6);
     }
 }

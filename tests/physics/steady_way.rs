@@ -21,7 +21,6 @@ fn rubber_warms_over_its_way_as_an_independent_program_says() {
         let found = solver.slide_over(&warm, speed, pressure, Some(way).filter(|way| *way > 0.0));
         assert!(found.heat_converged, "{speed} m/s, {way} m");
         let (flash, rise) = (found.flash_mean.unwrap(), found.surface_rise.unwrap_or(0.0));
-        println!("{speed} m/s, {way} m: {} {flash} {rise}", friction(&found));
         assert_relative("friction", friction(&found), number("friction [1]"), 1e-2);
         assert_relative("flash", flash, number("flash_mean [K]"), 2e-2);
         let expected = number("rise of the surface [K]");
@@ -53,7 +52,6 @@ fn a_constant_power_warms_as_a_half_space() {
         let power = speed * 1e6 * friction(&found);
         let effusivity = (0.25_f64 * 1700.0 * 1100.0).sqrt();
         let exact = 2.0 * 0.5 * power * (way / speed / std::f64::consts::PI).sqrt() / effusivity;
-        println!("{way} m, {speed} m/s: {} for {exact}", found.surface_rise.unwrap());
         assert_relative("rise", found.surface_rise.unwrap(), exact, 1e-3);
     }
 }
