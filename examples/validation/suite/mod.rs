@@ -6,6 +6,7 @@ pub mod page;
 pub mod picture;
 pub mod row;
 pub mod sliding;
+pub mod viscoelastic;
 
 use std::path::Path;
 
@@ -17,4 +18,12 @@ pub fn root() -> &'static Path {
 }
 
 /// In the order of the page.
-pub const ALL: &[Entry] = &[elastic::CYLINDER, elastic::SPHERE, elastic::WAVE, elastic::WAVES];
+pub const ALL: &[Entry] = &[
+    elastic::CYLINDER,
+    elastic::SPHERE,
+    elastic::WAVE,
+    elastic::WAVES,
+    viscoelastic::ROLLING,
+    viscoelastic::CYLINDERS,
+    viscoelastic::FULL,
+];
