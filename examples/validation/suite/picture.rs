@@ -3,6 +3,7 @@
 use plotters::coord::combinators::IntoLogRange;
 use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
+use plotters::style::register_font;
 
 /// Curves over axes.
 #[derive(Clone, Debug)]
@@ -41,11 +42,14 @@ impl Curve {
 const COLOURS: [RGBColor; 5] =
     [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167), RGBColor(70, 70, 70)];
 const INK: RGBColor = RGBColor(40, 40, 40);
+/// What text is measured by; viewers draw it with a font of their own.
+const FONT: &[u8] = include_bytes!("../../../crates/cli/src/figure/font/DejaVuSans.ttf");
 const SIZE: (u32, u32) = (640, 360);
 
 impl Picture {
     /// The file's text.
     pub fn svg(&self) -> String {
+        assert!(register_font("sans-serif", FontStyle::Normal, FONT).is_ok());
         let points = || self.curves.iter().flat_map(|curve| &curve.points);
         let ends = |of: fn(&(f64, f64)) -> f64| {
             points().map(of).fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(value), high.max(value)))
