@@ -23,4 +23,5 @@ mod steady;
 mod surface;
 mod sweep;
 mod told;
+mod validation;
 mod workbooks;

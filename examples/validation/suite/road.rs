@@ -6,7 +6,7 @@ use asperity_study::decimals::short;
 use asperity_study::steady::{SlidingRubber, SteadySolver, SurfaceGrid};
 use asperity_study::sweep::{StopBounds, steady_sliding};
 
-use super::picture::{Curve, Picture};
+use super::picture::{Curve, Legend, Picture};
 use super::root;
 use super::row::{Claim, Comparison, Entry, Row};
 
@@ -113,6 +113,7 @@ fn tread() -> Comparison {
             x: "speed in m/s",
             y: "friction coefficient",
             is_logarithmic: true,
+            legend: Legend::LowerRight,
             curves: vec![Curve::line("20 °C", curve), Curve::line("40 °C", speeds.into_iter().zip(hot).collect())],
         }],
         remark: "In words. *Where the maximum lies*: Grosch found one maximum of adhesion, on smooth tracks at centimetres a second near room \
@@ -120,8 +121,8 @@ fn tread() -> Comparison {
                  largest at 6 mm/s for one compound. The place here follows an input (20 mm/s), so it is no prediction. *Level*: compounds on \
                  asphalt and concrete slide at 0.6 to 1.4; here it follows from spectrum, moduli and the shear strength's height, and moves \
                  in proportion to the latter and with the shortest wave of the road, which is a choice. *Fall*: measured curves fall above \
-                 the maximum, where contacts warm too; here adhesion falls, and above 1 m/s hysteresis rises again, more than \
-                 measurements on roads show. Nothing of this validates a coefficient for your compound on your road: for that there is \
+                 the maximum, where contacts warm too; here adhesion falls, and above 1 m/s hysteresis rises again, for which we \
+                 have no measurement. Nothing of this validates a coefficient for your compound on your road: for that there is \
                  `asperity calibrate`."
             .into(),
     }
