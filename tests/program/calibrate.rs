@@ -16,8 +16,8 @@ fn road(folder: &Path, name: &str, [strength, speed, sharpness, shortest, share]
     let heat =
         format!("\nheat = {{ conductivity = 0.25, capacity = 1700.0, share = {share} }}  # what the road leaves\n");
     let replaced = [
-        ("strength = 5.0e6", format!("strength = {strength:e}")),
-        ("reference_speed = 2.0e-2", format!("reference_speed = {speed:e}")),
+        ("strength = 6.5e6", format!("strength = {strength:e}")),
+        ("reference_speed = 6.0e-3", format!("reference_speed = {speed:e}")),
         ("sharpness = 0.1", format!("sharpness = {sharpness}")),
         ("shortest = 5.0e-6", format!("shortest = {shortest:e}")),
         ("\n[surface]", format!("{heat}\n[surface]")),
