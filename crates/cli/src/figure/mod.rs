@@ -3,7 +3,10 @@
 mod axis;
 mod caption;
 mod chart;
+mod contours;
 mod difference;
+mod field_grid;
+mod grid_frame;
 mod ladders;
 mod layer;
 mod maps;
@@ -29,6 +32,8 @@ use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyl
 
 pub(crate) use caption::RUBBER_SLIDES;
 pub(crate) use chart::{Curve, Stroke};
+pub(crate) use field_grid::{FieldGrid, FieldPanel, MeasuredPlace};
+pub(crate) use grid_frame::GridAxis;
 pub(crate) use ladders::{Ladder, LadderPanel, Ladders, Rung};
 pub(crate) use layer::LayerPicture;
 pub(crate) use panels::{
