@@ -24,7 +24,7 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use super::calibrate::calibrate;
+    use super::calibrate::{calibrate, with_covariance};
     #[pymodule_export]
     use super::compare::compare;
     #[pymodule_export]

@@ -22,5 +22,6 @@ mod spoken;
 mod steady;
 mod surface;
 mod sweep;
+mod sweep_maps;
 mod told;
 mod workbooks;

@@ -60,6 +60,7 @@ def calibrate(
     error: float | None,
     distance: float | None,
 ) -> dict[str, Any]: ...
+def with_covariance(text: str, file: str, keys: list[str]) -> str: ...
 def fit(
     data: Path,
     error: float,
