@@ -23,7 +23,8 @@
 //! | [`runner`] | progress | a scene along its excitation, row by row |
 //! | [`run_figures`] | implausible | forces and friction of a run, what it cost, and what would make it cheaper |
 //! | [`steady`] | | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
-//! | [`sweep`] | decimals, files, implausible, progress, steady | friction over speed, load and temperature, as a table |
+//! | [`uncertainty`] | settings | scenes drawn from what is not known of one: Sobol' points, distributions, indices |
+//! | [`sweep`] | decimals, files, implausible, progress, steady, uncertainty | friction over speed, load and temperature, as a table |
 //! | [`contact`] | implausible, steady, sweep | the contact of a surface in steady sliding |
 //! | [`converge`] | decimals, files, settings, steady, sweep | whether area and friction depend on spacing, length or chance |
 //! | [`calibration`] | decimals, files, implausible, settings, steady, sweep | free numbers of a scene from measured friction: models, least squares, errors, plans |
@@ -67,3 +68,4 @@ pub mod steady;
 pub mod summary;
 pub mod surface;
 pub mod sweep;
+pub mod uncertainty;
