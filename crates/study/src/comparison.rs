@@ -148,6 +148,15 @@ fn deviation((row, friction): &(Measured, f64)) -> f64 {
     (friction - row.friction) / row.sigma_or_assumed()
 }
 
+/// Friction of a table at a point: between its points linear in the logarithms of speed and pressure, and in the
+/// temperature.
+///
+/// # Errors
+/// Where it lies beyond the table, or beside a point of it without a result.
+pub fn swept_friction(table: &SweepTable, point: &OperatingPoint) -> Result<f64, NoFriction> {
+    SweptFriction { table }.at(point)
+}
+
 /// Friction of a table between its points: linear in the logarithms of speed and pressure, and in the temperature.
 #[derive(Debug)]
 struct SweptFriction<'a> {

@@ -2,9 +2,10 @@
 
 use std::fmt;
 
+use asperity::element::{OperatingPoint, SweepGrid};
 use asperity::tables::{Dimension, POSITIVE, Unit, quantity};
 
-use asperity_study::decimals::rounded;
+use asperity_study::decimals::{as_given, rounded};
 
 /// Values of a quantity, rising, each once.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,6 +128,49 @@ impl SweptQuantity {
     /// Whether it is the load.
     pub(crate) fn is_load(self) -> bool {
         matches!(self, Self::Pressure | Self::Force)
+    }
+
+    pub(crate) fn unit(self) -> &'static str {
+        match self {
+            Self::Speed => "m/s",
+            Self::Pressure => "Pa",
+            Self::Force => "N",
+            Self::Temperature => "K",
+        }
+    }
+
+    /// A value of it, for reading.
+    pub(crate) fn named(self, value: f64) -> String {
+        match self {
+            Self::Temperature => format!("{value} K"),
+            quantity => as_given(value, quantity.unit()),
+        }
+    }
+
+    /// The values of a sweep; those of its loads, whichever they are.
+    pub(crate) fn values(self, grid: &SweepGrid) -> &[f64] {
+        match self {
+            Self::Speed => &grid.speeds,
+            Self::Pressure | Self::Force => &grid.loads,
+            Self::Temperature => &grid.temperatures,
+        }
+    }
+
+    /// Its value at a point.
+    pub(crate) fn of(self, point: &OperatingPoint) -> Option<f64> {
+        match self {
+            Self::Speed => Some(point.speed),
+            Self::Pressure | Self::Force => Some(point.load),
+            Self::Temperature => point.temperature,
+        }
+    }
+
+    pub(crate) fn set(self, point: &mut OperatingPoint, value: f64) {
+        match self {
+            Self::Speed => point.speed = value,
+            Self::Pressure | Self::Force => point.load = value,
+            Self::Temperature => point.temperature = Some(value),
+        }
     }
 }
 

@@ -1,12 +1,14 @@
 //! Maps over two quantities, side by side and below each other, all over the same axes: where they stand in a figure,
 //! and what is around them.
 
+use asperity::element::SweepGrid;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::axis::{Axis, Fit};
 use super::chart::{BELOW, LEFT, LEGEND_LINE, Legend, MARGIN, RIGHT_MARGIN, context, draw_axes_without_lines};
 use super::{Backend, Canvas, DrawResult, FINE, TEXT_SIZE, TITLE_SIZE, text_style};
+use crate::cli::sweep_values::SweptQuantity;
 
 /// The size of a map alone, and of one of several.
 const ALONE: (u32, u32) = (560 * FINE, 420 * FINE);
@@ -28,6 +30,16 @@ pub(crate) struct GridAxis {
 }
 
 impl GridAxis {
+    /// That of a quantity of a sweep: logarithmic where its values go by decades.
+    pub(crate) fn of(quantity: SweptQuantity, grid: &SweepGrid) -> Self {
+        /// From this ratio on loads do.
+        const DECADE: f64 = 10.0;
+        let values = quantity.values(grid).to_vec();
+        let spans_decade = values.first().zip(values.last()).is_some_and(|(low, high)| *high >= DECADE * low);
+        let is_logarithmic = quantity == SweptQuantity::Speed || (quantity.is_load() && spans_decade);
+        Self { quantity: quantity.word(), unit: quantity.unit(), values, is_logarithmic }
+    }
+
     pub(super) fn axis(&self) -> Axis {
         let values = self.values.iter().copied();
         match self.is_logarithmic {
@@ -154,5 +166,19 @@ impl GridFrame<'_> {
             draw_axes_without_lines(&mut context(&own, "", &x, &y)?, &x, &y)?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn loads_are_logarithmic_from_a_decade_on() {
+        let axis = |loads: &[f64]| {
+            let grid = SweepGrid { speeds: vec![1.0], loads: loads.to_vec(), temperatures: vec![] };
+            GridAxis::of(SweptQuantity::Pressure, &grid).is_logarithmic
+        };
+        assert!(axis(&[1e5, 1e6]) && !axis(&[1e5, 9e5]));
     }
 }

@@ -3,10 +3,9 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use asperity::element::{Load, OperatingPoint, Quantity, SweepGrid, TableHeader, some_of};
+use asperity::element::{Load, Quantity, SweepGrid, TableHeader, some_of};
 use asperity_study::calibration::{Measured, left_out_in_words};
 use asperity_study::comparison::{ComparisonError, measured_beside};
-use asperity_study::decimals::as_given;
 use asperity_study::sweep::{SweepTable, way_of};
 
 use crate::cli::sweep_values::{Over, SweptQuantity};
@@ -53,7 +52,7 @@ impl Maps {
             return Err(MapError::OtherLoad { over, asked: asked.word(), found: load.word(), instead });
         }
         for quantity in over.0 {
-            let values = values(quantity, &header.grid);
+            let values = quantity.values(&header.grid);
             if values.is_empty() {
                 return Err(MapError::NoTemperature { over });
             }
@@ -74,14 +73,14 @@ impl Maps {
 
     /// The picture; warns of what it has no place for.
     pub(super) fn picture(&self, table: &SweepTable) -> FieldGrid {
-        let [x, y] = self.over.0.map(|quantity| axis(quantity, &table.header.grid));
+        let [x, y] = self.over.0.map(|quantity| GridAxis::of(quantity, &table.header.grid));
         let (places, left_out) = self.placed(table, [&x, &y]);
         let unseen = left_out.iter().map(|(row, why)| (vec![row.line], row.point, why));
         left_out_in_words(unseen, self.measured.len()).iter().for_each(|text| warn(text));
         let panel = |(index, third): (usize, Option<f64>)| {
             let values = self.values(table, third);
             FieldPanel {
-                title: third.map(|value| self.named(value)).unwrap_or_default(),
+                title: third.map(|value| self.third.named(value)).unwrap_or_default(),
                 ridges: ridges(&x, &y, &values),
                 values,
                 measured: places.iter().filter(|(panel, _)| *panel == index).map(|(_, place)| *place).collect(),
@@ -118,15 +117,8 @@ impl Maps {
 
     /// The values of the third quantity: a panel each; of a scene without temperatures one without a name.
     fn thirds(&self, grid: &SweepGrid) -> Vec<Option<f64>> {
-        let values = values(self.third, grid);
+        let values = self.third.values(grid);
         if values.is_empty() { vec![None] } else { values.iter().copied().map(Some).collect() }
-    }
-
-    fn named(&self, value: f64) -> String {
-        match self.third {
-            SweptQuantity::Temperature => format!("{value} K"),
-            quantity => as_given(value, unit(quantity)),
-        }
     }
 
     /// Friction on the grid of a panel.
@@ -138,11 +130,11 @@ impl Maps {
                 found[index] = row.value(Quantity::Friction);
             }
         }
-        let [x, y] = self.over.0.map(|quantity| values(quantity, grid));
+        let [x, y] = self.over.0.map(|quantity| quantity.values(grid));
         let at = |x: f64, y: f64| {
             let mut point = grid.point(0);
-            self.over.0.iter().zip([x, y]).for_each(|(quantity, value)| set(&mut point, *quantity, value));
-            third.iter().for_each(|value| set(&mut point, self.third, *value));
+            self.over.0.iter().zip([x, y]).for_each(|(quantity, value)| quantity.set(&mut point, value));
+            third.iter().for_each(|value| self.third.set(&mut point, *value));
             found[grid.index(&point)?]
         };
         y.iter().flat_map(|&y| x.iter().map(move |&x| (x, y))).map(|(x, y)| at(x, y)).collect()
@@ -161,8 +153,8 @@ impl Maps {
                 left_out.push((*row, NoPlace::OtherWay));
                 continue;
             }
-            let [x, y] = self.over.0.map(|quantity| get(&row.point, quantity));
-            let own = get(&row.point, self.third);
+            let [x, y] = self.over.0.map(|quantity| quantity.of(&row.point));
+            let own = self.third.of(&row.point);
             let panel = thirds.iter().position(|third| match (third, own) {
                 (Some(third), Some(own)) => is_like(self.third, *third, own),
                 _ => true,
@@ -213,53 +205,6 @@ fn example(quantity: SweptQuantity) -> &'static str {
         SweptQuantity::Force => "forces 10..100/5",
         SweptQuantity::Temperature => "temperatures 0°C..40°C/5",
     }
-}
-
-fn unit(quantity: SweptQuantity) -> &'static str {
-    match quantity {
-        SweptQuantity::Speed => "m/s",
-        SweptQuantity::Pressure => "Pa",
-        SweptQuantity::Force => "N",
-        SweptQuantity::Temperature => "K",
-    }
-}
-
-fn values(quantity: SweptQuantity, grid: &SweepGrid) -> &[f64] {
-    match quantity {
-        SweptQuantity::Speed => &grid.speeds,
-        SweptQuantity::Pressure | SweptQuantity::Force => &grid.loads,
-        SweptQuantity::Temperature => &grid.temperatures,
-    }
-}
-
-fn get(point: &OperatingPoint, quantity: SweptQuantity) -> Option<f64> {
-    match quantity {
-        SweptQuantity::Speed => Some(point.speed),
-        SweptQuantity::Pressure | SweptQuantity::Force => Some(point.load),
-        SweptQuantity::Temperature => point.temperature,
-    }
-}
-
-fn set(point: &mut OperatingPoint, quantity: SweptQuantity, value: f64) {
-    match quantity {
-        SweptQuantity::Speed => point.speed = value,
-        SweptQuantity::Pressure | SweptQuantity::Force => point.load = value,
-        SweptQuantity::Temperature => point.temperature = Some(value),
-    }
-}
-
-/// The axis of a quantity: logarithmic where its values go by decades.
-fn axis(quantity: SweptQuantity, grid: &SweepGrid) -> GridAxis {
-    /// From this ratio on loads do.
-    const DECADE: f64 = 10.0;
-    let values = values(quantity, grid).to_vec();
-    let spans_decade = values.first().zip(values.last()).is_some_and(|(low, high)| *high >= DECADE * low);
-    let is_logarithmic = match quantity {
-        SweptQuantity::Speed => true,
-        SweptQuantity::Temperature => false,
-        SweptQuantity::Pressure | SweptQuantity::Force => spans_decade,
-    };
-    GridAxis { quantity: quantity.word(), unit: unit(quantity), values, is_logarithmic }
 }
 
 /// Lines of x and y through the largest value of each row that has it inside: at the vertex of the parabola through the
@@ -326,14 +271,5 @@ mod tests {
         assert_eq!(top(&x, &[None; 4]), None);
         let even = top(&x, &[Some(0.0), Some(1.0), Some(0.0), None]).unwrap();
         assert!((even / x.values[1] - 1.0).abs() < 1e-12, "{even}");
-    }
-
-    #[test]
-    fn loads_are_logarithmic_from_a_decade_on() {
-        let axis = |loads: &[f64]| {
-            let grid = SweepGrid { speeds: vec![1.0], loads: loads.to_vec(), temperatures: vec![] };
-            axis(SweptQuantity::Pressure, &grid).is_logarithmic
-        };
-        assert!(axis(&[1e5, 1e6]) && !axis(&[1e5, 9e5]));
     }
 }
