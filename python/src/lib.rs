@@ -11,6 +11,7 @@ mod errors;
 mod fit;
 mod pack;
 mod patch;
+mod rank;
 mod run;
 mod scene;
 mod simulation;
@@ -37,6 +38,8 @@ mod _native {
     use super::fit::{Fit, fit};
     #[pymodule_export]
     use super::patch::{Patch, PatchRun, PatchState};
+    #[pymodule_export]
+    use super::rank::rank;
     #[pymodule_export]
     use super::run::simulate;
     #[pymodule_export]

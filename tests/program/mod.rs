@@ -15,6 +15,7 @@ mod patch_maps;
 mod patch_simulate;
 mod peers;
 mod pictures;
+mod rank;
 mod report;
 mod scene_errors;
 mod seal_ring;

@@ -28,6 +28,22 @@ def sweep(
     distance: float | None,
     progress: _Progress,
 ) -> tuple[str, list[str]]: ...
+def rank(
+    scenes: list[Scene],
+    speeds: list[float],
+    pressures: list[float] | None,
+    forces: list[float] | None,
+    temperatures: list[float] | None,
+    weights: Path | None,
+    samples: tuple[int, int],
+    data: Path | None,
+    method: str | None,
+    way: float | None,
+    points: int | None,
+    error: float | None,
+    distance: float | None,
+    progress: _Progress,
+) -> dict[str, Any]: ...
 def contact(
     scene: Scene, pressure: float, speed: float, way: float | None, points: int | None
 ) -> dict[str, Any]: ...
