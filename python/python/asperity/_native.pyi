@@ -28,6 +28,22 @@ def sweep(
     distance: float | None,
     progress: _Progress,
 ) -> tuple[str, list[str]]: ...
+def rank(
+    scenes: list[Scene],
+    speeds: list[float],
+    pressures: list[float] | None,
+    forces: list[float] | None,
+    temperatures: list[float] | None,
+    weights: Path | None,
+    samples: tuple[int, int],
+    data: Path | None,
+    method: str | None,
+    way: float | None,
+    points: int | None,
+    error: float | None,
+    distance: float | None,
+    progress: _Progress,
+) -> dict[str, Any]: ...
 def contact(
     scene: Scene, pressure: float, speed: float, way: float | None, points: int | None
 ) -> dict[str, Any]: ...
@@ -60,6 +76,7 @@ def calibrate(
     error: float | None,
     distance: float | None,
 ) -> dict[str, Any]: ...
+def with_covariance(text: str, file: str, keys: list[str]) -> str: ...
 def fit(
     data: Path,
     error: float,
