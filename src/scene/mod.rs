@@ -28,6 +28,7 @@ mod seam;
 mod self_affine;
 mod spectrum;
 mod surface;
+mod uncertainty;
 mod values;
 mod warnings;
 
@@ -68,6 +69,9 @@ pub use regular_file::{read_file, read_text};
 pub use self_affine::SelfAffine;
 pub use spectrum::{Band, PowerLaw, Spectrum};
 pub use surface::{MeanLine, Surface, peak_to_valley};
+pub use uncertainty::{
+    Covariance, Distribution, FittedNumber, Scale, SpectrumFactors, Spread, UncertainKey, Uncertainty, decade_of,
+};
 pub use values::{LOOSEST_TOLERANCE, Unit, Value, is_possible};
 
 /// A whole scene, checked. Serialised, it is every number of it: what the scene does not name is null or empty.
@@ -104,6 +108,9 @@ pub struct Scene {
     pub fmu: FmuOptions,
     /// The motion of the carrier in runs without a master.
     pub excitation: Vec<Phase>,
+    /// What is not known of it; no run depends on that.
+    #[serde(skip)]
+    pub uncertainty: Uncertainty,
     /// The files that the scene reads and an FMU carries: relative to its folder, as the scene names them; a line of an
     /// areal measurement by the name of its extract.
     #[serde(skip)]

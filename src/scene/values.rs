@@ -177,6 +177,13 @@ impl Unit {
         unit.map(|_| if self == Self::Hertz { number / TAU } else { number })
     }
 
+    /// The difference of two numbers that a text such as `2 °C` gives, in this unit, as [`read`](Self::read) a number.
+    pub(super) fn read_difference(self, text: &str) -> Option<f64> {
+        let (number, unit) = quantity(text, self.dimension()?)?;
+        let difference = number - unit?.to_si(0.0);
+        Some(if self == Self::Hertz { difference / TAU } else { difference })
+    }
+
     /// The units that [`read`](Self::read) knows, for messages; empty where there is none.
     pub(super) fn readable(self) -> String {
         self.dimension().map(Dimension::units).unwrap_or_default()

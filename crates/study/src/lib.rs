@@ -23,11 +23,13 @@
 //! | [`runner`] | progress | a scene along its excitation, row by row |
 //! | [`run_figures`] | implausible | forces and friction of a run, what it cost, and what would make it cheaper |
 //! | [`steady`] | | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
-//! | [`sweep`] | decimals, files, implausible, progress, steady | friction over speed, load and temperature, as a table |
+//! | [`uncertainty`] | settings | scenes drawn from what is not known of one: Sobol' points, distributions, indices |
+//! | [`sweep`] | decimals, files, implausible, progress, steady, uncertainty | friction over speed, load and temperature, as a table |
 //! | [`contact`] | implausible, steady, sweep | the contact of a surface in steady sliding |
 //! | [`converge`] | decimals, files, settings, steady, sweep | whether area and friction depend on spacing, length or chance |
-//! | [`calibration`] | decimals, files, implausible, settings, steady, sweep | free numbers of a scene from measured friction: models, least squares, errors, plans |
+//! | [`calibration`] | csv, decimals, files, implausible, settings, steady, sweep | free numbers of a scene from measured friction: models, least squares, errors, plans |
 //! | [`comparison`] | calibration, steady, sweep | a table of a sweep beside measured friction |
+//! | [`rank`] | calibration, comparison, csv, decimals, files, progress, settings, sweep, uncertainty | scenes in the order of their friction, and how sure that is |
 //! | [`fit`] | decimals, files | Prony series and shift factors from measured moduli |
 //! | [`material`] | decimals | moduli of a scene's compound, or stiffnesses of its links, over frequency |
 //! | [`surface`] | decimals | numbers, spectra and power laws of a surface; smoothed, split and made periodic |
@@ -58,6 +60,7 @@ pub mod material;
 pub mod pack;
 pub mod patch;
 pub mod progress;
+pub mod rank;
 pub mod report;
 pub mod robustness;
 pub mod run_figures;
@@ -67,3 +70,4 @@ pub mod steady;
 pub mod summary;
 pub mod surface;
 pub mod sweep;
+pub mod uncertainty;

@@ -10,7 +10,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use serde::Serialize;
 
-use super::{Friction, LARGEST, Material, Scene, SelfAffine, Surface};
+use super::{Friction, LARGEST, Material, Scene, SelfAffine, SpectrumFactors, Surface};
 use spectrum::isotropic;
 
 pub(super) use files::{Convention, read_softening, read_spectrum};
@@ -30,6 +30,9 @@ pub struct FineRoughness {
     pub hysteresis: bool,
     /// By what the moduli are less in the bands.
     pub softening: Softening,
+    /// By what the bands are rougher than their law or measurement says; `None`: by nothing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub factors: Option<SpectrumFactors>,
 }
 
 /// Which waves the profile lacks.
@@ -121,6 +124,9 @@ impl Scene {
     pub fn fine_bands(&self) -> Vec<FineBand> {
         let Some(fine) = &self.fine else { return Vec::new() };
         let mut bands = fine.waves.bands(&self.surface);
+        if let Some(factors) = &fine.factors {
+            bands.iter_mut().for_each(|band| band.gradient_square *= factors.at(TAU / band.wave_number));
+        }
         // Each band's strain is that of all waves down to its own.
         let mut gradient_square = 0.0;
         for band in &mut bands {
@@ -383,7 +389,7 @@ mod tests {
     }
 
     fn bands(waves: FineWaves, softening: Softening) -> Vec<FineBand> {
-        scene(FineRoughness { waves, creep_speed: None, hysteresis: true, softening }).fine_bands()
+        scene(FineRoughness { waves, creep_speed: None, hysteresis: true, softening, factors: None }).fine_bands()
     }
 
     const LAW: FineWaves = FineWaves::SelfAffine { hurst: 0.7, rms_slope: 0.9, longest: 2e-3, shortest: 5e-6 };
@@ -410,7 +416,13 @@ mod tests {
     #[test]
     fn a_factor_softens_both_moduli() {
         let (hard, soft) = (bands(LAW, Softening::Factor(1.0)), bands(LAW, Softening::Factor(0.4)));
-        let fine = FineRoughness { waves: LAW, creep_speed: None, hysteresis: true, softening: Softening::Factor(1.0) };
+        let fine = FineRoughness {
+            waves: LAW,
+            creep_speed: None,
+            hysteresis: true,
+            softening: Softening::Factor(1.0),
+            factors: None,
+        };
         let material = scene(fine).material;
         for (hard, soft) in hard.iter().zip(&soft) {
             let [hard, soft] = [hard, soft].map(|band| material.as_ref().map(|rubber| band.moduli(rubber, 0.1)));

@@ -2,6 +2,7 @@
 
 use super::field::{At, FieldValue, field};
 use super::surface::SURFACE;
+use super::uncertainty::UNCERTAINTY;
 use super::{Allowed, Key, PATH, key, number, table, whole, word};
 use crate::scene::values::{ANY, LOOSEST_TOLERANCE, NOT_NEGATIVE, POSITIVE, words};
 use crate::scene::{
@@ -25,6 +26,7 @@ pub(in crate::scene) const ROOT: &[Key] = &[
     table("input", INPUT),
     table("fmu", FMU),
     key("excitation", Allowed::Tables(PHASE, TABLES), "Motion of the carrier in runs without a master"),
+    table("uncertainty", UNCERTAINTY),
 ];
 
 const TABLES: &str = "an array of tables";

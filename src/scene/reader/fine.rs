@@ -48,6 +48,7 @@ pub(super) fn read(
             Some(entry) => Softening::Factor(entry.number()?),
             None => Softening::Factor(1.0),
         },
+        factors: None,
     };
     if let Err(clash) = fine.check(&surface) {
         return Err(table.required(clash.key)?.refuse(clash.expected));

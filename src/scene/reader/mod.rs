@@ -5,6 +5,7 @@ mod fine;
 mod patch;
 mod surface;
 mod table;
+mod uncertainty;
 
 use std::path::Path as FilePath;
 
@@ -14,7 +15,7 @@ use super::values::Word;
 use super::{
     CarrierBodies, Extrapolation, FileFormats, FmuOptions, Foundation, FoundationKind, Friction, Heat, Layer, Link,
     LinkKind, Material, MaxwellElement, OutputGroup, ParameterError, PronyTerm, RateShear, Scene, SceneError, Solver,
-    Surface, TextAlone, Wlf, read_text, warnings,
+    Surface, TextAlone, Uncertainty, Wlf, read_text, warnings,
 };
 use surface::Findings;
 use table::{Entry, Result, Source, TableReader};
@@ -85,9 +86,10 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
     let temperature = wlf(&scene).filter(|_| scene.temperature_input);
     let phases = |table: &mut TableReader<'_>| carrier::read_phases(table, &scene.carrier, temperature, &mut found);
     scene.excitation = root.tables("excitation", phases)?.concat();
-    root.finish()?;
     scene.foundation =
         scene.material.as_ref().and_then(|material| Foundation::new(&scene.layer, material, &scene.surface));
+    scene.uncertainty = uncertainty::read(&mut root, &scene, &mut found)?;
+    root.finish()?;
     (scene.files, scene.extracts, scene.warnings, scene.notes) =
         (found.files, found.extracts, found.warnings, found.notes);
     add_warnings(&mut scene);
@@ -114,6 +116,7 @@ fn unread_scene() -> Scene {
         outputs: default_outputs(),
         fmu: FmuOptions::default(),
         excitation: Vec::new(),
+        uncertainty: Uncertainty::default(),
         files: Vec::new(),
         extracts: Vec::new(),
         warnings: Vec::new(),

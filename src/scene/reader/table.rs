@@ -8,8 +8,8 @@ use toml::de::{DeTable, DeValue};
 
 use crate::scene::error::{Location, Problem, SceneError};
 use crate::scene::keys::{self, Absent, Allowed, At, Field, Form, Key, Kinds};
-use crate::scene::values::{NumberRange, Value, Word, similar_word, words};
-use crate::scene::{FileFormats, Scene};
+use crate::scene::values::{NumberRange, POSITIVE, Value, Word, similar_word, words};
+use crate::scene::{FileFormats, Scene, Unit};
 
 pub(super) type Result<T> = std::result::Result<T, SceneError>;
 
@@ -62,6 +62,11 @@ impl<'a> Source<'a> {
             let location = self.location(error.span().map_or(0, |span| span.start));
             SceneError::new(location, "", Problem::Syntax { reason: error.message().trim().replace('\n', "; ") })
         })
+    }
+
+    /// A line of a file beside the scene.
+    pub(super) fn place(&self, file: &Path, line: usize) -> Location {
+        Location { file: self.folder().join(file), line: Some(line) }
     }
 
     pub(super) fn folder(&self) -> &'a Path {
@@ -121,6 +126,15 @@ impl<'a> Entry<'a> {
     pub(super) fn number(&self) -> Result<f64> {
         let Allowed::Number(range) = self.key.allowed else { return Err(self.refuse_type()) };
         self.number_of(self.value).filter(|&number| range.holds(number)).ok_or_else(|| self.refuse_number(range))
+    }
+
+    /// A difference above 0 of numbers in a `unit`, in SI units or with a unit behind it.
+    pub(super) fn difference(&self, unit: Unit) -> Result<f64> {
+        let read = number(self.value).or_else(|| unit.read_difference(self.value.as_str()?));
+        read.filter(|&number| POSITIVE.holds(number)).ok_or_else(|| match unit.readable() {
+            units if units.is_empty() => self.refuse(POSITIVE),
+            units => self.refuse(format_args!("{POSITIVE}, in SI units or as a text with its unit, one of {units}")),
+        })
     }
 
     /// A number, in SI units or with a unit behind it: a text.
@@ -302,6 +316,50 @@ impl<'a> TableReader<'a> {
 
     fn full(&self, name: &str) -> String {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
+    }
+
+    /// All of its entries in the order of the file, each with the `key` in place of its own; names are in quotation marks.
+    pub(super) fn entries(&self, key: &'static Key) -> Vec<(String, Entry<'a>)> {
+        let entry = |name: &Spanned<std::borrow::Cow<'_, str>>, value: &'a Spanned<DeValue<'a>>| {
+            let (span, name, start) = (value.span(), name.get_ref().clone().into_owned(), name.span().start);
+            let path = format!("{}.\"{name}\"", self.path);
+            let offset = if value.get_ref().is_table() { start } else { span.start };
+            (name, Entry { source: self.source, path, key, value: value.get_ref(), span, offset })
+        };
+        let mut entries: Vec<_> = self.table.iter().map(|(name, value)| entry(name, value)).collect();
+        entries.sort_by_key(|(_, entry)| entry.offset);
+        entries
+    }
+
+    /// The entry at the path of a `key` of the file, elements of lists counted from 1.
+    pub(super) fn at(&self, path: &str, key: &'static Key) -> Option<Entry<'a>> {
+        let (mut table, mut found) = (Some(self.table), None);
+        for part in path.split('.') {
+            let (name, element) = part.split_once('[').map_or((part, None), |(name, rest)| (name, Some(rest)));
+            let mut value = table?.get(name)?;
+            if let Some(element) = element {
+                value = value.get_ref().get(element.strip_suffix(']')?.parse::<usize>().ok()?.checked_sub(1)?)?;
+            }
+            (table, found) = (value.get_ref().as_table(), Some(value));
+        }
+        let (value, path) = (found?, path.to_owned());
+        let span = value.span();
+        Some(Entry { source: self.source, path, key, value: value.get_ref(), offset: span.start, span })
+    }
+
+    /// The problem of a path that leads to no key of the file.
+    pub(super) fn unknown_path(&self, path: &str) -> Problem {
+        let all = keys::rows(self.source.keys).into_iter().map(|row| row.path.replace("[]", "[1]"));
+        let mut similar = keys::closest(path, all);
+        if similar.is_empty() {
+            similar = keys::elsewhere(self.source.keys, self.source.form, path);
+        }
+        match similar.first() {
+            Some(similar) => {
+                Problem::value(path, format_args!("the key of a number of the scene; did you mean {similar}?"))
+            }
+            None => Problem::value(path, "the key of a number of the scene, as friction.rate_shear.strength"),
+        }
     }
 
     fn key(&self, name: &str) -> &'static Key {

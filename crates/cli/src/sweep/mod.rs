@@ -1,5 +1,6 @@
 //! `asperity sweep`: the friction coefficient over speed, load and temperature, as a table and a plot.
 
+mod map;
 mod plot;
 mod printed;
 mod table_file;
@@ -8,7 +9,7 @@ mod ways;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use asperity::element::OperatingPoint;
+use asperity::element::{OperatingPoint, TableHeader};
 use asperity::scene::{Scene, Wlf};
 use asperity_study::progress::Stop;
 use asperity_study::sweep::{
@@ -17,6 +18,7 @@ use asperity_study::sweep::{
 
 use super::cli::{Sliding, Sweep};
 use super::draft::TablePlace;
+use super::figure::Figure as _;
 use super::files::{
     FileError, check_outputs, default_output, load_without_run, named, picture_beside, print_beside, read, write,
 };
@@ -24,6 +26,7 @@ use super::flags::with_flags;
 use super::interrupt::Farewell;
 use super::terminal::{self, lines, warn};
 use crate::cli::sweep_values::Values;
+use map::{MapError, Maps};
 use table_file::{TableFile, TableFileError};
 
 /// `asperity sweep` failed, or not all of its points are steady.
@@ -35,6 +38,8 @@ pub(crate) enum SweepCommandError {
     File(#[from] FileError),
     #[error(transparent)]
     TableFile(#[from] TableFileError),
+    #[error(transparent)]
+    Map(#[from] MapError),
     #[error("expected --pressures or --forces, the loads to sweep over")]
     NoLoad,
     #[error("--master: the scene has no material.wlf, by whose factors speeds would be shifted")]
@@ -59,11 +64,13 @@ pub(crate) fn sweep(command: &Sweep) -> Result<(), SweepCommandError> {
 
 fn merge(command: &Sweep, output: &PathBuf) -> Result<(), SweepCommandError> {
     let picture = picture(command, output);
-    check_outputs([output].into_iter().chain(&picture), command.merge.clone())?;
+    let taken = command.merge.iter().chain(&command.data).cloned().collect();
+    check_outputs([output].into_iter().chain(&picture), taken)?;
     let place = TablePlace::new(output)?;
     let table = table_file::merge(&command.merge, &place.path, command.force)?;
     place.finish()?;
-    finish(output, &table, picture.as_deref(), None)
+    let maps = maps(command, &table.header, output)?;
+    finish(output, &table, &Pictures { friction: picture.as_deref(), maps, master: None })
 }
 
 fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCommandError> {
@@ -74,7 +81,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
         .unwrap_or_else(|| default_output(path, if command.ways.is_some() { "ways.csv" } else { "sweep.csv" }));
     let picture = picture(command, &output);
     let study = study_file(command.converged.as_ref(), path);
-    let taken = scene.sources(path).into_iter().chain(study.clone()).collect();
+    let taken = scene.sources(path).into_iter().chain(study.clone()).chain(command.data.clone()).collect();
     check_outputs([&output].into_iter().chain(&picture).chain(&command.master), taken)?;
     let master = match &command.master {
         Some(path) => Some((path.as_path(), wlf(&scene).ok_or(SweepCommandError::NoMaster)?)),
@@ -86,6 +93,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
     let convergence = study_verdict(study.as_deref(), &scene.name)?;
     let plan = SweepPlan::new(scene, &options(command, speeds)?, convergence)?;
     plan.warning().iter().for_each(|warning| warn(&with_flags(warning)));
+    let maps = maps(command, plan.header(), &output)?;
     let place = TablePlace::new(&output)?;
     let file = TableFile::open(&place.path, plan.header(), command.force)?;
     run(command, &plan, &file, &output)?;
@@ -98,7 +106,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
     write(&place.path, table.text())?;
     drop(file);
     place.finish()?;
-    finish(&output, &table, picture.as_deref(), master)
+    finish(&output, &table, &Pictures { friction: picture.as_deref(), maps, master })
 }
 
 /// Sweeps over several ways.
@@ -189,19 +197,37 @@ fn picture(command: &Sweep, output: &Path) -> Option<PathBuf> {
     if command.shard.is_some() { None } else { picture_beside(output, command.plot.as_ref()) }
 }
 
-/// Draws friction over speed and, with the compound's shift, the master curve; prints friction and what lies at the low
-/// end; counts the points that are not steady.
-fn finish(
-    output: &PathBuf,
-    table: &SweepTable,
-    picture: Option<&Path>,
-    master: Option<(&Path, Wlf)>,
-) -> Result<(), SweepCommandError> {
-    picture.map_or(Ok(()), |path| plot::draw(path, table))?;
+/// The maps that are asked for, if any are, of the table at `output`.
+fn maps(command: &Sweep, header: &TableHeader, output: &Path) -> Result<Option<Maps>, MapError> {
+    let Some(over) = command.over else { return Ok(None) };
+    if picture(command, output).is_none() {
+        return Err(MapError::NoPicture { over, output: output.to_owned() });
+    }
+    Maps::new(over, header, output, command.data.as_ref()).map(Some)
+}
+
+/// What is drawn of a table.
+struct Pictures<'a> {
+    /// Friction over speed, ...
+    friction: Option<&'a Path>,
+    /// ... or, in its place, maps.
+    maps: Option<Maps>,
+    /// The master curve, with the compound's shift.
+    master: Option<(&'a Path, Wlf)>,
+}
+
+/// Draws the pictures; prints friction and what lies at the low end; counts the points that are not steady.
+fn finish(output: &PathBuf, table: &SweepTable, pictures: &Pictures<'_>) -> Result<(), SweepCommandError> {
+    let Pictures { friction, maps, master } = pictures;
+    friction.map_or(Ok(()), |path| match maps {
+        Some(maps) => maps.picture(table).write(path),
+        None => plot::draw(path, table),
+    })?;
     master.map_or(Ok(()), |(path, wlf)| plot::draw_master(path, table, &wlf))?;
     let mut summary = printed::lines(table);
     summary.extend(table.header.low_end.iter().map(|low_end| ("Low end", low_end.clone())));
-    let files = [output.as_path()].into_iter().chain(picture).chain(master.map(|(path, _)| path)).map(named);
+    summary.extend(maps.iter().filter_map(|_| Some(("No result", Maps::empty(table)?))));
+    let files = [output.as_path()].into_iter().chain(*friction).chain(master.map(|(path, _)| path)).map(named);
     summary.push(("Written", files.collect::<Vec<_>>().join(", ")));
     print_beside([output], &lines(&summary))?;
     let (failed, total) = (table.rows.iter().filter(|stored| !stored.row.is_result()).count(), table.rows.len());
