@@ -87,6 +87,7 @@ fn tread() -> Comparison {
     let at = |wanted: f64| {
         curve.iter().min_by(|a, b| (a.0 / wanted).ln().abs().total_cmp(&(b.0 / wanted).ln().abs())).unwrap().1
     };
+    let strongest = scene.friction.as_ref().and_then(|friction| friction.rate_shear.as_ref()).unwrap().reference_speed;
     let mut warm = place;
     // Where the maximum lies 20 K warmer.
     let mut hotter = scene.clone();
@@ -120,16 +121,17 @@ fn tread() -> Comparison {
             legend: Legend::LowerRight,
             curves: vec![Curve::line("20 °C", curve), Curve::line("40 °C", speeds.into_iter().zip(hot).collect())],
         }],
-        remark: "In words. *Where the maximum lies*: Grosch found one maximum of adhesion, on smooth tracks at \
-                 centimetres a second near room temperature, and one of hysteresis on rough ones at metres a second \
-                 and more, both moving with a_T. Lorenz et al. fit a shear strength that is largest at 6 mm/s for \
-                 one compound. The place here follows an input (20 mm/s), so it is no prediction. *Level*: compounds \
-                 on asphalt and concrete slide at 0.6 to 1.4; here it follows from spectrum, moduli and the shear \
-                 strength's height, and moves in proportion to the latter and with the shortest wave of the road, \
-                 which is a choice. *Fall*: measured curves fall above the maximum, where contacts warm too; here \
-                 adhesion falls, and above 1 m/s hysteresis rises again, for which we have no measurement. Nothing \
-                 of this validates a coefficient for your compound on your road: for that there is `asperity \
-                 calibrate`."
-            .into(),
+        remark: format!(
+            "In words. *Where the maximum lies*: Grosch found one maximum of adhesion, on smooth tracks at centimetres a \
+             second near room temperature, and one of hysteresis on rough ones at metres a second and more, both moving \
+             with a_T. Lorenz et al. fit a shear strength that is largest at 6 mm/s for one compound. The place here \
+             follows that of the scene's shear strength, an input ({} mm/s), so it is no prediction. *Level*: compounds \
+             on asphalt and concrete slide at 0.6 to 1.4; here it follows from spectrum, moduli and the shear strength's \
+             height, and moves in proportion to the latter and with the shortest wave of the road, which is a choice. \
+             *Fall*: measured curves fall above the maximum, where contacts warm too; here adhesion falls, and above \
+             1 m/s hysteresis rises again, for which we have no measurement. Nothing of this validates a coefficient for \
+             your compound on your road: for that there is `asperity calibrate`.",
+            short(1e3 * strongest, 2)
+        ),
     }
 }
