@@ -1,6 +1,7 @@
 //! Figures: charts drawn with plotters, as SVG or PNG by their files' names.
 
 mod axis;
+mod bars;
 mod caption;
 mod chart;
 mod difference;
@@ -27,6 +28,7 @@ use plotters::style::register_font;
 use plotters::style::text_anchor::{HPos, VPos};
 use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingErrorKind};
 
+pub(crate) use bars::{Bar, Bars};
 pub(crate) use caption::RUBBER_SLIDES;
 pub(crate) use chart::{Curve, Stroke};
 pub(crate) use ladders::{Ladder, LadderPanel, Ladders, Rung};

@@ -2,6 +2,7 @@
 
 mod plot;
 mod printed;
+mod samples;
 mod table_file;
 mod ways;
 
@@ -14,6 +15,7 @@ use asperity_study::progress::Stop;
 use asperity_study::sweep::{
     Loads, NotAStudy, SlidingOptions, SweepError, SweepOptions, SweepPlan, SweepTable, verdict,
 };
+use asperity_study::uncertainty::UncertaintyError;
 
 use super::cli::{Sliding, Sweep};
 use super::draft::TablePlace;
@@ -22,7 +24,7 @@ use super::files::{
 };
 use super::flags::with_flags;
 use super::interrupt::Farewell;
-use super::terminal::{self, lines, warn};
+use super::terminal::{self, LabelledLine, lines, warn};
 use crate::cli::sweep_values::Values;
 use table_file::{TableFile, TableFileError};
 
@@ -33,6 +35,10 @@ pub(crate) enum SweepCommandError {
     Sweep(#[from] SweepError),
     #[error(transparent)]
     File(#[from] FileError),
+    #[error(transparent)]
+    Read(#[from] asperity_study::files::ReadError),
+    #[error(transparent)]
+    Uncertainty(#[from] UncertaintyError),
     #[error(transparent)]
     TableFile(#[from] TableFileError),
     #[error("expected --pressures or --forces, the loads to sweep over")]
@@ -63,7 +69,7 @@ fn merge(command: &Sweep, output: &PathBuf) -> Result<(), SweepCommandError> {
     let place = TablePlace::new(output)?;
     let table = table_file::merge(&command.merge, &place.path, command.force)?;
     place.finish()?;
-    finish(output, &table, picture.as_deref(), None)
+    finish(output, &table, picture.as_deref(), None, (&[], &[]))
 }
 
 fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCommandError> {
@@ -75,7 +81,8 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
     let picture = picture(command, &output);
     let study = study_file(command.converged.as_ref(), path);
     let taken = scene.sources(path).into_iter().chain(study.clone()).collect();
-    check_outputs([&output].into_iter().chain(&picture).chain(&command.master), taken)?;
+    let beside = samples::files(command, &output);
+    check_outputs([&output].into_iter().chain(&picture).chain(&command.master).chain(&beside), taken)?;
     let master = match &command.master {
         Some(path) => Some((path.as_path(), wlf(&scene).ok_or(SweepCommandError::NoMaster)?)),
         None => None,
@@ -84,7 +91,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
         return over_ways(command, &scene, &options(command, speeds)?, (&ways.0, &output, picture.as_deref()));
     }
     let convergence = study_verdict(study.as_deref(), &scene.name)?;
-    let plan = SweepPlan::new(scene, &options(command, speeds)?, convergence)?;
+    let plan = samples::plan(command, path, scene, (&options(command, speeds)?, convergence))?;
     plan.warning().iter().for_each(|warning| warn(&with_flags(warning)));
     let place = TablePlace::new(&output)?;
     let file = TableFile::open(&place.path, plan.header(), command.force)?;
@@ -94,11 +101,12 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
     table.sort();
     let found = plan.warnings(table.rows.iter().map(|stored| &stored.row));
     found.iter().for_each(|warning| warn(&with_flags(warning)));
-    table.find_low_end(&output);
+    table.conclude(&output);
     write(&place.path, table.text())?;
     drop(file);
     place.finish()?;
-    finish(&output, &table, picture.as_deref(), master)
+    let said = samples::write(command, &plan, &table, &beside)?;
+    finish(&output, &table, picture.as_deref(), master, (&said, &beside))
 }
 
 /// Sweeps over several ways.
@@ -196,12 +204,15 @@ fn finish(
     table: &SweepTable,
     picture: Option<&Path>,
     master: Option<(&Path, Wlf)>,
+    (said, beside): (&[LabelledLine], &[PathBuf]),
 ) -> Result<(), SweepCommandError> {
     picture.map_or(Ok(()), |path| plot::draw(path, table))?;
     master.map_or(Ok(()), |(path, wlf)| plot::draw_master(path, table, &wlf))?;
     let mut summary = printed::lines(table);
     summary.extend(table.header.low_end.iter().map(|low_end| ("Low end", low_end.clone())));
-    let files = [output.as_path()].into_iter().chain(picture).chain(master.map(|(path, _)| path)).map(named);
+    summary.extend_from_slice(said);
+    let files = [output.as_path()].into_iter().chain(picture).chain(master.map(|(path, _)| path));
+    let files = files.chain(beside.iter().map(PathBuf::as_path)).map(named);
     summary.push(("Written", files.collect::<Vec<_>>().join(", ")));
     print_beside([output], &lines(&summary))?;
     let (failed, total) = (table.rows.iter().filter(|stored| !stored.row.is_result()).count(), table.rows.len());
