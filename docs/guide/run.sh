@@ -35,7 +35,7 @@ fi
 "$asperity" converge "$root/tests/reference/half-plane/rough.toml" --pressure 1e5 --speed 0.1 --points 128 \
     -o rough.converge.csv --plot converge.svg
 "$asperity" calibrate measured.toml --data measured.csv --set friction.rate_shear.strength=3e6 \
-    --set friction.rate_shear.reference_speed=5e-3 --set friction.rate_shear.sharpness=0.2 \
+    --set friction.rate_shear.reference_speed=5e-2 --set friction.rate_shear.sharpness=0.2 \
     --set surface.fine.shortest=1e-5 --free friction.rate_shear.strength=1e6..2e7 \
     --free friction.rate_shear.reference_speed=1e-4..1 --free friction.rate_shear.sharpness=0.02..0.5 \
     --free surface.fine.shortest=1e-6..1e-4 -o measured.calibrated.toml --plot calibrate.svg

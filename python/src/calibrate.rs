@@ -4,8 +4,9 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use asperity_study::calibration::{
-    Calibration, CalibrationOptions, FreeParameter, calibrate_scene, chi_square_per_degree,
+    Calibration, CalibrationOptions, FitCovariance, FreeParameter, calibrate_scene, chi_square_per_degree,
 };
+use asperity_study::files::ReadError;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -46,8 +47,25 @@ pub(crate) fn calibrate<'py>(
             if task.is_stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })
     })?;
-    let (calibration, text) = found.map_err(|error| error.raise())?;
-    as_dictionary(py, &calibration, text)
+    let (calibration, text, covariance) = found.map_err(|error| error.raise())?;
+    let found = as_dictionary(py, &calibration, text)?;
+    add_covariance(&found, &covariance)?;
+    Ok(found)
+}
+
+/// The text of a scene which names the table of a covariance of `keys`, without their spreads.
+#[pyfunction]
+pub(crate) fn with_covariance(text: &str, file: &str, keys: Vec<String>) -> PyResult<String> {
+    let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
+    let named = asperity_study::calibration::with_covariance(text, file, &keys);
+    named.map_err(|error| ReadError::from(error).raise())
+}
+
+fn add_covariance(found: &Bound<'_, PyDict>, covariance: &FitCovariance) -> PyResult<()> {
+    let keys: Vec<&str> = covariance.numbers.iter().map(|number| number.key.as_str()).collect();
+    found.set_item("covariance_keys", keys)?;
+    found.set_item("covariance", &covariance.entries)?;
+    found.set_item("covariance_text", covariance.text())
 }
 
 fn as_dictionary<'py>(py: Python<'py>, calibration: &Calibration, text: String) -> PyResult<Bound<'py, PyDict>> {

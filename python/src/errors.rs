@@ -14,6 +14,7 @@ use asperity_study::converge::ConvergeError;
 use asperity_study::files::ReadError;
 use asperity_study::fit::FitError;
 use asperity_study::pack::PackError;
+use asperity_study::rank::RankError;
 use asperity_study::settings::OverrideError;
 use asperity_study::surface::SurfaceError;
 use asperity_study::sweep::{SweepError, SweepTableError};
@@ -126,6 +127,18 @@ impl Raise for PatchRestoreError {
 impl Raise for SweepError {
     fn raise(self) -> PyErr {
         scene_error(&self, None, None, "")
+    }
+}
+
+impl Raise for RankError {
+    fn raise(self) -> PyErr {
+        match self {
+            Self::Read(error) => error.raise(),
+            error @ (Self::Sweep { .. } | Self::OtherTemperatures(_) | Self::Uncertainty(_)) => {
+                scene_error(&error, None, None, "")
+            }
+            error => PyValueError::new_err(error.to_string()),
+        }
     }
 }
 

@@ -11,6 +11,7 @@ mod errors;
 mod fit;
 mod pack;
 mod patch;
+mod rank;
 mod run;
 mod scene;
 mod simulation;
@@ -24,7 +25,7 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use super::calibrate::calibrate;
+    use super::calibrate::{calibrate, with_covariance};
     #[pymodule_export]
     use super::compare::compare;
     #[pymodule_export]
@@ -37,6 +38,8 @@ mod _native {
     use super::fit::{Fit, fit};
     #[pymodule_export]
     use super::patch::{Patch, PatchRun, PatchState};
+    #[pymodule_export]
+    use super::rank::rank;
     #[pymodule_export]
     use super::run::simulate;
     #[pymodule_export]

@@ -12,13 +12,23 @@ use pyo3::prelude::*;
 
 use crate::errors::Raise as _;
 
+/// What of an FMU is to choose.
+#[derive(Clone, Copy, Debug, FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct FmuOptions {
+    /// Whether names of variables have no structure.
+    flat_names: bool,
+    /// Whether it carries its experiment and the list of its files.
+    references: bool,
+}
+
 /// Writes the FMU of a `definition`, which was read from the file at `path`, with these shared libraries, each as
-/// `asperity pack --library` takes it, with flat names or not; returns a warning. What is at `output` is what was there before, or the whole FMU.
+/// `asperity pack --library` takes it; returns a warning. What is at `output` is what was there before, or the whole FMU.
 pub(crate) fn pack(
     definition: &Definition,
     path: &Path,
     libraries: &[OsString],
-    (output, flat_names): (&Path, bool),
+    (output, options): (&Path, FmuOptions),
 ) -> PyResult<Option<String>> {
     let files: Vec<LibraryFile> = libraries.iter().map(|text| LibraryFile::named(text)).collect();
     let mut read: Vec<PathBuf> = definition.sources(path);
@@ -29,7 +39,9 @@ pub(crate) fn pack(
     }
     let libraries = Library::read_all(&files).map_err(|error| error.raise())?;
     let summary = summary(definition);
-    let fmu = Fmu { definition, path, libraries: &libraries, summary: &summary, picture: None, flat_names };
+    let FmuOptions { flat_names, references } = options;
+    let (libraries, summary) = (&libraries, &summary);
+    let fmu = Fmu { definition, path, libraries, summary, picture: None, flat_names, references };
     write(output, &fmu.pack().map_err(|error| error.raise())?)?;
     Ok(no_start(definition))
 }

@@ -12,7 +12,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::errors::{Raise as _, check_dt, no_output};
-use crate::pack::pack;
+use crate::pack::{FmuOptions, pack};
 use crate::state::{Reduced, read, reduced};
 
 /// A contact patch, read from its file.
@@ -67,8 +67,8 @@ impl Patch {
     }
 
     /// Writes an FMU.
-    fn pack(&self, output: PathBuf, libraries: Vec<OsString>, flat_names: bool) -> PyResult<Option<String>> {
-        pack(&self.patch.clone().into(), &self.file, &libraries, (&output, flat_names))
+    fn pack(&self, output: PathBuf, libraries: Vec<OsString>, options: FmuOptions) -> PyResult<Option<String>> {
+        pack(&self.patch.clone().into(), &self.file, &libraries, (&output, options))
     }
 }
 

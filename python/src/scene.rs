@@ -16,7 +16,7 @@ use pyo3::types::{PyDict, PyList};
 use toml_edit::{Item, Value};
 
 use crate::errors::Raise as _;
-use crate::pack::pack;
+use crate::pack::{FmuOptions, pack};
 
 /// The text of a scene file with keys set, read and checked.
 #[pyclass(frozen, module = "asperity._native")]
@@ -131,9 +131,9 @@ impl Scene {
     }
 
     /// Writes an FMU. The file of the scene has to hold what the scene is.
-    fn pack(&self, output: PathBuf, libraries: Vec<OsString>, flat_names: bool) -> PyResult<Option<String>> {
+    fn pack(&self, output: PathBuf, libraries: Vec<OsString>, options: FmuOptions) -> PyResult<Option<String>> {
         let definition = (*self.scene).clone().into();
-        pack(&definition, &self.file, &libraries, (&output, flat_names))
+        pack(&definition, &self.file, &libraries, (&output, options))
     }
 
     /// Whether the scene is the same as another, whatever text and files it is read from.

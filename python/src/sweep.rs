@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 
 use crate::background::{Task, in_background};
 use crate::errors::Raise as _;
-use crate::pack::pack;
+use crate::pack::{FmuOptions, pack};
 use crate::scene::Scene;
 
 /// How steady sliding is found, as Python has it.
@@ -147,8 +147,8 @@ pub(crate) fn pack_table(
     table: PathBuf,
     output: PathBuf,
     libraries: Vec<OsString>,
-    flat_names: bool,
+    options: FmuOptions,
 ) -> PyResult<Option<String>> {
     let read = Table::load(&table).map_err(|error| PyValueError::new_err(error.to_string()))?;
-    pack(&PointContact::new(read).into(), &table, &libraries, (&output, flat_names))
+    pack(&PointContact::new(read).into(), &table, &libraries, (&output, options))
 }

@@ -9,4 +9,5 @@ mod grip_mujoco;
 mod host;
 mod masters;
 mod patch_mujoco;
+mod references;
 mod thermal;

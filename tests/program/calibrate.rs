@@ -16,8 +16,8 @@ fn road(folder: &Path, name: &str, [strength, speed, sharpness, shortest, share]
     let heat =
         format!("\nheat = {{ conductivity = 0.25, capacity = 1700.0, share = {share} }}  # what the road leaves\n");
     let replaced = [
-        ("strength = 5.0e6", format!("strength = {strength:e}")),
-        ("reference_speed = 2.0e-2", format!("reference_speed = {speed:e}")),
+        ("strength = 6.5e6", format!("strength = {strength:e}")),
+        ("reference_speed = 6.0e-3", format!("reference_speed = {speed:e}")),
         ("sharpness = 0.1", format!("sharpness = {sharpness}")),
         ("shortest = 5.0e-6", format!("shortest = {shortest:e}")),
         ("\n[surface]", format!("{heat}\n[surface]")),
@@ -166,6 +166,8 @@ fn what_counts_only_as_a_quotient_is_not_identifiable() {
     let said = text(&done.stdout);
     let quotient = "friction.shear_strength and surface.fine.modulus count by their quotient alone";
     assert!(said.contains(quotient) && said.contains("To measure"), "{said}");
+    assert!(said.contains("Covariance  none: no number has an error"), "{said}");
+    assert!(!folder.join("sine.calibrated.covariance.csv").exists());
     let calibrated = fs::read_to_string(folder.join("sine.calibrated.toml")).unwrap();
     assert!(calibrated.contains("# asperity calibrate: NOT IDENTIFIABLE"), "{calibrated}");
     assert!(calibrated.contains("# fine\n"), "{calibrated}");
@@ -176,6 +178,50 @@ fn what_counts_only_as_a_quotient_is_not_identifiable() {
     assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
     let header = fs::read_to_string(&calibrated_again).unwrap();
     assert_eq!(header.matches("fitted to 5 measurements of measured.csv").count(), 1, "{header}");
+}
+
+/// The lines of a covariance's file without its comments, in their fields.
+fn covariance(path: &Path) -> Vec<Vec<String>> {
+    let text = fs::read_to_string(path).unwrap();
+    let rows = text.lines().filter(|line| !line.starts_with('#'));
+    rows.map(|line| line.split(',').map(str::to_owned).collect()).collect()
+}
+
+/// Friction 0.1 + 2 τ_0/(M_c h') of the sine: its derivative by the logarithm of the strength is what is above 0.1, that by
+/// the coefficient 1, so that the variance is χ² per degree of freedom over the sum of their squares over σ².
+#[test]
+fn the_covariance_is_written_beside_the_scene() {
+    let folder = scratch("calibrate-covariance");
+    let (scene, data) = (sine(&folder), of_quotient(&folder));
+    let own =
+        "\n[uncertainty]\n\"friction.coulomb\" = { absolute = 0.5 }\n\"layer.width\" = { relative = 0.1 } # kept\n";
+    fs::write(&scene, fs::read_to_string(&scene).unwrap() + own).unwrap();
+    let friction = [0.42, 0.43, 0.424, 0.428, 0.425];
+    let sigma: Vec<f64> = friction.iter().map(|mu: &f64| (0.05 * mu).hypot(0.01)).collect();
+    let weight: f64 = sigma.iter().map(|sigma| sigma.powi(-2)).sum();
+    let fitted = friction.iter().zip(&sigma).map(|(mu, sigma)| mu / sigma.powi(2)).sum::<f64>() / weight;
+    let chi_square: f64 = friction.iter().zip(&sigma).map(|(mu, sigma)| ((mu - fitted) / sigma).powi(2)).sum();
+    let variance = chi_square / 4.0 / weight;
+    for (free, key, scale, expected) in [
+        ("friction.shear_strength=1e5..1e8", "friction.shear_strength", "log", variance / (fitted - 0.1).powi(2)),
+        ("friction.coulomb=0.05..0.4", "friction.coulomb", "linear", variance),
+    ] {
+        let output = folder.join(format!("{scale}.toml"));
+        let done = calibrate(&scene, &data, &[free], &["-o", output.to_str().unwrap()]);
+        assert!(done.status.success(), "{}", text(&done.stderr));
+        assert!(text(&done.stdout).contains(&format!("Covariance  of {key}")), "{}", text(&done.stdout));
+        let rows = covariance(&folder.join(format!("{scale}.covariance.csv")));
+        assert_eq!(rows[0], ["key", "value", "scale", key]);
+        assert_eq!((rows[1][0].as_str(), rows[1][2].as_str(), rows.len()), (key, scale, 2));
+        // Derivatives are differences, of friction that is known to about 1e-4 of itself.
+        let found: f64 = rows[1][3].parse().unwrap();
+        assert!((found / expected - 1.0).abs() < 0.02, "{key}: {found} for {expected}");
+        let calibrated = fs::read_to_string(&output).unwrap();
+        assert!(calibrated.contains(&format!("covariance = \"{scale}.covariance.csv\"")), "{calibrated}");
+        assert!(calibrated.contains("\"layer.width\" = { relative = 0.1 } # kept"), "{calibrated}");
+        // What was fitted has the spread of the fit alone.
+        assert_eq!(calibrated.contains("absolute"), key != "friction.coulomb", "{calibrated}");
+    }
 }
 
 /// The layer is fitted by the theory: it finds what made its own friction.

@@ -27,6 +27,7 @@
 //! | `describe` | cli, figure, files, terminal | `describe` |
 //! | `contact` | cli, figure, files, npz, terminal | `contact` |
 //! | `sweep` | cli, draft, figure, files, flags, interrupt, lock, output, resumable_table, terminal | `sweep` |
+//! | `rank` | cli, figure, files, flags, terminal | `rank` |
 //! | `converge` | cli, draft, figure, files, flags, interrupt, resumable_table, terminal | `converge` |
 //! | `fit` | cli, figure, files, flags, terminal | `fit` |
 //! | `calibrate` | cli, figure, files, interrupt, measured_friction, resumable_table, terminal | `calibrate` |
@@ -57,6 +58,7 @@ mod npz;
 mod output;
 mod pack;
 mod patch;
+mod rank;
 mod reference;
 mod report;
 mod result_file;
@@ -108,6 +110,7 @@ fn run(arguments: Arguments) -> Result<u8, Box<dyn Error>> {
         Command::Compare(command) => compare::compare(&command)?,
         Command::Contact(command) => contact::contact(&command)?,
         Command::Converge(command) => return Ok(converge::converge(&command)?),
+        Command::Rank(command) => return Ok(rank::rank(&command)?),
         Command::Plot(command) => figure::plot_files(&command)?,
         Command::Describe(command) => run_describe(&command)?,
         Command::Pack(command) => pack::pack(&command)?,

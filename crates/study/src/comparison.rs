@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::element::{Load, OperatingPoint, Quantity};
+use asperity::element::{Load, OperatingPoint, Quantity, TableHeader};
 
 use crate::calibration::{CurveGrid, Measured, MeasuredFrictionError, Measurements, left_out_in_words};
 use crate::sweep::{SweepTable, way_of};
@@ -66,22 +66,7 @@ impl Comparison {
     /// # Errors
     /// Where the table is over forces, or the measurements cannot be read.
     pub fn new(table: &SweepTable, path: &Path, data: &Path) -> Result<Self, ComparisonError> {
-        let Load::Pressure { area } = table.header.load else {
-            return Err(ComparisonError::OverForces(path.to_owned()));
-        };
-        let mut measurements = Measurements::read(data, area)?;
-        let temperatures = &table.header.grid.temperatures;
-        if temperatures.len() > 1 && !measurements.has_temperature() {
-            return Err(ComparisonError::NoTemperature(data.to_owned()));
-        }
-        if temperatures.is_empty() && measurements.has_temperature() {
-            measurements.notes.push(without_temperature(&measurements.rows));
-        }
-        if let [only] = temperatures[..] {
-            measurements.rows.iter_mut().for_each(|row| {
-                let _ = row.point.temperature.get_or_insert(only);
-            });
-        }
+        let measurements = measured_beside(&table.header, path, data)?;
         let curves = SweptFriction { table };
         let (mut within, mut left_out) = (Vec::<(Measured, f64)>::new(), Vec::<(Measured, NoFriction)>::new());
         for &row in &measurements.rows {
@@ -125,6 +110,31 @@ impl Comparison {
     }
 }
 
+/// The measurements in the file `data`, to be looked at beside the table at `path` with this header: at its temperature
+/// where it has one and they have none.
+///
+/// # Errors
+/// Where the table is over forces, or the measurements cannot be read, or say nothing of the temperature that they need.
+pub fn measured_beside(header: &TableHeader, path: &Path, data: &Path) -> Result<Measurements, ComparisonError> {
+    let Load::Pressure { area } = header.load else {
+        return Err(ComparisonError::OverForces(path.to_owned()));
+    };
+    let mut measurements = Measurements::read(data, area)?;
+    let temperatures = &header.grid.temperatures;
+    if temperatures.len() > 1 && !measurements.has_temperature() {
+        return Err(ComparisonError::NoTemperature(data.to_owned()));
+    }
+    if temperatures.is_empty() && measurements.has_temperature() {
+        measurements.notes.push(without_temperature(&measurements.rows));
+    }
+    if let [only] = temperatures[..] {
+        measurements.rows.iter_mut().for_each(|row| {
+            let _ = row.point.temperature.get_or_insert(only);
+        });
+    }
+    Ok(measurements)
+}
+
 /// The note that a table without temperatures is compared with measurements that have some.
 fn without_temperature(rows: &[Measured]) -> String {
     let kelvins = || rows.iter().filter_map(|row| row.point.temperature);
@@ -136,6 +146,15 @@ fn without_temperature(rows: &[Measured]) -> String {
 /// How far a table is off, over the standard deviation.
 fn deviation((row, friction): &(Measured, f64)) -> f64 {
     (friction - row.friction) / row.sigma_or_assumed()
+}
+
+/// Friction of a table at a point: between its points linear in the logarithms of speed and pressure, and in the
+/// temperature.
+///
+/// # Errors
+/// Where it lies beyond the table, or beside a point of it without a result.
+pub fn swept_friction(table: &SweepTable, point: &OperatingPoint) -> Result<f64, NoFriction> {
+    SweptFriction { table }.at(point)
 }
 
 /// Friction of a table between its points: linear in the logarithms of speed and pressure, and in the temperature.

@@ -27,8 +27,9 @@
 //! | [`sweep`] | decimals, files, implausible, progress, steady, uncertainty | friction over speed, load and temperature, as a table |
 //! | [`contact`] | implausible, steady, sweep | the contact of a surface in steady sliding |
 //! | [`converge`] | decimals, files, settings, steady, sweep | whether area and friction depend on spacing, length or chance |
-//! | [`calibration`] | decimals, files, implausible, settings, steady, sweep | free numbers of a scene from measured friction: models, least squares, errors, plans |
+//! | [`calibration`] | csv, decimals, files, implausible, settings, steady, sweep | free numbers of a scene from measured friction: models, least squares, errors, plans |
 //! | [`comparison`] | calibration, steady, sweep | a table of a sweep beside measured friction |
+//! | [`rank`] | calibration, comparison, csv, decimals, files, progress, settings, sweep, uncertainty | scenes in the order of their friction, and how sure that is |
 //! | [`fit`] | decimals, files | Prony series and shift factors from measured moduli |
 //! | [`material`] | decimals | moduli of a scene's compound, or stiffnesses of its links, over frequency |
 //! | [`surface`] | decimals | numbers, spectra and power laws of a surface; smoothed, split and made periodic |
@@ -59,6 +60,7 @@ pub mod material;
 pub mod pack;
 pub mod patch;
 pub mod progress;
+pub mod rank;
 pub mod report;
 pub mod robustness;
 pub mod run_figures;

@@ -18,6 +18,7 @@ from ._fit import Fit, fit
 from ._moment import Moment
 from ._native import __version__
 from ._patch import Patch, PatchState
+from ._ranking import Ranking, rank
 from ._result import Result
 from ._scene import Scene
 from ._simulation import Simulation, State
@@ -34,6 +35,7 @@ __all__ = [
     "Parameter",
     "Patch",
     "PatchState",
+    "Ranking",
     "Result",
     "Scene",
     "SceneError",
@@ -45,5 +47,6 @@ __all__ = [
     "__version__",
     "fit",
     "fmi",
+    "rank",
     "surface",
 ]

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import _native
 from ._arguments import Floats
 
 if TYPE_CHECKING:
@@ -49,6 +52,9 @@ class Calibration:
         measured: The measurements, shape (n, 6): speed (m/s), pressure (Pa), temperature (K), friction, its standard
             deviation, and the friction that the scene has there; nan where there is none.
         text: The scene's text with the numbers found, and what they rest on as comments.
+        covariance: Covariance of the numbers that the data tell, in the order of ``covariance_keys``: of the natural
+            logarithm of those whose bounds are positive and a decade apart, of others in the unit of their key.
+        covariance_keys: Their keys; those at a bound and those that the data do not tell are left out.
     """
 
     scene: Scene
@@ -58,6 +64,9 @@ class Calibration:
     is_whole: bool
     measured: Floats
     text: str
+    covariance: Floats
+    covariance_keys: tuple[str, ...]
+    _covariance_text: str | None
 
     @classmethod
     def _of(cls, found: dict[str, Any], scene: Scene) -> Calibration:
@@ -69,7 +78,19 @@ class Calibration:
             is_whole=found["is_whole"],
             measured=np.array(found["measured"], dtype=np.float64).reshape(-1, 6),
             text=found["text"],
+            covariance=np.array(found["covariance"], dtype=np.float64).reshape(2 * (len(found["covariance_keys"]),)),
+            covariance_keys=tuple(found["covariance_keys"]),
+            _covariance_text=found["covariance_text"],
         )
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the scene and, beside it as ``….covariance.csv``, the covariance, which its ``[uncertainty]`` names."""
+        scene, text = Path(path), self.text
+        if self._covariance_text is not None:
+            beside = scene.with_suffix(".covariance.csv")
+            beside.write_text(self._covariance_text, encoding="utf-8")
+            text = _native.with_covariance(text, beside.name, list(self.covariance_keys))
+        scene.write_text(text, encoding="utf-8")
 
     def __getitem__(self, key: str) -> float:
         """The value found of a key."""

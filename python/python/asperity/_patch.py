@@ -172,6 +172,7 @@ class Patch:
         libraries: Sequence[str | PathLike[str]] | None = None,
         *,
         flat_names: bool = False,
+        references: bool = True,
     ) -> Path:
         """Packs the patch, where it starts left out, as an FMU, and returns its path.
 
@@ -179,9 +180,10 @@ class Patch:
             path: The FMU to write.
             libraries: As for :meth:`Scene.pack`.
             flat_names: As for :meth:`Scene.pack`.
+            references: As for :meth:`Scene.pack`.
         """
         given = library_options() if libraries is None else [str(library) for library in libraries]
-        warn_of_start(self._patch.pack(Path(path), given, flat_names))
+        warn_of_start(self._patch.pack(Path(path), given, {"flat_names": flat_names, "references": references}))
         return Path(path)
 
     def __repr__(self) -> str:

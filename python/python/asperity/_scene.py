@@ -297,6 +297,7 @@ class Scene(SceneInputs):
         libraries: Sequence[str | PathLike[str]] | None = None,
         *,
         flat_names: bool = False,
+        references: bool = True,
     ) -> Path:
         """Packs the scene as an FMI 2.0 co-simulation FMU, and returns its path.
 
@@ -304,6 +305,8 @@ class Scene(SceneInputs):
             path: The FMU to write.
             libraries: Shared libraries, as ``asperity pack --library`` takes them; None: those of this package.
             flat_names: Gives variables names without structure, such as ``transport_speed``.
+            references: Runs the FMU's experiment and packs it with its result and the list of all files (FMI-LS-REF), by
+                which :func:`asperity.fmi.verify` judges a master.
 
         Raises:
             SceneError: Where a key was set that stands in a file which the scene names: an FMU carries the text.
@@ -316,5 +319,5 @@ class Scene(SceneInputs):
             raise SceneError(
                 "a key is set that stands in a file which the scene names: expected it in the text to pack"
             )
-        warn_of_start(packed._native.pack(Path(path), given, flat_names))
+        warn_of_start(packed._native.pack(Path(path), given, {"flat_names": flat_names, "references": references}))
         return Path(path)

@@ -229,6 +229,7 @@ class Table:
         libraries: Sequence[str | PathLike[str]] | None = None,
         *,
         flat_names: bool = False,
+        references: bool = True,
     ) -> Path:
         """Packs the table as an FMU, a point-contact element, and returns its path.
 
@@ -236,12 +237,13 @@ class Table:
             path: The FMU to write.
             libraries: As for :meth:`Scene.pack`.
             flat_names: As for :meth:`Scene.pack`.
+            references: As for :meth:`Scene.pack`.
         """
         given = library_options() if libraries is None else [str(library) for library in libraries]
         with tempfile.TemporaryDirectory(prefix="asperity-") as folder:
             file = Path(folder) / "table.csv"
             self.to_csv(file)
-            warn_of_start(_native.pack_table(file, Path(path), given, flat_names))
+            warn_of_start(_native.pack_table(file, Path(path), given, {"flat_names": flat_names, "references": references}))
         return Path(path)
 
     def __reduce__(self) -> tuple[type[Table], tuple[str, str, dict[str, Floats]]]:

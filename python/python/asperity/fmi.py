@@ -1,16 +1,29 @@
-"""A small master for one FMU, which tells it the rates of its inputs, as fmpy's own loop does not."""
+"""A small master for one FMU, which tells it the rates of its inputs, as fmpy's own loop does not; and what other ways of
+driving it lose."""
 
 from __future__ import annotations
 
+import csv
+import io
 import shutil
-from collections.abc import Mapping
+import zipfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from os import PathLike
+from posixpath import join, normpath
 from typing import Any
+from urllib.parse import unquote
+from xml.etree import ElementTree
 
 import numpy as np
 
-from ._arguments import columns_of
+from ._arguments import Floats, columns_of
 from ._result import Result
+from ._verification import Verification
+
+__all__ = ["Verification", "simulate", "verify"]
+
+_REFERENCES = "extra/org.fmi-standard.fmi-ls-ref"
 
 
 def simulate(
@@ -34,12 +47,113 @@ def simulate(
         ValueError: Where the motion has no rows, its times do not rise, or the FMU has no such input.
     """
     import fmpy
-    from fmpy.fmi2 import FMU2Slave
 
     description = fmpy.read_model_description(str(fmu))
     columns = {name: np.asarray(column, dtype=np.float64) for name, column in columns_of(motion).items()}
     inputs = [variable for variable in description.modelVariables if variable.causality == "input"]
     rows = _rows(columns, [variable.name for variable in inputs])
+    with _slave(fmu, description) as slave:
+        return _run(slave, description, inputs, columns["time"], rows, parameters or {}, with_rates=True)
+
+
+def verify(fmu: str | PathLike[str]) -> Verification:
+    """Drives an FMU of ``asperity pack`` along the experiment that it carries, in fmpy, and compares it with the result.
+
+    It is driven with rates and with values alone, at the experiment's steps, at ten times longer and ten times shorter ones:
+    so the table says what a master costs. Print it, or take :meth:`Verification.to_pandas`.
+
+    Args:
+        fmu: The FMU.
+
+    Raises:
+        ValueError: Where it carries no experiment and result (FMI-LS-REF).
+    """
+    import fmpy
+
+    description = fmpy.read_model_description(str(fmu))
+    experiment, result, of_result = _experiment(fmu)
+    inputs = [variable for variable in description.modelVariables if variable.causality == "input"]
+    rows = _rows(experiment, [variable.name for variable in inputs])
+    units = {variable.name: variable.unit for variable in description.modelVariables}
+    del result["time"]
+    scales = _scales(result, units)
+    ways: list[str] = []
+    differences: list[list[float]] = []
+    problems: dict[str, str] = {}
+    for kind, with_rates in (("rates", True), ("values alone", False)):
+        for steps, times in (("", 1.0), (", steps ten times longer", 10.0), (", steps ten times shorter", 0.1)):
+            ways.append(kind + steps)
+            at = _communication_points(experiment["time"], times)
+            motion = np.column_stack([np.interp(at, experiment["time"], column) for column in rows.T])
+            try:
+                with _slave(fmu, description) as slave:
+                    run = _run(slave, description, inputs, at, motion, {}, with_rates=with_rates)
+            except Exception as problem:  # fmpy raises its own kinds, and bare exceptions of calls that fail
+                problems[ways[-1]] = str(problem)
+                differences.append([float("nan")] * len(result))
+                continue
+            differences.append(
+                [_difference(run, name, experiment["time"], column) / scales[name] for name, column in result.items()]
+            )
+    return Verification(
+        description.modelName, tuple(ways), tuple(result), np.array(differences), problems, of_result
+    )
+
+
+def _communication_points(time: Floats, times: float) -> Floats:
+    """Every so manieth row, the last too, or points between the rows."""
+    if times < 1.0:
+        parts = round(1.0 / times)
+        between = np.linspace(0.0, 1.0, parts, endpoint=False)
+        return np.append((time[:-1, None] + np.diff(time)[:, None] * between).ravel(), time[-1])
+    kept = np.arange(0, len(time), round(times))
+    return np.asarray(time[np.union1d(kept, [len(time) - 1])], dtype=np.float64)
+
+
+def _scales(result: Mapping[str, Floats], units: Mapping[str, str | None]) -> dict[str, float]:
+    """What each quantity is measured by: the largest value of all of its unit, 1 where all are 0."""
+    largest: dict[str | None, float] = {}
+    for name, column in result.items():
+        largest[units[name]] = max(largest.get(units[name], 0.0), float(np.max(np.abs(column))))
+    return {name: largest[units[name]] or 1.0 for name in result}
+
+
+def _difference(run: Result, name: str, time: Floats, expected: Floats) -> float:
+    """The largest at the rows that both have."""
+    _, own, theirs = np.intersect1d(time, run.time, return_indices=True)
+    return float(np.max(np.abs(expected[own] - np.asarray(run[name], dtype=np.float64)[theirs])))
+
+
+def _experiment(fmu: str | PathLike[str]) -> tuple[dict[str, Floats], dict[str, Floats], str]:
+    """Inputs and result that an FMU carries, by the manifest's roles, and what the result is."""
+    with zipfile.ZipFile(fmu) as archive:
+        names = archive.namelist()
+        manifest = f"{_REFERENCES}/fmi-ls-manifest.xml"
+        root = ElementTree.fromstring(archive.read(manifest)) if manifest in names else ElementTree.Element("none")
+        related = {one.get("role", ""): one for one in root.iter("Related")}
+        named = [related.get(role, root).get("source", "") for role in ("experiment/smoke-test", "result")]
+        tables = [normpath(join(_REFERENCES, unquote(source))) for source in named]
+        if not all(table in names for table in tables):
+            raise ValueError(
+                f"{fmu}: expected an experiment and its result in {_REFERENCES}: an FMU of asperity pack has them, unless it "
+                "was packed with --no-references or its scene has no excitation"
+            )
+        experiment, result = (_columns(archive.read(table).decode()) for table in tables)
+    return experiment, result, related["result"].get("description", "")
+
+
+def _columns(text: str) -> dict[str, Floats]:
+    head, *rows = csv.reader(io.StringIO(text))
+    values = np.array(rows, dtype=np.float64)
+    return {name: values[:, i] for i, name in enumerate(head)}
+
+
+@contextmanager
+def _slave(fmu: str | PathLike[str], description: Any) -> Iterator[Any]:
+    """An instance of the FMU, unpacked while it lives."""
+    import fmpy
+    from fmpy.fmi2 import FMU2Slave
+
     folder = fmpy.extract(str(fmu))
     try:
         slave = FMU2Slave(
@@ -50,7 +164,7 @@ def simulate(
         )
         slave.instantiate()
         try:
-            return _run(slave, description, inputs, columns["time"], rows, parameters or {})
+            yield slave
         finally:
             slave.freeInstance()
     finally:
@@ -70,7 +184,14 @@ def _rows(columns: Mapping[str, Any], names: list[str]) -> Any:
 
 
 def _run(
-    slave: Any, description: Any, inputs: list[Any], time: Any, rows: Any, parameters: Mapping[str, float | int | str]
+    slave: Any,
+    description: Any,
+    inputs: list[Any],
+    time: Any,
+    rows: Any,
+    parameters: Mapping[str, float | int | str],
+    *,
+    with_rates: bool,
 ) -> Result:
     by_name = {variable.name: variable for variable in description.modelVariables}
     for name, value in parameters.items():
@@ -81,7 +202,8 @@ def _run(
 
     def give(i: int) -> None:
         slave.setReal(references, rows[i].tolist())
-        slave.setRealInputDerivatives(references, [1] * len(references), rates[i].tolist())
+        if with_rates:
+            slave.setRealInputDerivatives(references, [1] * len(references), rates[i].tolist())
 
     slave.setupExperiment(startTime=float(time[0]))
     slave.enterInitializationMode()

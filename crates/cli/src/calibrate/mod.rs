@@ -11,7 +11,7 @@ use std::time::Duration;
 use asperity::scene::{Scene, read_text};
 use asperity_study::calibration::{
     Calibration, CalibrationError, CalibrationOptions, CalibrationStage, Calibrator, CandidateOptions, CurveGrid,
-    FreeScene, Outcome, Task, calibrated_text,
+    FitCovariance, FreeScene, Outcome, Task, calibrated_text, named_covariance,
 };
 use asperity_study::decimals::rounded;
 use indicatif::ProgressBar;
@@ -19,7 +19,7 @@ use indicatif::ProgressBar;
 use super::cli::Calibrate;
 use super::figure::{Figure as _, Stroke};
 use super::files::{
-    self, FileError, check_outputs, is_standard_output, load_without_run, picture_beside, print_beside,
+    self, FileError, check_outputs, is_standard_output, load_without_run, name_of, picture_beside, print_beside,
 };
 use super::interrupt::Farewell;
 use super::measured_friction::{self, ModelCurves};
@@ -77,6 +77,8 @@ struct Outputs {
     picture: Option<PathBuf>,
     /// The points that were found.
     table: Option<PathBuf>,
+    /// The covariance of what is fitted.
+    covariance: Option<PathBuf>,
 }
 
 impl Outputs {
@@ -84,15 +86,18 @@ impl Outputs {
     fn new(command: &Calibrate, scene: &Scene) -> Result<Self, CalibrateError> {
         let output = command.output.clone().unwrap_or_else(|| command.scene.with_extension("calibrated.toml"));
         let picture = picture_beside(&output, command.plot.as_ref());
-        let table = (!is_standard_output(&output)).then(|| output.with_extension("points.csv"));
+        let beside = |extension| (!is_standard_output(&output)).then(|| output.with_extension(extension));
+        let (table, covariance) = (beside("points.csv"), beside("covariance.csv"));
         let taken = scene.sources(&command.scene).into_iter().chain([command.data.clone()]).collect();
-        check_outputs([&output].into_iter().chain(&picture).chain(&table), taken)?;
+        check_outputs([&output].into_iter().chain(&picture).chain(&table).chain(&covariance), taken)?;
         check_folder(&output, command, scene)?;
-        Ok(Self { scene: output, picture, table })
+        Ok(Self { scene: output, picture, table, covariance })
     }
 
-    fn all(&self) -> Vec<&Path> {
-        let all = [Some(&self.scene), self.picture.as_ref(), self.table.as_ref()];
+    /// All but the covariance that is not there.
+    fn all(&self, has_covariance: bool) -> Vec<&Path> {
+        let covariance = self.covariance.as_ref().filter(|_| has_covariance);
+        let all = [Some(&self.scene), self.picture.as_ref(), self.table.as_ref(), covariance];
         all.into_iter().flatten().map(PathBuf::as_path).collect()
     }
 }
@@ -132,11 +137,13 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, CalibrateError> {
         let calibration = calibrator.calibrate(&measurements)?;
         let planned = if command.plan { Some(calibrator.plan(&calibration, &candidates(command))?) } else { None };
         bar.finish_and_clear();
-        files::write(&outputs.scene, calibrated_text(&free, &calibration)?)?;
+        let covariance = FitCovariance::new(&free, &calibration);
+        let has_covariance = written(&outputs, calibrated_text(&free, &calibration)?, &covariance)?;
         if let Some(picture) = &outputs.picture {
             drawn(&free, &calibration, &calibrator, picture)?;
         }
-        let summary = summary::text(&free, &calibration, planned.as_ref(), &outputs.all());
+        let files = outputs.all(has_covariance);
+        let summary = summary::text(&free, (&calibration, &covariance), planned.as_ref(), &files);
         print_beside([&outputs.scene], &summary)?;
         calibration.warnings().iter().for_each(|warning| warn(warning));
         Ok(if calibration.is_whole() { SUCCESS } else { NOT_REACHED })
@@ -145,6 +152,24 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, CalibrateError> {
         Some(error) => Err(error.into()),
         None => done,
     }
+}
+
+/// Writes the scene and, where it is told and has a place, the covariance, which the scene then names; whether it did.
+fn written(outputs: &Outputs, scene: String, covariance: &FitCovariance) -> Result<bool, CalibrateError> {
+    let (Some(path), Some(table)) = (&outputs.covariance, covariance.text()) else {
+        files::write(&outputs.scene, scene)?;
+        return Ok(false);
+    };
+    let file = name_of(path);
+    if let Some(former) = named_covariance(&scene).filter(|former| *former != file) {
+        warn(&format!(
+            "[uncertainty] of the scene named {former}: it names {file} now, and what else is in that varies no more"
+        ));
+    }
+    // First what the scene needs.
+    files::write(path, table)?;
+    files::write(&outputs.scene, covariance.named_in(&scene, &file).map_err(FileError::Set)?)?;
+    Ok(true)
 }
 
 /// Refuses an output from whose folder the files that the scene names could not be found.

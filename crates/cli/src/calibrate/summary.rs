@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use asperity_study::calibration::{
-    Calibration, Direction, FreeParameter, FreeScene, FrictionParts, Measured, Plan, chi_square_per_degree, in_words,
+    Calibration, Direction, FitCovariance, FreeParameter, FreeScene, FrictionParts, Measured, Plan,
+    chi_square_per_degree, in_words,
 };
 use asperity_study::decimals::short;
 
@@ -20,7 +21,12 @@ const MOST_NAMED: usize = 10;
 const FAR_OFF: f64 = 3.0;
 
 /// The summary.
-pub(super) fn text(free: &FreeScene<'_>, calibration: &Calibration, plan: Option<&Plan>, files: &[&Path]) -> String {
+pub(super) fn text(
+    free: &FreeScene<'_>,
+    (calibration, covariance): (&Calibration, &FitCovariance),
+    plan: Option<&Plan>,
+    files: &[&Path],
+) -> String {
     let mut rows = vec![
         ("Scene", free.scene().name.clone()),
         ("Data", data(free, calibration)),
@@ -36,6 +42,7 @@ pub(super) fn text(free: &FreeScene<'_>, calibration: &Calibration, plan: Option
     rows.extend(correlations(calibration));
     rows.extend(labelled("Not told", not_told(calibration)));
     rows.push(("Chi square", chi_square(calibration)));
+    rows.extend(labelled("Covariance", covariance_lines(covariance)));
     rows.extend(rests_on(calibration));
     rows.extend(labelled("Far off", far_off(calibration)));
     rows.extend(plan.map(|plan| planned(plan, &calibration.problem.parameters)).unwrap_or_default());
@@ -142,6 +149,17 @@ fn chi_square(calibration: &Calibration) -> String {
     let per_degree = chi_square_per_degree(statistics.chi_square, statistics.degrees);
     let end = if calibration.fitted.has_converged { "converged" } else { "NOT CONVERGED" };
     format!("{} per degree of freedom, of which there are {}; {end}", short(per_degree, 4), statistics.degrees)
+}
+
+/// What the covariance has, and what not.
+fn covariance_lines(covariance: &FitCovariance) -> Vec<String> {
+    let keys: Vec<&str> = covariance.numbers.iter().map(|number| number.key.as_str()).collect();
+    let told = match keys[..] {
+        [] => "none: no number has an error".to_owned(),
+        _ => format!("of {}, for the samples of a sweep", keys.join(", ")),
+    };
+    let left_out = covariance.left_out.iter().map(|(key, why)| format!("left out: {key}, {why}"));
+    std::iter::once(told).chain(left_out).collect()
 }
 
 /// A part of friction.

@@ -8,6 +8,7 @@
 mod example;
 mod friction;
 mod measurements;
+mod rank;
 mod runs;
 mod scenes;
 mod shared;
@@ -21,6 +22,7 @@ use clap::{Args, Parser, Subcommand};
 
 pub(crate) use friction::{Calibrate, Compare};
 pub(crate) use measurements::{Fit, Reading, Surface};
+pub(crate) use rank::Rank;
 pub(crate) use runs::{Plot, Report, Simulate};
 pub(crate) use scenes::{Describe, Material, Pack};
 pub(crate) use shared::{Sliding, SteadyState};
@@ -72,6 +74,9 @@ pub(crate) enum Command {
     Calibrate(Calibrate),
     /// Compares the table of a sweep with measured friction: curves and points in one picture, and the worst points.
     Compare(Compare),
+    /// Ranks scenes by their friction: an index with its band, which is the largest and how surely. Exit status 0: the first
+    /// two are told apart with a probability of 0.9; 3: they are not.
+    Rank(Rank),
     /// Draws where the rubber touches in steady sliding, and how hard.
     Contact(Contact),
     /// Prints what completes commands and options in a shell: asperity completions bash >>

@@ -85,6 +85,10 @@ pub(crate) struct Pack {
     /// folders of points and brackets in names.
     #[arg(long)]
     pub(crate) flat_names: bool,
+    /// Leaves out what shows that the FMU runs as it should, for which its experiment is run: inputs, result and the list of
+    /// the files that it carries (FMI-LS-REF).
+    #[arg(long)]
+    pub(crate) no_references: bool,
     /// A shared library; for this platform unless linux64, win64 or darwin64 is given, as in win64=PATH. May be
     /// repeated. Default: the library beside this program.
     #[arg(long, value_name = "[PLATFORM=]PATH")]

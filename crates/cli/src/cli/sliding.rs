@@ -6,7 +6,7 @@ use asperity_study::sweep::SweepMethod;
 use clap::{ArgGroup, Args};
 
 use super::shared::{Set, Sliding, SteadyState};
-use super::sweep_values::{Shard, Values};
+use super::sweep_values::{Over, Shard, Values};
 use super::values::{count, length, picture, seeds, share, sweep_method, table_or_arrays};
 
 /// Options of a sweep that --merge does not take.
@@ -57,6 +57,13 @@ pub(crate) struct Sweep {
     /// hollow. Default: the table's name with .svg.
     #[arg(long, value_name = "OUT.svg", value_parser = picture(), conflicts_with = "shard")]
     pub(crate) plot: Option<PathBuf>,
+    /// Plots a map in place of curves: friction in colours over two of speed, pressure (or force) and temperature, x and y
+    /// in this order, a map for each value of the third, with contour lines and where along x friction is largest.
+    #[arg(long, value_name = "X,Y", value_parser = Over::parse, conflicts_with_all = ["shard", "ways"])]
+    pub(crate) over: Option<Over>,
+    /// Measured friction, as for asperity calibrate, drawn in the same colours into the maps of --over.
+    #[arg(long, value_name = "MEASURED.csv", requires = "over")]
+    pub(crate) data: Option<PathBuf>,
     /// Also plots the master curve: friction over a_T v, the speed at the reference temperature of material.wlf.
     #[arg(long, value_name = "OUT.svg", value_parser = picture(), conflicts_with = "shard")]
     pub(crate) master: Option<PathBuf>,

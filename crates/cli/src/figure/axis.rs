@@ -6,7 +6,7 @@ use std::ops::Range;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 
-use asperity_study::decimals::prefix;
+use asperity_study::decimals::{prefix, short};
 
 /// How far a curve may pass the last tick, as a share of the distance between two: a rounding error below 0 adds no
 /// tick.
@@ -14,6 +14,7 @@ const PAST_END: f64 = 0.01;
 
 /// The leading digits of the ends of a logarithmic axis, and of the ticks of a short one.
 const ROUND: [f64; 3] = [1.0, 2.0, 5.0];
+const DIGITS: [f64; 9] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0];
 /// A logarithmic axis over more decades has its ticks at powers of ten alone.
 const SHORT: f64 = 2.0;
 /// A relative difference that counts as rounding.
@@ -76,6 +77,13 @@ impl Axis {
         Self { title: title.to_owned(), scale: Scale::Logarithmic, low, high }
     }
 
+    /// A logarithmic axis from the least to the largest of `values` that it can show; from 0.1 to 1 where there are no two.
+    pub(super) fn logarithmic_tight(title: &str, values: impl Iterator<Item = f64>) -> Self {
+        let ends = range(values.filter(|&value| is_loggable(value))).filter(|(low, high)| low < high);
+        let (low, high) = ends.unwrap_or((0.1, 1.0));
+        Self { title: title.to_owned(), scale: Scale::Logarithmic, low, high }
+    }
+
     /// The same axis with another title.
     pub(super) fn titled(&self, title: &str) -> Self {
         Self { title: title.to_owned(), ..self.clone() }
@@ -96,7 +104,11 @@ impl Axis {
                 let [first, last] = [(self.low / step - ROUNDING).ceil(), (self.high / step + ROUNDING).floor()];
                 (first as i64..=last as i64).map(|i| i as f64 * step).collect()
             }
-            Scale::Logarithmic if self.is_short() => self.multiples(&ROUND),
+            Scale::Logarithmic if self.is_short() => {
+                let ticks = [&ROUND[..], &DIGITS].map(|of| self.multiples(of));
+                let found = ticks.into_iter().find(|ticks| ticks.len() > 1);
+                found.unwrap_or_else(|| vec![self.low, self.high])
+            }
             Scale::Logarithmic => {
                 let ticks = self.multiples(&[1.0]);
                 let every = ticks.len().div_ceil(most.max(1));
@@ -123,9 +135,7 @@ impl Axis {
                 let text = format!("{drawn:.*}", (-step.log10().floor()).max(0.0) as usize);
                 if text.trim_start_matches('-').chars().all(|c| "0.".contains(c)) { "0".into() } else { text }
             }
-            Scale::Logarithmic if self.is_short() && (1e-3..1e4).contains(&drawn) => {
-                format!("{drawn:.0$}", (-drawn.log10() - ROUNDING).ceil().max(0.0) as usize)
-            }
+            Scale::Logarithmic if self.is_short() && (1e-3..1e4).contains(&drawn) => short(drawn, 3),
             Scale::Logarithmic => {
                 let exponent = (drawn.log10() + ROUNDING).floor();
                 let times = drawn / 10_f64.powf(exponent);
@@ -150,7 +160,7 @@ impl Ranged for Axis {
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
         match (self.scale, hint.weight().allow_light_points()) {
             (Scale::Linear { .. }, true) => Vec::new(),
-            (Scale::Logarithmic, true) => self.multiples(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]),
+            (Scale::Logarithmic, true) => self.multiples(&DIGITS),
             (_, false) => self.ticks(hint.max_num_points()),
         }
     }
@@ -262,6 +272,16 @@ mod tests {
         assert_eq!(labels(&logarithmic(2e-5, 1e-4), 10), ["2·10⁻⁵", "5·10⁻⁵", "10⁻⁴"]);
         assert_eq!(labels(&logarithmic(0.05, 200.0), 10), ["10⁻¹", "10⁰", "10¹", "10²"]);
         assert_eq!(labels(&logarithmic(1e-12, 1.0), 10)[..2], ["10⁻¹²", "10⁻¹⁰"]);
+    }
+
+    #[test]
+    fn a_tight_logarithmic_axis_has_two_ticks_however_short_it_is() {
+        let tight = |low, high| labels(&Axis::logarithmic_tight("", [high, low].into_iter()), 10);
+        assert_eq!(tight(3e-4, 0.3), ["10⁻³", "10⁻²", "10⁻¹"]);
+        assert_eq!(tight(0.3, 3.0), ["0.5", "1", "2"]);
+        assert_eq!(tight(3.0, 4.5), ["3", "4"]);
+        assert_eq!(tight(1.25, 1.75), ["1.25", "1.75"]);
+        assert_eq!(Axis::logarithmic_tight("", [3.0].into_iter()), logarithmic(0.1, 1.0));
     }
 
     #[test]

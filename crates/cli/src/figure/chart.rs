@@ -152,10 +152,21 @@ pub(super) fn context<'a, B: Backend>(
 }
 
 pub(super) fn draw_axes<B: Backend>(context: &mut Context<'_, B>, x: &Axis, y: &Axis) -> DrawResult {
+    draw_mesh(context, x, y, true)
+}
+
+/// Draws axes alone, around what has colours everywhere.
+pub(super) fn draw_axes_without_lines<B: Backend>(context: &mut Context<'_, B>, x: &Axis, y: &Axis) -> DrawResult {
+    draw_mesh(context, x, y, false)
+}
+
+fn draw_mesh<B: Backend>(context: &mut Context<'_, B>, x: &Axis, y: &Axis, has_lines: bool) -> DrawResult {
     let (width, height) = context.plotting_area().dim_in_pixel();
-    context
-        .configure_mesh()
-        .bold_line_style(GRID.stroke_width(FINE))
+    let mut mesh = context.configure_mesh();
+    if !has_lines {
+        mesh.disable_mesh();
+    }
+    mesh.bold_line_style(GRID.stroke_width(FINE))
         .light_line_style(GRID.mix(0.45).stroke_width(FINE / 2))
         .axis_style(INK.stroke_width(FINE))
         .set_all_tick_mark_size(TICK)
@@ -260,6 +271,15 @@ pub(super) fn draw_marker<B: Backend>(
     Ok(())
 }
 
+/// Draws a cross: a point without a value.
+pub(super) fn draw_cross<B: Backend>(canvas: &Canvas<B>, (x, y): (i32, i32), shade: RGBColor) -> DrawResult {
+    let r = MARKER * 3 / 4;
+    for ends in [[(x - r, y - r), (x + r, y + r)], [(x - r, y + r), (x + r, y - r)]] {
+        canvas.draw(&PathElement::new(ends, shade.stroke_width(LINE_WIDTH)))?;
+    }
+    Ok(())
+}
+
 /// What stands before a name of the legend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Symbol {
@@ -275,6 +295,7 @@ pub(super) enum Symbol {
     Square(RGBColor),
     Disc(RGBColor),
     Ring(RGBColor),
+    Cross(RGBColor),
 }
 
 /// Names, each once, in as many lines as they need. plotters' own legend covers a part of the curves.
@@ -387,6 +408,7 @@ impl Symbol {
                 canvas.draw(&Rectangle::new(corners, shade.filled()))?;
             }
             Self::Disc(shade) => canvas.draw(&Circle::new((centre, middle), MARKER, shade.filled()))?,
+            Self::Cross(shade) => draw_cross(canvas, (centre, middle), shade)?,
             Self::Ring(shade) => canvas.draw(&Circle::new((centre, middle), MARKER, shade.stroke_width(FINE)))?,
             Self::Area(shade) => {
                 let half = (TEXT_SIZE / 2) as i32;

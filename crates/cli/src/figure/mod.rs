@@ -1,10 +1,15 @@
 //! Figures: charts drawn with plotters, as SVG or PNG by their files' names.
 
 mod axis;
+mod bands;
 mod bars;
 mod caption;
 mod chart;
+mod choice_grid;
+mod contours;
 mod difference;
+mod field_grid;
+mod grid_frame;
 mod ladders;
 mod layer;
 mod maps;
@@ -28,9 +33,13 @@ use plotters::style::register_font;
 use plotters::style::text_anchor::{HPos, VPos};
 use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingErrorKind};
 
+pub(crate) use bands::{BandRow, Bands};
 pub(crate) use bars::{Bar, Bars};
 pub(crate) use caption::RUBBER_SLIDES;
 pub(crate) use chart::{Curve, Stroke};
+pub(crate) use choice_grid::{Choice, ChoiceGrid, ChoicePanel};
+pub(crate) use field_grid::{FieldGrid, FieldPanel, MeasuredPlace};
+pub(crate) use grid_frame::GridAxis;
 pub(crate) use ladders::{Ladder, LadderPanel, Ladders, Rung};
 pub(crate) use layer::LayerPicture;
 pub(crate) use panels::{

@@ -6,6 +6,7 @@ use asperity::scene::{OutputGroup, Scene};
 use super::axis::{Axis, Fit, is_loggable};
 use super::caption::{Way, draw_caption, exaggeration};
 use super::chart::{Chart, Curve, LEGEND_LINE, Legend, Stroke, Symbol};
+use super::raster::Raster;
 use super::{Backend, Canvas, DrawResult, FINE, Figure};
 
 /// The height of a title, pixels.
@@ -150,6 +151,11 @@ impl<A: Figure, B: Figure> Figure for Below<A, B> {
 
     fn title(&self) -> &str {
         self.0.title()
+    }
+
+    fn images(&self) -> Vec<Raster> {
+        let lower = self.1.images().into_iter().map(|image| image.below(self.0.size().1 * FINE));
+        self.0.images().into_iter().chain(lower).collect()
     }
 
     fn draw<C: Backend>(&self, canvas: &Canvas<C>) -> DrawResult {

@@ -33,6 +33,11 @@ impl Raster {
         Self { corner, size, width: nx.div_ceil(by), rgb }
     }
 
+    /// The image so many subpixels lower.
+    pub(super) fn below(self, by: u32) -> Self {
+        Self { corner: (self.corner.0, self.corner.1 + by), ..self }
+    }
+
     fn height(&self) -> usize {
         self.rgb.len() / 3 / self.width
     }

@@ -71,7 +71,7 @@ pub(crate) struct SurfaceMaps {
 }
 
 impl Colours {
-    fn at(self, share: f64) -> RGBColor {
+    pub(super) fn at(self, share: f64) -> RGBColor {
         let between = |from: RGBColor, to: RGBColor| {
             let part = |from: u8, to: u8| (f64::from(from) + share * (f64::from(to) - f64::from(from))).round() as u8;
             RGBColor(part(from.0, to.0), part(from.1, to.1), part(from.2, to.2))

@@ -80,6 +80,7 @@ pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
         summary: &summary,
         picture,
         flat_names: command.flat_names,
+        references: !command.no_references,
     };
     write(&command.output, fmu.pack()?)?;
     let needs = [names.into_iter().collect(), needs].concat();

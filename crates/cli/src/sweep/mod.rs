@@ -1,5 +1,6 @@
 //! `asperity sweep`: the friction coefficient over speed, load and temperature, as a table and a plot.
 
+mod map;
 mod plot;
 mod printed;
 mod samples;
@@ -9,7 +10,7 @@ mod ways;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use asperity::element::OperatingPoint;
+use asperity::element::{OperatingPoint, TableHeader};
 use asperity::scene::{Scene, Wlf};
 use asperity_study::progress::Stop;
 use asperity_study::sweep::{
@@ -19,6 +20,7 @@ use asperity_study::uncertainty::UncertaintyError;
 
 use super::cli::{Sliding, Sweep};
 use super::draft::TablePlace;
+use super::figure::Figure as _;
 use super::files::{
     FileError, check_outputs, default_output, load_without_run, named, picture_beside, print_beside, read, write,
 };
@@ -26,6 +28,7 @@ use super::flags::with_flags;
 use super::interrupt::Farewell;
 use super::terminal::{self, LabelledLine, lines, warn};
 use crate::cli::sweep_values::Values;
+use map::{MapError, Maps};
 use table_file::{TableFile, TableFileError};
 
 /// `asperity sweep` failed, or not all of its points are steady.
@@ -41,6 +44,8 @@ pub(crate) enum SweepCommandError {
     Uncertainty(#[from] UncertaintyError),
     #[error(transparent)]
     TableFile(#[from] TableFileError),
+    #[error(transparent)]
+    Map(#[from] MapError),
     #[error("expected --pressures or --forces, the loads to sweep over")]
     NoLoad,
     #[error("--master: the scene has no material.wlf, by whose factors speeds would be shifted")]
@@ -65,11 +70,13 @@ pub(crate) fn sweep(command: &Sweep) -> Result<(), SweepCommandError> {
 
 fn merge(command: &Sweep, output: &PathBuf) -> Result<(), SweepCommandError> {
     let picture = picture(command, output);
-    check_outputs([output].into_iter().chain(&picture), command.merge.clone())?;
+    let taken = command.merge.iter().chain(&command.data).cloned().collect();
+    check_outputs([output].into_iter().chain(&picture), taken)?;
     let place = TablePlace::new(output)?;
     let table = table_file::merge(&command.merge, &place.path, command.force)?;
     place.finish()?;
-    finish(output, &table, picture.as_deref(), None, (&[], &[]))
+    let maps = maps(command, &table.header, output)?;
+    finish(output, &table, &Pictures { friction: picture.as_deref(), maps, master: None }, (&[], &[]))
 }
 
 fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCommandError> {
@@ -80,7 +87,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
         .unwrap_or_else(|| default_output(path, if command.ways.is_some() { "ways.csv" } else { "sweep.csv" }));
     let picture = picture(command, &output);
     let study = study_file(command.converged.as_ref(), path);
-    let taken = scene.sources(path).into_iter().chain(study.clone()).collect();
+    let taken = scene.sources(path).into_iter().chain(study.clone()).chain(command.data.clone()).collect();
     let beside = samples::files(command, &output);
     check_outputs([&output].into_iter().chain(&picture).chain(&command.master).chain(&beside), taken)?;
     let master = match &command.master {
@@ -93,6 +100,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
     let convergence = study_verdict(study.as_deref(), &scene.name)?;
     let plan = samples::plan(command, path, scene, (&options(command, speeds)?, convergence))?;
     plan.warning().iter().for_each(|warning| warn(&with_flags(warning)));
+    let maps = maps(command, plan.header(), &output)?;
     let place = TablePlace::new(&output)?;
     let file = TableFile::open(&place.path, plan.header(), command.force)?;
     run(command, &plan, &file, &output)?;
@@ -106,7 +114,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
     drop(file);
     place.finish()?;
     let said = samples::write(command, &plan, &table, &beside)?;
-    finish(&output, &table, picture.as_deref(), master, (&said, &beside))
+    finish(&output, &table, &Pictures { friction: picture.as_deref(), maps, master }, (&said, &beside))
 }
 
 /// Sweeps over several ways.
@@ -197,21 +205,43 @@ fn picture(command: &Sweep, output: &Path) -> Option<PathBuf> {
     if command.shard.is_some() { None } else { picture_beside(output, command.plot.as_ref()) }
 }
 
-/// Draws friction over speed and, with the compound's shift, the master curve; prints friction and what lies at the low
-/// end; counts the points that are not steady.
+/// The maps that are asked for, if any are, of the table at `output`.
+fn maps(command: &Sweep, header: &TableHeader, output: &Path) -> Result<Option<Maps>, MapError> {
+    let Some(over) = command.over else { return Ok(None) };
+    if picture(command, output).is_none() {
+        return Err(MapError::NoPicture { over, output: output.to_owned() });
+    }
+    Maps::new(over, header, output, command.data.as_ref()).map(Some)
+}
+
+/// What is drawn of a table.
+struct Pictures<'a> {
+    /// Friction over speed, ...
+    friction: Option<&'a Path>,
+    /// ... or, in its place, maps.
+    maps: Option<Maps>,
+    /// The master curve, with the compound's shift.
+    master: Option<(&'a Path, Wlf)>,
+}
+
+/// Draws the pictures; prints friction and what lies at the low end; counts the points that are not steady.
 fn finish(
     output: &PathBuf,
     table: &SweepTable,
-    picture: Option<&Path>,
-    master: Option<(&Path, Wlf)>,
+    pictures: &Pictures<'_>,
     (said, beside): (&[LabelledLine], &[PathBuf]),
 ) -> Result<(), SweepCommandError> {
-    picture.map_or(Ok(()), |path| plot::draw(path, table))?;
+    let Pictures { friction, maps, master } = pictures;
+    friction.map_or(Ok(()), |path| match maps {
+        Some(maps) => maps.picture(table).write(path),
+        None => plot::draw(path, table),
+    })?;
     master.map_or(Ok(()), |(path, wlf)| plot::draw_master(path, table, &wlf))?;
     let mut summary = printed::lines(table);
     summary.extend(table.header.low_end.iter().map(|low_end| ("Low end", low_end.clone())));
+    summary.extend(maps.iter().filter_map(|_| Some(("No result", Maps::empty(table)?))));
     summary.extend_from_slice(said);
-    let files = [output.as_path()].into_iter().chain(picture).chain(master.map(|(path, _)| path));
+    let files = [output.as_path()].into_iter().chain(*friction).chain(master.map(|(path, _)| path));
     let files = files.chain(beside.iter().map(PathBuf::as_path)).map(named);
     summary.push(("Written", files.collect::<Vec<_>>().join(", ")));
     print_beside([output], &lines(&summary))?;

@@ -8,6 +8,7 @@ use asperity::scene::Scene;
 
 use super::calibrated::Calibration;
 use super::candidates::candidates;
+use super::covariance::FitCovariance;
 use super::curve_grid::in_words;
 use super::error::{CalibrationError, ModelError};
 use super::fit::{Fitted, Tolerance, minimise, starts_by_theory};
@@ -225,7 +226,7 @@ fn found_at(problem: &Problem, frictions: &[FrictionParts]) -> Vec<FoundFriction
 }
 
 /// Fits numbers of a scene, of which this is the `text`, to measured friction: what it found, and the text of the scene
-/// with the numbers. `found` is called for every point that was found, and says whether to go on.
+/// with the numbers, and their covariance. `found` is called for every point that was found, and says whether to go on.
 ///
 /// # Errors
 /// Where the scene, the parameters or the measurements are refused, and where `found` says to stop.
@@ -233,12 +234,12 @@ pub fn calibrate_scene(
     text: &str,
     options: &CalibrationOptions,
     found: impl Fn() -> ControlFlow<()> + Sync,
-) -> Result<(Calibration, String), CalibrationError> {
+) -> Result<(Calibration, String, FitCovariance), CalibrationError> {
     let scene = parse_scene(text, &options.scene, &options.set)?;
     let free = FreeScene::new(options, text, scene)?;
     let measurements = free.measurements()?;
     let calibrate = |calibrator: Calibrator<'_>| calibrator.calibrate(&measurements);
     let calibration = free.with_models(Vec::new(), &|_, _| found(), &|_| (), calibrate)?;
-    let text = calibrated_text(&free, &calibration)?;
-    Ok((calibration, text))
+    let (text, covariance) = (calibrated_text(&free, &calibration)?, FitCovariance::new(&free, &calibration));
+    Ok((calibration, text, covariance))
 }

@@ -9,6 +9,7 @@
 mod calibrated;
 mod calibrator;
 mod candidates;
+mod covariance;
 mod curve_grid;
 mod error;
 mod fit;
@@ -32,6 +33,7 @@ mod theory_model;
 
 pub use calibrated::{CalibratedParameter, Calibration};
 pub use calibrator::{CalibrationStage, Calibrator, calibrate_scene};
+pub use covariance::{FitCovariance, FittedNumber, NotInCovariance, named_covariance, with_covariance};
 pub use curve_grid::{Cluster, Condition, CurveGrid, in_words, left_out_in_words};
 pub use error::{CalibrationError, FreeParameterError, MeasuredFrictionError, ModelError, NoSliding};
 pub use fit::{Fitted, Tolerance, minimise, starts_by_theory};

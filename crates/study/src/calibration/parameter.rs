@@ -63,7 +63,13 @@ impl FreeParameter {
 
     /// The standard error in the parameter's own unit of one in the coordinate of the statistics, at a value.
     pub fn error_of_value(&self, value: f64, error: f64) -> f64 {
-        if self.is_logarithmic() { value * error } else { (self.high - self.low) * error }
+        let error = self.error_of_coordinate(error);
+        if self.is_logarithmic() { value * error } else { error }
+    }
+
+    /// An error in the coordinate of the statistics as one of the logarithm or, where that is not fitted, of the value.
+    pub fn error_of_coordinate(&self, error: f64) -> f64 {
+        if self.is_logarithmic() { error } else { (self.high - self.low) * error }
     }
 
     /// The value that is `by` away from another in the coordinate of the statistics; it may lie beyond the bounds.

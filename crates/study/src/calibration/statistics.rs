@@ -50,6 +50,8 @@ pub struct Statistics {
     pub errors: Vec<Option<f64>>,
     /// 95 % intervals of the values; `None` at a bound.
     pub intervals: Vec<Option<(f64, f64)>>,
+    /// Covariance of the coordinates; 0 of those at a bound.
+    pub covariance: DMatrix<f64>,
     /// Correlations; 0 with those at a bound.
     pub correlation: DMatrix<f64>,
     /// The singular values of J, descending, without those at a bound.
@@ -82,6 +84,7 @@ impl Statistics {
             at_bound,
             errors: vec![None; count],
             intervals: vec![None; count],
+            covariance: DMatrix::zeros(count, count),
             correlation: DMatrix::identity(count, count),
             singular_values: Vec::new(),
             not_identifiable: Vec::new(),
@@ -123,6 +126,7 @@ impl Statistics {
         let deviations: Vec<f64> = (0..inner.len()).map(|a| covariance(a, a).sqrt()).collect();
         for (a, &row) in inner.iter().enumerate() {
             for (b, &column) in inner.iter().enumerate() {
+                self.covariance[(row, column)] = covariance(a, b);
                 self.correlation[(row, column)] = covariance(a, b) / (deviations[a] * deviations[b]);
             }
         }
@@ -211,6 +215,18 @@ mod tests {
             assert!((errors[0] - f64::sqrt(scale / 3.0)).abs() < 1e-12, "{errors:?}");
             assert!((errors[1] - f64::sqrt(scale / 2.0)).abs() < 1e-12, "{errors:?}");
             assert!(statistics.correlation[(0, 1)].abs() < 1e-12 && statistics.not_identifiable.is_empty());
+        }
+    }
+
+    /// A line through points at 0, 1, 2, 3: (JᵀJ)⁻¹ by hand is [14, -6; -6, 4]/20.
+    #[test]
+    fn the_covariance_is_the_inverse_of_the_squares() {
+        let jacobian = DMatrix::from_fn(4, 2, |row, column| if column == 0 { 1.0 } else { row as f64 });
+        let linearised = Linearised { residuals: vec![1.0, -1.0, -1.0, 1.0], jacobian };
+        let statistics = Statistics::new(&problem(4, 2, false), &[0.5, 0.5], &linearised);
+        for (at, expected) in [((0, 0), 0.7), ((0, 1), -0.3), ((1, 0), -0.3), ((1, 1), 0.2)] {
+            let found = statistics.covariance[at];
+            assert!((found - 2.0 * expected).abs() < 1e-12, "{at:?}: {found}");
         }
     }
 

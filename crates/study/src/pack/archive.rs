@@ -23,6 +23,11 @@ impl ArchiveEntry {
         Self { name: name.into(), bytes: bytes.into(), executable: false }
     }
 
+    /// Its path, with forward slashes.
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+
     /// A file that is executable.
     pub(super) fn executable(name: impl Into<String>, bytes: impl Into<Vec<u8>>) -> Self {
         Self { executable: true, ..Self::new(name, bytes) }

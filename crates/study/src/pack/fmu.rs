@@ -4,12 +4,12 @@ use std::io;
 use std::path::{Component, Path};
 
 use asperity::element::Basis;
-use asperity_fmi::{Definition, Sources, guid};
+use asperity_fmi::{Definition, Sources, VariableTable, guid};
 
 use super::archive::{ArchiveEntry, zip};
 use super::error::PackError;
 use super::library::Library;
-use super::{description, documentation};
+use super::{description, documentation, references};
 use crate::files::{ReadError, bytes};
 use crate::labelled::LabelledLine;
 use crate::summary::{patch_rows, scene_rows, table_rows};
@@ -29,6 +29,9 @@ pub struct Fmu<'a> {
     pub picture: Option<Vec<u8>>,
     /// Whether names of variables have an underscore in place of each point and bracket.
     pub flat_names: bool,
+    /// Whether it carries what shows that it runs as it should: an experiment with its result, and the list of all that it
+    /// carries (FMI-LS-REF). The experiment is run for it.
+    pub references: bool,
 }
 
 impl Fmu<'_> {
@@ -40,8 +43,15 @@ impl Fmu<'_> {
         let identifier = self.definition.identifier();
         let binary = |library: &Library| ArchiveEntry::executable(library.place(&identifier), library.bytes.clone());
         let mut entries: Vec<ArchiveEntry> = self.libraries.iter().map(binary).collect();
-        entries.extend(self.resources()?);
-        entries.extend(self.documents()?);
+        let resources = self.resources()?;
+        let variables = self.variables()?;
+        if self.references {
+            let names: Vec<&str> = resources.iter().map(ArchiveEntry::name).collect();
+            let references = references::entries(self.definition, &variables, (&names, self.picture.is_some()));
+            entries.extend(references.map_err(document("the references"))?);
+        }
+        entries.extend(resources);
+        entries.extend(self.documents(&variables)?);
         entries.extend(self.picture.clone().map(|picture| ArchiveEntry::new("model.png", picture)));
         Ok(zip(entries)?)
     }
@@ -58,25 +68,33 @@ impl Fmu<'_> {
         Ok(entries)
     }
 
+    /// The variables, as they are called in the FMU.
+    fn variables(&self) -> Result<VariableTable, PackError> {
+        let variables = self.definition.variables();
+        if !self.flat_names {
+            return Ok(variables);
+        }
+        variables.flat().map_err(|[first, second]| PackError::SameName { first, second })
+    }
+
     /// The description of the model and the documentation.
-    fn documents(&self) -> Result<Vec<ArchiveEntry>, PackError> {
+    fn documents(&self, variables: &VariableTable) -> Result<Vec<ArchiveEntry>, PackError> {
         let Self { definition, path, .. } = *self;
-        let document = |document, source| PackError::Document { document, source };
-        let variables = definition.variables();
-        let guid = guid(&Sources::new(path, &**definition).map_err(unread(path))?, &variables);
-        let (variables, naming) = if self.flat_names {
-            (variables.flat().map_err(|[first, second]| PackError::SameName { first, second })?, "flat")
-        } else {
-            (variables, "structured")
-        };
-        let description = description::write(&**definition, &variables, (&guid, naming));
-        let description = description.map_err(|error| document("modelDescription.xml", error))?;
-        let index = documentation::write(definition, &variables, self.summary);
-        let index = index.map_err(|error| document("documentation/index.html", error))?;
+        let guid = guid(&Sources::new(path, &**definition).map_err(unread(path))?, &definition.variables());
+        let naming = if self.flat_names { "flat" } else { "structured" };
+        let description = description::write(&**definition, variables, (&guid, naming));
+        let description = description.map_err(document("modelDescription.xml"))?;
+        let index = documentation::write(definition, variables, self.summary);
+        let index = index.map_err(document("documentation/index.html"))?;
         let written = [("modelDescription.xml", description), ("documentation/index.html", index)];
         let fixed = documentation::FILES.iter().map(|&(name, text)| ArchiveEntry::new(name, text));
         Ok(written.into_iter().map(|(name, bytes)| ArchiveEntry::new(name, bytes)).chain(fixed).collect())
     }
+}
+
+/// For `map_err`: a document cannot be written.
+fn document(document: &'static str) -> impl FnOnce(io::Error) -> PackError {
+    move |source| PackError::Document { document, source }
 }
 
 /// For `map_err`: the file at `path` cannot be read.

@@ -6,6 +6,7 @@ mod documentation;
 mod error;
 mod fmu;
 mod library;
+mod references;
 
 pub use error::PackError;
 pub use fmu::{Fmu, flat_names, no_start, not_converged, summary};

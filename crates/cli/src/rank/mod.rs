@@ -1,0 +1,87 @@
+//! `asperity rank`: scenes in the order of their friction, and how sure that is.
+
+mod picture;
+mod summary;
+
+use std::time::Duration;
+
+use asperity_study::progress::Stop;
+use asperity_study::rank::{RankError, RankFound, RankPlan, RankScene, Weights, measured_ranking, table};
+use asperity_study::sweep::{Loads, SweepOptions};
+use asperity_study::uncertainty::SampleOptions;
+
+use super::cli::Rank;
+use super::files::{FileError, check_outputs, load_without_run, picture_beside, print_beside, write};
+use super::flags::with_flags;
+use super::terminal::{self, note, warn};
+use super::{NOT_REACHED, SUCCESS};
+
+/// `asperity rank` failed.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum RankCommandError {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error(transparent)]
+    Rank(#[from] RankError),
+}
+
+/// Ranks scenes, writes the table and the picture.
+pub(crate) fn rank(command: &Rank) -> Result<u8, RankCommandError> {
+    let picture = picture_beside(&command.output, command.plot.as_ref());
+    let scenes = scenes(command)?;
+    let sources = scenes.iter().flat_map(|scene| scene.scene.sources(&scene.file));
+    let taken = sources.chain(command.weights.iter().chain(&command.data).cloned()).collect();
+    check_outputs([&command.output].into_iter().chain(&picture), taken)?;
+    let plan = RankPlan::new(scenes, options(command), samples(command))?;
+    plan.warnings().iter().for_each(|warning| warn(&with_flags(warning)));
+    let weights = command.weights.as_deref().map(Weights::read).transpose()?.unwrap_or_default();
+    let found = found(&plan, &weights)?;
+    let measured = command.data.as_deref().map(|data| measured_ranking(&plan, &found, data)).transpose()?;
+    measured.iter().flat_map(|measured| &measured.notes).for_each(|text| note(text));
+    found.ranking.warnings().iter().for_each(|warning| warn(warning));
+    write(&command.output, table(&found.ranking))?;
+    if let Some(picture) = &picture {
+        picture::draw(picture, &found)?;
+    }
+    let files: Vec<_> = std::iter::once(&command.output).chain(&picture).collect();
+    let summary = summary::text(&plan, &found.ranking, measured.as_ref(), &files);
+    print_beside([&command.output], &summary)?;
+    Ok(if found.ranking.is_sure() { SUCCESS } else { NOT_REACHED })
+}
+
+fn scenes(command: &Rank) -> Result<Vec<RankScene>, RankCommandError> {
+    let solves = command.sliding.options();
+    let scene = |file: &std::path::PathBuf| -> Result<RankScene, RankCommandError> {
+        // It says what is to be said of the scene.
+        let scene = load_without_run(file, &command.set, |scene| !solves.solves(scene))?;
+        Ok(RankScene { scene, ..RankScene::read(file, &command.set)? })
+    };
+    command.scenes.iter().map(scene).collect()
+}
+
+fn options(command: &Rank) -> SweepOptions {
+    let loads = match (&command.forces, &command.pressures) {
+        (Some(forces), _) => Loads::Forces(forces.0.clone()),
+        // The command line has one of them.
+        (None, pressures) => Loads::Pressures(pressures.as_ref().map(|values| values.0.clone()).unwrap_or_default()),
+    };
+    SweepOptions {
+        speeds: command.speeds.0.clone(),
+        loads,
+        temperatures: command.temperatures.as_ref().map(|values| values.0.clone()),
+        sliding: command.sliding.options(),
+    }
+}
+
+fn samples(command: &Rank) -> SampleOptions {
+    SampleOptions { count: command.samples as usize, seed: command.seed }
+}
+
+fn found(plan: &RankPlan, weights: &Weights) -> Result<RankFound, RankError> {
+    let bar = terminal::bar(plan.sweeps() as u64);
+    bar.set_message(format!("of {} sweeps", plan.sweeps()));
+    bar.enable_steady_tick(Duration::from_secs(1));
+    let found = plan.find(weights, &Stop::default(), &|| bar.inc(1));
+    bar.finish_and_clear();
+    found
+}

@@ -1,0 +1,22 @@
+//! Ranking: friction of several scenes at the same points, its weighted mean, and how sure their order is.
+//!
+//! Samples of all scenes are drawn with common numbers ([`UncertainScene::draw_together`](crate::uncertainty)): sample i
+//! draws the same for keys of the same name and for a surface's seed, so that what the scenes share drops out of their
+//! comparison.
+
+mod error;
+mod measured;
+mod plan;
+mod ranking;
+mod table;
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests;
+mod weights;
+
+pub use error::RankError;
+pub use measured::{MeasuredRanking, MeasuredScene, kendall, measured_ranking};
+pub use plan::{RankFound, RankPlan, RankScene};
+pub use ranking::{Band, Pair, QUANTILES, RankedPoint, RankedScene, Ranking, SURE};
+pub use table::table;
+pub use weights::Weights;

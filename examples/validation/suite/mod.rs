@@ -1,0 +1,29 @@
+//! The comparisons of the validation page, each a function that returns its rows. Reference solutions stand beside them
+//! and call nothing of what is compared.
+
+pub mod elastic;
+pub mod page;
+pub mod picture;
+pub mod row;
+pub mod sliding;
+pub mod viscoelastic;
+
+use std::path::Path;
+
+use row::Entry;
+
+/// The repository.
+pub fn root() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
+}
+
+/// In the order of the page.
+pub const ALL: &[Entry] = &[
+    elastic::CYLINDER,
+    elastic::SPHERE,
+    elastic::WAVE,
+    elastic::WAVES,
+    viscoelastic::ROLLING,
+    viscoelastic::CYLINDERS,
+    viscoelastic::FULL,
+];

@@ -1,0 +1,107 @@
+//! Scenes in the order of their friction.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use asperity_study::rank::{MeasuredRanking, RankError, RankPlan, RankScene, Ranking, Weights, measured_ranking};
+use asperity_study::sweep::{Loads, SweepOptions};
+use asperity_study::uncertainty::SampleOptions;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::background::in_background;
+use crate::errors::Raise as _;
+use crate::scene::Scene;
+use crate::sweep::sliding;
+
+/// Ranks scenes.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+pub(crate) fn rank<'py>(
+    py: Python<'py>,
+    scenes: Vec<PyRef<'py, Scene>>,
+    speeds: Vec<f64>,
+    pressures: Option<Vec<f64>>,
+    forces: Option<Vec<f64>>,
+    temperatures: Option<Vec<f64>>,
+    weights: Option<PathBuf>,
+    (samples, seed): (usize, u64),
+    data: Option<PathBuf>,
+    method: Option<&str>,
+    way: Option<f64>,
+    points: Option<u32>,
+    error: Option<f64>,
+    distance: Option<f64>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let loads = match (pressures, forces) {
+        (Some(pressures), None) => Loads::Pressures(pressures),
+        (None, Some(forces)) => Loads::Forces(forces),
+        _ => return Err(PyValueError::new_err("expected pressures or forces, the loads to rank at")),
+    };
+    let options = SweepOptions { speeds, loads, temperatures, sliding: sliding(method, way, points, error, distance)? };
+    let scene = |scene: &PyRef<'_, Scene>| RankScene {
+        scene: (*scene.scene).clone(),
+        text: scene.text.clone(),
+        file: scene.file.clone(),
+        set: scene.settings.clone(),
+    };
+    let scenes: Vec<RankScene> = scenes.iter().map(scene).collect();
+    let found = in_background(py, progress, move |task| -> Result<_, RankError> {
+        let plan = RankPlan::new(scenes, options, SampleOptions { count: samples, seed })?;
+        let weights = weights.as_deref().map(Weights::read).transpose()?.unwrap_or_default();
+        let (all, done) = (plan.sweeps() as f64, AtomicUsize::new(0));
+        let told = || task.report((1 + done.fetch_add(1, Ordering::Relaxed)) as f64 / all);
+        let found = plan.find(&weights, &task.stop(), &told)?;
+        let measured = data.as_deref().map(|data| measured_ranking(&plan, &found, data)).transpose()?;
+        let warnings: Vec<String> = plan.warnings().into_iter().chain(found.ranking.warnings()).collect();
+        Ok((found.ranking, measured, warnings))
+    })?;
+    let (ranking, measured, warnings) = found.map_err(|error| error.raise())?;
+    let found = as_dictionary(py, &ranking)?;
+    found.set_item("warnings", warnings)?;
+    found.set_item("measured", measured.map(|measured| as_measured(py, measured)).transpose()?)?;
+    Ok(found)
+}
+
+fn as_dictionary<'py>(py: Python<'py>, ranking: &Ranking) -> PyResult<Bound<'py, PyDict>> {
+    let (scenes, found) = (&ranking.scenes, PyDict::new(py));
+    let count = scenes.len();
+    let above = |one: usize| (0..count).map(|other| ranking.above(one, other)).collect::<Vec<_>>();
+    let ties: Vec<(usize, usize, f64)> =
+        ranking.pairs.iter().map(|pair| (pair.scenes[0], pair.scenes[1], pair.ties)).collect();
+    let point = |ranked: &asperity_study::rank::RankedPoint| {
+        let at = ranked.point;
+        (at.speed, at.load, at.temperature, ranked.weight)
+    };
+    found.set_item("scenes", scenes.iter().map(|scene| scene.label.as_str()).collect::<Vec<_>>())?;
+    found.set_item("order", &ranking.order)?;
+    found.set_item("friction", scenes.iter().map(|scene| scene.friction).collect::<Vec<_>>())?;
+    found.set_item("friction_bands", scenes.iter().map(|scene| scene.friction_band).collect::<Vec<_>>())?;
+    found.set_item("index", scenes.iter().map(|scene| scene.index).collect::<Vec<_>>())?;
+    found.set_item("index_bands", scenes.iter().map(|scene| scene.index_band).collect::<Vec<_>>())?;
+    found.set_item("largest", scenes.iter().map(|scene| scene.largest).collect::<Vec<_>>())?;
+    found.set_item("above", (0..count).map(above).collect::<Vec<_>>())?;
+    found.set_item("ties", ties)?;
+    found.set_item("points", ranking.points.iter().map(point).collect::<Vec<_>>())?;
+    found.set_item("point_friction", ranking.points.iter().map(|at| at.friction.clone()).collect::<Vec<_>>())?;
+    found.set_item("point_largest", ranking.points.iter().map(|at| at.largest.clone()).collect::<Vec<_>>())?;
+    found.set_item("point_bands", ranking.points.iter().map(|at| at.bands.clone()).collect::<Vec<_>>())?;
+    found.set_item("samples", ranking.samples)?;
+    found.set_item("failed", ranking.failed)?;
+    found.set_item("redrawn", ranking.redrawn)?;
+    found.set_item("is_sure", ranking.is_sure())?;
+    Ok(found)
+}
+
+fn as_measured(py: Python<'_>, measured: MeasuredRanking) -> PyResult<Bound<'_, PyDict>> {
+    let found = PyDict::new(py);
+    let scenes: Vec<_> =
+        measured.scenes.into_iter().map(|scene| (scene.label, scene.measured, scene.computed)).collect();
+    found.set_item("scenes", scenes)?;
+    found.set_item("points", measured.points)?;
+    found.set_item("tau", measured.tau)?;
+    found.set_item("notes", measured.notes)?;
+    Ok(found)
+}

@@ -1,0 +1,131 @@
+//! What an FMU carries by FMI-LS-REF: a manifest that is valid, and an experiment whose result a master gets again.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::common::{Table, asperity, difference, drive, largest, library, pack, python, root, run, scratch};
+
+const FOLDER: &str = "extra/org.fmi-standard.fmi-ls-ref";
+/// All files of the folder, bytes.
+const MOST: u64 = 100_000;
+
+/// A file of an FMU, in a folder of its own beside it.
+fn unpacked(fmu: &Path, name: &str) -> PathBuf {
+    let text = "import sys, zipfile; zipfile.ZipFile(sys.argv[1]).extract(sys.argv[2], sys.argv[3])";
+    let folder = fmu.with_extension("unpacked");
+    run(Command::new(python()).args(["-c", text]).arg(fmu).arg(format!("{FOLDER}/{name}")).arg(&folder));
+    folder.join(FOLDER).join(name)
+}
+
+/// The roles of the files that an FMU names, after their check.
+fn roles(fmu: &Path) -> Vec<String> {
+    let found = run(Command::new(python()).arg(root().join("tests/python/references.py")).arg(fmu));
+    let lines: Vec<Vec<&str>> = found.lines().map(|line| line.split(' ').collect()).collect();
+    let own = lines.iter().filter(|line| line[2].starts_with(FOLDER));
+    let size: u64 = own.map(|line| line[3].parse::<u64>().unwrap()).sum();
+    assert!(size <= MOST, "{found}");
+    lines.iter().map(|line| line[0].to_owned()).collect()
+}
+
+/// Drives an FMU along its experiment and compares it with its result, each column over its largest value.
+fn assert_reproduces(fmu: &Path, tolerance: f64) {
+    let result = Table::read(&unpacked(fmu, "result.csv"));
+    let found = drive(fmu, &unpacked(fmu, "experiment.csv"), &[]);
+    for name in result.names().iter().filter(|name| *name != "time") {
+        let (expected, found) = (result.column(name), found.column(name));
+        let error = difference(&expected, &found) / largest(&expected).max(f64::MIN_POSITIVE);
+        assert!(error <= tolerance || largest(&found) == 0.0, "{name}: {error:e}");
+    }
+}
+
+/// The default scene: its tolerance is 1e-6, that of its result a tenth of it; forces are known to some of it.
+#[test]
+fn the_default_scene_proves_itself() {
+    let folder = scratch("references-default");
+    let fmu = pack(&root().join("scenes/tread-block/tread-block.toml"), &folder);
+    let expected = ["model", "model", "document", "document", "experiment/smoke-test", "result", "parameter"];
+    assert_eq!(roles(&fmu), expected);
+    assert_reproduces(&fmu, 1e-5);
+    let manifest = fs::read_to_string(unpacked(&fmu, "fmi-ls-manifest.xml")).unwrap();
+    let (_, error) = manifest.split_once("estimated error is ").unwrap();
+    let error: f64 = error.split(' ').next().unwrap().parse().unwrap();
+    assert!(error > 0.0 && error < 1e-5, "{error:e}");
+}
+
+/// An element and a patch press and slide within their table; their result is exact to the digits that it has.
+#[test]
+fn elements_and_patches_press_and_slide() {
+    let folder = scratch("references-patch");
+    let source = root().join("tests/reference/patch");
+    for (option, file) in [("--table", "block.table.csv"), ("--patch", "wheel.toml")] {
+        let fmu = folder.join(file).with_extension("fmu");
+        let mut pack = asperity();
+        pack.args(["pack", option]).arg(source.join(file)).arg("-o").arg(&fmu);
+        run(pack.arg("--library").arg(library()));
+        assert!(roles(&fmu).iter().any(|role| role == "experiment/smoke-test"));
+        assert_reproduces(&fmu, 1e-7);
+        let result = Table::read(&unpacked(&fmu, "result.csv"));
+        let force = if option == "--table" { "F_x" } else { "force.x" };
+        let force = result.column(force);
+        let (low, high) = force.iter().fold((0.0_f64, 0.0_f64), |(low, high), f| (low.min(*f), high.max(*f)));
+        assert!(low < 0.0 && high > 0.0, "it slides to and fro: {low} N to {high} N");
+    }
+}
+
+/// Names are those of the FMU; without references there is no folder.
+#[test]
+fn names_follow_and_references_are_left_out_on_request() {
+    let folder = scratch("references-options");
+    let pack = |options: &[&str]| {
+        let fmu = folder.join("wheel.fmu");
+        let mut pack = asperity();
+        pack.args(["pack", "--patch"]).arg(root().join("tests/reference/patch/wheel.toml")).arg("-o").arg(&fmu);
+        run(pack.arg("--library").arg(library()).args(options));
+        fmu
+    };
+    let flat = pack(&["--flat-names"]);
+    roles(&flat);
+    let head = fs::read_to_string(unpacked(&flat, "result.csv")).unwrap();
+    assert!(head.starts_with("\"time\",\"force_x\","), "{}", head.lines().next().unwrap());
+    let names = "import sys, zipfile; print(*sorted(zipfile.ZipFile(sys.argv[1]).namelist()))";
+    let without = run(Command::new(python()).args(["-c", names]).arg(pack(&["--no-references"])));
+    assert!(without.contains("resources/patch.toml") && !without.contains("extra/"), "{without}");
+}
+
+/// docs/compatibility has the experiment of the default scene as its FMU carries it. To accept an intended change:
+/// `BLESS=1 cargo test fmu::references`.
+#[test]
+fn the_compatibility_folder_has_what_the_fmu_carries() {
+    let fmu = pack(&root().join("scenes/tread-block/tread-block.toml"), &scratch("references-compatibility"));
+    let folder = root().join("docs/compatibility/tread-block");
+    for (own, carried) in [("tread-block_in.csv", "experiment.csv"), ("tread-block_ref.csv", "result.csv")] {
+        let (path, carried) = (folder.join(own), fs::read_to_string(unpacked(&fmu, carried)).unwrap());
+        if std::env::var_os("BLESS").is_some() {
+            fs::write(&path, &carried).unwrap();
+        }
+        let (own, carried) = (Table::read(&path), Table::parse(&carried));
+        assert!(own.names() == carried.names() && own.len() == carried.len(), "BLESS=1 accepts the new one");
+        for name in own.names() {
+            // Machines sum in lanes of their own width.
+            let (expected, found) = (own.column(name), carried.column(name));
+            assert!(difference(&expected, &found) <= 1e-6 * largest(&expected), "{name}: BLESS=1 accepts the new one");
+        }
+    }
+}
+
+/// The page of compatibility names the versions that the tests install.
+#[test]
+fn the_compatibility_page_has_the_versions_tried() {
+    let page = fs::read_to_string(root().join("docs/compatibility.md")).unwrap();
+    for (list, packages) in [
+        ("tests/python/requirements.txt", &["fmpy"][..]),
+        ("tests/python/masters.txt", &["libcosimpy", "ecospy", "fmu-manipulation-toolbox"]),
+    ] {
+        let list = fs::read_to_string(root().join(list)).unwrap();
+        for package in packages {
+            let pinned = list.lines().find_map(|line| line.strip_prefix(package)?.strip_prefix("==")).unwrap();
+            assert!(page.contains(&format!("| {pinned} |")), "{package} {pinned}");
+        }
+    }
+}

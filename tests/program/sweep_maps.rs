@@ -1,0 +1,167 @@
+//! The maps of `asperity sweep --over`: what is in them, what is named, and what is refused.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+use crate::common::scenes::SceneText;
+use crate::common::{Table, asperity, root, scratch};
+
+const SPEEDS: &str = "1e-4..10/6";
+const TEMPERATURES: &str = "0°C,20°C,40°C";
+
+fn sweep(scene: &Path, table: &Path, options: &[&str]) -> Output {
+    asperity().arg("sweep").arg(scene).arg("-o").arg(table).args(options).output().unwrap()
+}
+
+fn said(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// The road, which a sweep solves for in no time.
+fn road() -> PathBuf {
+    root().join("scenes/road/road.toml")
+}
+
+/// How often an SVG has a text of its own.
+fn texts(svg: &str, text: &str) -> usize {
+    svg.lines().filter(|line| line.trim() == text).count()
+}
+
+/// Two maps with one scale and measured points; the same of the shards' tables that are merged.
+#[test]
+fn friction_is_drawn_over_speed_and_temperature() {
+    let folder = scratch("sweep-maps");
+    let (table, picture, data) = (folder.join("t.csv"), folder.join("t.svg"), folder.join("measured.csv"));
+    fs::write(
+        &data,
+        "speed [m/s],pressure [bar],temperature [°C],mu\n0.01,1,20,0.95\n0.1,2.9,30,1.3\n0.1,2,20,0.9\n20,1,20,0.7\n0.1,1,60,0.9\n",
+    )
+    .unwrap();
+    let points = ["--speeds", SPEEDS, "--pressures", "1bar,3bar", "--temperatures", TEMPERATURES];
+    let maps = ["--over", "speed,temperature", "--data", data.to_str().unwrap()];
+    let done = sweep(&road(), &table, &[&points[..], &maps].concat());
+    assert!(done.status.success(), "{}", said(&done.stderr));
+    let svg = fs::read_to_string(&picture).unwrap();
+    for text in ["100 kPa", "300 kPa", "friction", "measured", "largest over the speed"] {
+        assert_eq!(texts(&svg, text), 1, "{text}");
+    }
+    assert_eq!((texts(&svg, "speed in m/s"), texts(&svg, "temperature in K")), (2, 2));
+    assert_eq!((svg.matches("<image").count(), texts(&svg, "no result")), (2, 0));
+    // The scale reaches to the largest measured value, and its ticks are the numbers of the lines.
+    assert_eq!(texts(&svg, "1.2"), 1, "the tick alone");
+    assert!(texts(&svg, "0.8") > 2, "the tick and lines");
+    let warned = said(&done.stderr);
+    let left_out = ["3 of 5 measurements are left out", "there is no map of this pressure", "beyond the map"];
+    assert!(left_out.iter().all(|text| warned.contains(text)), "{warned}");
+    assert!(warned.contains("line 4 (0.1 m/s, 200000 Pa, 293.15 K)") && warned.contains("line 6"), "{warned}");
+    let shards = ["1/2", "2/2"].map(|shard| {
+        let table = folder.join(format!("{}.csv", &shard[..1]));
+        let done = sweep(&road(), &table, &[&points[..], &["--shard", shard]].concat());
+        assert!(done.status.success(), "{}", said(&done.stderr));
+        table
+    });
+    let merged = folder.join("m.csv");
+    let done = asperity().arg("sweep").arg("-o").arg(&merged).arg("--merge").args(&shards).args(maps).output().unwrap();
+    assert!(done.status.success(), "{}", said(&done.stderr));
+    assert_eq!(fs::read_to_string(folder.join("m.svg")).unwrap(), svg);
+    // One of them alone: every other point is empty, and named.
+    let half = folder.join("h.csv");
+    let merge = |over: &str| {
+        asperity()
+            .arg("sweep")
+            .arg("-o")
+            .arg(&half)
+            .arg("--force")
+            .arg("--merge")
+            .arg(&shards[0])
+            .args(["--over", over])
+            .output()
+            .unwrap()
+    };
+    let done = merge("temperature,pressure");
+    assert!(said(&done.stdout).contains("No result   "), "{}", said(&done.stdout));
+    assert!(said(&done.stdout).contains("0.001 m/s, 100000 Pa, 273.15 K: not computed"), "{}", said(&done.stdout));
+    let svg = fs::read_to_string(folder.join("h.svg")).unwrap();
+    assert_eq!((svg.matches("<image").count(), texts(&svg, "no result"), texts(&svg, "10 m/s")), (6, 1, 1));
+}
+
+/// The line of a level lies where a straight line between the table's points has it.
+#[test]
+fn a_contour_goes_where_the_table_has_its_value() {
+    let folder = scratch("sweep-map-contour");
+    let table = folder.join("t.csv");
+    let points = ["--speeds", "1e-4,1e-3", "--pressures", "1bar", "--temperatures", "30°C,40°C"];
+    let done = sweep(&road(), &table, &[&points[..], &["--over", "speed,temperature"]].concat());
+    assert!(done.status.success(), "{}", said(&done.stderr));
+    let rows = Table::read(&table);
+    // At 40 °C from the left to the right edge.
+    let friction: Vec<f64> = (2..4).map(|row| rows.number(row, "friction")).collect();
+    let level = 0.5;
+    assert!(friction[0] < level && level < friction[1], "{friction:?}");
+    let svg = fs::read_to_string(folder.join("t.svg")).unwrap();
+    let image = svg.lines().find(|line| line.starts_with("<image")).unwrap();
+    let of = |name: &str| -> f64 {
+        let from = image.split_once(&format!(" {name}=\"")).unwrap().1;
+        from.split_once('"').unwrap().0.parse().unwrap()
+    };
+    let (x, y) = (of("x") + of("width") * (level - friction[0]) / (friction[1] - friction[0]), of("y"));
+    let ends: Vec<(f64, f64)> = svg
+        .lines()
+        .filter_map(|line| line.split_once("<polyline")?.1.split_once("points=\"")?.1.split_once('"'))
+        .flat_map(|(points, _)| points.split_whitespace().map(str::to_owned).collect::<Vec<_>>())
+        .filter_map(|point| point.split_once(',').map(|(x, y)| (x.parse().unwrap(), y.parse().unwrap())))
+        .collect();
+    // Within a subpixel.
+    assert!(ends.iter().any(|end| (end.0 - x).abs() <= 1.0 && (end.1 - y).abs() <= 1.0), "({x}, {y})");
+}
+
+#[test]
+fn what_is_no_map_is_refused() {
+    let folder = scratch("sweep-map-refused");
+    let table = folder.join("t.csv");
+    let refused = |scene: &Path, options: &[&str], message: &str| {
+        let done = sweep(scene, &table, options);
+        let said = said(&done.stderr);
+        assert!(!done.status.success() && said.contains(message), "{options:?}: {said}");
+        assert!(!table.exists(), "nothing is computed");
+    };
+    let points = |over: &'static str, temperatures: &'static str| {
+        ["--speeds", SPEEDS, "--pressures", "1bar", "--temperatures", temperatures, "--over", over]
+    };
+    refused(
+        &road(),
+        &points("speed,pressure", TEMPERATURES),
+        "of the pressure there is one: give more, as --pressures",
+    );
+    refused(&road(), &points("temperature,speed", "20°C"), "of the temperature there is one");
+    refused(&road(), &points("speed,speed", "20°C"), "expected two of speed, pressure (or force) and temperature");
+    refused(
+        &road(),
+        &points("speed,force", TEMPERATURES),
+        "the table is over pressure, not over force: --over speed,pressure",
+    );
+    let plane = SceneText::new(4, 1e-4, 1e-7)
+        .vertical((2e3, 3e-2, [(4e3, 50.0)]))
+        .horizontal((5e3, 3e-2))
+        .with("friction = { coulomb = 0.3 }")
+        .write(&folder);
+    let forces = ["--speeds", "0.1,1", "--forces", "1,2", "--over"];
+    refused(
+        &plane,
+        &[&forces[..], &["speed,temperature"]].concat(),
+        "no material.wlf, so that there is one temperature",
+    );
+    let data = folder.join("measured.csv");
+    fs::write(&data, "speed [m/s],pressure [bar],mu\n0.01,1,0.9\n").unwrap();
+    let data = ["--data", data.to_str().unwrap()];
+    refused(&plane, &[&forces[..], &["speed,force"], &data].concat(), "a table over forces");
+    refused(
+        &road(),
+        &[&points("speed,temperature", TEMPERATURES)[..], &data].concat(),
+        "no temperatures: expected a column",
+    );
+    refused(&road(), &[&["--speeds", SPEEDS, "--pressures", "1bar"][..], &data].concat(), "--over");
+    let done = sweep(&road(), Path::new("-"), &points("speed,temperature", TEMPERATURES));
+    assert!(said(&done.stderr).contains("name one by --plot"), "{}", said(&done.stderr));
+}
