@@ -29,7 +29,7 @@ pub(crate) fn contact<'py>(
     let (friction, separation) = (slide.friction(), slide.contact.separation);
     for (name, value) in [
         ("friction", friction),
-        ("friction_profile", Some(slide.profile_hysteresis)),
+        ("friction_profile", slide.is_found().then_some(slide.profile_hysteresis)),
         ("friction_fine", slide.fine_hysteresis),
         ("friction_adhesion", slide.adhesion),
         ("area", Some(slide.area)),

@@ -323,3 +323,15 @@ fn a_point_depends_on_no_other() {
     let _ = used.slide(&rubber, 0.001, 2e5);
     assert_eq!(bits(used.slide(&rubber, 0.1, 2e5)), alone);
 }
+
+/// Rubber that its viscosity governs at the waves of a fine grid, where no set of points is found: a status, and no friction.
+#[test]
+fn a_contact_that_is_not_found_has_no_friction() {
+    let path = root().join("scenes/two-maxima/two-maxima.toml");
+    let scene = parse(&fs::read_to_string(&path).unwrap(), path);
+    let mut solver = SteadySolver::new(SurfaceGrid::of_profile(&scene.surface, 1024));
+    let found = solver.slide(&SlidingRubber::new(&scene).unwrap(), 10.0, 5e5);
+    assert_eq!(found.is_found(), found.problem().is_none(), "{:?}", found.problem());
+    let values = [found.friction(), found.hysteresis, found.adhesion, found.fine_hysteresis, found.real_area];
+    assert!(found.is_found() || values.iter().all(Option::is_none), "{values:?}");
+}

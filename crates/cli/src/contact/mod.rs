@@ -71,6 +71,7 @@ fn friction_line(slide: &SteadySlide) -> String {
     let profile = rounded(slide.profile_hysteresis, 4);
     match slide.friction() {
         Some(friction) => format!("{}, of it {profile} by the slopes of the surface", rounded(friction, 4)),
+        None if !slide.is_found() => "none, as the contact was not found".to_owned(),
         None => format!("none, as it jams; {profile} by the slopes of the surface"),
     }
 }

@@ -19,11 +19,13 @@ pub struct SteadySlide {
     pub area: f64,
     /// Friction coefficient by the slopes of the surface itself, 1.
     pub profile_hysteresis: f64,
-    /// Friction coefficient by the waves that the surface lacks, 1; `None` where it lacks none that rub, or jams.
+    /// Friction coefficient by the waves that the surface lacks, 1; `None` where it lacks none that rub, it jams, or no
+    /// contact was found.
     pub fine_hysteresis: Option<f64>,
-    /// Friction coefficient by what acts in the contacts else, 1; `None` where it jams.
+    /// Friction coefficient by what acts in the contacts else, 1; `None` where it jams, or no contact was found.
     pub adhesion: Option<f64>,
-    /// Friction coefficient by both kinds of slopes, 1; `None` where those that the surface lacks rub, and it jams.
+    /// Friction coefficient by both kinds of slopes, 1; `None` where those that the surface lacks rub, and it jams, or no
+    /// contact was found.
     pub hysteresis: Option<f64>,
     /// Area that touches with those waves over the whole, 1; `None` without them.
     pub real_area: Option<f64>,
@@ -46,7 +48,12 @@ pub struct SteadySlide {
 }
 
 impl SteadySlide {
-    /// Friction coefficient, 1; `None` where it jams.
+    /// Whether the points that touch were found: else nothing of it can be relied on.
+    pub fn is_found(&self) -> bool {
+        self.contact.left_over == 0
+    }
+
+    /// Friction coefficient, 1; `None` where it jams, or no contact was found.
     pub fn friction(&self) -> Option<f64> {
         Some(self.profile_hysteresis + self.of_contacts()?)
     }
@@ -158,7 +165,8 @@ impl SteadySolver {
         let points = || contact.points.iter().zip(&contact.pressures);
         let drag: f64 = points().map(|(&point, p)| p * self.slopes[point as usize].along).sum();
         let coefficient = |sum: f64| share * sum / pressure;
-        let slides = rubbed.jammed == 0;
+        let is_found = contact.left_over == 0;
+        let slides = is_found && rubbed.jammed == 0;
         let profile_hysteresis = coefficient(drag);
         let fine_hysteresis = (slides && rubber.fine_rubs).then_some(coefficient(rubbed.sums.hysteresis));
         SteadySlide {
@@ -166,7 +174,8 @@ impl SteadySolver {
             profile_hysteresis,
             fine_hysteresis,
             adhesion: slides.then_some(coefficient(rubbed.sums.friction - rubbed.sums.hysteresis)),
-            hysteresis: (slides || !rubber.fine_rubs).then_some(profile_hysteresis + fine_hysteresis.unwrap_or(0.0)),
+            hysteresis: (slides || is_found && !rubber.fine_rubs)
+                .then_some(profile_hysteresis + fine_hysteresis.unwrap_or(0.0)),
             real_area: (slides && rubber.has_fine).then_some(share * rubbed.sums.share),
             flash_mean: rubbed.flash_mean,
             surface_rise: rubbed.surface_rise,
@@ -185,7 +194,7 @@ impl SteadySolver {
         let slope = |point: &u32| &self.slopes[*point as usize];
         let jammed = contact.points.iter().filter(|point| rubber.jams(slope(point))).count();
         let mut rubbed = Rubbed { jammed, heat_converged: true, ..Rubbed::default() };
-        if jammed > 0 || !(rubber.has_friction || rubber.has_fine) {
+        if jammed > 0 || contact.left_over > 0 || !(rubber.has_friction || rubber.has_fine) {
             return rubbed;
         }
         let rises = self.warm(rubber, speed, contact, way, &mut rubbed);

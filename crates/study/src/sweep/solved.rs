@@ -132,6 +132,9 @@ impl SolvedPoints {
 
     fn written(&self, point: OperatingPoint, pressure: f64, slide: &SteadySlide) -> TableRow {
         let mut row = TableRow::new(point, PointStatus::new(slide.problem()));
+        if !slide.is_found() {
+            return row;
+        }
         let power = |friction: f64| friction * pressure * self.area * point.speed;
         let viscous = slide.viscous_share.map(|share| share * power(slide.profile_hysteresis).max(0.0));
         let values = [
