@@ -162,9 +162,9 @@ impl<X: Fn(&OperatingPoint) -> f64> Points<X> {
                 Hollow::NotSteady => (Stroke::Marked, self.points(quantity, rows, |row| !row.is_result())),
                 Hollow::NotConverged => (Stroke::Line, self.points(quantity, rows, |_| true)),
             };
-            let (name, stroke) = match &median {
-                Some(_) => (OWN.to_owned(), Stroke::Dashed),
-                None => (name.clone(), stroke),
+            let (name, stroke) = match rows.iter().any(|row| row.samples.is_some()) {
+                true => (OWN.to_owned(), Stroke::Dashed),
+                false => (name.clone(), stroke),
             };
             let whole = Curve { name, look, stroke, points: steady };
             let part = part.map(|(name, part)| {
