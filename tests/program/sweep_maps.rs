@@ -81,7 +81,8 @@ fn friction_is_drawn_over_speed_and_temperature() {
     };
     let done = merge("temperature,pressure");
     assert!(said(&done.stdout).contains("No result   "), "{}", said(&done.stdout));
-    assert!(said(&done.stdout).contains("0.001 m/s, 100000 Pa, 273.15 K: not computed"), "{}", said(&done.stdout));
+    let words = said(&done.stdout).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("0.001 m/s, 100000 Pa, 273.15 K: not computed"), "{words}");
     let svg = fs::read_to_string(folder.join("h.svg")).unwrap();
     assert_eq!((svg.matches("<image").count(), texts(&svg, "no result"), texts(&svg, "10 m/s")), (6, 1, 1));
 }
