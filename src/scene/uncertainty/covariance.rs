@@ -50,10 +50,11 @@ const COLUMNS: [&str; 3] = ["key", "value", "scale"];
 /// What is written with some digits is symmetric and positive but for this part.
 const ROUNDING: f64 = 1e-6;
 
-/// The covariance in the bytes of a file, as yet of no name; the line of each number beside it.
-pub(in crate::scene) fn read_covariance(
-    bytes: &[u8],
-) -> Result<((Covariance, Vec<usize>), Vec<ReadingNote>), ContentError> {
+/// The covariance in a file, as yet of no name, and the line of each number.
+type Read = (Covariance, Vec<usize>);
+
+/// The covariance in the bytes of a file.
+pub(in crate::scene) fn read_covariance(bytes: &[u8]) -> Result<(Read, Vec<ReadingNote>), ContentError> {
     let text = decode(bytes)?;
     let is_data = |line: &&str| !line.trim().is_empty() && !line.starts_with('#');
     let mut lines = (1..).zip(text.lines()).filter(|(_, line)| is_data(line));

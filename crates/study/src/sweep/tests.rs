@@ -223,7 +223,7 @@ fn a_quantile_is_a_sample_of_its_own() {
     assert!(low.header.basis.sample.as_ref().unwrap().starts_with(&format!("{number} of 16, seed 1: quantile 0.05")));
     let drawn: Vec<(String, String)> =
         plan.drawn().into_iter().map(|(key, values)| (key, format!("{:?}", values[number - 1]))).collect();
-    let set = parse_scene(&format!("{ROUGH}"), "scene.toml".as_ref(), &drawn).unwrap();
+    let set = parse_scene(ROUGH, "scene.toml".as_ref(), &drawn).unwrap();
     let wanted = table(&SweepPlan::new(set, &options, None).unwrap());
     for ((low, wanted), own) in low.rows.iter().zip(&wanted.rows).zip(all(&swept)) {
         assert_eq!(low.line(), wanted.line());
