@@ -15,3 +15,6 @@ mod common;
 mod fmu;
 mod physics;
 mod program;
+#[allow(dead_code, reason = "shared with the example")]
+#[path = "../examples/validation/suite/mod.rs"]
+mod validation;

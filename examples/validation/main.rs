@@ -14,6 +14,7 @@
     reason = "a comparison that cannot be made ends the command"
 )]
 
+mod common;
 mod suite;
 
 use std::fs;

@@ -26,4 +26,5 @@ mod surface;
 mod sweep;
 mod sweep_maps;
 mod told;
+mod validation;
 mod workbooks;

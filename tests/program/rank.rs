@@ -10,12 +10,12 @@ use crate::common::{Table, asperity, root, scratch};
 fn road(folder: &Path, name: &str, strength: f64) -> PathBuf {
     let text = fs::read_to_string(root().join("scenes/road/road.toml")).unwrap();
     fs::copy(root().join("scenes/road/compound.csv"), folder.join("compound.csv")).unwrap();
-    let replaced =
-        [("strength = 5.0e6", format!("strength = {strength:e}")), ("name = \"road\"", format!("name = \"{name}\""))];
-    let text = replaced.into_iter().fold(text, |text, (from, to)| {
-        assert!(text.contains(from), "{from}");
-        text.replacen(from, &to, 1)
-    });
+    let is_named = |line: &&str| line.starts_with("name = ");
+    let own = text.lines().find(is_named).unwrap();
+    let text = text.replacen(own, &format!("name = \"{name}\""), 1);
+    let (before, after) = text.split_once("strength = ").unwrap();
+    let end = after.find([',', '\n', ' ']).unwrap();
+    let text = format!("{before}strength = {strength:e}{}", &after[end..]);
     let unknown = "\n[uncertainty]\n\"friction.rate_shear.strength\" = { relative = 0.1 }\n\
                    \"surface.fine.shortest\" = { factor = 2.0 }\n";
     let path = folder.join(format!("{name}.toml"));

@@ -2,10 +2,18 @@
 //! and call nothing of what is compared.
 
 pub mod elastic;
+pub mod heat;
+pub mod layer;
+pub mod oscillator;
 pub mod page;
 pub mod picture;
+pub mod reference;
+pub mod road;
+pub mod rough;
 pub mod row;
+pub mod rubber;
 pub mod sliding;
+pub mod springs;
 pub mod viscoelastic;
 
 use std::path::Path;
@@ -26,4 +34,14 @@ pub const ALL: &[Entry] = &[
     viscoelastic::ROLLING,
     viscoelastic::CYLINDERS,
     viscoelastic::FULL,
+    rough::AREA,
+    rough::SPECTRUM,
+    heat::HALF_SPACE,
+    heat::STRIP,
+    rubber::SOLID,
+    oscillator::BLOCK,
+    springs::SPRINGS,
+    reference::CASES,
+    road::LAYER,
+    road::TREAD,
 ];

@@ -201,6 +201,33 @@ class Table:
         ]
         return swept(f"{column} [{self.units[column]}]", curves)
 
+    def plot_map(self, x: str = "speed", y: str = "temperature", column: str = "friction") -> Figure:
+        """Draws a column in colours over two of speed, load and temperature, with contour lines.
+
+        A map for each value of the third. Dots mark where along x the column is largest for each y, if that is inside.
+        What has no result is empty.
+
+        Raises:
+            ValueError: Where these are not two of them, or one has a single value.
+        """
+        from ._plots import maps
+
+        names = ("speed", self.load, "temperature")
+        if x == y or not {x, y} <= set(names):
+            raise ValueError(f"x = {x!r}, y = {y!r}: expected two of {', '.join(names)}")
+        axes = dict(zip(names, (self.speeds, self.loads, self.temperatures), strict=True))
+        for name in (x, y):
+            if len(axes[name]) < 2:
+                raise ValueError(f"{name}: expected at least 2 values along each side of a map, found {len(axes[name])}")
+        (third,) = set(names) - {x, y}
+        units = {"speed": "m/s", "pressure": "Pa", "force": "N", "temperature": "K"}
+        found = np.isin(self.status, ("steady", "full contact"))
+        values = np.where(found, self[column], np.nan)
+        values = np.moveaxis(values, [names.index(third), names.index(y), names.index(x)], [0, 1, 2])
+        titles = ["" if np.isnan(value) else f"{value:g} {units[third]}" for value in axes[third]]
+        sides = [(f"{name} [{units[name]}]", axes[name], _is_logarithmic(name, axes[name])) for name in (x, y)]
+        return maps(f"{column} [{self.units[column]}]", (sides[0], sides[1]), list(zip(titles, values, strict=True)))
+
     def compare(self, data: object) -> Comparison:
         """Compares the table with measured friction, as ``asperity compare`` does.
 
@@ -252,6 +279,10 @@ class Table:
     def __repr__(self) -> str:
         sizes = f"{len(self.speeds)} speeds, {len(self.loads)} loads, {len(self.temperatures)} temperatures"
         return f"<asperity.Table: {sizes}; {', '.join(self.columns)}>"
+
+
+def _is_logarithmic(name: str, values: Floats) -> bool:
+    return name == "speed" or (name != "temperature" and bool(values[-1] >= 10.0 * values[0]))
 
 
 def _label(load: float, unit: str, kelvin: float) -> str:
