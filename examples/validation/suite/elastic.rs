@@ -27,8 +27,8 @@ pub const CYLINDER: Entry = Entry {
     compare: cylinder,
 };
 
-/// The half-width a under a force of πM a²/(4R) per width, which presses with M a/(2R) at most. The nearest images of the
-/// period, 64 half-widths away, are worth 1.64/64² of the curvature.
+/// The half-width a under a force of πM a²/(4R) per width, which presses with M a/(2R) at most. The nearest images of
+/// the period, 64 half-widths away, are worth 1.64/64² of the curvature.
 fn cylinder() -> Comparison {
     let (length, radius) = (1e-2, 5e-3);
     let (half_width, modulus) = (length / 64.0, plane_modulus());
@@ -69,8 +69,8 @@ fn sphere() -> Comparison {
     let factor = found.tangential_stiffness.unwrap() / found.normal_stiffness.unwrap();
     let micrometres = |values: [f64; 2]| values.map(|x| 1e6 * x);
     Comparison {
-        about: "A rigid sphere of 5 mm radius in a square period of eight radii of the contact, on 192² points; approach and \
-                stiffness with the images' part, 3.900 F/(πML)."
+        about: "A rigid sphere of 5 mm radius in a square period of eight radii of the contact, on 192² points; \
+                approach and stiffness with the images' part, 3.900 F/(πML)."
             .into(),
         rows: vec![
             Row::new(
@@ -93,7 +93,8 @@ fn sphere() -> Comparison {
                 Claim::Share(1e-9),
             ),
         ],
-        remark: "The last row is Mindlin's factor, which the solver takes over for maps; it is not derived anew.".into(),
+        remark: "The last row is Mindlin's factor, which the solver takes over for maps; it is not derived anew."
+            .into(),
         ..Comparison::default()
     }
 }

@@ -83,8 +83,9 @@ fn hurwitz(s: f64, a: f64) -> f64 {
     sum + tail - s * (s + 1.0) * (s + 2.0) / 720.0 * n.powf(-s - 3.0)
 }
 
-/// The mean over the strip of the temperature that a heat Q leaves, over Q√(L/v)/(√π √(λρc)), of strips of a `width` over the
-/// period L, without the mean of all: ∫ ζ(½, (x - s)/L) ds, since Σ (x + nL)^-½ is ζ(½, x/L)/√L but for its mean.
+/// The mean over the strip of the temperature that a heat Q leaves, over Q√(L/v)/(√π √(λρc)), of strips of a `width`
+/// over the period L, without the mean of all: ∫ ζ(½, (x - s)/L) ds, since Σ (x + nL)^-½ is ζ(½, x/L)/√L but for its
+/// mean.
 fn mean_over_strip(width: f64) -> f64 {
     // ∫∫ over 0 < s, x < w: the images before, and its own part where x > s; with primitives 2ζ(-½) and 4/3 ζ(-3/2).
     let twice = |a: f64| 4.0 / 3.0 * hurwitz(-1.5, a);
@@ -96,8 +97,8 @@ fn mean_over_strip(width: f64) -> f64 {
 
 /// Jaeger's mean temperature of a strip over that of conduction along the depth alone, at vb/2D of half its width b.
 fn jaeger(peclet: f64) -> f64 {
-    // θ(X) = (2QD/πλv) ∫_(X-P)^(X+P) e^-u K_0(|u|) du over |X| < P, of which the mean is taken; along the depth alone it is
-    // 2/3 · 2Q √(2b/πv)/√(λρc).
+    // θ(X) = (2QD/πλv) ∫_(X-P)^(X+P) e^-u K_0(|u|) du over |X| < P, of which the mean is taken; along the depth alone
+    // it is 2/3 · 2Q √(2b/πv)/√(λρc).
     let kernel = |u: f64| {
         // K_0(|u|) e^-u = ∫_0^∞ e^(-|u| cosh θ - u) dθ.
         let parts = 400;
@@ -141,14 +142,15 @@ fn strip() -> Comparison {
     let diffusivity = CONDUCTIVITY / HEAT_CAPACITY;
     let part = |speed: f64| percent(1.0 - jaeger(speed * half_width / (2.0 * diffusivity)), 2);
     Comparison {
-        about: "A cylinder whose contact of 0.2 mm shears at 0.1 MPa all over: Jaeger's strip at speeds at which heat flows along \
-                the depth alone, with the strips of the period before it, and less the mean of the surface, from which the \
-                flash temperature counts."
+        about: "A cylinder whose contact of 0.2 mm shears at 0.1 MPa all over: Jaeger's strip at speeds at which \
+                heat flows along the depth alone, with the strips of the period before it, and less the mean of the \
+                surface, from which the flash temperature counts."
             .into(),
         rows,
         remark: format!(
-            "Conduction along the sliding is left out. Beside Jaeger's whole integral that changes the mean over a strip of 0.2 mm \
-             by {} at 1 mm/s, {} at 10 mm/s and {} at 0.1 m/s; over one of 10 µm by as much at speeds twenty times as high.",
+            "Conduction along the sliding is left out. Beside Jaeger's whole integral that changes the mean over a \
+             strip of 0.2 mm by {} at 1 mm/s, {} at 10 mm/s and {} at 0.1 m/s; over one of 10 µm by as much at \
+             speeds twenty times as high.",
             part(1e-3),
             part(1e-2),
             part(0.1)

@@ -13,7 +13,8 @@ use super::sliding::parse;
 pub const BLOCK: Entry = Entry {
     title: "A block on a spring sticks and slips",
     reference: "closed form, of Popp and Rudolph's oscillators",
-    source: "K. Popp, M. Rudolph, J. Vib. Control 10, 2004, 1585 (the oscillator; its limit cycle and its damping in closed form)",
+    source: "K. Popp, M. Rudolph, J. Vib. Control 10, 2004, 1585 (the oscillator; its limit cycle and its damping in \
+             closed form)",
     file: "examples/validation/suite/oscillator.rs",
     quick: true,
     compare: block,
@@ -77,10 +78,10 @@ fn block() -> Comparison {
     rows.extend([1.3, 2.0].map(decay));
     let (most, least) = (SLIPS * LOAD + MORE, SLIPS * LOAD - MORE);
     Comparison {
-        about: "1 g on a spring of 0.4 N/mm under 1 N: friction 0.35 N at rest, 0.2 N in slip (a shear that falls within 10⁻⁹ m/s). \
-                With Δ the difference over the spring's stiffness, a slip lasts 2(π - atan(Δω/V))/ω and lets go 2Δ. The last rows: \
-                where friction falls over the speed, damping beyond s = -dT/dv makes the block slide evenly, and swings die out at \
-                (d - s)/2m."
+        about: "1 g on a spring of 0.4 N/mm under 1 N: friction 0.35 N at rest, 0.2 N in slip (a shear that falls \
+                within 10⁻⁹ m/s). With Δ the difference over the spring's stiffness, a slip lasts 2(π - \
+                atan(Δω/V))/ω and lets go 2Δ. The last rows: where friction falls over the speed, damping beyond s = \
+                -dT/dv makes the block slide evenly, and swings die out at (d - s)/2m."
             .into(),
         rows,
         pictures: vec![Picture {
@@ -96,11 +97,14 @@ fn block() -> Comparison {
                 Curve::line("asperity", picture),
             ],
         }],
-        remark: "Popp and Rudolph's measured curves are not compared: their friction characteristic is of other materials.".into(),
+        remark: "Popp and Rudolph's measured curves are not compared: their friction characteristic is of other \
+                 materials."
+            .into(),
     }
 }
 
-/// How fast swings about even sliding at 1 m/s, small from the start, die out with `ratio` times the damping that friction's fall needs.
+/// How fast swings about even sliding at 1 m/s, small from the start, die out with `ratio` times the damping that
+/// friction's fall needs.
 fn decay(ratio: f64) -> Row {
     let (reference, speed, sharpness) = (1e-2_f64, 1.0_f64, 0.5);
     let decades = (speed / reference).log10();

@@ -21,18 +21,19 @@ where a figure here is no longer what comes out.
 const KNOWN: &str = "\
 Known beyond the rows:
 
-- The *layer* of a simulation or an FMU is a chain of masses on fitted links. Beside a half-plane its area and friction are
-  within 17 and 13 % at 256 masses, within 11 and 10 % at 512; on rough profiles that the masses resolve its area is up to 68 % too
-  large, and on slopes of 0.9 its friction up to 2.8 times the solver's ([steady.md](steady.md),
-  [performance.md](performance.md)).
-- A *period* that is short beside what the rubber remembers costs friction: 18 % where it is 1.6 times vτE₀/E_∞, 1.8 % at 6.4 times
-  ([Hunter's cylinder](#a-cylinder-sliding-on-a-standard-linear-solid)).
-- The solver closes *gaps* below 10⁻⁷ of the surface's peak to valley. Cylinders here are cut off at four half-widths for
-  that: with flanks as high as a period of 50 half-widths makes them, the contact is found 1 % too wide.
+- The *layer* of a simulation or an FMU is a chain of masses on fitted links. Beside a half-plane its area
+  and friction are  within 17 and 13 % at 256 masses, within 11 and 10 % at 512; on rough profiles that the
+  masses resolve its area is up to 68 % too  large, and on slopes of 0.9 its friction up to 2.8 times the
+  solver's ([steady.md](steady.md),  [performance.md](performance.md)).
+- A *period* that is short beside what the rubber remembers costs friction: 18 % where it is 1.6 times
+  vτE₀/E_∞, 1.8 % at 6.4 times  ([Hunter's cylinder](#a-cylinder-sliding-on-a-standard-linear-solid)).
+- The solver closes *gaps* below 10⁻⁷ of the surface's peak to valley. Cylinders here are cut off at four
+  half-widths for  that: with flanks as high as a period of 50 half-widths makes them, the contact is found
+  1 % too wide.
 - *Heat* flows along the depth alone: good above 0.1 m/s for contacts of 0.2 mm, 3 to 4 % off below 10 mm/s
   ([Jaeger's strip](#the-flash-temperature-of-a-moving-contact)).
-- *Linear* rubber: neither large strains nor tangential traction move the normal problem. No row tests what a compound does
-  beyond that.
+- *Linear* rubber: neither large strains nor tangential traction move the normal problem. No row tests what
+  a compound does  beyond that.
 
 ";
 

@@ -12,8 +12,9 @@ use crate::common::{Table, runs};
 pub const CASES: Entry = Entry {
     title: "Figure 7 of the paper, impacts, stick and slip",
     reference: "explicit Runge-Kutta at 1e-11",
-    source: "an independent program by explicit Runge-Kutta 8(5,3), events located, at 1e-11 (`tests/reference`); model and figure 7 of \
-             F. Schulte, J. Neuhaus, W. Sextro, A mechanical model for the dynamical contact of elastic rough bodies",
+    source: "an independent program by explicit Runge-Kutta 8(5,3), events located, at 1e-11 (`tests/reference`); \
+             model and figure 7 of F. Schulte, J. Neuhaus, W. Sextro, A mechanical model for the dynamical contact \
+             of elastic rough bodies",
     file: "examples/validation/suite/reference.rs",
     quick: true,
     compare: cases,
@@ -75,9 +76,9 @@ fn cases() -> Comparison {
     let what = format!("rows with another number of masses in contact or stuck, of {counted}");
     rows.push(Row::new(what, [0.0, miscounted as f64], "", Claim::Of(counted as f64, 1e-2)));
     Comparison {
-        about: "Three layers pressed on a rough profile and drawn along it as in figure 7, masses over a sine, a mass that bounces 33 \
-                times, stick and break, Coulomb's and a constant shear strength, and a chain in flight, with \
-                `relative_tolerance = 1e-9`."
+        about: "Three layers pressed on a rough profile and drawn along it as in figure 7, masses over a sine, a \
+                mass that bounces 33 times, stick and break, Coulomb's and a constant shear strength, and a chain in \
+                flight, with `relative_tolerance = 1e-9`."
             .into(),
         rows,
         pictures: vec![Picture {
@@ -89,10 +90,10 @@ fn cases() -> Comparison {
             legend: Legend::MiddleRight,
             curves,
         }],
-        remark: "A row right at an event may count otherwise. The paper gives no numbers: its figure is compared by its shape, stiffer the harder it is \
-                 pressed, and flat in the end. SUNDIALS' CVODES and ARKODE run the larger scenes of \
-                 [benches/peers](../benches/peers/README.md), which agree in forces and losses to 1e-6 before anything is timed there; \
-                 they are not run for this page."
+        remark: "A row right at an event may count otherwise. The paper gives no numbers: its figure is compared by \
+                 its shape, stiffer the harder it is pressed, and flat in the end. SUNDIALS' CVODES and ARKODE run \
+                 the larger scenes of [benches/peers](../benches/peers), which agree in forces and losses \
+                 to 1e-6 before anything is timed there; they are not run for this page."
             .into(),
     }
 }

@@ -29,8 +29,8 @@ fn solved(scene: &Scene, speeds: &[f64]) -> Vec<f64> {
 pub const LAYER: Entry = Entry {
     title: "The layer of an FMU and the steady solver on one road",
     reference: "each other",
-    source: "the layer as a sweep slides it, which is what its FMU computes (`tests/fmu`: the same bits), and the solver of steady sliding \
-             ([steady.md](steady.md)): two models of one thing",
+    source: "the layer as a sweep slides it, which is what its FMU computes (`tests/fmu`: the same bits), and the \
+             solver of steady sliding ([steady.md](steady.md)): two models of one thing",
     file: FILE,
     quick: false,
     compare: layer,
@@ -51,13 +51,15 @@ fn layer() -> Comparison {
         Row::new(format!("friction at {} m/s", short(speed, 2)), [solver, layer], "", Claim::Share(3e-2))
     };
     Comparison {
-        about: "`scenes/road`, cold, under 3 bar: 64 masses with fitted links and a memory of contacts of 50 µm, slid until the standard error \
-                of friction is 0.5 %, and the solver on the same profile. Expected is the solver's."
+        about: "`scenes/road`, cold, under 3 bar: 64 masses with fitted links and a memory of contacts of 50 µm, \
+                slid until the standard error of friction is 0.5 %, and the solver on the same profile. Expected is \
+                the solver's."
             .into(),
         rows: speeds.into_iter().zip(by_solver).zip(by_layer).map(row).collect(),
-        remark: "Slopes count in both. The parts differ more than the whole: friction drags the layer's surface along, and its links \
-                 are fitted ([steady.md](steady.md), \"What it is for\"). On rough profiles resolved by the masses alone the layer's friction is \
-                 within 20 % of the solver's, its area up to 68 % too large ([performance.md](performance.md))."
+        remark: "Slopes count in both. The parts differ more than the whole: friction drags the layer's surface \
+                 along, and its links are fitted ([steady.md](steady.md), \"What it is for\"). On rough profiles \
+                 resolved by the masses alone the layer's friction is within 20 % of the solver's, its area up to 68 \
+                 % too large."
             .into(),
         ..Comparison::default()
     }
@@ -66,8 +68,9 @@ fn layer() -> Comparison {
 pub const TREAD: Entry = Entry {
     title: "Friction of a tread on a road",
     reference: "measured magnitudes 1963 to 2019",
-    source: "K. A. Grosch, Proc. R. Soc. A 274, 1963, 21; B. Lorenz et al., J. Phys.: Condens. Matter 25, 2013, 095007; B. Lorenz, Y. R. Oh, S. K. Nam, \
-             S. H. Jeon, B. N. J. Persson, J. Chem. Phys. 142, 2015, 194701; T. V. Tolpekina, B. N. J. Persson, Lubricants 7(3), 2019, 20",
+    source: "K. A. Grosch, Proc. R. Soc. A 274, 1963, 21; B. Lorenz et al., J. Phys.: Condens. Matter 25, 2013, \
+             095007; B. Lorenz, Y. R. Oh, S. K. Nam, S. H. Jeon, B. N. J. Persson, J. Chem. Phys. 142, 2015, 194701; \
+             T. V. Tolpekina, B. N. J. Persson, Lubricants 7(3), 2019, 20",
     file: FILE,
     quick: true,
     compare: tread,
@@ -84,6 +87,7 @@ fn tread() -> Comparison {
     let at = |wanted: f64| {
         curve.iter().min_by(|a, b| (a.0 / wanted).ln().abs().total_cmp(&(b.0 / wanted).ln().abs())).unwrap().1
     };
+    let strongest = scene.friction.as_ref().and_then(|friction| friction.rate_shear.as_ref()).unwrap().reference_speed;
     let mut warm = place;
     // Where the maximum lies 20 K warmer.
     let mut hotter = scene.clone();
@@ -97,8 +101,9 @@ fn tread() -> Comparison {
         }
     }
     Comparison {
-        about: "`scenes/road` by the solver: a compound and an asphalt of literature's magnitudes, 3 bar, 20 °C, cold contacts. The bounds \
-                are wide on purpose: compounds, roads and presses differ, and scene and measurement share no sample."
+        about: "`scenes/road` by the solver: a compound and an asphalt of literature's magnitudes, 3 bar, 20 °C, \
+                cold contacts. The bounds are wide on purpose: compounds, roads and presses differ, and scene and \
+                measurement share no sample."
             .into(),
         rows: vec![
             Row::between("largest friction below 0.3 m/s", [0.6, 1.4], most, ""),
@@ -116,14 +121,17 @@ fn tread() -> Comparison {
             legend: Legend::LowerRight,
             curves: vec![Curve::line("20 °C", curve), Curve::line("40 °C", speeds.into_iter().zip(hot).collect())],
         }],
-        remark: "In words. *Where the maximum lies*: Grosch found one maximum of adhesion, on smooth tracks at centimetres a second near room \
-                 temperature, and one of hysteresis on rough ones at metres a second and more, both moving with a_T. Lorenz et al. fit a shear strength that is \
-                 largest at 6 mm/s for one compound. The place here follows an input (20 mm/s), so it is no prediction. *Level*: compounds on \
-                 asphalt and concrete slide at 0.6 to 1.4; here it follows from spectrum, moduli and the shear strength's height, and moves \
-                 in proportion to the latter and with the shortest wave of the road, which is a choice. *Fall*: measured curves fall above \
-                 the maximum, where contacts warm too; here adhesion falls, and above 1 m/s hysteresis rises again, for which we \
-                 have no measurement. Nothing of this validates a coefficient for your compound on your road: for that there is \
-                 `asperity calibrate`."
-            .into(),
+        remark: format!(
+            "In words. *Where the maximum lies*: Grosch found one maximum of adhesion, on smooth tracks at centimetres a \
+             second near room temperature, and one of hysteresis on rough ones at metres a second and more, both moving \
+             with a_T. Lorenz et al. fit a shear strength that is largest at 6 mm/s for one compound. The place here \
+             follows that of the scene's shear strength, an input ({} mm/s), so it is no prediction. *Level*: compounds \
+             on asphalt and concrete slide at 0.6 to 1.4; here it follows from spectrum, moduli and the shear strength's \
+             height, and moves in proportion to the latter and with the shortest wave of the road, which is a choice. \
+             *Fall*: measured curves fall above the maximum, where contacts warm too; here adhesion falls, and above \
+             1 m/s hysteresis rises again, for which we have no measurement. Nothing of this validates a coefficient for \
+             your compound on your road: for that there is `asperity calibrate`.",
+            short(1e3 * strongest, 2)
+        ),
     }
 }

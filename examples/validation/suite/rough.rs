@@ -16,8 +16,8 @@ const LENGTH: f64 = 1e-3;
 const GRADIENT: f64 = 0.1;
 const EXPONENT: f64 = -1.8;
 
-/// The waves of a self-affine map from a roll-off at L over `first` down to L over `last`, longer ones as high as that: their
-/// numbers along x and y, and heights, m.
+/// The waves of a self-affine map from a roll-off at L over `first` down to L over `last`, longer ones as high as that:
+/// their numbers along x and y, and heights, m.
 fn waves(first: f64, last: i64) -> Vec<(i64, i64, f64)> {
     let all = (0..=last).flat_map(|m| (-last..=last).map(move |k| (m, k)));
     let kept = all.filter(|&(m, k)| !(m == 0 && k <= 0) && m * m + k * k <= last * last);
@@ -56,8 +56,9 @@ fn self_affine(waves: &[(i64, i64, f64)], points: usize, seed: u64) -> SurfaceGr
 pub const AREA: Entry = Entry {
     title: "The area of a rough surface under small loads",
     reference: "Hyun et al. 2004, Putignano et al. 2012, Persson 2001",
-    source: "S. Hyun, L. Pei, J.-F. Molinari, M. O. Robbins, Phys. Rev. E 70, 2004, 026117; C. Putignano, L. Afferrante, G. Carbone, \
-             G. Demelio, J. Mech. Phys. Solids 60, 2012, 973; B. N. J. Persson, J. Chem. Phys. 115, 2001, 3840",
+    source: "S. Hyun, L. Pei, J.-F. Molinari, M. O. Robbins, Phys. Rev. E 70, 2004, 026117; C. Putignano, L. \
+             Afferrante, G. Carbone, G. Demelio, J. Mech. Phys. Solids 60, 2012, 973; B. N. J. Persson, J. Chem. \
+             Phys. 115, 2001, 3840",
     file: FILE,
     quick: false,
     compare: area,
@@ -74,15 +75,16 @@ fn area() -> Comparison {
     };
     let (coarse, fine) = (mean(8), mean(16));
     Comparison {
-        about: "κ of A/A₀ = κ p/(M h'), h' the rms gradient of an isotropic self-affine surface (H = 0.8, from a roll-off at a quarter of the \
-                period 1.2 decades down), near 1 % of contact: the mean of four maps of 512² and 1024² points, extrapolated linearly in \
-                their spacing."
+        about: "κ of A/A₀ = κ p/(M h'), h' the rms gradient of an isotropic self-affine surface (H = 0.8, from a \
+                roll-off at a quarter of the period 1.2 decades down), near 1 % of contact: the mean of four maps of \
+                512² and 1024² points, extrapolated linearly in their spacing."
             .into(),
         rows: vec![Row::between("κ", [1.9, 2.35], 2.0 * fine - coarse, "")],
         remark: format!(
-            "Simulations have 1.9 to 2.35 by spectrum and number of waves, Persson's theory 1.60, Bush, Gibson and Thomas 2.51. With 8 and 16 \
-             points to the shortest wave it is {} and {}: an area is too large by the edges of the grid. A surface whose roll-off is its \
-             period is no sample of a rough one: its highest peak alone touches, and κ of single maps is anything from 1.8 to 3.9.",
+            "Simulations have 1.9 to 2.35 by spectrum and number of waves, Persson's theory 1.60, Bush, Gibson and \
+             Thomas 2.51. With 8 and 16 points to the shortest wave it is {} and {}: an area is too large by the \
+             edges of the grid. A surface whose roll-off is its period is no sample of a rough one: its highest peak \
+             alone touches, and κ of single maps is anything from 1.8 to 3.9.",
             short(coarse, 3),
             short(fine, 3)
         ),
@@ -93,7 +95,8 @@ fn area() -> Comparison {
 pub const SPECTRUM: Entry = Entry {
     title: "Hysteresis of a whole spectrum",
     reference: "Persson 2001, Scaraggi and Persson 2015",
-    source: "B. N. J. Persson, J. Chem. Phys. 115, 2001, 3840; M. Scaraggi, B. N. J. Persson, J. Phys.: Condens. Matter 27, 2015, 105102",
+    source: "B. N. J. Persson, J. Chem. Phys. 115, 2001, 3840; M. Scaraggi, B. N. J. Persson, J. Phys.: Condens. \
+             Matter 27, 2015, 105102",
     file: FILE,
     quick: false,
     compare: spectrum,
@@ -106,8 +109,8 @@ const POISSON: f64 = 0.49;
 /// The roll-off of its maps: their period over this.
 const FIRST: f64 = 3.0;
 
-/// Where little touches friction is 0.62 to 0.86 of the sum with S = 1 (docs/foundation.md, section 5), which the middle
-/// factor takes for 0.75.
+/// Where little touches friction is 0.62 to 0.86 of the sum with S = 1 (docs/foundation.md, section 5), which the
+/// middle factor takes for 0.75.
 const DOCUMENTED: f64 = 1.0 - 0.62 / 0.75;
 
 fn terms() -> Vec<[f64; 2]> {
@@ -125,8 +128,8 @@ fn plane_modulus(omega: f64) -> [f64; 2] {
     modulus.map(|part| part / (1.0 - POISSON * POISSON))
 }
 
-/// Friction by the theory over the waves in the order of q, σ² and losses of each with its own direction; S = 1, ¾ + ¼P²,
-/// ½ + ½P².
+/// Friction by the theory over the waves in the order of q, σ² and losses of each with its own direction; S = 1, ¾ +
+/// ¼P², ½ + ½P².
 fn theory(last: i64, speed: f64, pressure: f64) -> [f64; 3] {
     let mut waves = waves(FIRST, last);
     waves.sort_by_key(|(m, k, _)| m * m + k * k);
@@ -174,9 +177,10 @@ fn spectrum() -> Comparison {
     let speeds: Vec<f64> = (0..=60).map(|i| 1e-3 * 1e4_f64.powf(f64::from(i) / 60.0)).collect();
     let line = |i: usize| speeds.iter().map(|&speed| (speed, theory(last, speed, 2e5)[i])).collect();
     Comparison {
-        about: "Isotropic self-affine maps (H = 0.8, a roll-off at a third of the period of 1 mm, down to 31 µm, rms gradient 0.1, 256² points, mean of four) on rubber with 20 MPa \
-                a decade of time, by the solver; beside them Persson's sum over the maps' own waves with three factors S for how \
-                much less a part in contact deforms than the whole surface would. Bounds are two standard errors of the four maps wider."
+        about: "Isotropic self-affine maps (H = 0.8, a roll-off at a third of the period of 1 mm, down to 31 µm, rms \
+                gradient 0.1, 256² points, mean of four) on rubber with 20 MPa a decade of time, by the solver; \
+                beside them Persson's sum over the maps' own waves with three factors S for how much less a part in \
+                contact deforms than the whole surface would. Bounds are two standard errors of the four maps wider."
             .into(),
         rows,
         pictures: vec![Picture {
@@ -193,10 +197,11 @@ fn spectrum() -> Comparison {
                 Curve::marks("asperity, maps", found),
             ],
         }],
-        remark: "The middle factor is that of the law of the waves that a profile lacks (`surface.fine`). It was chosen by such maps, not \
-                 derived: 0.62 to 0.86 of the sum with S = 1 is what [foundation.md](foundation.md) claims where little touches, -17 to \
-                 15 % of the middle. At 2 MPa and 1 mm/s nearly everything touches; the three sums are within 3 % there, and the maps \
-                 1.3 % below the middle: where P comes near 1 the two outer factors are no bounds, since the contact at the last \
+        remark: "The middle factor is that of the law of the waves that a profile lacks (`surface.fine`). It was \
+                 chosen by such maps, not derived: 0.62 to 0.86 of the sum with S = 1 is what \
+                 [foundation.md](foundation.md) claims where little touches, -17 to 15 % of the middle. At 2 MPa and \
+                 1 mm/s nearly everything touches; the three sums are within 3 % there, and the maps 1.3 % below the \
+                 middle: where P comes near 1 the two outer factors are no bounds, since the contact at the last \
                  gaps is not what any of the sums takes it for."
             .into(),
     }

@@ -68,8 +68,9 @@ fn solid() -> Comparison {
     add("ramp, F_z", &ramped, &ramp, "mN", 1e3);
     add("creep, w", &crept, &creep, "µm", 1e6);
     Comparison {
-        about: "One mass on flat ground, c = 2 N/mm with a Maxwell element of 3 N/mm and τ = 2 ms: pressed by 10 µm and held; \
-                pressed at 10 mm/s; under a carrier of 0.1 g with a damper on which a load of 50 mN comes at once; `relative_tolerance = 1e-12`."
+        about: "One mass on flat ground, c = 2 N/mm with a Maxwell element of 3 N/mm and τ = 2 ms: pressed by 10 µm \
+                and held; pressed at 10 mm/s; under a carrier of 0.1 g with a damper on which a load of 50 mN comes \
+                at once; `relative_tolerance = 1e-12`."
             .into(),
         rows,
         ..Comparison::default()

@@ -28,8 +28,8 @@ pub fn ridges(points: usize, length: f64, height: impl Fn(f64) -> f64) -> Surfac
     SurfaceGrid::new(GridSize { nx: points, ny: 1 }, length, 0.0, heights)
 }
 
-/// A cylinder of this radius, cut off where it is four half-widths of a contact from its crest: gaps are closed to 10⁻⁷ of
-/// the height from peak to valley, which would be that of the flanks else.
+/// A cylinder of this radius, cut off where it is four half-widths of a contact from its crest: gaps are closed to 10⁻⁷
+/// of the height from peak to valley, which would be that of the flanks else.
 pub fn cylinder(points: usize, length: f64, radius: f64, half_width: f64) -> SurfaceGrid {
     ridges(points, length, |x| -x.abs().min(4.0 * half_width).powi(2) / (2.0 * radius))
 }

@@ -12,8 +12,9 @@ use super::row::{Claim, Comparison, Entry, Row};
 pub const SPRINGS: Entry = Entry {
     title: "Slope, grip, drilling torque and rolling of a bed of springs",
     reference: "closed forms of Winkler's contact",
-    source: "K. L. Johnson, Contact Mechanics, 1985, 4.3 and 8.6; H. B. Pacejka, Tire and Vehicle Dynamics, 2012, 3.2 (brush); \
-             the spin is that of C. Cattaneo, Ann. Sc. Norm. Sup. Pisa 6, 1952, with springs in place of a half-space",
+    source: "K. L. Johnson, Contact Mechanics, 1985, 4.3 and 8.6; H. B. Pacejka, Tire and Vehicle Dynamics, 2012, \
+             3.2 (brush); the spin is that of C. Cattaneo, Ann. Sc. Norm. Sup. Pisa 6, 1952, with springs in place \
+             of a half-space",
     file: "examples/validation/suite/springs.rs",
     quick: true,
     compare: springs,
@@ -123,8 +124,8 @@ fn springs() -> Comparison {
     }
     rows.extend(brush());
     Comparison {
-        about: "Springs of their own along and across the plane, with Coulomb's friction, μ = 0.9, as a table of 5e9 Pa/m and \
-                1.5e9 Pa/m. Discs of 200 and 400 rings; a wheel of 0.3 m pressed by 60 µm, of 640 cells."
+        about: "Springs of their own along and across the plane, with Coulomb's friction, μ = 0.9, as a table of 5e9 \
+                Pa/m and 1.5e9 Pa/m. Discs of 200 and 400 rings; a wheel of 0.3 m pressed by 60 µm, of 640 cells."
             .into(),
         rows,
         pictures: vec![Picture {
@@ -176,8 +177,8 @@ fn slope_and_grip() -> Vec<Row> {
     ]
 }
 
-/// The brush on a parabola of pressure, half of whose length is a: μN(3q - 3q² + q³), q = 2ka²bσ/(3μN). The tread of a drive
-/// runs on the arc, by x²/2R² slower along x, which counts as slip.
+/// The brush on a parabola of pressure, half of whose length is a: μN(3q - 3q² + q³), q = 2ka²bσ/(3μN). The tread of a
+/// drive runs on the arc, by x²/2R² slower along x, which counts as slip.
 fn brush() -> Vec<Row> {
     let (width, depth, speed) = (0.01_f64, 6e-5_f64, 2.0);
     let half = (WHEEL * WHEEL - (WHEEL - depth) * (WHEEL - depth)).sqrt();

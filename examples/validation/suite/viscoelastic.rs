@@ -14,8 +14,8 @@ const FILE: &str = "examples/validation/suite/viscoelastic.rs";
 ///
 /// With l = vτ and L = l(1 + r) the fields U = u + L u' and P = p + l p' are those of an elastic half-plane of M_∞, so
 /// P √(1-t²) = A_0 + A_1 T_1(t) + A_2 T_2(t) over the contact x = c + wt, with A_0 = F/(πw), A_1 = -(M_∞/2R)(c + L),
-/// A_2 = -M_∞ w/(4R). That p vanishes where the rubber leaves is A_0 I_0 + A_1 I_1 + A_2 I_2 = 0 at w/l; that u' does not
-/// jump where it comes in leaves one equation for w.
+/// A_2 = -M_∞ w/(4R). That p vanishes where the rubber leaves is A_0 I_0 + A_1 I_1 + A_2 I_2 = 0 at w/l; that u' does
+/// not jump where it comes in leaves one equation for w.
 #[derive(Clone, Copy, Debug)]
 struct Hunter {
     /// M_∞, Pa, and what the glass has more of it.
@@ -38,7 +38,8 @@ struct Rolled {
     pressure: f64,
 }
 
-/// I_0, I_1 and I_2 at z, times e^-z, by the trapezoidal rule on their integrals, which converges faster than any power.
+/// I_0, I_1 and I_2 at z, times e^-z, by the trapezoidal rule on their integrals, which converges faster than any
+/// power.
 fn bessel(z: f64) -> [f64; 3] {
     let parts = 64 + (8.0 * z.sqrt()) as usize + z as usize;
     [0, 1, 2].map(|n| {
@@ -108,7 +109,8 @@ impl Hunter {
 pub const ROLLING: Entry = Entry {
     title: "A cylinder sliding on a standard linear solid",
     reference: "Hunter 1961, Goryacheva 1973",
-    source: "S. C. Hunter, J. Appl. Mech. 28, 1961, 611; I. G. Goryacheva, Contact Mechanics in Tribology, 1998, chapter 5",
+    source: "S. C. Hunter, J. Appl. Mech. 28, 1961, 611; I. G. Goryacheva, Contact Mechanics in Tribology, 1998, \
+             chapter 5",
     file: FILE,
     quick: true,
     compare: rolling,
@@ -175,9 +177,9 @@ fn rolling() -> Comparison {
     let name = |periods: f64| format!("asperity, a period of {} a", 16.0 * periods);
     let [one, four, sixteen] = curves.map(|(periods, points)| Curve::marks(name(periods), points));
     Comparison {
-        about: "A rigid cylinder over rubber of one relaxation time τ whose glass is five times as stiff; a is the half-width \
-                of the contact at rest. The solver's surface is periodic: 1024 points in 16 a, and 4 and 16 times as much of both; \
-                the maximum is that with 16."
+        about: "A rigid cylinder over rubber of one relaxation time τ whose glass is five times as stiff; a is the \
+                half-width of the contact at rest. The solver's surface is periodic: 1024 points in 16 a, and 4 and \
+                16 times as much of both; the maximum is that with 16."
             .into(),
         rows,
         pictures: vec![Picture {
@@ -190,9 +192,9 @@ fn rolling() -> Comparison {
             curves: vec![Curve::line("Hunter", line), one, four, sixteen],
         }],
         remark: format!(
-            "The images of a short period lie in rubber that has not come back from the cylinder before: at vτ = 8 a friction is \
-             {once}, {four_times} and {most_times} too small with periods of 16, 64 and 256 a. Where that matters double the \
-             length (`asperity converge`)."
+            "The images of a short period lie in rubber that has not come back from the cylinder before: at vτ = 8 a \
+             friction is {once}, {four_times} and {most_times} too small with periods of 16, 64 and 256 a. Where \
+             that matters double the length (`asperity converge`)."
         ),
     }
 }
@@ -233,8 +235,8 @@ fn cylinders() -> Comparison {
     }
     Comparison {
         about: "Two equal cylinders under 600 N/mm at 1 m/s, which as one are a rigid cylinder of 50 mm on rubber of \
-                M_∞ = M_1 = 952.5 MPa; a period of 0.32 m, 16384 points. The times are theirs, of creep: of relaxation they are \
-                half as long."
+                M_∞ = M_1 = 952.5 MPa; a period of 0.32 m, 16384 points. The times are theirs, of creep: of \
+                relaxation they are half as long."
             .into(),
         rows,
         ..Comparison::default()
@@ -244,7 +246,8 @@ fn cylinders() -> Comparison {
 pub const FULL: Entry = Entry {
     title: "A bonded layer in full contact",
     reference: "closed form",
-    source: "K. L. Johnson, Contact Mechanics, 1985, 13.2; for the layer the solution of Navier's equations over its depth",
+    source: "K. L. Johnson, Contact Mechanics, 1985, 13.2; for the layer the solution of Navier's equations over its \
+             depth",
     file: FILE,
     quick: true,
     compare: full,
@@ -279,18 +282,20 @@ fn full() -> Comparison {
         rows.push(Row::new(what, [exact, found.friction().unwrap()], "", Claim::Share(1e-9)));
     }
     Comparison {
-        about: "a cos qx in full contact: the pressure is MKh and μp = q a² K Im M(qv)/2, with K = q/2 of the half-plane and \
-                that of a layer bonded to a rigid base."
+        about: "a cos qx in full contact: the pressure is MKh and μp = q a² K Im M(qv)/2, with K = q/2 of the \
+                half-plane and that of a layer bonded to a rigid base."
             .into(),
         rows,
         ..Comparison::default()
     }
 }
 
-/// K of a bonded layer, 1/m: pressure over M times the height of the surface, by Papkovich and Neuber's harmonic functions.
+/// K of a bonded layer, 1/m: pressure over M times the height of the surface, by Papkovich and Neuber's harmonic
+/// functions.
 ///
-/// With 2G u_x = (ζB + φ) sin qx and 2G u_z = (κB - ζB' - φ') cos qx, ζ = qz, nothing moves at ζ = 0 where φ = D sh ζ and
-/// B = (D/κ) ch ζ + E sh ζ; at ζ = a there is no shear, (1 - κ)B + 2ζB' + 2φ' = 0, and σ_z = q(2(1-ν)B' - ζB - φ) cos qx.
+/// With 2G u_x = (ζB + φ) sin qx and 2G u_z = (κB - ζB' - φ') cos qx, ζ = qz, nothing moves at ζ = 0 where φ = D sh ζ
+/// and B = (D/κ) ch ζ + E sh ζ; at ζ = a there is no shear, (1 - κ)B + 2ζB' + 2φ' = 0, and σ_z = q(2(1-ν)B' - ζB - φ)
+/// cos qx.
 fn bonded(q: f64, thickness: f64, poisson: f64) -> f64 {
     let (kappa, a) = (3.0 - 4.0 * poisson, q * thickness);
     let (sine, cosine) = (a.sinh(), a.cosh());
