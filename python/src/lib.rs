@@ -49,7 +49,7 @@ mod _native {
     #[pymodule_export]
     use super::surface::{surface, surface_of};
     #[pymodule_export]
-    use super::sweep::{pack_table, sweep};
+    use super::sweep::{pack_table, quantile, sweep};
 
     #[pymodule_init]
     fn init(module: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {

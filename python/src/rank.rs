@@ -26,7 +26,7 @@ pub(crate) fn rank<'py>(
     forces: Option<Vec<f64>>,
     temperatures: Option<Vec<f64>>,
     weights: Option<PathBuf>,
-    (samples, seed): (usize, u64),
+    samples: (usize, u64),
     data: Option<PathBuf>,
     method: Option<&str>,
     way: Option<f64>,
@@ -49,7 +49,7 @@ pub(crate) fn rank<'py>(
     };
     let scenes: Vec<RankScene> = scenes.iter().map(scene).collect();
     let found = in_background(py, progress, move |task| -> Result<_, RankError> {
-        let plan = RankPlan::new(scenes, options, SampleOptions { count: samples, seed })?;
+        let plan = RankPlan::new(scenes, options, SampleOptions { count: samples.0, seed: samples.1 })?;
         let weights = weights.as_deref().map(Weights::read).transpose()?.unwrap_or_default();
         let (all, done) = (plan.sweeps() as f64, AtomicUsize::new(0));
         let told = || task.report((1 + done.fetch_add(1, Ordering::Relaxed)) as f64 / all);

@@ -6,8 +6,12 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use asperity::element::{OperatingPoint, PointContact, Table};
-use asperity_study::sweep::{Loads, SlidingOptions, SweepError, SweepMethod, SweepOptions, SweepPlan, SweepTable};
+use asperity::element::{OperatingPoint, PointContact, Table, TableRow};
+use asperity_study::settings::Setting;
+use asperity_study::sweep::{
+    Loads, SlidingOptions, SweepError, SweepMethod, SweepOptions, SweepPlan, SweepTable, quantile_table,
+};
+use asperity_study::uncertainty::{SampleOptions, UncertainScene, UncertaintyError};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -48,7 +52,37 @@ fn find(plan: &SweepPlan, task: &Task) -> Option<SweepTable> {
     (!task.is_stopped()).then(|| SweepTable::new(plan.header().clone(), rows))
 }
 
-/// The text of the table of a sweep, and the warnings.
+/// The text of the table of a sweep, and the warnings; with samples what matters as a table, and what was drawn by names.
+type Found = (String, Vec<String>, String, Vec<(String, Vec<f64>)>);
+
+/// A sweep of a scene, with samples or without.
+fn plan(scene: &Source, options: &SweepOptions, samples: Option<SampleOptions>) -> Result<SweepPlan, SweepError> {
+    match samples {
+        Some(samples) => SweepPlan::with_samples(&scene.uncertain()?, options, None, samples),
+        None => SweepPlan::new((*scene.scene).clone(), options, None),
+    }
+}
+
+/// What a scene was read from.
+struct Source {
+    text: String,
+    file: PathBuf,
+    settings: Vec<Setting>,
+    scene: Arc<asperity::scene::Scene>,
+}
+
+impl Source {
+    fn new(scene: &Scene) -> Self {
+        let Scene { text, file, settings, scene } = scene;
+        Self { text: text.clone(), file: file.clone(), settings: settings.clone(), scene: Arc::clone(scene) }
+    }
+
+    fn uncertain(&self) -> Result<UncertainScene, UncertaintyError> {
+        UncertainScene::new(self.text.clone(), self.file.clone(), self.settings.clone(), (*self.scene).clone())
+    }
+}
+
+/// The text of the table of a sweep, and what is said of it.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn sweep(
@@ -63,26 +97,48 @@ pub(crate) fn sweep(
     points: Option<u32>,
     error: Option<f64>,
     distance: Option<f64>,
+    samples: Option<usize>,
+    seed: u64,
     progress: Option<Py<PyAny>>,
-) -> PyResult<(String, Vec<String>)> {
+) -> PyResult<Found> {
     let loads = match (pressures, forces) {
         (Some(pressures), None) => Loads::Pressures(pressures),
         (None, Some(forces)) => Loads::Forces(forces),
         _ => return Err(PyValueError::new_err("expected pressures or forces, the loads to sweep over")),
     };
     let options = SweepOptions { speeds, loads, temperatures, sliding: sliding(method, way, points, error, distance)? };
-    let scene = Arc::clone(&scene.scene);
+    let (scene, samples) = (Source::new(scene), samples.map(|count| SampleOptions { count, seed }));
     let found = in_background(py, progress, move |task| {
-        let plan = SweepPlan::new((*scene).clone(), &options, None)?;
+        let plan = plan(&scene, &options, samples)?;
         Ok(find(&plan, task).map(|table| {
-            let found = plan.warnings(table.rows.iter().map(|stored| &stored.row));
+            let rows: Vec<&TableRow> = table.rows.iter().map(|stored| &stored.row).collect();
+            let found = plan.warnings(rows.iter().copied());
             let warnings = plan.warning().map(str::to_owned).into_iter().chain(found).collect();
-            (table.text(), warnings)
+            let matters = plan.matters(&rows).map(|matters| matters.text(table.header.load)).unwrap_or_default();
+            (table.text(), warnings, matters, plan.drawn())
         }))
     })?;
     let found = found.map_err(|error: SweepError| error.raise())?;
     // It is only stopped where nobody waits.
     found.ok_or_else(|| PyValueError::new_err("stopped"))
+}
+
+/// The text of the table of the sample at a quantile of a table with samples of the `scene`.
+#[pyfunction]
+pub(crate) fn quantile(
+    py: Python<'_>,
+    scene: &Scene,
+    table: String,
+    probability: f64,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<String> {
+    let (table, _) =
+        SweepTable::parse(&table, "table".as_ref()).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    let scene = Source::new(scene);
+    let found = in_background(py, progress, move |task| {
+        quantile_table(&scene.uncertain()?, &table, probability, &task.stop()).map(|table| table.text())
+    })?;
+    found.map_err(|error: SweepError| error.raise())
 }
 
 /// Packs the table of a sweep as an FMU, a point-contact element.

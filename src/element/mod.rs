@@ -7,6 +7,7 @@
 //! elastic at each speed and dissipates nothing.
 
 mod backing;
+mod basis;
 mod clearance;
 mod grid;
 mod jenkins;
@@ -20,12 +21,15 @@ mod point_status;
 mod quantity;
 mod resampled;
 mod run;
+mod samples;
 mod spring;
 mod table;
+mod table_error;
 mod table_format;
 #[cfg(test)]
 mod tests;
 
+pub use basis::{Basis, CONVERGED};
 pub use clearance::Clearance;
 pub use grid::{Load, OperatingPoint, SweepGrid};
 pub use law_points::{ElementLaw, LawPoints};
@@ -38,6 +42,8 @@ pub use point_status::PointStatus;
 pub use quantity::Quantity;
 pub use resampled::{LawPlace, ResampledLaw, SpeedCell, SpeedRange};
 pub use run::{Element, ElementError, ElementRestoreError, ElementState};
+pub use samples::{SampleHeader, SampleValues, Sampled, quantile};
 pub(crate) use spring::{Advanced, Segment, SpringLaw, advance, apply_jump};
 pub use table::{Node, Table, some_of};
-pub use table_format::{Basis, CONVERGED, FORMAT, TableError, TableHeader, TableRow, TableText};
+pub use table_error::TableError;
+pub use table_format::{FORMAT, TableHeader, TableRow, TableText};

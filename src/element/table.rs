@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
+use super::basis::Basis;
 use super::grid::{Load, OperatingPoint, SweepGrid};
 use super::point_status::PointStatus;
 use super::quantity::Quantity;
-use super::table_format::{Basis, TableError, TableRow, TableText};
+use super::table_error::TableError;
+use super::table_format::{TableRow, TableText};
 use crate::scene::read_text;
 
 /// A table, checked: every point of the grid has a row and was steady.

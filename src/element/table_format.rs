@@ -7,9 +7,12 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use super::basis::{Basis, one_line};
 use super::grid::{Load, OperatingPoint, SweepGrid};
 use super::point_status::PointStatus;
 use super::quantity::{Need, Quantity, column_name};
+use super::samples::{self, SampleHeader, SampleValues, Sampled};
+use super::table_error::TableError;
 use crate::scene::{SMALLEST, is_possible};
 use crate::tables;
 
@@ -18,10 +21,11 @@ pub const FORMAT: &str = "# asperity sweep = 1";
 /// The columns before those of [`Quantity`]; `{load}` and `{unit}` stand for those of the table's [`Load`].
 const POINT_COLUMNS: [&str; 4] = ["speed [m/s]", "{load} [{unit}]", "temperature [K]", "status"];
 
-/// The names of all columns, in their order in a file.
-fn columns(load: Load) -> Vec<String> {
+/// The names of all columns, in their order in a file, with those of samples or without.
+fn columns(load: Load, has_samples: bool) -> Vec<String> {
     let point = POINT_COLUMNS.iter().map(|name| column_name(name, load));
-    point.chain(Quantity::ALL.iter().map(|quantity| quantity.name(load))).collect()
+    let own = point.chain(Quantity::ALL.iter().map(|quantity| quantity.name(load)));
+    own.chain(has_samples.then(samples::columns).into_iter().flatten()).collect()
 }
 
 /// What a table says before its rows.
@@ -37,47 +41,17 @@ pub struct TableHeader {
     pub rest_separation: f64,
     /// What the numbers rest on.
     pub basis: Basis,
+    /// The samples; `None` without.
+    pub samples: Option<SampleHeader>,
     /// The points that the table is to have.
     pub grid: SweepGrid,
     /// How far the law reaches below the least load, in words; `None` while points are missing. It follows from the
     /// rows and is not read.
     pub low_end: Option<String>,
+    /// The samples (from 1) by their mean friction over the table, the lowest first; empty while points are missing. It
+    /// follows from the rows and is not read.
+    pub ranking: Vec<usize>,
 }
-
-/// What the numbers of a table rest on, in words; a line of the header each, where there is something to say.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Basis {
-    /// How steady sliding was found.
-    pub method: Option<String>,
-    /// What the links stand for.
-    pub foundation: Option<String>,
-    /// The way that rubber has slid of the temperature that a point has, in m; `None`: its surface has that.
-    pub way: Option<String>,
-    /// The roughness below the profile's.
-    pub fine: Option<String>,
-    /// What a study of convergence found; `None` without one.
-    pub convergence: Option<String>,
-    /// What was held at each point instead of the displacement w; `None` where that was.
-    pub held: Option<String>,
-}
-
-/// What [`Basis::convergence`] begins with where all is within the error of the study.
-pub const CONVERGED: &str = "converged";
-
-impl Basis {
-    fn lines(&self) -> impl Iterator<Item = String> {
-        let texts = [&self.method, &self.foundation, &self.way, &self.fine, &self.convergence, &self.held];
-        let named = BASIS_KEYS.into_iter().zip(texts);
-        named.filter_map(|(key, text)| Some(format!("# {key} = {}", one_line(text.as_ref()?))))
-    }
-
-    /// Whether a study found friction and area converged.
-    pub fn is_converged(&self) -> bool {
-        self.convergence.as_ref().is_some_and(|text| text.starts_with(CONVERGED))
-    }
-}
-
-const BASIS_KEYS: [&str; 6] = ["method", "foundation", "way", "fine", "convergence", "held"];
 
 impl TableHeader {
     /// The lines of the header, the names of the columns included.
@@ -93,13 +67,18 @@ impl TableHeader {
         }
         lines.push(format!("# rest_separation = {} m", number(self.rest_separation)));
         lines.extend(self.basis.lines());
+        lines.extend(self.samples.map(|samples| format!("# samples = {}", samples.text())));
         lines.push(format!("# speeds = {} m/s", list(&grid.speeds)));
         lines.push(format!("# {}s = {} {}", self.load.name(), list(&grid.loads), self.load.unit()));
         if !grid.temperatures.is_empty() {
             lines.push(format!("# temperatures = {} K", list(&grid.temperatures)));
         }
         lines.extend(self.low_end.as_ref().map(|text| format!("# low_end = {}", one_line(text))));
-        lines.push(columns(self.load).join(","));
+        if !self.ranking.is_empty() {
+            let ranking: Vec<String> = self.ranking.iter().map(usize::to_string).collect();
+            lines.push(format!("# ranking = {}", ranking.join(",")));
+        }
+        lines.push(columns(self.load, self.samples.is_some()).join(","));
         lines.join("\n") + "\n"
     }
 }
@@ -112,12 +91,14 @@ pub struct TableRow {
     /// Whether its values can be relied on.
     pub status: PointStatus,
     values: [Option<f64>; Quantity::ALL.len()],
+    /// The samples, in a table that has them.
+    pub samples: Option<SampleValues>,
 }
 
 impl TableRow {
     /// A row without values.
     pub fn new(point: OperatingPoint, status: PointStatus) -> Self {
-        Self { point, status, values: [None; Quantity::ALL.len()] }
+        Self { point, status, values: [None; Quantity::ALL.len()], samples: None }
     }
 
     /// A value; `None` where the point has none.
@@ -146,6 +127,7 @@ impl TableRow {
         let point = [Some(self.point.speed), Some(self.point.load), self.point.temperature];
         let fields =
             point.iter().map(text).chain([tables::quoted(self.status.text())]).chain(self.values.iter().map(text));
+        let fields = fields.chain(self.samples.iter().flat_map(|samples| samples.fields(number)));
         fields.collect::<Vec<_>>().join(",") + "\n"
     }
 }
@@ -157,27 +139,6 @@ fn number(value: f64) -> String {
 
 fn list(values: &[f64]) -> String {
     values.iter().map(|&value| number(value)).collect::<Vec<_>>().join(",")
-}
-
-fn one_line(text: &str) -> String {
-    text.replace(['\n', '\r'], " ")
-}
-
-/// Why a table is refused: where, what was expected and what was found.
-///
-/// It reads like `table.csv:12: speed [m/s] = "fast": expected a number above 0`.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{}{}: {problem}", file.display(), line.map_or_else(String::new, |line| format!(":{line}")))]
-pub struct TableError {
-    file: PathBuf,
-    line: Option<usize>,
-    problem: String,
-}
-
-impl TableError {
-    pub(super) fn new(file: &Path, line: Option<usize>, problem: String) -> Self {
-        Self { file: file.to_owned(), line, problem }
-    }
 }
 
 /// A table's text, divided into its fields.
@@ -275,7 +236,23 @@ impl TableText {
                 return Err(self.field_error(row, column, "a number"));
             }
         }
+        self.samples_of(row, self.samples())?;
         Ok(index)
+    }
+
+    /// The samples that the header names; `None` where there are none.
+    fn samples(&self) -> Option<SampleHeader> {
+        SampleHeader::read(self.header.get("samples")?)
+    }
+
+    /// The samples of a row.
+    fn samples_of(&self, row: usize, samples: Option<SampleHeader>) -> Result<Option<SampleValues>, TableError> {
+        let Some(SampleHeader { count, .. }) = samples else { return Ok(None) };
+        let [friction, hysteresis, contact] = Sampled::ALL.map(|sampled| self.column(&sampled.column()));
+        let columns = [friction?, hysteresis?, contact?];
+        let fields = columns.map(|column| self.lines[row].fields[column].as_str());
+        let expected = || self.field_error(row, columns[0], &format!("{count} numbers in each column of all samples"));
+        SampleValues::read(fields, count).ok_or_else(expected).map(Some)
     }
 
     pub(super) fn error(&self, problem: String) -> TableError {
@@ -306,8 +283,7 @@ impl TableText {
 
     /// What the numbers rest on, as far as the table says.
     pub(super) fn basis(&self) -> Basis {
-        let [method, foundation, way, fine, convergence, held] = BASIS_KEYS.map(|key| self.header.get(key).cloned());
-        Basis { method, foundation, way, fine, convergence, held }
+        Basis::read(|key| self.header.get(key).cloned())
     }
 
     /// The header of a table as a sweep writes it.
@@ -316,7 +292,8 @@ impl TableText {
     /// [`TableError`] where a line of it is missing, or the columns are not those of this version in their order.
     pub fn header(&self) -> Result<TableHeader, TableError> {
         let load = self.load()?;
-        let expected = columns(load);
+        let samples = self.samples();
+        let expected = columns(load, samples.is_some());
         if self.columns != expected {
             return Err(self.error(format!("expected the columns {}", expected.join(","))));
         }
@@ -327,12 +304,14 @@ impl TableText {
             load,
             rest_separation: self.rest_separation()?,
             basis: self.basis(),
+            samples,
             grid: SweepGrid {
                 speeds: self.header_numbers("speeds", "m/s")?,
                 loads: self.header_numbers(&format!("{}s", load.name()), load.unit())?,
                 temperatures: if has_temperatures { self.header_numbers("temperatures", "K")? } else { Vec::new() },
             },
             low_end: None,
+            ranking: Vec::new(),
         })
     }
 
@@ -362,12 +341,14 @@ impl TableText {
         let points = self.points(load)?;
         let status = self.column(POINT_COLUMNS[3])?;
         let columns = Quantity::ALL.map(|quantity| self.column(&quantity.name(load)).ok());
-        let row = |(line, point): (&TableLine, OperatingPoint)| TableRow {
-            point,
-            status: PointStatus::read(&line.fields[status]),
-            values: columns.map(|column| line.fields[column?].parse().ok()),
+        let samples = self.samples();
+        let row = |(index, point): (usize, OperatingPoint)| {
+            let fields = &self.lines[index].fields;
+            let status = PointStatus::read(&fields[status]);
+            let values = columns.map(|column| fields[column?].parse().ok());
+            Ok(TableRow { point, status, values, samples: self.samples_of(index, samples)? })
         };
-        Ok(self.lines.iter().zip(points).map(row).collect())
+        points.into_iter().enumerate().map(row).collect()
     }
 
     /// The point of a row.
@@ -469,18 +450,23 @@ mod tests {
             let (scene, fingerprint) = ("a = b, c".to_owned(), "00ff".to_owned());
             let basis = Basis { foundation: Some("half_space".into()), ..Basis::default() };
             let rest_separation = -1.5e-5;
-            let mut header = TableHeader { scene, fingerprint, load, rest_separation, basis, grid, low_end: None };
+            let samples = Some(SampleHeader { count: 2, seed: 1, redrawn: 0 }).filter(|_| load != Load::Force);
+            let (low_end, ranking) = (None, Vec::new());
+            let mut header =
+                TableHeader { scene, fingerprint, load, rest_separation, basis, samples, grid, low_end, ranking };
             let row = |(i, point): (usize, OperatingPoint)| {
                 let mut row = TableRow::new(point, PointStatus::new((i > 0).then_some("not steady, \"by far\"")));
                 let values = Quantity::ALL.iter().zip(1..).filter(|(_, number)| number % 3 != 0);
                 values.for_each(|(&quantity, number)| row.set(quantity, Some(f64::from(number) / 7.0)));
+                row.samples = samples.map(|_| SampleValues::new(&[[Some(0.3), None, Some(0.1)], [None; 3]]));
                 row
             };
             let rows: Vec<TableRow> = header.grid.points().enumerate().map(row).collect();
             header.low_end = Some("below 1 Pa".into());
+            header.ranking = if samples.is_some() { vec![2, 1] } else { Vec::new() };
             let written = header.text() + &rows.iter().map(TableRow::line).collect::<String>();
             let text = TableText::parse(&written, Path::new("t.csv")).unwrap();
-            header.low_end = None;
+            (header.low_end, header.ranking) = (None, Vec::new());
             assert_eq!((text.header().unwrap(), text.rows(load).unwrap()), (header, rows));
         }
     }

@@ -266,6 +266,11 @@ impl Patch {
         &self.files
     }
 
+    /// The file of the table, relative to the patch's folder; it is one of the [`files`](Self::files).
+    pub fn table_file(&self) -> &Path {
+        &self.file.table
+    }
+
     /// Paths of the files that it was read from; `path` is that of its own.
     pub fn sources(&self, path: &Path) -> Vec<PathBuf> {
         let folder = path.parent().unwrap_or(Path::new(""));

@@ -24,7 +24,7 @@ const KEPT_APART: [&str; 12] = [
 ];
 
 /// Keys that no other file has.
-const OTHERS: [&str; 5] = [
+const OTHERS: [&str; 6] = [
     "name = 'bodies'
     layer = { masses = 2, spacing = 1, mass = 1, vertical = { stiffness = 1 } }
     surface = { kind = 'flat' }
@@ -57,6 +57,11 @@ const OTHERS: [&str; 5] = [
     surface.missing = 'fill'
     surface.tilt = 'remove'
     surface.fine = { spectrum = 'spectrum.csv', longest = 1e-3, shortest = 1e-4, convention = 'contact.engineering' }",
+    "name = 'fitted'
+    layer = { masses = 2, spacing = 1, mass = 1 }
+    surface = { kind = 'flat' }
+    friction.coulomb = 0.5
+    uncertainty.covariance = 'fit.csv'",
     "name = 'patch'
     table = { path = 'table.csv', extrapolation = 'refuse' }
     patch = { shape = 'flat', length = 1, width = 1, nx = 1, ny = 1, transport = true, offset = [1, 0, 0] }
@@ -145,6 +150,8 @@ fn check<F: PartialEq>(keys: &[KeyEntry], parse: impl Fn(&str, &Path) -> Option<
     fs::write(folder.path().join("motion.csv"), "time [s],u [m],w [m]\n0,0,0\n1,1,0\n").unwrap();
     fs::write(folder.path().join("line.csv"), "x [m],z [m]\n0,0\n1,0\n2,0\n").unwrap();
     fs::write(folder.path().join("spectrum.csv"), "q,C\n1e3,1e-18\n1e4,1e-21\n1e5,1e-24\n").unwrap();
+    fs::write(folder.path().join("fit.csv"), "key,value,scale,friction.coulomb\nfriction.coulomb,0.5,log,0.01\n")
+        .unwrap();
     let other = |text: &&str| Example { file: folder.path().join("other.toml"), content: text.parse().unwrap() };
     let mut all: Vec<Example> = FOLDERS.iter().flat_map(|folder| examples(&root.join(folder))).collect();
     all.extend(OTHERS.iter().map(other));

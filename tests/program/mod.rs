@@ -17,6 +17,7 @@ mod peers;
 mod pictures;
 mod rank;
 mod report;
+mod samples;
 mod scene_errors;
 mod seal_ring;
 mod spoken;

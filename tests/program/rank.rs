@@ -10,12 +10,12 @@ use crate::common::{Table, asperity, root, scratch};
 fn road(folder: &Path, name: &str, strength: f64) -> PathBuf {
     let text = fs::read_to_string(root().join("scenes/road/road.toml")).unwrap();
     fs::copy(root().join("scenes/road/compound.csv"), folder.join("compound.csv")).unwrap();
-    let replaced =
-        [("strength = 5.0e6", format!("strength = {strength:e}")), ("name = \"road\"", format!("name = \"{name}\""))];
-    let text = replaced.into_iter().fold(text, |text, (from, to)| {
-        assert!(text.contains(from), "{from}");
-        text.replacen(from, &to, 1)
-    });
+    let is_named = |line: &&str| line.starts_with("name = ");
+    let own = text.lines().find(is_named).unwrap();
+    let text = text.replacen(own, &format!("name = \"{name}\""), 1);
+    let (before, after) = text.split_once("strength = ").unwrap();
+    let end = after.find([',', '\n', ' ']).unwrap();
+    let text = format!("{before}strength = {strength:e}{}", &after[end..]);
     let unknown = "\n[uncertainty]\n\"friction.rate_shear.strength\" = { relative = 0.1 }\n\
                    \"surface.fine.shortest\" = { factor = 2.0 }\n";
     let path = folder.join(format!("{name}.toml"));
@@ -38,7 +38,8 @@ fn said(bytes: &[u8]) -> String {
 #[test]
 fn what_is_told_apart_ends_with_0_and_what_is_not_with_3() {
     let folder = scratch("rank");
-    let [one, other, same] = [("one", 5e6), ("other", 5.05e6), ("same", 5e6)].map(|(name, strength)| road(&folder, name, strength));
+    let [one, other, same] =
+        [("one", 5e6), ("other", 5.05e6), ("same", 5e6)].map(|(name, strength)| road(&folder, name, strength));
     let data = folder.join("measured.csv");
     fs::write(
         &data,
@@ -86,10 +87,17 @@ fn without_uncertainty_there_is_an_order_alone() {
     let done = rank(&folder, &[&road, &road], &set);
     let text = said(&done.stdout);
     assert_eq!(done.status.code(), Some(3), "{text}{}", said(&done.stderr));
-    assert!(text.contains("road (1)") && text.contains("weighted") && text.contains("no scene says in [uncertainty]"), "{text}");
+    assert!(
+        text.contains("road (1)") && text.contains("weighted") && text.contains("no scene says in [uncertainty]"),
+        "{text}"
+    );
     assert!(text.contains("Told apart  not known, without samples"), "{text}");
     fs::write(&weights, "temperature [°C],weight\n0,1\n20,2\n").unwrap();
     let done = rank(&folder, &[&road, &road], &set);
     assert_eq!(done.status.code(), Some(1));
-    assert!(said(&done.stderr).contains("weights.csv: no weight of 0.01 m/s, 100000 Pa, 313.15 K"), "{}", said(&done.stderr));
+    assert!(
+        said(&done.stderr).contains("weights.csv: no weight of 0.01 m/s, 100000 Pa, 313.15 K"),
+        "{}",
+        said(&done.stderr)
+    );
 }

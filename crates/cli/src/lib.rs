@@ -26,7 +26,7 @@
 //! | `patch` | cli, figure, files, result_file, terminal | `simulate` of a patch |
 //! | `describe` | cli, figure, files, terminal | `describe` |
 //! | `contact` | cli, figure, files, npz, terminal | `contact` |
-//! | `sweep` | cli, draft, figure, files, flags, interrupt, lock, resumable_table, terminal | `sweep` |
+//! | `sweep` | cli, draft, figure, files, flags, interrupt, lock, output, resumable_table, terminal | `sweep` |
 //! | `rank` | cli, figure, files, flags, terminal | `rank` |
 //! | `converge` | cli, draft, figure, files, flags, interrupt, resumable_table, terminal | `converge` |
 //! | `fit` | cli, figure, files, flags, terminal | `fit` |

@@ -44,9 +44,18 @@ wherever its table is. *M* marks keys of scenes with a `[material]` alone, *D* t
 have constants of their own; else *only* names the kinds or shapes of the table that have the key.
 ";
 
+/// What has no rows of its own: paths of other keys as keys.
+const UNCERTAIN: &str = "
+Beside it any number of the scene by its path in quotation marks, as `\"friction.rate_shear.strength\"`, set to one of
+`{ relative = 0.1 }` (log-normal, the standard deviation of the logarithm), `{ factor = 2 }` (log-uniform, from 1/2 to 2
+times) and `{ absolute = 2.0 }` (normal, the standard deviation in SI units or as a text with its unit);
+`\"material.prony\" = { relative = 0.05 }`, `\"surface.spectrum\" = { relative = 0.2 }`, also with `each = \"decade\"`, and
+`\"surface\" = \"seed\"`: [what is not known](decide.md).
+";
+
 fn page() -> String {
     let mut page = HEAD.to_owned();
-    page += &format!("\n## Keys of a scene\n{}", key_tables(&scene_keys()));
+    page += &format!("\n## Keys of a scene\n{}{UNCERTAIN}", key_tables(&scene_keys()));
     page += &format!("\n## Keys of a patch\n{}", key_tables(&patch_keys()));
     page += "\n## Outputs of a scene\n\nBy the groups of `[fmu] outputs`; those of `elements` are of each mass, `element[i].…`.\n";
     page += &output_tables(&outputs_of_scenes());

@@ -24,7 +24,7 @@
 //! | [`run_figures`] | implausible | forces and friction of a run, what it cost, and what would make it cheaper |
 //! | [`steady`] | | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
 //! | [`uncertainty`] | settings | scenes drawn from what is not known of one: Sobol' points, distributions, indices |
-//! | [`sweep`] | decimals, files, implausible, progress, steady, uncertainty | friction over speed, load and temperature, as a table |
+//! | [`sweep`] | csv, decimals, files, implausible, progress, steady, uncertainty | friction over speed, load and temperature, as a table |
 //! | [`contact`] | implausible, steady, sweep | the contact of a surface in steady sliding |
 //! | [`converge`] | decimals, files, settings, steady, sweep | whether area and friction depend on spacing, length or chance |
 //! | [`calibration`] | csv, decimals, files, implausible, settings, steady, sweep | free numbers of a scene from measured friction: models, least squares, errors, plans |

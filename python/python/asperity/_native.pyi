@@ -26,8 +26,11 @@ def sweep(
     points: int | None,
     error: float | None,
     distance: float | None,
+    samples: int | None,
+    seed: int,
     progress: _Progress,
-) -> tuple[str, list[str]]: ...
+) -> tuple[str, list[str], str, list[tuple[str, list[float]]]]: ...
+def quantile(scene: Scene, table: str, probability: float, progress: _Progress) -> str: ...
 def rank(
     scenes: list[Scene],
     speeds: list[float],

@@ -55,6 +55,49 @@ def swept(y_title: str, curves: Sequence[tuple[str, Floats, Floats, Any]]) -> Fi
     return figure
 
 
+Side = tuple[str, Floats, bool]
+
+
+def maps(title: str, sides: tuple[Side, Side], panels: Sequence[tuple[str, Floats]]) -> Figure:
+    """Values over two sides (title, values, whether logarithmic) in colours, with contour lines and the largest of each
+    row."""
+    from matplotlib.figure import Figure
+
+    (x_title, x, x_log), (y_title, y, y_log) = sides
+    values = np.concatenate([panel.ravel() for _, panel in panels])
+    values = values[np.isfinite(values)]
+    low, high = (values.min(), values.max()) if len(values) else (0.0, 1.0)
+    levels = np.linspace(low, high if high > low else low + 1.0, 65)
+    figure = Figure(figsize=(1.0 + 4.0 * len(panels), 3.6), layout="constrained")
+    all_axes = figure.subplots(1, len(panels), squeeze=False)[0]
+    for axes, (name, panel) in zip(all_axes, panels, strict=True):
+        known = np.ma.masked_invalid(panel)
+        colours = axes.contourf(x, y, known, levels=levels)
+        lines = axes.contour(x, y, known, levels=levels[8:-1:8], colors="black", linewidths=0.8)
+        axes.clabel(lines, fontsize="small")
+        tops = [(top, at) for top, at in zip((_top(np.log(x) if x_log else x, row) for row in panel), y, strict=True)]
+        ridge = np.array([(np.exp(top) if x_log else top, at) for top, at in tops if top is not None])
+        if len(ridge):
+            axes.plot(*ridge.T, "o", color="#d55e00", markeredgecolor="white", label=f"largest over {x_title}")
+        axes.set(xlabel=x_title, ylabel=y_title, title=name, xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
+        axes.set_xscale("log" if x_log else "linear")
+        axes.set_yscale("log" if y_log else "linear")
+    figure.colorbar(colours, ax=list(all_axes), label=title, format="%.3g")
+    return figure
+
+
+def _top(x: Floats, row: Floats) -> float | None:
+    """The vertex of the parabola through the largest value and its neighbours; None at an end, or beside a gap."""
+    if not np.isfinite(row).any():
+        return None
+    i = int(np.nanargmax(row))
+    if i in (0, len(row) - 1) or not np.isfinite(row[i - 1 : i + 2]).all():
+        return None
+    rise, fall = (row[i] - row[i - 1]) / (x[i] - x[i - 1]), (row[i] - row[i + 1]) / (x[i + 1] - x[i])
+    part = rise / (rise + fall) if rise + fall > 0.0 else 0.5
+    return float((x[i - 1] + x[i]) / 2.0 + part * (x[i + 1] - x[i - 1]) / 2.0)
+
+
 def contact(x: Floats, y: Floats, heights: Floats, pressures: Floats, gaps: Floats) -> Figure:
     """A contact: curves along a profile, maps over a map."""
     from matplotlib.figure import Figure

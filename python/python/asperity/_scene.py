@@ -96,6 +96,8 @@ class Scene(SceneInputs):
         points: int | None = None,
         friction_error: float | None = None,
         distance: float | None = None,
+        samples: int | None = None,
+        seed: int = 1,
         progress: Progress = False,
     ) -> Table:
         """Friction in steady sliding over speed, load and temperature, on all cores.
@@ -114,6 +116,9 @@ class Scene(SceneInputs):
             points: Points of a period along x, with "steady".
             friction_error: Admissible standard error of friction over it, with "layer"; None: 5e-3.
             distance: Longest distance that a layer slides, m; None: 100 blocks.
+            samples: Each point also for so many scenes drawn from the section [uncertainty] of this one: quantiles are
+                columns of the table, all samples :attr:`Table.samples`, what matters :attr:`Table.matters`.
+            seed: What scrambles the points of the samples.
             progress: True for a line on standard error, or a function of the fraction done.
 
         Raises:
@@ -121,7 +126,7 @@ class Scene(SceneInputs):
         """
         from ._table import Table
 
-        text, said = _native.sweep(
+        text, said, matters, drawn = _native.sweep(
             self._native,
             axis("speeds", speeds),
             None if pressures is None else axis("pressures", pressures),
@@ -132,11 +137,13 @@ class Scene(SceneInputs):
             points,
             friction_error,
             distance,
+            samples,
+            seed,
             shown(progress),
         )
         for warning in said:
             warnings.warn(warning, stacklevel=3)
-        table = Table(text)
+        table = Table(text, matters, dict(drawn))
         failed = [status for status in table.status.ravel() if status not in ("steady", "full contact")]
         if failed:
             text = f"{len(failed)} of {table.status.size} points are not steady or failed, the first: {failed[0]}"

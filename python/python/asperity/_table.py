@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import tempfile
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,7 +23,9 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
+    from ._arguments import Progress
     from ._comparison import Comparison
+    from ._scene import Scene
 
 
 class Table:
@@ -42,9 +44,12 @@ class Table:
             cannot be relied on; shape (nv, np, nT), "" of points not found yet.
     """
 
-    def __init__(self, text: str) -> None:
-        """The table of this text."""
+    def __init__(self, text: str, matters: str = "", drawn: Mapping[str, Sequence[float]] | None = None) -> None:
+        """The table of this text; of one with samples what matters, as text, and what was drawn."""
         self.text = text
+        self._matters = matters
+        self._drawn = {name: np.array(values) for name, values in (drawn or {}).items()}
+        self._samples: dict[str, Floats] = {}
         lines = [line for line in text.splitlines() if line and not line.startswith("#")]
         if not lines:
             raise ValueError("expected the text of a table, found no rows")
@@ -70,7 +75,11 @@ class Table:
         self.status[places] = columns["status"]
         self._columns: dict[str, Floats] = {}
         for name in names:
-            if name not in ("speed", self.load, "temperature", "status"):
+            if name.endswith("_samples"):
+                values = np.array([_floats(text.split(";")) for text in columns[name]])
+                self._samples[name.removesuffix("_samples")] = np.full((values.shape[1], *shape), np.nan)
+                self._samples[name.removesuffix("_samples")][(slice(None), *places)] = values.T
+            elif name not in ("speed", self.load, "temperature", "status"):
                 self._columns[name] = np.full(shape, np.nan)
                 self._columns[name][places] = _floats(columns[name])
 
@@ -110,16 +119,71 @@ class Table:
         """The columns with dimensions v, p (or F) and T."""
         import xarray as xr
 
-        names = ("v", "p" if self.load == "pressure" else "F", "T")
-        axes = zip(
-            names, ("speed", self.load, "temperature"), (self.speeds, self.loads, self.temperatures), strict=True
-        )
-        coordinates = {name: (name, values, {"units": self.units.get(column, "K")}) for name, column, values in axes}
+        names, coordinates = self._coordinates()
         data: dict[str, Any] = {
             name: (names, values, {"units": self.units[name]}) for name, values in self._columns.items()
         }
         data["status"] = (names, self.status)
         return xr.Dataset(data, coords=coordinates)
+
+    def _coordinates(self) -> tuple[tuple[str, str, str], dict[str, Any]]:
+        names = ("v", "p" if self.load == "pressure" else "F", "T")
+        axes = zip(
+            names, ("speed", self.load, "temperature"), (self.speeds, self.loads, self.temperatures), strict=True
+        )
+        return names, {name: (name, values, {"units": self.units.get(column, "K")}) for name, column, values in axes}
+
+    @property
+    def samples(self) -> xr.Dataset:
+        """All samples: friction, hysteresis and contact_ratio with dimensions sample, v, p (or F) and T, nan where one has no
+        result; and what was drawn with dimension sample, where the table was just swept.
+
+        Raises:
+            ValueError: Of a table without samples.
+        """
+        import xarray as xr
+
+        if not self._samples:
+            raise ValueError("expected the table of a sweep with samples")
+        names, coordinates = self._coordinates()
+        data: dict[str, Any] = {name: (("sample", *names), values) for name, values in self._samples.items()}
+        data |= {name: ("sample", values) for name, values in self._drawn.items()}
+        coordinates["sample"] = np.arange(1, 1 + len(self._samples["friction"]))
+        return xr.Dataset(data, coords=coordinates)
+
+    @property
+    def matters(self) -> pd.DataFrame:
+        """The part of friction's variance over the samples that each uncertain key explains (share) and its standard_error: in
+        the mean over all points, where speed is nan, and at each point.
+
+        Raises:
+            ValueError: Of a table that was not just swept with samples.
+        """
+        import io
+
+        import pandas as pd
+
+        if not self._matters:
+            raise ValueError("expected a table that was just swept with samples")
+        frame = pd.read_csv(io.StringIO(self._matters))
+        return frame.rename(columns={name: name.split(" [")[0] for name in frame.columns})
+
+    def quantile(self, probability: float, scene: Scene, *, progress: Progress = False) -> Table:
+        """The table of one sample: of the one whose mean friction over the table is the quantile of a probability.
+
+        It is drawn again from the scene and swept again, so that the whole is a curve that can occur.
+
+        Args:
+            probability: From 0 to 1.
+            scene: The scene that this table with samples was swept from.
+            progress: As for :meth:`Scene.sweep`.
+
+        Raises:
+            SceneError: Where the table has no samples, or was not swept from the scene.
+        """
+        from ._arguments import shown
+
+        return Table(_native.quantile(scene._native, self.text, probability, shown(progress)))
 
     def plot(self, column: str = "friction") -> Figure:
         """Draws a column over the speed with matplotlib, a curve for each load and temperature.
@@ -136,6 +200,33 @@ class Table:
             for j, load in enumerate(self.loads)
         ]
         return swept(f"{column} [{self.units[column]}]", curves)
+
+    def plot_map(self, x: str = "speed", y: str = "temperature", column: str = "friction") -> Figure:
+        """Draws a column in colours over two of speed, load and temperature, with contour lines.
+
+        A map for each value of the third. Dots mark where along x the column is largest for each y, if that is inside.
+        What has no result is empty.
+
+        Raises:
+            ValueError: Where these are not two of them, or one has a single value.
+        """
+        from ._plots import maps
+
+        names = ("speed", self.load, "temperature")
+        if x == y or not {x, y} <= set(names):
+            raise ValueError(f"x = {x!r}, y = {y!r}: expected two of {', '.join(names)}")
+        axes = dict(zip(names, (self.speeds, self.loads, self.temperatures), strict=True))
+        for name in (x, y):
+            if len(axes[name]) < 2:
+                raise ValueError(f"{name}: expected at least 2 values along each side of a map, found {len(axes[name])}")
+        (third,) = set(names) - {x, y}
+        units = {"speed": "m/s", "pressure": "Pa", "force": "N", "temperature": "K"}
+        found = np.isin(self.status, ("steady", "full contact"))
+        values = np.where(found, self[column], np.nan)
+        values = np.moveaxis(values, [names.index(third), names.index(y), names.index(x)], [0, 1, 2])
+        titles = ["" if np.isnan(value) else f"{value:g} {units[third]}" for value in axes[third]]
+        sides = [(f"{name} [{units[name]}]", axes[name], _is_logarithmic(name, axes[name])) for name in (x, y)]
+        return maps(f"{column} [{self.units[column]}]", (sides[0], sides[1]), list(zip(titles, values, strict=True)))
 
     def compare(self, data: object) -> Comparison:
         """Compares the table with measured friction, as ``asperity compare`` does.
@@ -182,12 +273,16 @@ class Table:
             warn_of_start(_native.pack_table(file, Path(path), given, {"flat_names": flat_names, "references": references}))
         return Path(path)
 
-    def __reduce__(self) -> tuple[type[Table], tuple[str]]:
-        return type(self), (self.text,)
+    def __reduce__(self) -> tuple[type[Table], tuple[str, str, dict[str, Floats]]]:
+        return type(self), (self.text, self._matters, self._drawn)
 
     def __repr__(self) -> str:
         sizes = f"{len(self.speeds)} speeds, {len(self.loads)} loads, {len(self.temperatures)} temperatures"
         return f"<asperity.Table: {sizes}; {', '.join(self.columns)}>"
+
+
+def _is_logarithmic(name: str, values: Floats) -> bool:
+    return name == "speed" or (name != "temperature" and bool(values[-1] >= 10.0 * values[0]))
 
 
 def _label(load: float, unit: str, kelvin: float) -> str:

@@ -5,13 +5,12 @@ use crate::scene::Unit;
 use crate::scene::uncertainty::Each;
 use crate::scene::values::POSITIVE;
 
-pub(super) const UNCERTAINTY: &[Key] = &[
-    key("covariance", Allowed::Text(PATH), "File of numbers that were fitted together, as calibrate writes it"),
-    SPREAD,
-];
+/// Beside any number of the scene by its path, which is a table of [`SPREAD`].
+pub(super) const UNCERTAINTY: &[Key] =
+    &[key("covariance", Allowed::Text(PATH), "File of numbers that were fitted together, as calibrate writes it")];
 
-/// Of any number of the scene, by its path.
-pub(in crate::scene) const SPREAD: Key = table("\"path of a key\"", SPREADS);
+/// How far something may be off.
+pub(in crate::scene) const SPREAD: Key = table("", SPREADS);
 
 const SPREADS: &[Key] = &[
     number("relative", POSITIVE, Unit::One, "Log-normal: standard deviation of the logarithm"),

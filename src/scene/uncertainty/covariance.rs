@@ -50,10 +50,11 @@ const COLUMNS: [&str; 3] = ["key", "value", "scale"];
 /// What is written with some digits is symmetric and positive but for this part.
 const ROUNDING: f64 = 1e-6;
 
-/// The covariance in the bytes of a file, as yet of no name; the line of each number beside it.
-pub(in crate::scene) fn read_covariance(
-    bytes: &[u8],
-) -> Result<((Covariance, Vec<usize>), Vec<ReadingNote>), ContentError> {
+/// The covariance in a file, as yet of no name, and the line of each number.
+type Read = (Covariance, Vec<usize>);
+
+/// The covariance in the bytes of a file.
+pub(in crate::scene) fn read_covariance(bytes: &[u8]) -> Result<(Read, Vec<ReadingNote>), ContentError> {
     let text = decode(bytes)?;
     let is_data = |line: &&str| !line.trim().is_empty() && !line.starts_with('#');
     let mut lines = (1..).zip(text.lines()).filter(|(_, line)| is_data(line));
@@ -61,7 +62,7 @@ pub(in crate::scene) fn read_covariance(
     let head: Vec<String> = fields(head, ',').map(|name| name.into_owned()).collect();
     if head.len() <= COLUMNS.len() || head[..COLUMNS.len()] != COLUMNS {
         let expected = "key, value, scale and a column for each key, as calibrate writes them";
-        return Err(ContentError::value(Some(first), "columns", &head.join(", "), expected));
+        return Err(ContentError::value(Some(first), "columns", &format!("\"{}\"", head.join(", ")), expected));
     }
     let keys = &head[COLUMNS.len()..];
     let (mut numbers, mut rows, mut at) = (Vec::new(), Vec::new(), Vec::new());
@@ -75,18 +76,19 @@ pub(in crate::scene) fn read_covariance(
         let expected = format!("{}, one for each column of a key", keys.len());
         return Err(ContentError::value(None, "rows", &numbers.len().to_string(), &expected));
     }
-    let root =
-        root(&rows).map_err(|expected| ContentError::value(Some(first), "covariance", "this matrix", &expected))?;
+    let root = root(&rows).map_err(|expected| ContentError::value(Some(first), "covariance", "", &expected))?;
     Ok(((Covariance { file: PathBuf::new(), numbers, root }, at), Vec::new()))
 }
 
 /// Row `index` of a file with columns for these keys.
 fn read_row(line: usize, text: &str, keys: &[String], index: usize) -> Result<(FittedNumber, Vec<f64>), ContentError> {
     let found: Vec<String> = fields(text, ',').map(|field| field.into_owned()).collect();
-    let error = |key: &str, given: &str, expected: &str| ContentError::value(Some(line), key, given, expected);
+    let error = |key: &str, given: &str, expected: &str| {
+        ContentError::value(Some(line), key, &format!("\"{given}\""), expected)
+    };
     if found.len() != COLUMNS.len() + keys.len() {
         let expected = format!("{}, as many as columns", COLUMNS.len() + keys.len());
-        return Err(error("fields", &found.len().to_string(), &expected));
+        return Err(ContentError::value(Some(line), "fields", &found.len().to_string(), &expected));
     }
     let Some(key) = keys.get(index).filter(|key| **key == found[0]) else {
         return Err(error("key", &found[0], "the keys of the columns, in their order"));
@@ -177,12 +179,9 @@ mod tests {
             ("key,value,scale,a\nb,1,log,1\n", "key = \"b\": expected the keys of the columns"),
             ("key,value,scale,a\na,1,ln,1\n", "scale = \"ln\": expected one of \"log\", \"linear\""),
             ("key,value,scale,a\na,x,log,1\n", "value = \"x\": expected a number"),
-            ("key,value,scale,a\na,1,log,-1\n", "covariance = \"this matrix\": expected variances"),
-            ("key,value,scale,a,b\na,1,log,1,0\nb,1,log,0.1,1\n", "covariance = \"this matrix\": expected a symmetric"),
-            (
-                "key,value,scale,a,b\na,1,log,1,2\nb,1,log,2,1\n",
-                "covariance = \"this matrix\": expected a matrix that is",
-            ),
+            ("key,value,scale,a\na,1,log,-1\n", "covariance: expected variances"),
+            ("key,value,scale,a,b\na,1,log,1,0\nb,1,log,0.1,1\n", "covariance: expected a symmetric"),
+            ("key,value,scale,a,b\na,1,log,1,2\nb,1,log,2,1\n", "covariance: expected a matrix that is"),
         ] {
             let error = read(text).unwrap_err();
             assert!(error.starts_with(message), "{text:?}: {error}");

@@ -4,6 +4,8 @@
 
 mod covariance;
 mod spectrum;
+#[cfg(test)]
+mod tests;
 
 use std::path::PathBuf;
 

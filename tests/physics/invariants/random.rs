@@ -132,6 +132,7 @@ fn cases_of(scales: Scales, method: Method) -> impl Strategy<Value = Case> {
                 solver,
                 extrapolation: Extrapolation::Linear,
                 temperature_input: false,
+                uncertainty: Default::default(),
                 outputs: GROUPS.to_vec(),
                 fmu: FmuOptions::default(),
                 excitation: Vec::new(),

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::{ArgGroup, Args};
 
 use super::shared::Set;
-use super::values::{Frequencies, count, picture, picture_or_table, temperature};
+use super::values::{Frequencies, count, picture, picture_or_table, share, temperature};
 
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("described").required(true).args(["scene", "patch"])))]
@@ -52,18 +52,23 @@ pub(crate) struct Material {
 }
 
 #[derive(Debug, Args)]
-#[command(group(ArgGroup::new("input").required(true)))]
+#[command(group(ArgGroup::new("input").required(true).multiple(true)))]
 #[command(after_help = example!("asperity pack scenes/tread-block/tread-block.toml -o block.fmu"))]
 pub(crate) struct Pack {
-    /// The scene file.
+    /// The scene file; with --quantile the one that was swept.
     #[arg(value_name = "SCENE.toml", group = "input")]
     pub(crate) scene: Option<PathBuf>,
     /// A sweep table: packs a point-contact element, which interpolates the table instead of simulating the layer.
     #[arg(long, value_name = "TABLE.csv", group = "input")]
+    #[arg(conflicts_with = "patch")]
     pub(crate) table: Option<PathBuf>,
     /// A patch file: packs a contact patch of many point-contact elements in three dimensions.
     #[arg(long, value_name = "PATCH.toml", group = "input")]
     pub(crate) patch: Option<PathBuf>,
+    /// Of a table with samples, or of a patch with such a table: packs the sample whose mean friction over the table is this
+    /// quantile, from 0 to 1. It is drawn from the scene and swept again.
+    #[arg(long, value_name = "SHARE", value_parser = share, requires = "scene", conflicts_with = "check")]
+    pub(crate) quantile: Option<f64>,
     /// The scene that was swept: compares the element with its layer between the table's points, or elements of the
     /// patch, tilted over the table's pressures, at three speeds; along a to-and-fro motion; and the patch with one of
     /// twice as many elements along and across. Writes tables and plots to a folder beside the FMU.

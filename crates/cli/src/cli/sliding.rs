@@ -10,7 +10,7 @@ use super::sweep_values::{Over, Shard, Values};
 use super::values::{count, length, picture, seeds, share, sweep_method, table_or_arrays};
 
 /// Options of a sweep that --merge does not take.
-const OF_A_SCENE: [&str; 12] = [
+const OF_A_SCENE: [&str; 15] = [
     "speeds",
     "pressures",
     "forces",
@@ -22,6 +22,9 @@ const OF_A_SCENE: [&str; 12] = [
     "shard",
     "master",
     "converged",
+    "samples",
+    "seed",
+    "keep",
     "set",
 ];
 
@@ -71,6 +74,17 @@ pub(crate) struct Sweep {
     #[arg(long, value_name = "VALUES", value_parser = Values::ways)]
     #[arg(conflicts_with_all = ["way", "shard", "merge", "master", "converged"])]
     pub(crate) ways: Option<Values>,
+    /// Also computes each point for N scenes drawn from what the scene's section [uncertainty] says is not known: quantiles
+    /// of friction, hysteresis and area are columns of the table, friction's bands of 50 and 90 % are plotted, and what
+    /// matters is written beside the table with .matters.csv and .matters.svg.
+    #[arg(long, value_name = "N", value_parser = count, conflicts_with = "ways")]
+    pub(crate) samples: Option<u32>,
+    /// What scrambles the points of the samples: another seed draws others.
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "samples")]
+    pub(crate) seed: u64,
+    /// Also writes friction, hysteresis and area of every sample at every point, with what was drawn for it.
+    #[arg(long, value_name = "SAMPLES.csv", requires = "samples", conflicts_with = "shard")]
+    pub(crate) keep: Option<PathBuf>,
     /// Computes only share I of N of the points, I from 1 to N.
     #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
     pub(crate) shard: Option<Shard>,

@@ -45,6 +45,9 @@ pub(crate) enum Stroke {
     Marked,
     /// The outline of a marker at every point, and no line.
     Hollow,
+    /// A light area, and a less light one, whose outline the points are.
+    WideBand,
+    NarrowBand,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -92,6 +95,11 @@ impl Chart {
             let points: Vec<_> = curve.points.iter().filter_map(drawn).collect();
             match curve.stroke {
                 Stroke::Hollow => draw_markers(canvas, &context, &points, curve.look, MarkerFill::Hollow),
+                Stroke::WideBand | Stroke::NarrowBand => {
+                    let shade = curve.stroke.shade(colour(curve.look));
+                    context.draw_series([Polygon::new(points, shade.filled())])?;
+                    Ok(())
+                }
                 Stroke::Marked => {
                     draw_line(&mut context, points.clone(), curve.stroke, curve.look)?;
                     draw_markers(canvas, &context, &points, curve.look, MarkerFill::Full)
@@ -217,7 +225,13 @@ impl Stroke {
             Self::Dashed => Some((6 * FINE, 4 * FINE)),
             Self::Dotted => Some((2 * FINE, 4 * FINE)),
             Self::Line | Self::Rings | Self::Dots | Self::Marked | Self::Hollow => None,
+            Self::WideBand | Self::NarrowBand => None,
         }
+    }
+
+    /// The shade of an area, which what is below it shows through.
+    fn shade(self, colour: RGBColor) -> RGBAColor {
+        colour.mix(if self == Self::WideBand { 0.13 } else { 0.22 })
     }
 }
 
@@ -368,6 +382,15 @@ impl Symbol {
             Self::Line(Stroke::Hollow, colour) => {
                 canvas.draw(&Circle::new((centre, middle), MARKER, WHITE.filled()))?;
                 canvas.draw(&Circle::new((centre, middle), MARKER, colour.stroke_width(LINE_WIDTH)))?;
+            }
+            Self::Line(stroke @ (Stroke::WideBand | Stroke::NarrowBand), colour) => {
+                let half = (TEXT_SIZE / 2) as i32;
+                let corners = [(left, middle - half), (right, middle + half)];
+                canvas.draw(&Rectangle::new(corners, stroke.shade(colour).filled()))?;
+                if stroke == Stroke::NarrowBand {
+                    // It lies within the wide one.
+                    canvas.draw(&Rectangle::new(corners, Stroke::WideBand.shade(colour).filled()))?;
+                }
             }
             Self::Line(stroke, colour) => {
                 let (dash, gap) = stroke.dashes().unwrap_or((SYMBOL, 1));

@@ -2,6 +2,7 @@
 
 mod axis;
 mod bands;
+mod bars;
 mod caption;
 mod chart;
 mod choice_grid;
@@ -33,6 +34,7 @@ use plotters::style::text_anchor::{HPos, VPos};
 use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingErrorKind};
 
 pub(crate) use bands::{BandRow, Bands};
+pub(crate) use bars::{Bar, Bars};
 pub(crate) use caption::RUBBER_SLIDES;
 pub(crate) use chart::{Curve, Stroke};
 pub(crate) use choice_grid::{Choice, ChoiceGrid, ChoicePanel};

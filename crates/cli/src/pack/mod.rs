@@ -2,6 +2,7 @@
 
 mod check;
 mod picture;
+mod quantile;
 
 use std::path::{Path, PathBuf};
 
@@ -10,10 +11,13 @@ use asperity_fmi::Definition;
 use asperity_study::check::CheckError;
 use asperity_study::pack::{self, Fmu, Library, LibraryFile, flat_names, no_start, not_converged};
 use asperity_study::summary::missing_backing;
+use asperity_study::sweep::{SweepError, SweepTableError};
+use asperity_study::uncertainty::UncertaintyError;
 
 use super::cli::Pack;
 use super::files::{self, FileError, check_outputs, named, print, write};
 use super::terminal::{LabelledLine, labelled, lines, note, warn};
+use quantile::Sample;
 
 /// `asperity pack` failed.
 #[derive(Debug, thiserror::Error)]
@@ -24,6 +28,16 @@ pub(crate) enum PackError {
     Table(#[from] TableError),
     #[error(transparent)]
     Check(#[from] CheckError),
+    #[error("expected a scene, --table or --patch; a scene beside one of these only with --quantile")]
+    SceneBeside,
+    #[error("--quantile: expected --table or --patch, whose table has the samples")]
+    NoTable,
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
+    #[error("{}: {problem}", .path.display())]
+    Swept { path: PathBuf, problem: SweepTableError },
+    #[error(transparent)]
+    Uncertainty(#[from] UncertaintyError),
     #[error("{source}{}", way_to_build(.source))]
     Pack {
         #[from]
@@ -43,11 +57,15 @@ fn way_to_build(error: &pack::PackError) -> &'static str {
 
 /// Writes the FMU; prints what its libraries need and, of an element or a patch, its table and errors.
 pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
-    let (definition, path) = load(command)?;
+    check_inputs(command)?;
+    let sample = command.quantile.map(|share| Sample::new(command, share)).transpose()?;
+    let (table, patch) =
+        sample.as_ref().map_or((&command.table, &command.patch), |sample| (&sample.table, &sample.patch));
+    let (definition, path) = load(command, table.as_ref(), patch.as_ref())?;
     let libraries = libraries(command);
     let mut taken = definition.sources(&path);
     taken.extend(libraries.iter().map(|library| library.path().to_owned()));
-    taken.extend(command.check.clone());
+    taken.extend([&command.check, &command.scene, &command.table, &command.patch].into_iter().flatten().cloned());
     check_outputs([&command.output], taken)?;
     let libraries = Library::read_all(&libraries)?;
     no_start(&definition).iter().for_each(|warning| warn(warning));
@@ -72,6 +90,16 @@ pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
     Ok(())
 }
 
+/// A scene beside a table or a patch is there for `--quantile`, which needs one of them.
+fn check_inputs(command: &Pack) -> Result<(), PackError> {
+    let has_table = command.table.is_some() || command.patch.is_some();
+    match (command.scene.is_some() && has_table, command.quantile.is_some()) {
+        (true, false) => Err(PackError::SceneBeside),
+        (false, true) => Err(PackError::NoTable),
+        _ => Ok(()),
+    }
+}
+
 /// The libraries that `--library` names; by default the one beside this program.
 fn libraries(command: &Pack) -> Vec<LibraryFile> {
     if command.library.is_empty() {
@@ -81,8 +109,8 @@ fn libraries(command: &Pack) -> Vec<LibraryFile> {
 }
 
 /// What is packed, and the file that it is read from.
-fn load(command: &Pack) -> Result<(Definition, PathBuf), PackError> {
-    match (&command.patch, &command.table) {
+fn load(command: &Pack, table: Option<&PathBuf>, patch: Option<&PathBuf>) -> Result<(Definition, PathBuf), PackError> {
+    match (patch, table) {
         (Some(path), _) => {
             let patch = files::load_patch(path, &[])?;
             let warnings = not_converged(&patch.table().basis).into_iter().chain(missing_backing(&patch));

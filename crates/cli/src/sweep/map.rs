@@ -88,9 +88,13 @@ impl Maps {
         };
         let basis = &table.header.basis;
         let is_open = basis.convergence.is_some() && !basis.is_converged();
+        let open = is_open.then_some("not converged: see the table");
+        let own =
+            table.header.samples.is_some().then_some("the scene's own numbers: bands of the samples are in the table");
+        let remark: Vec<&str> = open.into_iter().chain(own).collect();
         FieldGrid {
             title: table.header.scene.clone(),
-            remark: if is_open { "not converged: see the table".to_owned() } else { String::new() },
+            remark: remark.join("; "),
             quantity: "friction",
             ridge: format!("largest over the {}", x.quantity),
             panels: self.thirds(&table.header.grid).into_iter().enumerate().map(panel).collect(),

@@ -3,6 +3,7 @@
 mod map;
 mod plot;
 mod printed;
+mod samples;
 mod table_file;
 mod ways;
 
@@ -15,6 +16,7 @@ use asperity_study::progress::Stop;
 use asperity_study::sweep::{
     Loads, NotAStudy, SlidingOptions, SweepError, SweepOptions, SweepPlan, SweepTable, verdict,
 };
+use asperity_study::uncertainty::UncertaintyError;
 
 use super::cli::{Sliding, Sweep};
 use super::draft::TablePlace;
@@ -24,7 +26,7 @@ use super::files::{
 };
 use super::flags::with_flags;
 use super::interrupt::Farewell;
-use super::terminal::{self, lines, warn};
+use super::terminal::{self, LabelledLine, lines, warn};
 use crate::cli::sweep_values::Values;
 use map::{MapError, Maps};
 use table_file::{TableFile, TableFileError};
@@ -36,6 +38,10 @@ pub(crate) enum SweepCommandError {
     Sweep(#[from] SweepError),
     #[error(transparent)]
     File(#[from] FileError),
+    #[error(transparent)]
+    Read(#[from] asperity_study::files::ReadError),
+    #[error(transparent)]
+    Uncertainty(#[from] UncertaintyError),
     #[error(transparent)]
     TableFile(#[from] TableFileError),
     #[error(transparent)]
@@ -70,7 +76,7 @@ fn merge(command: &Sweep, output: &PathBuf) -> Result<(), SweepCommandError> {
     let table = table_file::merge(&command.merge, &place.path, command.force)?;
     place.finish()?;
     let maps = maps(command, &table.header, output)?;
-    finish(output, &table, &Pictures { friction: picture.as_deref(), maps, master: None })
+    finish(output, &table, &Pictures { friction: picture.as_deref(), maps, master: None }, (&[], &[]))
 }
 
 fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCommandError> {
@@ -82,7 +88,8 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
     let picture = picture(command, &output);
     let study = study_file(command.converged.as_ref(), path);
     let taken = scene.sources(path).into_iter().chain(study.clone()).chain(command.data.clone()).collect();
-    check_outputs([&output].into_iter().chain(&picture).chain(&command.master), taken)?;
+    let beside = samples::files(command, &output);
+    check_outputs([&output].into_iter().chain(&picture).chain(&command.master).chain(&beside), taken)?;
     let master = match &command.master {
         Some(path) => Some((path.as_path(), wlf(&scene).ok_or(SweepCommandError::NoMaster)?)),
         None => None,
@@ -91,7 +98,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
         return over_ways(command, &scene, &options(command, speeds)?, (&ways.0, &output, picture.as_deref()));
     }
     let convergence = study_verdict(study.as_deref(), &scene.name)?;
-    let plan = SweepPlan::new(scene, &options(command, speeds)?, convergence)?;
+    let plan = samples::plan(command, path, scene, (&options(command, speeds)?, convergence))?;
     plan.warning().iter().for_each(|warning| warn(&with_flags(warning)));
     let maps = maps(command, plan.header(), &output)?;
     let place = TablePlace::new(&output)?;
@@ -102,11 +109,12 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
     table.sort();
     let found = plan.warnings(table.rows.iter().map(|stored| &stored.row));
     found.iter().for_each(|warning| warn(&with_flags(warning)));
-    table.find_low_end(&output);
+    table.conclude(&output);
     write(&place.path, table.text())?;
     drop(file);
     place.finish()?;
-    finish(&output, &table, &Pictures { friction: picture.as_deref(), maps, master })
+    let said = samples::write(command, &plan, &table, &beside)?;
+    finish(&output, &table, &Pictures { friction: picture.as_deref(), maps, master }, (&said, &beside))
 }
 
 /// Sweeps over several ways.
@@ -217,7 +225,12 @@ struct Pictures<'a> {
 }
 
 /// Draws the pictures; prints friction and what lies at the low end; counts the points that are not steady.
-fn finish(output: &PathBuf, table: &SweepTable, pictures: &Pictures<'_>) -> Result<(), SweepCommandError> {
+fn finish(
+    output: &PathBuf,
+    table: &SweepTable,
+    pictures: &Pictures<'_>,
+    (said, beside): (&[LabelledLine], &[PathBuf]),
+) -> Result<(), SweepCommandError> {
     let Pictures { friction, maps, master } = pictures;
     friction.map_or(Ok(()), |path| match maps {
         Some(maps) => maps.picture(table).write(path),
@@ -227,7 +240,9 @@ fn finish(output: &PathBuf, table: &SweepTable, pictures: &Pictures<'_>) -> Resu
     let mut summary = printed::lines(table);
     summary.extend(table.header.low_end.iter().map(|low_end| ("Low end", low_end.clone())));
     summary.extend(maps.iter().filter_map(|_| Some(("No result", Maps::empty(table)?))));
-    let files = [output.as_path()].into_iter().chain(*friction).chain(master.map(|(path, _)| path)).map(named);
+    summary.extend_from_slice(said);
+    let files = [output.as_path()].into_iter().chain(*friction).chain(master.map(|(path, _)| path));
+    let files = files.chain(beside.iter().map(PathBuf::as_path)).map(named);
     summary.push(("Written", files.collect::<Vec<_>>().join(", ")));
     print_beside([output], &lines(&summary))?;
     let (failed, total) = (table.rows.iter().filter(|stored| !stored.row.is_result()).count(), table.rows.len());

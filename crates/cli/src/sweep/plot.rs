@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use asperity::element::{OperatingPoint, Quantity, TableRow};
+use asperity::element::{OperatingPoint, Quantity, Sampled, TableRow};
 use asperity::scene::Wlf;
 
 use crate::figure::{Curve, Figure as _, Panel, PanelRow, SideBySide, Stroke};
@@ -105,6 +105,18 @@ fn plot(
     SideBySide { title: table.header.scene.clone(), x_title, rows }
 }
 
+/// The name of what the scene's own numbers give, beside the median of samples.
+const OWN: &str = "the scene's own numbers";
+
+/// What of the samples stands for a quantity.
+fn sampled(quantity: Quantity) -> Option<Sampled> {
+    match quantity {
+        Quantity::Friction => Some(Sampled::Friction),
+        Quantity::Hysteresis => Some(Sampled::Hysteresis),
+        _ => None,
+    }
+}
+
 /// Whether a part of the friction is not 0 everywhere.
 fn is_there(table: &SweepTable, part: Quantity) -> bool {
     table.rows.iter().any(|stored| stored.row.value(part).is_some_and(|value| value != 0.0))
@@ -142,16 +154,23 @@ struct Points<X> {
 impl<X: Fn(&OperatingPoint) -> f64> Points<X> {
     /// The curves of a quantity, and dashed those of a part of it.
     fn panel(&self, (title, groups): &GroupedPanel<'_>, quantity: Quantity, part: Option<(&str, Quantity)>) -> Panel {
+        let bands = groups.iter().enumerate().flat_map(|(look, Group { rows, .. })| self.bands(quantity, rows, look));
         let curves = groups.iter().enumerate().flat_map(|(look, Group { name, rows })| {
+            let median = self.median(quantity, rows, (name, look));
             let steady = self.points(quantity, rows, TableRow::is_result);
             let (stroke, hollow) = match self.hollow {
                 Hollow::NotSteady => (Stroke::Marked, self.points(quantity, rows, |row| !row.is_result())),
                 Hollow::NotConverged => (Stroke::Line, self.points(quantity, rows, |_| true)),
             };
-            let whole = Curve { name: name.clone(), look, stroke, points: steady };
+            let (name, stroke) = match rows.iter().any(|row| row.samples.is_some()) {
+                true => (OWN.to_owned(), Stroke::Dashed),
+                false => (name.clone(), stroke),
+            };
+            let whole = Curve { name, look, stroke, points: steady };
             let part = part.map(|(name, part)| {
                 let points = self.points(part, rows, TableRow::is_result);
-                Curve { name: name.into(), look, stroke: Stroke::Dashed, points }
+                let stroke = if median.is_some() { Stroke::Dotted } else { Stroke::Dashed };
+                Curve { name: name.into(), look, stroke, points }
             });
             let hollow = (!hollow.is_empty()).then(|| Curve {
                 name: self.hollow.name().into(),
@@ -159,9 +178,33 @@ impl<X: Fn(&OperatingPoint) -> f64> Points<X> {
                 stroke: Stroke::Hollow,
                 points: hollow,
             });
-            std::iter::once(whole).chain(part).chain(hollow)
+            median.into_iter().chain([whole]).chain(part).chain(hollow)
         });
-        Panel { title: title.clone(), curves: curves.collect() }
+        Panel { title: title.clone(), curves: bands.chain(curves).collect() }
+    }
+
+    /// The bands of the samples in which 90 and 50 % of them lie; none of a table without.
+    fn bands(&self, quantity: Quantity, rows: &[&TableRow], look: usize) -> Vec<Curve> {
+        let Some(sampled) = sampled(quantity) else { return Vec::new() };
+        let bands =
+            [("90 % of the samples", 0.05, Stroke::WideBand), ("50 % of the samples", 0.25, Stroke::NarrowBand)];
+        let band = |(name, low, stroke): (&str, f64, Stroke)| {
+            let mut points = self.quantile(sampled, low, rows);
+            points.extend(self.quantile(sampled, 1.0 - low, rows).into_iter().rev());
+            (points.len() > 2).then(|| Curve { name: name.into(), look, stroke, points })
+        };
+        bands.into_iter().filter_map(band).collect()
+    }
+
+    /// The median of the samples, with the name and the look of its group; `None` of a table without.
+    fn median(&self, quantity: Quantity, rows: &[&TableRow], (name, look): (&str, usize)) -> Option<Curve> {
+        let points = self.quantile(sampled(quantity)?, 0.5, rows);
+        (!points.is_empty()).then(|| Curve { name: name.to_owned(), look, stroke: Stroke::Marked, points })
+    }
+
+    fn quantile(&self, sampled: Sampled, probability: f64, rows: &[&TableRow]) -> Vec<(f64, f64)> {
+        let of = |row: &&TableRow| row.samples.as_ref()?.quantile(sampled, probability);
+        rows.iter().filter_map(|row| Some(((self.x)(&row.point), of(row)?))).collect()
     }
 
     fn points(&self, quantity: Quantity, rows: &[&TableRow], is_drawn: impl Fn(&TableRow) -> bool) -> Vec<(f64, f64)> {
@@ -195,6 +238,8 @@ mod tests {
             basis: Basis { convergence: convergence.map(String::from), ..Basis::default() },
             grid,
             low_end: None,
+            samples: None,
+            ranking: Vec::new(),
         };
         SweepTable::new(header, rows)
     }

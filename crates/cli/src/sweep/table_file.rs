@@ -79,7 +79,7 @@ pub(super) fn merge(paths: &[PathBuf], output: &Path, replace: bool) -> Result<S
         }
     }
     let mut table = SweepTable { header, rows };
-    table.find_low_end(output);
+    table.conclude(output);
     write(output, table.text())?;
     if missing.is_empty() {
         return Ok(table);

@@ -13,8 +13,8 @@ use super::weights::Weights;
 use crate::files::{name_of, parse_scene, text};
 use crate::progress::{Stop, Stopped};
 use crate::settings::Setting;
-use crate::sweep::{SweepOptions, SweepPlan, SweepTable};
-use crate::uncertainty::{Drawn, Refused, SampleOptions, Sampler, UncertainScene};
+use crate::sweep::{SweepError, SweepOptions, SweepPlan, SweepTable};
+use crate::uncertainty::{Drawn, Refused, SampleOptions, Sampler, UncertainScene, UncertaintyError};
 
 /// A scene to rank.
 #[derive(Clone, Debug)]
@@ -169,32 +169,39 @@ impl RankPlan {
             let of_one = |(drawn, scene): (Drawn, &&UncertainScene)| {
                 let found = self.sample(scene.scene(), drawn.scene, stop);
                 done();
-                found
+                match found {
+                    // Drawn anew, as it has not the temperatures of the points.
+                    Err(SweepError::Temperature(error)) => Err(Refused::from(error)),
+                    found => Ok(found),
+                }
             };
-            drawn.into_iter().zip(&uncertain).map(of_one).collect::<Result<Frictions, Refused>>()
+            drawn.into_iter().zip(&uncertain).map(of_one).collect::<Result<Vec<_>, _>>()
         });
         stopped(stop)?;
         let draws = draws?;
-        let whole = |drawn: Frictions| {
+        let whole = |(sample, drawn): (usize, Vec<Result<Vec<Option<f64>>, SweepError>>)| {
+            let failed =
+                |error: SweepError| UncertaintyError::Sample { sample: sample + 1, problem: error.to_string() };
+            let drawn = drawn.into_iter().collect::<Result<Frictions, _>>().map_err(failed)?;
             let mut drawn = drawn.into_iter();
             let of = |(entry, own): (&Entry, &Vec<Option<f64>>)| match entry.uncertain {
                 Some(_) => drawn.next().unwrap_or_default(),
                 None => own.clone(),
             };
-            self.entries.iter().zip(own).map(of).collect()
+            Ok(self.entries.iter().zip(own).map(of).collect())
         };
-        Ok((draws.made.into_iter().map(whole).collect(), draws.redrawn))
+        let samples = draws.made.into_iter().enumerate().map(whole).collect::<Result<_, RankError>>()?;
+        Ok((samples, draws.redrawn))
     }
 
     /// Friction of a scene that was `drawn` about another one.
-    fn sample(&self, scene: &Scene, drawn: Scene, stop: &Stop) -> Result<Vec<Option<f64>>, Refused> {
+    fn sample(&self, scene: &Scene, drawn: Scene, stop: &Stop) -> Result<Vec<Option<f64>>, SweepError> {
         let shift = temperature(&drawn).zip(temperature(scene)).map_or(0.0, |(drawn, own)| drawn - own);
         // How far off the temperature of the scene may be that of each point may be, too.
         let temperatures = self.options.temperatures.as_ref();
         let temperatures = temperatures.map(|all| all.iter().map(|kelvin| kelvin + shift).collect());
         let options = SweepOptions { temperatures, ..self.options.clone() };
-        let refused = |error: crate::sweep::SweepError| Refused { key: "what".to_owned(), problem: error.to_string() };
-        let plan = SweepPlan::new(drawn, &options, None).map_err(refused)?;
+        let plan = SweepPlan::new(drawn, &options, None)?;
         // Where it is stopped nobody wants the ranking.
         Ok(swept(&plan, stop).map(|table| frictions(&table)).unwrap_or_else(|_| vec![None; plan.header().grid.count()]))
     }

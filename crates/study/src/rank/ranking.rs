@@ -1,6 +1,6 @@
 //! The ranking, from friction of all scenes at all points, their own and that of the samples.
 
-use asperity::element::{Load, OperatingPoint, some_of};
+use asperity::element::{Load, OperatingPoint, quantile, some_of};
 
 use super::error::RankError;
 
@@ -233,16 +233,12 @@ fn pairs(samples: &[Vec<f64>], scenes: usize) -> Vec<Pair> {
     (0..scenes).flat_map(|one| (one + 1..scenes).map(move |other| (one, other))).map(|(a, b)| pair(a, b)).collect()
 }
 
-/// The quantiles of some values, linear between these; `None` of fewer than two.
+/// The quantiles of some values; `None` of fewer than two.
 fn band(values: impl Iterator<Item = f64>) -> Option<Band> {
     let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);
-    let last = values.len().checked_sub(1).filter(|last| *last > 0)?;
-    Some(QUANTILES.map(|quantile| {
-        let place = quantile * last as f64;
-        let (below, part) = (place.floor() as usize, place.fract());
-        values[below] + part * (values[(below + 1).min(last)] - values[below])
-    }))
+    let band = QUANTILES.map(|probability| quantile(&values, probability).unwrap_or_default());
+    (values.len() > 1).then_some(band)
 }
 
 #[cfg(test)]
@@ -316,10 +312,11 @@ mod tests {
         assert!(matches!(ranked(&points(&[1.0, 1.0]), &own, &[]), Err(RankError::NoPoint(_))));
     }
 
+    /// Number 8 of Hyndman and Fan, as a table of a sweep has them.
     #[test]
-    fn a_band_is_linear_between_the_values() {
-        assert_eq!(band((0..=100).rev().map(f64::from)), Some([5.0, 25.0, 50.0, 75.0, 95.0]));
-        assert_eq!(band([1.0, 2.0].into_iter()), Some([1.05, 1.25, 1.5, 1.75, 1.95]));
+    fn a_band_has_the_quantiles_of_a_table() {
+        assert_eq!(band([2.0, 1.0].into_iter()), Some([1.0, 1.0, 1.5, 2.0, 2.0]));
+        assert_eq!(band((0..=100).rev().map(f64::from)).map(|band| band[2]), Some(50.0));
         assert_eq!(band([1.0].into_iter()), None);
     }
 }

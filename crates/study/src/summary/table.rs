@@ -18,7 +18,12 @@ pub fn table_rows(table: &Table) -> Vec<LabelledLine> {
         rows.push(("Area", format!("{area:e} m²")));
     }
     let basis = &table.basis;
-    let stated = [("Foundation", &basis.foundation), ("Fine waves", &basis.fine), ("Converged", &basis.convergence)];
+    let stated = [
+        ("Foundation", &basis.foundation),
+        ("Fine waves", &basis.fine),
+        ("Sample", &basis.sample),
+        ("Converged", &basis.convergence),
+    ];
     rows.extend(stated.into_iter().filter_map(|(label, text)| Some((label, text.clone()?))));
     rows.push(("w = 0", format!("a separation of {:e} m", table.rest_separation)));
     let mut errors: Vec<_> = left_out(table).iter().filter_map(|axis| errors(axis, table.load)).collect();

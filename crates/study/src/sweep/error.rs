@@ -6,6 +6,7 @@ use asperity::scene::ParameterError;
 use super::method::MethodError;
 use super::never_steady::NeverSteady;
 use super::not_possible::NotPossible;
+use crate::uncertainty::UncertaintyError;
 
 /// The scene does not go with what is asked of a sweep.
 #[derive(Debug, thiserror::Error)]
@@ -32,4 +33,12 @@ pub enum SweepError {
     Range(#[from] NotPossible),
     #[error(transparent)]
     Method(#[from] MethodError),
+    #[error(transparent)]
+    Uncertainty(#[from] UncertaintyError),
+    #[error(
+        "the table is of another sweep: its fingerprint is {found}, that of this scene with its samples and speeds {expected}"
+    )]
+    OtherTable { found: String, expected: String },
+    #[error("`quantile`: expected the whole table of a sweep with samples, which ranks them")]
+    NoRanking,
 }

@@ -252,15 +252,32 @@ fn why_layer(scene: &Scene) -> Option<&'static str> {
     }
 }
 
+/// What of the settings of a sweep its points depend on: where they are solved for, the surface.
+pub(super) fn settings(
+    surface: Option<&SurfaceGrid>,
+    sliding: &SlidingOptions,
+    of_layer: impl FnOnce() -> String,
+) -> String {
+    let way = sliding.way.map_or_else(String::new, |way| format!(" after {way:?} m"));
+    match surface {
+        // A scene knows the profile, not the map that it is a line of.
+        Some(surface) if surface.size.ny > 1 => format!("steady on slopes, map {surface:?}{way}"),
+        Some(surface) => format!("steady on slopes, {}x{}{way}", surface.size.nx, surface.size.ny),
+        None => of_layer(),
+    }
+}
+
 impl Method {
     /// What of the settings of a sweep its points depend on.
     pub fn settings(&self, sliding: &SlidingOptions, of_layer: impl FnOnce() -> String) -> String {
-        let way = sliding.way.map_or_else(String::new, |way| format!(" after {way:?} m"));
+        settings(self.surface(), sliding, of_layer)
+    }
+
+    /// The surface that steady sliding is solved on; `None` where a layer slides.
+    fn surface(&self) -> Option<&SurfaceGrid> {
         match self {
-            // A scene knows the profile, not the map that it is a line of.
-            Self::Steady(surface) if surface.size.ny > 1 => format!("steady on slopes, map {surface:?}{way}"),
-            Self::Steady(surface) => format!("steady on slopes, {}x{}{way}", surface.size.nx, surface.size.ny),
-            Self::Layer => of_layer(),
+            Self::Steady(surface) => Some(surface),
+            Self::Layer => None,
         }
     }
 

@@ -1,57 +1,29 @@
-//! What a sweep computes: the points of a scene over speed, load and temperature, and the row of each.
+//! What a sweep computes: the row of each of its points, with samples of what is not known of the scene or without.
 
 use std::ops::ControlFlow;
+use std::sync::{Mutex, PoisonError};
 
-use asperity::element::{Basis, Load, OperatingPoint, SweepGrid, TableHeader, TableRow};
-use asperity::math::check_memory;
-use asperity::model::{EvenSliding, Model};
-use asperity::scene::{FineRoughness, Scene, Wlf};
+use asperity::element::{OperatingPoint, Sampled, TableHeader, TableRow};
+use asperity::scene::Scene;
 use asperity::simulation::Interrupt;
 use rayon::prelude::*;
 
 use super::error::SweepError;
-use super::load_search::separation_at_rest;
-use super::method::{Method, SlidingOptions, in_header};
-use super::not_possible::NotPossible;
-use super::point;
-use super::scenes::{relevant, scene_at};
-use super::search::StopBounds;
-use super::solved::SolvedPoints;
-use super::table;
-use crate::implausible::{FoundFriction, implausible};
+use super::matters::{Matter, Matters};
+use super::ranking::{means, number_at};
+use super::samples::{Sample, Samples};
+use super::scene_plan::{ScenePlan, SweepOptions};
+use super::table::{self, SweepTable};
+use crate::csv;
 use crate::progress::Stop;
-
-/// Mean loads to sweep over, rising.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Loads {
-    /// Mean pressures, Pa; of a scene in the material form.
-    Pressures(Vec<f64>),
-    /// Mean normal forces F_z of the whole layer, N.
-    Forces(Vec<f64>),
-}
-
-/// What a sweep goes over, and how its points are found.
-#[derive(Clone, Debug)]
-pub struct SweepOptions {
-    /// Speeds, m/s, rising.
-    pub speeds: Vec<f64>,
-    /// Loads.
-    pub loads: Loads,
-    /// Temperatures, K, rising; `None`: the scene's own.
-    pub temperatures: Option<Vec<f64>>,
-    /// How steady sliding is found.
-    pub sliding: SlidingOptions,
-}
+use crate::uncertainty::{Group, SampleOptions, UncertainScene, indices};
 
 /// A sweep of a scene, its points not found yet.
 #[derive(Debug)]
 pub struct SweepPlan {
-    scene: Scene,
+    own: ScenePlan,
     header: TableHeader,
-    bounds: StopBounds,
-    /// Where steady sliding is solved for; else the layer slides.
-    solved: Option<SolvedPoints>,
-    warning: Option<String>,
+    samples: Option<Samples>,
 }
 
 impl SweepPlan {
@@ -60,41 +32,27 @@ impl SweepPlan {
     /// # Errors
     /// Where the scene does not go with the options, or could never slide steadily.
     pub fn new(scene: Scene, options: &SweepOptions, convergence: Option<String>) -> Result<Self, SweepError> {
-        if scene.carrier.x.is_some() {
-            return Err(SweepError::BodyAlongX);
-        }
-        check(options)?;
-        let (load, loads) = loads(&options.loads, &scene)?;
-        let (method, of_method) = options.sliding.choose(&scene)?;
-        let pressed = if matches!(method, Method::Layer) { hard_pressure(&scene, load, &loads) } else { None };
-        let cold = options.temperatures.as_deref().and_then(Wlf::meant_in_celsius);
-        let warning = pressed.or_else(|| cold.map(|cold| format!("`temperatures`: {cold}")));
-        let temperatures = temperatures(options.temperatures.as_deref(), &scene)?;
-        let grid = SweepGrid { speeds: options.speeds.clone(), loads, temperatures };
-        method.check(&scene)?;
-        method.check_threads(&scene, grid.points().count())?;
-        let scene = relevant(scene);
-        let bounds = options.sliding.bounds();
-        let header = TableHeader {
-            fingerprint: fingerprint(&scene, &options.sliding, load, &method)?,
-            scene: scene.name.clone(),
-            load,
-            rest_separation: separation_at_rest(&scene),
-            basis: Basis {
-                method: Some(of_method),
-                way: options.sliding.way.map(in_header),
-                ..basis(&scene, convergence)
-            },
-            grid,
-            low_end: None,
-        };
-        let solved = match method {
-            Method::Steady(surface) => {
-                Some(SolvedPoints::new(&scene, &header.grid.temperatures, surface, options.sliding.way)?)
-            }
-            Method::Layer => None,
-        };
-        Ok(Self { scene, header, bounds, solved, warning })
+        let own = ScenePlan::new(scene, options, convergence)?;
+        Ok(Self { header: own.header.clone(), own, samples: None })
+    }
+
+    /// As [`new`](Self::new), with samples of what is not known of the scene at each point.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new), and where the samples cannot be drawn.
+    pub fn with_samples(
+        uncertain: &UncertainScene,
+        options: &SweepOptions,
+        convergence: Option<String>,
+        samples: SampleOptions,
+    ) -> Result<Self, SweepError> {
+        let scene = uncertain.scene();
+        let Self { own, mut header, .. } = Self::new(scene.clone(), options, convergence)?;
+        let settings = format!("{} {samples:?} {:?}", header.fingerprint, scene.uncertainty);
+        let samples = Samples::new(uncertain, &own, options, samples)?;
+        header.fingerprint = table::fingerprint_of(&settings);
+        header.samples = Some(samples.header());
+        Ok(Self { own, header, samples: Some(samples) })
     }
 
     /// The header of the table, with all points in its grid.
@@ -105,18 +63,15 @@ impl SweepPlan {
     /// What to look at before the points are found: a load that presses the layer harder than its links stand for, or
     /// temperatures that are probably meant in °C.
     pub fn warning(&self) -> Option<&str> {
-        self.warning.as_deref()
+        self.own.warning.as_deref()
     }
 
-    /// The row of a point; `interrupt` may stop a layer as it slides.
+    /// The row of a point; `interrupt` may stop it.
     fn row(&self, point: &OperatingPoint, interrupt: &Interrupt) -> TableRow {
-        match &self.solved {
-            Some(solved) => solved.row(*point, &self.header),
-            None => {
-                let scene = scene_at(&self.scene, point);
-                point::row(&scene, *point, &self.header, self.bounds, interrupt)
-            }
-        }
+        let samples = self.samples.as_ref().map(|samples| samples.values(point, interrupt));
+        let mut row = self.own.row(point, interrupt);
+        row.samples = samples;
+        row
     }
 
     /// Finds points on all cores, in any order, and hands each row to `found`; ends where that breaks off or `stop` says
@@ -127,110 +82,147 @@ impl SweepPlan {
         stop: &Stop,
         found: impl Fn(TableRow) -> ControlFlow<B> + Sync,
     ) -> ControlFlow<B> {
-        let interrupt = stop.interrupt();
-        let find = |point: &OperatingPoint| {
-            stop.go_on().continue_value()?;
-            let row = self.row(point, &interrupt);
-            // A layer that was stopped as it slid has found nothing.
-            stop.go_on().continue_value()?;
-            Some(row)
-        };
-        points.par_iter().with_max_len(1).try_for_each(|point| match find(point) {
-            Some(row) => stop.heed(found(row)),
-            None => ControlFlow::Continue(()),
-        })
+        find(points, stop, |point, interrupt| self.row(point, interrupt), found)
     }
 
-    /// What to look at in the rows: few points of the surface in contact, and friction that no rubber has.
+    /// What to look at in the rows: few points of the surface in contact, friction that no rubber has, samples without a
+    /// result.
     pub fn warnings<'a>(&self, rows: impl Iterator<Item = &'a TableRow> + Clone) -> Vec<String> {
-        let few = self.solved.as_ref().and_then(|solved| solved.few_points(rows.clone(), &self.header));
-        let found = rows.clone().filter_map(|row| FoundFriction::of_row(row, self.header.load));
-        let uneven = self.uneven(rows.clone());
-        few.into_iter().chain(implausible(&self.scene, found)).chain(uneven).collect()
+        let mut warnings = self.own.warnings(rows.clone());
+        warnings.extend(self.without_result(rows));
+        warnings
     }
 
-    /// The warning where a layer does not slide evenly at some of the rows.
-    fn uneven<'a>(&self, rows: impl Iterator<Item = &'a TableRow>) -> Option<String> {
-        if self.solved.is_some() || !self.scene.friction_depends_on_speed() {
-            return None;
-        }
-        let masses = self.scene.layer.masses as f64;
-        let at = |row: &TableRow| {
-            let (scene, point) = (scene_at(&self.scene, &row.point), &row.point);
-            let whole = match self.header.load {
-                Load::Pressure { area } => point.load * area,
-                Load::Force => point.load,
-            };
-            EvenSliding::at(&scene, &Model::new(&scene), point.speed, whole / masses)
+    /// The warning where many samples have no result at some of the rows.
+    fn without_result<'a>(&self, rows: impl Iterator<Item = &'a TableRow>) -> Option<String> {
+        /// A smaller part of the samples hardly moves a quantile.
+        const MANY: f64 = 0.05;
+        let missing = |row: &'a TableRow| {
+            let samples = row.samples.as_ref()?;
+            let count = self.header.samples?.count;
+            let missing = count - samples.results();
+            (missing as f64 > MANY * count as f64).then_some((row, missing))
         };
-        EvenSliding::warning_among(&self.scene, rows.map(at))
+        let found: Vec<_> = rows.filter_map(missing).collect();
+        let (row, missing) = found.iter().max_by_key(|(_, missing)| *missing)?;
+        Some(format!(
+            "more than 5 % of the samples have no result at {} of the points of the table and are left out there, {missing} at {}",
+            found.len(),
+            row.point.describe(self.header.load)
+        ))
     }
-}
 
-/// Checks that there are such states of sliding, and no more of them than the memory holds rows.
-fn check(options: &SweepOptions) -> Result<(), SweepError> {
-    /// Of a row.
-    const BYTES: u64 = 1024;
-    NotPossible::check("speeds", "m/s", &options.speeds)?;
-    let loads = match &options.loads {
-        Loads::Pressures(pressures) => NotPossible::check("pressures", "Pa", pressures).map(|()| pressures.len()),
-        Loads::Forces(forces) => NotPossible::check("forces", "N", forces).map(|()| forces.len()),
-    }?;
-    let temperatures = options.temperatures.as_deref().unwrap_or(&[0.0]).len();
-    let points = [options.speeds.len(), loads, temperatures].map(|count| count as u64);
-    let points = points.into_iter().fold(1, u64::saturating_mul);
-    Ok(check_memory(points.saturating_mul(BYTES), || format!("{points} points of the sweep"))?)
-}
+    /// What explains friction's variance over the samples of these rows, at each and in the mean over all; `None` without
+    /// samples.
+    pub fn matters(&self, rows: &[&TableRow]) -> Option<Matters> {
+        let Samples { groups, all, .. } = self.samples.as_ref()?;
+        let normals: Vec<&[f64]> = all.iter().map(|sample| sample.normals.as_slice()).collect();
+        let (groups, seeds): (Vec<Group>, Vec<Group>) =
+            groups.iter().cloned().partition(|group| !group.axes.is_empty());
+        let at = |row: &&TableRow| {
+            let friction = row.samples.as_ref()?.of(Sampled::Friction);
+            Some(Matter { point: row.point, indices: indices(&groups, &normals, friction)? })
+        };
+        let points = rows.iter().filter_map(at).collect();
+        let mean = indices(&groups, &normals, &means(rows));
+        let names = groups.into_iter().map(|group| group.name).collect();
+        Some(Matters { groups: names, rest: Matters::rest(!seeds.is_empty()), points, mean })
+    }
 
-/// What the table rests on, for those who use it.
-fn basis(scene: &Scene, convergence: Option<String>) -> Basis {
-    let foundation = scene.layer.foundation.map(|kind| kind.word().to_owned());
-    let fine = scene.fine.as_ref().map(FineRoughness::describe);
-    let held = scene.carrier.z.map(|body| format!("load, on a carrier of {} kg", body.mass));
-    Basis { foundation, fine, convergence, held, ..Basis::default() }
-}
+    /// What was drawn, by names: the value of each sample; none without samples.
+    pub fn drawn(&self) -> Vec<(String, Vec<f64>)> {
+        let all = self.samples.as_ref().map_or(&[][..], |samples| &samples.all);
+        let names = all.first().into_iter().flat_map(|sample| &sample.values).map(|(name, _)| name.clone());
+        let values = |at: usize| all.iter().map(|sample| sample.values[at].1).collect();
+        names.enumerate().map(|(at, name)| (name, values(at))).collect()
+    }
 
-fn loads(loads: &Loads, scene: &Scene) -> Result<(Load, Vec<f64>), SweepError> {
-    match loads {
-        Loads::Forces(forces) => Ok((Load::Force, forces.clone())),
-        Loads::Pressures(pressures) => {
-            let area = scene.layer.area().ok_or(SweepError::NoArea)?;
-            Ok((Load::Pressure { area }, pressures.clone()))
+    /// All samples of these rows as a table of text, with what was drawn for each; empty without samples.
+    pub fn samples_text(&self, rows: &[&TableRow]) -> String {
+        let Some(Samples { all, .. }) = &self.samples else { return String::new() };
+        let load = self.header.load;
+        let mut head: Vec<String> = ["sample", "speed [m/s]"].map(str::to_owned).to_vec();
+        head.extend([format!("{} [{}]", load.name(), load.unit()), "temperature [K]".into()]);
+        head.extend(Sampled::ALL.map(|sampled| format!("{} [1]", sampled.name())));
+        head.extend(all.first().iter().flat_map(|sample| &sample.values).map(|(name, _)| name.clone()));
+        let text = |value: Option<f64>| value.map(|value| format!("{value:?}")).unwrap_or_default();
+        let line = |(index, sample): (usize, &Sample), row: &TableRow| {
+            let point = [Some(row.point.speed), Some(row.point.load), row.point.temperature].map(text);
+            let of = |sampled| text(row.samples.as_ref().and_then(|samples| *samples.of(sampled).get(index)?));
+            let found = Sampled::ALL.map(of);
+            let drawn = sample.values.iter().map(|(_, value)| text(Some(*value)));
+            std::iter::once((index + 1).to_string()).chain(point).chain(found).chain(drawn).collect()
+        };
+        let lines = all.iter().enumerate().flat_map(|sample| rows.iter().map(move |row| (sample, *row)));
+        csv::text(head.iter().map(String::as_str), lines.map(|(sample, row)| line(sample, row)))
+    }
+
+    /// The table of the sample that is the quantile of a probability by its mean friction over a `table` of this sweep. Ends
+    /// early, with rows missing, where `stop` says so.
+    ///
+    /// # Errors
+    /// Where the table is of another sweep, or not whole.
+    pub fn quantile(&self, table: &SweepTable, probability: f64, stop: &Stop) -> Result<SweepTable, SweepError> {
+        if table.header.fingerprint != self.header.fingerprint {
+            let (found, expected) = (table.header.fingerprint.clone(), self.header.fingerprint.clone());
+            return Err(SweepError::OtherTable { found, expected });
         }
+        let ranking = table.ranking();
+        let place = number_at(ranking.len(), probability).ok_or(SweepError::NoRanking)?;
+        let Some((samples, number)) = self.samples.as_ref().zip(ranking.get(place)) else {
+            return Err(SweepError::NoRanking);
+        };
+        let sample = samples.all.get(number - 1).ok_or(SweepError::NoRanking)?;
+        let rows = Mutex::new(Vec::new());
+        let points: Vec<OperatingPoint> = self.header.grid.points().collect();
+        let _: ControlFlow<()> = find(
+            &points,
+            stop,
+            |point, interrupt| sample.row(point, interrupt),
+            |row| {
+                rows.lock().unwrap_or_else(PoisonError::into_inner).push(row);
+                ControlFlow::Continue(())
+            },
+        );
+        let mut header = TableHeader {
+            samples: None,
+            load: sample.load(),
+            rest_separation: sample.rest_separation(),
+            ..self.header.clone()
+        };
+        let seed = samples.header().seed;
+        header.fingerprint = table::fingerprint_of(&format!("{} sample {number}", header.fingerprint));
+        header.basis.sample = Some(format!(
+            "{number} of {}, seed {seed}: quantile {probability} of the mean friction over the table",
+            samples.all.len()
+        ));
+        Ok(SweepTable::new(header, rows.into_inner().unwrap_or_else(PoisonError::into_inner)))
+    }
+
+    /// How many points were solved for so far on the scene's own surface.
+    #[cfg(test)]
+    pub(super) fn solutions(&self) -> usize {
+        self.own.solutions()
     }
 }
 
-/// The warning where the largest of `loads` presses the layer harder than its links stand for.
-fn hard_pressure(scene: &Scene, load: Load, loads: &[f64]) -> Option<String> {
-    let largest = loads.iter().copied().fold(0.0, f64::max);
-    match load {
-        Load::Pressure { .. } => scene.hard_pressure("the largest of `pressures`", largest),
-        Load::Force => scene.hard_pressure("the largest of `forces` over the area", largest / scene.layer.area()?),
-    }
-}
-
-/// Those asked for, or the scene's own; none where it has none.
-fn temperatures(asked: Option<&[f64]>, scene: &Scene) -> Result<Vec<f64>, SweepError> {
-    let own = scene.material.as_ref().and_then(|material| material.wlf.as_ref()).map(|wlf| wlf.temperature);
-    let Some(own) = own else {
-        return if asked.is_some() { Err(SweepError::NoWlf) } else { Ok(Vec::new()) };
+/// The rows of points, found on all cores by `row`.
+fn find<B: Send>(
+    points: &[OperatingPoint],
+    stop: &Stop,
+    row: impl Fn(&OperatingPoint, &Interrupt) -> TableRow + Sync,
+    found: impl Fn(TableRow) -> ControlFlow<B> + Sync,
+) -> ControlFlow<B> {
+    let interrupt = stop.interrupt();
+    let find = |point: &OperatingPoint| {
+        stop.go_on().continue_value()?;
+        let row = row(point, &interrupt);
+        // What was stopped on its way has found nothing.
+        stop.go_on().continue_value()?;
+        Some(row)
     };
-    let values = asked.map_or_else(|| vec![own], <[f64]>::to_vec);
-    for &temperature in &values {
-        scene.with_temperature(temperature).check().map_err(SweepError::Temperature)?;
-    }
-    Ok(values)
-}
-
-fn fingerprint(
-    scene: &Scene,
-    sliding: &SlidingOptions,
-    load: Load,
-    method: &Method,
-) -> Result<String, serde_json::Error> {
-    // The same for all temperatures: each point has its own.
-    let scene = scene.with_temperature(0.0);
-    let StopBounds { error, distance } = sliding.bounds();
-    let settings = method.settings(sliding, || format!("{error:?} {distance:?}"));
-    table::fingerprint(&scene, &format!("{} {settings}", load.name()))
+    points.par_iter().with_max_len(1).try_for_each(|point| match find(point) {
+        Some(row) => stop.heed(found(row)),
+        None => ControlFlow::Continue(()),
+    })
 }

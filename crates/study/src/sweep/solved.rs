@@ -1,6 +1,7 @@
 //! Points of a sweep by the solver of steady sliding.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use asperity::element::{Load, OperatingPoint, PointStatus, Quantity, TableHeader, TableRow};
 use asperity::scene::Scene;
@@ -12,15 +13,44 @@ use crate::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 /// The solver of the points of a sweep, on all threads.
 #[derive(Debug)]
 pub struct SolvedPoints {
-    surface: SurfaceGrid,
+    solvers: Arc<Solvers>,
     /// The way that rubber as warm as a point has slid, m.
     way: Option<f64>,
     /// The rubber at each temperature.
     rubbers: Vec<(Option<f64>, SlidingRubber)>,
     /// The area of the layer, m².
     area: f64,
-    /// Solvers that no thread uses now: what they find does not depend on what they found before.
+}
+
+/// Solvers for one surface.
+#[derive(Debug)]
+struct Solvers {
+    surface: SurfaceGrid,
+    /// Those that no thread uses now: what they find does not depend on what they found before.
     idle: Mutex<Vec<SteadySolver>>,
+    /// How many of them are kept.
+    most_idle: AtomicUsize,
+    /// How many points they have solved for.
+    solutions: AtomicUsize,
+}
+
+impl Solvers {
+    fn new(surface: SurfaceGrid) -> Self {
+        let (idle, most_idle, solutions) = (Mutex::new(Vec::new()), usize::MAX.into(), 0.into());
+        Self { surface, idle, most_idle, solutions }
+    }
+
+    fn solve(&self, of: impl FnOnce(&mut SteadySolver) -> SteadySlide) -> SteadySlide {
+        let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut solver = idle.unwrap_or_else(|| SteadySolver::new(self.surface.clone()));
+        let slide = of(&mut solver);
+        self.solutions.fetch_add(1, Ordering::Relaxed);
+        let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
+        if idle.len() < self.most_idle.load(Ordering::Relaxed) {
+            idle.push(solver);
+        }
+        slide
+    }
 }
 
 /// With fewer points in contact friction and area are chance.
@@ -39,7 +69,7 @@ impl SolvedPoints {
             |temperature: Option<f64>| Some((temperature, SlidingRubber::new(&scene.with_temperature(temperature))?));
         let rubbers = temperatures.into_iter().map(rubber).collect::<Option<Vec<_>>>().ok_or(SweepError::NoArea)?;
         let area = scene.layer.area().ok_or(SweepError::NoArea)?;
-        Ok(Self { surface, way, rubbers, area, idle: Mutex::new(Vec::new()) })
+        Ok(Self { solvers: Arc::new(Solvers::new(surface)), way, rubbers, area })
     }
 
     /// The row of a point.
@@ -51,6 +81,27 @@ impl SolvedPoints {
         }
     }
 
+    /// The surface.
+    pub(super) fn surface(&self) -> &SurfaceGrid {
+        &self.solvers.surface
+    }
+
+    /// Of many scenes: takes the solvers of another one with the same surface, or keeps none of its own, whose memory grows
+    /// with the scenes.
+    pub(super) fn share(&mut self, other: &Self) {
+        if self.surface() == other.surface() {
+            self.solvers = Arc::clone(&other.solvers);
+        } else {
+            self.solvers.most_idle.store(0, Ordering::Relaxed);
+        }
+    }
+
+    /// How many points were solved for so far, those of scenes that share the solvers included.
+    #[cfg(test)]
+    pub(super) fn solutions(&self) -> usize {
+        self.solvers.solutions.load(Ordering::Relaxed)
+    }
+
     /// The area of the layer, m².
     pub(super) fn area(&self) -> f64 {
         self.area
@@ -58,7 +109,7 @@ impl SolvedPoints {
 
     /// Root mean square height of the surface, m.
     pub(super) fn rms_height(&self) -> f64 {
-        self.surface.rms_height()
+        self.surface().rms_height()
     }
 
     /// The mean pressure of a point, Pa.
@@ -70,11 +121,7 @@ impl SolvedPoints {
     fn slide(&self, point: &OperatingPoint, pressure: f64) -> Result<SteadySlide, NotSteady> {
         let rubber = self.rubbers.iter().find(|(temperature, _)| *temperature == point.temperature);
         let (_, rubber) = rubber.ok_or(NotSteady::NoTemperature)?;
-        let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        let mut solver = idle.unwrap_or_else(|| SteadySolver::new(self.surface.clone()));
-        let slide = solver.slide_over(rubber, point.speed, pressure, self.way);
-        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(solver);
-        Ok(slide)
+        Ok(self.solvers.solve(|solver| solver.slide_over(rubber, point.speed, pressure, self.way)))
     }
 
     /// Steady sliding as [`slide`](Self::slide) finds it, if its values can be relied on.
@@ -117,7 +164,7 @@ impl SolvedPoints {
         rows: impl Iterator<Item = &'a TableRow>,
         header: &TableHeader,
     ) -> Option<String> {
-        let points = self.surface.size.points() as f64;
+        let points = self.surface().size.points() as f64;
         let in_contact = |row: &TableRow| row.value(Quantity::ContactRatio).map(|ratio| (ratio * points).round());
         let few: Vec<(&TableRow, f64)> =
             rows.filter_map(|row| Some((row, in_contact(row)?))).filter(|(_, count)| *count < FEW).collect();

@@ -6,6 +6,7 @@ use asperity::element::{FORMAT, Table, TableError, TableHeader, TableRow, TableT
 use asperity::scene::Scene;
 
 use super::low_end::low_end;
+use super::ranking::ranking;
 use crate::files::{self, ReadError};
 
 /// A table cannot be read.
@@ -49,7 +50,7 @@ impl SweepTable {
         let rows = rows.into_iter().map(|row| StoredRow { text: row.line(), row });
         let mut table = Self { header, rows: rows.collect() };
         table.sort();
-        table.find_low_end(Path::new("table"));
+        table.conclude(Path::new("table"));
         table
     }
 
@@ -83,9 +84,18 @@ impl SweepTable {
         self.rows.sort_by_key(|stored| grid.index(&stored.row.point));
     }
 
-    /// Says in the header what lies at the low end, where every point is there and steady and there are several loads.
-    pub fn find_low_end(&mut self, path: &Path) {
+    /// Says in the header what follows from all rows: what lies at the low end, where every point is there and steady and
+    /// there are several loads; how samples rank.
+    pub fn conclude(&mut self, path: &Path) {
+        self.header.ranking = self.ranking();
         self.header.low_end = Table::parse(&self.text(), path).ok().map(|table| low_end(&table));
+    }
+
+    /// The samples, from 1, by their mean friction over the table, the lowest first; a sample without a result at a point
+    /// counts there with the median. Empty while points are missing, and without samples.
+    pub fn ranking(&self) -> Vec<usize> {
+        let rows: Vec<&TableRow> = self.rows.iter().map(|stored| &stored.row).collect();
+        if rows.len() == self.header.grid.count() { ranking(&rows) } else { Vec::new() }
     }
 
     /// The table as files have it.
@@ -100,5 +110,10 @@ impl SweepTable {
 /// Where the scene cannot be written as JSON.
 pub fn fingerprint(scene: &Scene, settings: &str) -> Result<String, serde_json::Error> {
     let text = format!("{FORMAT}\n{}\n{settings}\n{}", env!("CARGO_PKG_VERSION"), serde_json::to_string(scene)?);
-    Ok(uuid::Uuid::new_v5(&uuid::Uuid::NAMESPACE_OID, text.as_bytes()).simple().to_string())
+    Ok(fingerprint_of(&text))
+}
+
+/// Tells one text from another.
+pub(super) fn fingerprint_of(text: &str) -> String {
+    uuid::Uuid::new_v5(&uuid::Uuid::NAMESPACE_OID, text.as_bytes()).simple().to_string()
 }
