@@ -34,10 +34,10 @@
 //! | [`material`] | decimals | moduli of a scene's compound, or stiffnesses of its links, over frequency |
 //! | [`surface`] | decimals | numbers, spectra and power laws of a surface; smoothed, split and made periodic |
 //! | [`summary`] | decimals, labelled, runner, steady | what there is in a scene, a patch or a table, in lines |
-//! | [`pack`] | decimals, files, html, labelled, summary | scenes, tables and patches as FMUs |
+//! | [`robustness`] | | a catalogue of perturbations of a scene, and the judge of perturbed runs |
+//! | [`pack`] | decimals, files, html, labelled, robustness, runner, summary | scenes, tables and patches as FMUs |
 //! | [`patch`] | csv, files | the motion that a patch is moved along |
 //! | [`check`] | csv, decimals, labelled, progress, runner, sweep | elements and patches against what was swept |
-//! | [`robustness`] | | a catalogue of perturbations of a scene, and the judge of perturbed runs |
 //! | [`report`] | csv, decimals, progress, robustness, runner | what the runs of a scene cost and how accurate they are |
 
 pub mod calibration;

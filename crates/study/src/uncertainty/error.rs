@@ -1,19 +1,17 @@
 //! Why no samples are drawn.
 
-use super::sampler::{MOST_DIMENSIONS, MOST_SAMPLES};
-
 /// Scenes cannot be drawn.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say what they are")]
 pub enum UncertaintyError {
     #[error("`samples`: expected a scene with a section [uncertainty], which says how far its numbers may be off")]
     Nothing,
-    #[error("`samples`: expected a number from 2 to {MOST_SAMPLES}, found {0}")]
-    Count(usize),
+    #[error("`samples`: expected a number from 2 to {most}, found {found}")]
+    Count { most: usize, found: usize },
     #[error(
-        "[uncertainty] has {0} dimensions, expected up to {MOST_DIMENSIONS}: leave keys out, or give the whole spectrum one factor"
+        "[uncertainty] has {found} dimensions, expected up to {most}: leave keys out, or give the whole spectrum one factor"
     )]
-    Dimensions(usize),
+    Dimensions { most: usize, found: usize },
     #[error(
         "{refused} of {drawn} draws are no scene, expected one of ten at most; the first: {problem}; give {key} less in \
          [uncertainty]"

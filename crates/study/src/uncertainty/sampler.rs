@@ -36,10 +36,10 @@ impl Sampler {
         names.sort();
         names.dedup();
         if !(2..=MOST_SAMPLES).contains(&options.count) {
-            return Err(UncertaintyError::Count(options.count));
+            return Err(UncertaintyError::Count { most: MOST_SAMPLES, found: options.count });
         }
         if names.len() > MOST_DIMENSIONS {
-            return Err(UncertaintyError::Dimensions(names.len()));
+            return Err(UncertaintyError::Dimensions { most: MOST_DIMENSIONS, found: names.len() });
         }
         Ok(Self { names, options })
     }
@@ -119,8 +119,8 @@ mod tests {
             Sampler::new((0..names).map(|i| i.to_string()).collect(), SampleOptions { count, seed: 1 }).map(|_| ())
         };
         assert!(new(256, 1 << 16).is_ok());
-        assert!(matches!(new(257, 64), Err(UncertaintyError::Dimensions(257))));
-        assert!(matches!(new(1, 1), Err(UncertaintyError::Count(1))));
-        assert!(matches!(new(1, (1 << 16) + 1), Err(UncertaintyError::Count(_))));
+        assert!(matches!(new(257, 64), Err(UncertaintyError::Dimensions { found: 257, .. })));
+        assert!(matches!(new(1, 1), Err(UncertaintyError::Count { found: 1, .. })));
+        assert!(matches!(new(1, (1 << 16) + 1), Err(UncertaintyError::Count { .. })));
     }
 }
