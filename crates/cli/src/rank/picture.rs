@@ -24,14 +24,14 @@ fn bands(ranking: &Ranking) -> Bands {
         let ranked = &ranking.scenes[scene];
         let remark = match ranking.samples {
             0 => format!("{:.1}", ranked.index),
-            _ => format!("largest with {}", short(ranked.largest, 2)),
+            _ => format!("largest with probability {}", short(ranked.largest, 2)),
         };
         BandRow { name: ranked.label.clone(), remark, look: scene, value: ranked.index, band: ranked.index_band }
     };
     let first = ranking.scenes.first().map(|scene| scene.label.as_str()).unwrap_or_default();
     let quantity = match ranking.samples {
-        0 => format!("friction in the mean, {first} = 100"),
-        _ => format!("friction in the mean, {first} = 100: bands of 50 and 90 %, ring: as the scenes stand"),
+        0 => format!("mean friction, weighted, {first} = 100"),
+        _ => format!("mean friction, weighted, {first} = 100: bands of 50 and 90 %, median, and a ring for the scenes' own numbers"),
     };
     Bands { title: "Ranking".into(), quantity, rows: ranking.order.iter().map(row).collect() }
 }
