@@ -30,7 +30,6 @@ fn options_that_do_not_go_together_are_refused() {
         "describe --patch p.toml --json",
         "describe --patch p.toml --plot x.svg",
         "pack a.toml -o x.fmu --check-points 3",
-        "pack a.toml -o x.fmu --table t.csv",
         "pack a.toml -o x.fmu --check a.toml",
         "surface a.csv --mirror --taper",
         "surface a.csv --mirror --periodic",
@@ -54,6 +53,8 @@ fn options_that_do_not_go_together_are_refused() {
         let message = refused(&line.split(' ').collect::<Vec<_>>());
         assert!(message.contains("required arguments were not provided"), "{line}: {message}");
     }
+    let message = refused(&["pack", "a.toml", "-o", "x.fmu", "--table", "t.csv"]);
+    assert!(message.contains("a scene beside one of these only with --quantile"), "{message}");
     let message = refused(&["surface", &sinusoid(), "--mirror"]);
     assert!(message.contains("make a profile periodic, and it is"), "{message}");
 }

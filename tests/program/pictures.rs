@@ -38,7 +38,9 @@ fn listed() -> Vec<(bool, String)> {
 
 #[test]
 fn every_picture_is_made_by_the_script() {
-    let committed: BTreeSet<String> = documents().into_iter().filter(|path| is_picture(path)).collect();
+    // Those of the validation page are made with it.
+    let is_made = |path: &String| is_picture(path) && !path.starts_with("docs/validation/");
+    let committed: BTreeSet<String> = documents().into_iter().filter(is_made).collect();
     let made: BTreeSet<String> = listed().into_iter().map(|(_, path)| path).collect();
     assert_eq!(made, committed);
 }

@@ -29,7 +29,7 @@ const SECTION: &str = "[uncertainty]
 'surface.fine.shortest' = { factor = 2.0 }
 surface = 'seed'
 ";
-const POINTS: [&str; 4] = ["--speeds", "0.1,1", "--pressures", "2bar,4bar"];
+const POINTS: [&str; 4] = ["--speeds", "0.1,1", "--pressures", "0.5bar,1bar"];
 const SAMPLES: [&str; 4] = ["--samples", "16", "--seed", "3"];
 
 fn scene(folder: &Path, section: &str) -> PathBuf {

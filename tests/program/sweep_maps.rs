@@ -65,26 +65,6 @@ fn friction_is_drawn_over_speed_and_temperature() {
     let done = asperity().arg("sweep").arg("-o").arg(&merged).arg("--merge").args(&shards).args(maps).output().unwrap();
     assert!(done.status.success(), "{}", said(&done.stderr));
     assert_eq!(fs::read_to_string(folder.join("m.svg")).unwrap(), svg);
-    // One of them alone: every other point is empty, and named.
-    let half = folder.join("h.csv");
-    let merge = |over: &str| {
-        asperity()
-            .arg("sweep")
-            .arg("-o")
-            .arg(&half)
-            .arg("--force")
-            .arg("--merge")
-            .arg(&shards[0])
-            .args(["--over", over])
-            .output()
-            .unwrap()
-    };
-    let done = merge("temperature,pressure");
-    assert!(said(&done.stdout).contains("No result   "), "{}", said(&done.stdout));
-    let words = said(&done.stdout).split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(words.contains("0.001 m/s, 100000 Pa, 273.15 K: not computed"), "{words}");
-    let svg = fs::read_to_string(folder.join("h.svg")).unwrap();
-    assert_eq!((svg.matches("<image").count(), texts(&svg, "no result"), texts(&svg, "10 m/s")), (6, 1, 1));
 }
 
 /// The line of a level lies where a straight line between the table's points has it.

@@ -16,6 +16,9 @@ use crate::settings::Setting;
 use crate::sweep::{SweepError, SweepOptions, SweepPlan, SweepTable};
 use crate::uncertainty::{Drawn, Refused, SampleOptions, Sampler, UncertainScene, UncertaintyError};
 
+/// Friction of a scene at all points, or why it cannot be swept.
+type Found = Result<Vec<Option<f64>>, SweepError>;
+
 /// A scene to rank.
 #[derive(Clone, Debug)]
 pub struct RankScene {
@@ -179,7 +182,7 @@ impl RankPlan {
         });
         stopped(stop)?;
         let draws = draws?;
-        let whole = |(sample, drawn): (usize, Vec<Result<Vec<Option<f64>>, SweepError>>)| {
+        let whole = |(sample, drawn): (usize, Vec<Found>)| {
             let failed =
                 |error: SweepError| UncertaintyError::Sample { sample: sample + 1, problem: error.to_string() };
             let drawn = drawn.into_iter().collect::<Result<Frictions, _>>().map_err(failed)?;

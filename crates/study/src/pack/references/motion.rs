@@ -36,7 +36,7 @@ impl InputMotion {
     /// Every `every`th row, the first and the last.
     pub(super) fn thinned(self, every: usize) -> Self {
         let last = self.times.len() - 1;
-        let is_kept = |i: usize| i % every.max(1) == 0 || i == last;
+        let is_kept = |i: usize| i.is_multiple_of(every.max(1)) || i == last;
         let kept = |i: &usize| is_kept(*i);
         Self {
             times: (0..=last).filter(kept).map(|i| self.times[i]).collect(),
