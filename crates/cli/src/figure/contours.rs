@@ -116,7 +116,7 @@ fn within(lines: &[f64], place: f64) -> Option<(usize, f64)> {
 fn linear([corner, along_s, along_t]: [f64; 3], s: f64, t: f64) -> Option<f64> {
     /// A place on the triangle's long side but for rounding is in it.
     const ROUNDING: f64 = 1e-12;
-    (s + t <= 1.0 + ROUNDING).then(|| corner + s * (along_s - corner) + t * (along_t - corner))
+    (s + t <= 1.0 + ROUNDING).then_some(corner + s * (along_s - corner) + t * (along_t - corner))
 }
 
 /// Joins the parts of lines where they meet.

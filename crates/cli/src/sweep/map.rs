@@ -145,11 +145,7 @@ impl Maps {
     }
 
     /// The panel and place of each measurement, and the measurements without one.
-    fn placed(
-        &self,
-        table: &SweepTable,
-        axes: [&GridAxis; 2],
-    ) -> (Vec<(usize, MeasuredPlace)>, Vec<(Measured, NoPlace)>) {
+    fn placed(&self, table: &SweepTable, axes: [&GridAxis; 2]) -> (Vec<PlaceInPanel>, Vec<LeftOut>) {
         let thirds = self.thirds(&table.header.grid);
         let (mut places, mut left_out) = (Vec::new(), Vec::new());
         for row in &self.measured {
@@ -174,6 +170,11 @@ impl Maps {
         (places, left_out)
     }
 }
+
+/// A panel's index, and a measured place in it.
+type PlaceInPanel = (usize, MeasuredPlace);
+/// A measurement in no map, and why.
+type LeftOut = (Measured, NoPlace);
 
 /// Why a measurement is in no map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
