@@ -92,7 +92,7 @@ fn cases() -> Comparison {
         }],
         remark: "A row right at an event may count otherwise. The paper gives no numbers: its figure is compared by \
                  its shape, stiffer the harder it is pressed, and flat in the end. SUNDIALS' CVODES and ARKODE run \
-                 the larger scenes of [benches/peers](../benches/peers/README.md), which agree in forces and losses \
+                 the larger scenes of [benches/peers](../benches/peers), which agree in forces and losses \
                  to 1e-6 before anything is timed there; they are not run for this page."
             .into(),
     }
