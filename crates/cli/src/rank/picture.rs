@@ -30,10 +30,8 @@ fn bands(ranking: &Ranking) -> Bands {
     };
     let first = ranking.scenes.first().map(|scene| scene.label.as_str()).unwrap_or_default();
     let quantity = match ranking.samples {
-        0 => format!("mean friction, weighted, {first} = 100"),
-        _ => format!(
-            "mean friction, weighted, {first} = 100: bands of 50 and 90 %, median, and a ring for the scenes' own numbers"
-        ),
+        0 => format!("mean friction, {first} = 100"),
+        _ => format!("mean friction, {first} = 100: bands of 50 and 90 %, line: median, ring: own numbers"),
     };
     Bands { title: "Ranking".into(), quantity, rows: ranking.order.iter().map(row).collect() }
 }
