@@ -44,7 +44,8 @@ def test_a_calibration_writes_its_covariance(block, tmp_path):
     assert 'covariance = "fitted.covariance.csv"' in (tmp_path / "fitted.toml").read_text(encoding="utf-8")
     row = (tmp_path / "fitted.covariance.csv").read_text(encoding="utf-8").splitlines()[-1].split(",")
     assert row[0] == "friction.shear_strength" and row[2] == "log" and float(row[3]) == found.covariance[0, 0]
-    # What was written is a scene that says what is not known of it.
+    # What was written is a scene that says what is not known of it, beside the files that it names.
+    (tmp_path / "profile.csv").write_bytes((block.file.parent / "profile.csv").read_bytes())
     fitted = asperity.Scene.from_toml(tmp_path / "fitted.toml")
     ranking = asperity.rank([fitted, fitted], [1e-2], [1e5], samples=16)
     assert ranking.samples == 16 and ranking.friction_bands[0, 4] > ranking.friction_bands[0, 0]

@@ -77,8 +77,9 @@ class Table:
         for name in names:
             if name.endswith("_samples"):
                 values = np.array([_floats(text.split(";")) for text in columns[name]])
-                self._samples[name.removesuffix("_samples")] = np.full((values.shape[1], *shape), np.nan)
-                self._samples[name.removesuffix("_samples")][(slice(None), *places)] = values.T
+                samples = np.full((*shape, values.shape[1]), np.nan)
+                samples[places] = values
+                self._samples[name.removesuffix("_samples")] = np.moveaxis(samples, -1, 0)
             elif name not in ("speed", self.load, "temperature", "status"):
                 self._columns[name] = np.full(shape, np.nan)
                 self._columns[name][places] = _floats(columns[name])
