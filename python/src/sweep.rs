@@ -1,12 +1,11 @@
 //! Friction over speed, load and temperature.
 
 use std::ffi::OsString;
-use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
 
-use asperity::element::{OperatingPoint, PointContact, Table, TableRow};
+use asperity::element::{PointContact, Table, TableRow};
 use asperity_study::settings::Setting;
 use asperity_study::sweep::{
     Loads, SlidingOptions, SweepError, SweepMethod, SweepOptions, SweepPlan, SweepTable, quantile_table,
@@ -41,15 +40,11 @@ pub(crate) fn sliding(
 
 /// All points of a sweep; `None` where nobody waits for them any more.
 fn find(plan: &SweepPlan, task: &Task) -> Option<SweepTable> {
-    let points: Vec<OperatingPoint> = plan.header().grid.points().collect();
-    let (rows, done) = (Mutex::new(Vec::new()), AtomicUsize::new(0));
-    let _: ControlFlow<()> = plan.find(&points, &task.stop(), |row| {
-        rows.lock().unwrap_or_else(PoisonError::into_inner).push(row);
-        task.report((1 + done.fetch_add(1, Ordering::Relaxed)) as f64 / points.len() as f64);
-        ControlFlow::Continue(())
+    let (points, done) = (plan.header().grid.count(), AtomicUsize::new(0));
+    let table = plan.table(&task.stop(), || {
+        task.report((1 + done.fetch_add(1, Ordering::Relaxed)) as f64 / points as f64);
     });
-    let rows = rows.into_inner().unwrap_or_else(PoisonError::into_inner);
-    (!task.is_stopped()).then(|| SweepTable::new(plan.header().clone(), rows))
+    (!task.is_stopped()).then_some(table)
 }
 
 /// The text of the table of a sweep, and the warnings; with samples what matters as a table, and what was drawn by names.

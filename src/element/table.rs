@@ -118,7 +118,13 @@ impl Table {
     pub fn stick_time(&self) -> Option<f64> {
         let last = |axis: &[f64]| axis.len().saturating_sub(1);
         let node = Node { temperature: 0, load: last(&self.grid.loads), speed: last(&self.grid.speeds) };
-        let (load, speed) = (self.grid.loads.last()?, self.grid.speeds.last()?);
+        self.stick_time_at(node)
+    }
+
+    /// The time (s) in which a carrier passes the way to slip, μ F/k, at the load and the speed of a node; `None` where
+    /// nothing sticks there.
+    pub fn stick_time_at(&self, node: Node) -> Option<f64> {
+        let (load, speed) = (self.grid.loads.get(node.load)?, self.grid.speeds.get(node.speed)?);
         let limit = self.value(Quantity::Friction, node) * self.load.force(*load);
         let time = limit / self.value(Quantity::Stiffness, node) / speed;
         (time.is_finite() && time > 0.0).then_some(time)

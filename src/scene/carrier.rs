@@ -136,8 +136,7 @@ impl Scene {
 
     /// The value of an input before anything is set: the material's temperature, 0 for the others.
     pub fn input_start(&self, input: Input) -> f64 {
-        let wlf = self.material.as_ref().and_then(|material| material.wlf.as_ref());
-        if input == Input::Temperature { wlf.map_or(0.0, |wlf| wlf.temperature) } else { 0.0 }
+        if input == Input::Temperature { self.temperature().unwrap_or(0.0) } else { 0.0 }
     }
 
     /// The changing part of the tangential force at the start of a run along the excitation, N.

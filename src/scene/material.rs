@@ -339,6 +339,11 @@ impl Scene {
         scene
     }
 
+    /// The layer's temperature, K; `None` without `material.wlf`.
+    pub fn temperature(&self) -> Option<f64> {
+        self.material.as_ref()?.wlf.as_ref().map(|wlf| wlf.temperature)
+    }
+
     /// The scene with its layer at a temperature, K, not checked; as it is without one, or where it has no
     /// `material.wlf`.
     pub fn with_temperature(&self, kelvin: impl Into<Option<f64>>) -> Self {

@@ -99,8 +99,6 @@ impl Uncertainty {
     pub const SPECTRUM: &str = "surface.spectrum";
     /// The seed of a self-affine surface.
     pub const SURFACE: &str = "surface";
-    /// The temperature of the layer.
-    pub const TEMPERATURE: &str = "material.wlf.temperature";
 
     /// Whether everything is known.
     pub fn is_empty(&self) -> bool {

@@ -1,8 +1,6 @@
 //! A sweep over the way: the tables of several ways as one, with a column of it, and friction over the way.
 
-use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
 
 use asperity::element::{OperatingPoint, Quantity, TableRow};
 use asperity::scene::Scene;
@@ -29,7 +27,7 @@ pub(super) fn sweep(
     let plans = ways.iter().map(plan).collect::<Result<Vec<_>, _>>()?;
     plans.iter().take(1).filter_map(SweepPlan::warning).for_each(|warning| warn(&with_flags(warning)));
     let bar = terminal::bar((plans.len() * plans.first().map_or(0, |plan| plan.header().grid.count())) as u64);
-    let tables: Vec<SweepTable> = plans.iter().map(|plan| find(plan, || bar.inc(1))).collect();
+    let tables: Vec<SweepTable> = plans.iter().map(|plan| plan.table(&Stop::default(), || bar.inc(1))).collect();
     bar.finish_and_clear();
     for (plan, table) in plans.iter().zip(&tables) {
         let found = plan.warnings(table.rows.iter().map(|stored| &stored.row));
@@ -41,17 +39,6 @@ pub(super) fn sweep(
     }
     let rows = || tables.iter().flat_map(|table| &table.rows);
     Ok([rows().count(), rows().filter(|stored| !stored.row.is_result()).count()])
-}
-
-fn find(plan: &SweepPlan, found: impl Fn() + Sync) -> SweepTable {
-    let points: Vec<OperatingPoint> = plan.header().grid.points().collect();
-    let rows = Mutex::new(Vec::new());
-    let _: ControlFlow<()> = plan.find(&points, &Stop::default(), |row| {
-        rows.lock().unwrap_or_else(PoisonError::into_inner).push(row);
-        found();
-        ControlFlow::Continue(())
-    });
-    SweepTable::new(plan.header().clone(), rows.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
 /// The rows of all ways below one line of names.

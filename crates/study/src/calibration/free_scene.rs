@@ -132,8 +132,7 @@ impl<'a> FreeScene<'a> {
             let checked = self.options.sliding.check_way(&self.scene, row.point.way);
             checked.map_err(|problem| MeasuredFrictionError::Way { path: path.clone(), line: row.line, problem })?;
         }
-        let wlf = self.scene.material.as_ref().and_then(|material| material.wlf.as_ref());
-        let Some(own) = wlf.map(|wlf| wlf.temperature) else {
+        let Some(own) = self.scene.temperature() else {
             return match measurements.has_temperature() {
                 true => Err(MeasuredFrictionError::NoWlf(path.clone())),
                 false => Ok(measurements),

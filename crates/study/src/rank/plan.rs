@@ -1,10 +1,8 @@
 //! What is computed: a sweep of each scene as it stands, and of each of its samples.
 
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
 
-use asperity::element::{Load, OperatingPoint, Quantity, TableRow};
+use asperity::element::{Load, OperatingPoint, Quantity};
 use asperity::scene::Scene;
 
 use super::error::RankError;
@@ -170,7 +168,7 @@ impl RankPlan {
             self.entries.iter().filter_map(|entry| entry.uncertain.as_ref()).collect();
         let draws = UncertainScene::draw_together(&uncertain, sampler, |drawn| {
             let of_one = |(drawn, scene): (Drawn, &&UncertainScene)| {
-                let found = self.sample(scene.scene(), drawn.scene, stop);
+                let found = self.sample(scene, drawn.scene, stop);
                 done();
                 match found {
                     // Drawn anew, as it has not the temperatures of the points.
@@ -198,8 +196,8 @@ impl RankPlan {
     }
 
     /// Friction of a scene that was `drawn` about another one.
-    fn sample(&self, scene: &Scene, drawn: Scene, stop: &Stop) -> Result<Vec<Option<f64>>, SweepError> {
-        let shift = temperature(&drawn).zip(temperature(scene)).map_or(0.0, |(drawn, own)| drawn - own);
+    fn sample(&self, scene: &UncertainScene, drawn: Scene, stop: &Stop) -> Result<Vec<Option<f64>>, SweepError> {
+        let shift = scene.warmer(&drawn);
         // How far off the temperature of the scene may be that of each point may be, too.
         let temperatures = self.options.temperatures.as_ref();
         let temperatures = temperatures.map(|all| all.iter().map(|kelvin| kelvin + shift).collect());
@@ -216,24 +214,14 @@ fn stopped(stop: &Stop) -> Result<(), Stopped> {
 
 /// All points of a plan.
 fn swept(plan: &SweepPlan, stop: &Stop) -> Result<SweepTable, Stopped> {
-    let points: Vec<OperatingPoint> = plan.header().grid.points().collect();
-    let rows: Mutex<Vec<TableRow>> = Mutex::new(Vec::new());
-    let _: ControlFlow<()> = plan.find(&points, stop, |row| {
-        rows.lock().unwrap_or_else(PoisonError::into_inner).push(row);
-        ControlFlow::Continue(())
-    });
-    stopped(stop)?;
-    Ok(SweepTable::new(plan.header().clone(), rows.into_inner().unwrap_or_else(PoisonError::into_inner)))
+    let table = plan.table(stop, || ());
+    stopped(stop).map(|()| table)
 }
 
 /// Friction of a whole table, in the order of the points.
 fn frictions(table: &SweepTable) -> Vec<Option<f64>> {
     let rows = table.rows.iter().map(|stored| &stored.row);
     rows.map(|row| row.value(Quantity::Friction).filter(|_| row.is_result())).collect()
-}
-
-fn temperature(scene: &Scene) -> Option<f64> {
-    scene.material.as_ref()?.wlf.as_ref().map(|wlf| wlf.temperature)
 }
 
 /// Names of the scenes, each another one: their own, else those of their files, else these with their folders.
@@ -248,7 +236,7 @@ fn labels(scenes: &[RankScene]) -> Vec<String> {
 
 /// Scenes that are compared at their own temperatures must have the same.
 fn check_temperatures(scenes: &[RankScene], labels: &[String]) -> Result<(), RankError> {
-    let own: Vec<Option<f64>> = scenes.iter().map(|scene| temperature(&scene.scene)).collect();
+    let own: Vec<Option<f64>> = scenes.iter().map(|scene| scene.scene.temperature()).collect();
     if own.windows(2).all(|pair| pair[0] == pair[1]) {
         return Ok(());
     }

@@ -85,6 +85,11 @@ impl SweepPlan {
         find(points, stop, |point, interrupt| self.row(point, interrupt), found)
     }
 
+    /// The table of all points, found on all cores, `done` told after each; with rows missing where `stop` says so.
+    pub fn table(&self, stop: &Stop, done: impl Fn() + Sync) -> SweepTable {
+        table_of(self.header.clone(), stop, |point, interrupt| self.row(point, interrupt), done)
+    }
+
     /// What to look at in the rows: few points of the surface in contact, friction that no rubber has, samples without a
     /// result.
     pub fn warnings<'a>(&self, rows: impl Iterator<Item = &'a TableRow> + Clone) -> Vec<String> {
@@ -173,17 +178,6 @@ impl SweepPlan {
             return Err(SweepError::NoRanking);
         };
         let sample = samples.all.get(number - 1).ok_or(SweepError::NoRanking)?;
-        let rows = Mutex::new(Vec::new());
-        let points: Vec<OperatingPoint> = self.header.grid.points().collect();
-        let _: ControlFlow<()> = find(
-            &points,
-            stop,
-            |point, interrupt| sample.row(point, interrupt),
-            |row| {
-                rows.lock().unwrap_or_else(PoisonError::into_inner).push(row);
-                ControlFlow::Continue(())
-            },
-        );
         let mut header = TableHeader {
             samples: None,
             load: sample.load(),
@@ -196,7 +190,7 @@ impl SweepPlan {
             "{number} of {}, seed {seed}: quantile {probability} of the mean friction over the table",
             samples.all.len()
         ));
-        Ok(SweepTable::new(header, rows.into_inner().unwrap_or_else(PoisonError::into_inner)))
+        Ok(table_of(header, stop, |point, interrupt| sample.row(point, interrupt), || ()))
     }
 
     /// How many points were solved for so far on the scene's own surface.
@@ -204,6 +198,23 @@ impl SweepPlan {
     pub(super) fn solutions(&self) -> usize {
         self.own.solutions()
     }
+}
+
+/// The table of all points of a header, found on all cores by `row`, `done` told after each.
+fn table_of(
+    header: TableHeader,
+    stop: &Stop,
+    row: impl Fn(&OperatingPoint, &Interrupt) -> TableRow + Sync,
+    done: impl Fn() + Sync,
+) -> SweepTable {
+    let points: Vec<OperatingPoint> = header.grid.points().collect();
+    let rows = Mutex::new(Vec::new());
+    let _: ControlFlow<()> = find(&points, stop, row, |row| {
+        rows.lock().unwrap_or_else(PoisonError::into_inner).push(row);
+        done();
+        ControlFlow::Continue(())
+    });
+    SweepTable::new(header, rows.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
 /// The rows of points, found on all cores by `row`.

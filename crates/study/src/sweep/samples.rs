@@ -2,7 +2,6 @@
 
 use asperity::element::{OperatingPoint, Quantity, SampleHeader, SampleValues, Sampled, TableRow};
 use asperity::math::check_memory;
-use asperity::scene::{Scene, Uncertainty};
 use asperity::simulation::Interrupt;
 use rayon::prelude::*;
 
@@ -48,7 +47,7 @@ impl Samples {
         let sampler = Sampler::new(uncertain.axes(), samples)?;
         let bytes = own.surface_memory().saturating_mul(samples.count as u64);
         check_memory(bytes, || format!("`samples`: the surfaces of {} samples", samples.count))?;
-        let make = |drawn| Sample::new(drawn, uncertain.scene(), own, options);
+        let make = |drawn| Sample::new(drawn, uncertain, own, options);
         let draws = uncertain.draw_all(&sampler, make)?;
         let failed = |(sample, made): (usize, Result<Sample, SweepError>)| {
             made.map_err(|error| UncertaintyError::Sample { sample: sample + 1, problem: error.to_string() }.into())
@@ -80,14 +79,13 @@ impl Sample {
     /// A sample that was drawn, refused where it has not the temperatures of the points.
     fn new(
         drawn: Drawn,
-        scene: &Scene,
+        uncertain: &UncertainScene,
         own: &ScenePlan,
         options: &SweepOptions,
     ) -> Result<Result<Self, SweepError>, Refused> {
-        let Drawn { scene: drawn, values, normals } = drawn;
-        let is_warmer = values.iter().any(|(key, _)| key == Uncertainty::TEMPERATURE);
-        let warmer = if is_warmer { temperature(&drawn) - temperature(scene) } else { 0.0 };
-        match own.drawn(drawn, options, warmer) {
+        let Drawn { scene, values, normals } = drawn;
+        let warmer = uncertain.warmer(&scene);
+        match own.drawn(scene, options, warmer) {
             Ok(plan) => Ok(Ok(Self { plan, warmer, values, normals })),
             Err(SweepError::Temperature(error)) => Err(error.into()),
             Err(error) => Ok(Err(error)),
@@ -111,9 +109,4 @@ impl Sample {
     pub(super) fn load(&self) -> asperity::element::Load {
         self.plan.header.load
     }
-}
-
-/// The scene's temperature, K; 0 without one.
-fn temperature(scene: &Scene) -> f64 {
-    scene.material.as_ref().and_then(|material| material.wlf).map_or(0.0, |wlf| wlf.temperature)
 }

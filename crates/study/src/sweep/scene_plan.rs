@@ -225,8 +225,7 @@ fn hard_pressure(scene: &Scene, load: Load, loads: &[f64]) -> Option<String> {
 
 /// Those asked for, or the scene's own; none where it has none.
 fn temperatures(asked: Option<&[f64]>, scene: &Scene) -> Result<Vec<f64>, SweepError> {
-    let own = scene.material.as_ref().and_then(|material| material.wlf.as_ref()).map(|wlf| wlf.temperature);
-    let Some(own) = own else {
+    let Some(own) = scene.temperature() else {
         return if asked.is_some() { Err(SweepError::NoWlf) } else { Ok(Vec::new()) };
     };
     let values = asked.map_or_else(|| vec![own], <[f64]>::to_vec);

@@ -76,6 +76,11 @@ impl UncertainScene {
         &self.groups
     }
 
+    /// How much warmer a scene that was drawn is, K: the points of its sweep are, too.
+    pub fn warmer(&self, drawn: &Scene) -> f64 {
+        drawn.temperature().zip(self.scene.temperature()).map_or(0.0, |(drawn, own)| drawn - own)
+    }
+
     /// The axes of all groups.
     pub fn axes(&self) -> Vec<String> {
         self.groups.iter().flat_map(|group| group.axes.iter().cloned()).collect()

@@ -17,7 +17,9 @@ const MOST_ROWS: usize = 250;
 /// Values of the inputs, in their order, at times: straight from row to row.
 #[derive(Debug)]
 pub(super) struct InputMotion {
+    /// s, rising.
     pub(super) times: Vec<f64>,
+    /// In the inputs' own units.
     pub(super) values: Vec<Vec<f64>>,
 }
 
@@ -128,9 +130,8 @@ impl Press {
         let clear = PointContact::new(table.clone()).clear_displacement();
         let depth = table.value(Quantity::Separation, node) - table.rest_separation - clear;
         let speed = *grid.speeds.get(node.speed)?;
-        let force = table.value(Quantity::Friction, node) * table.load.force(*grid.loads.get(node.load)?);
-        let stick_time = force / table.value(Quantity::Stiffness, node) / speed;
-        (depth < 0.0 && stick_time.is_finite() && stick_time > 0.0).then_some(Self { depth, speed, stick_time })
+        let stick_time = table.stick_time_at(node)?;
+        (depth < 0.0).then_some(Self { depth, speed, stick_time })
     }
 
     /// All inputs at their start values but these two.
