@@ -13,13 +13,14 @@
 //! |---|---|---|
 //! | [`math`] | | splines, tridiagonal systems, roots, Fourier sums and other numerical methods |
 //! | [`tables`] | | tables of text as people and instruments write them: dialect, headings, units, the columns that a client wants |
+//! | [`table`] | | tables as the project writes them: a header of keys and values, columns with units, rows |
 //! | [`scene`] | math, tables | a scene as data: reading TOML, profiles and materials; parameters; checks and warnings |
 //! | [`model`] | math, scene | the mechanical model: links and their forces, contact laws, state, energies, stiffness scales, reduction |
 //! | [`integrator`] | math, model | implicit Runge-Kutta steps, with modes held or set-valued friction: stages, dense output, error, sensitivities |
 //! | [`contact`] | math, scene, model, integrator | the rules of mode changes and the impact, event location, the end-of-step correction |
 //! | [`outputs`] | math, scene, model, integrator | the table of the outputs: names, units, values, derivatives, dependencies |
 //! | [`simulation`] | math, scene, model, integrator, contact, outputs | a run: its state, the steps of both methods and their lengths, local regions, the reference run |
-//! | [`element`] | math, tables, scene, model, outputs, simulation | a point-contact element: the forces of a layer, looked up in a table of a sweep |
+//! | [`element`] | math, table, scene, model, outputs, simulation | a point-contact element: the forces of a layer, looked up in a table of a sweep |
 //! | [`patch`] | math, scene, model, outputs, element | a contact patch: many point-contact elements on a rigid face, in three dimensions |
 //!
 //! ```
@@ -112,4 +113,5 @@ pub mod outputs;
 pub mod patch;
 pub mod scene;
 pub mod simulation;
+pub mod table;
 pub mod tables;

@@ -1,0 +1,421 @@
+//! Tables as the project writes them: a header of lines `# key = value unit`, the names of the columns with their units
+//! in brackets, and rows with commas between the fields.
+//!
+//! One reader, which guesses nothing, and one writer: a table that was written is read as the same, to the last bit. A
+//! column holds numbers or words; a number that is missing is NaN in a column and an empty field in a file. Clients find
+//! columns by name and unit, cells by their row, and errors say the file and the line.
+
+mod header;
+mod text;
+
+use std::path::{Path, PathBuf};
+
+pub use header::Header;
+pub use text::number;
+use text::{fields, quoted};
+
+/// Why a table is refused: where, what was expected and what was found.
+///
+/// It reads like `table.csv:12: speed [m/s] = "fast": expected a number above 0`.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}{}: {problem}", file.display(), line.map_or_else(String::new, |line| format!(":{line}")))]
+pub struct TableError {
+    /// The file.
+    pub file: PathBuf,
+    /// The line, from 1, where it is one.
+    pub line: Option<usize>,
+    /// What was expected and what was found.
+    pub problem: String,
+}
+
+/// What a column holds.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// Numbers; NaN where there is none.
+    Numbers(Vec<f64>),
+    /// Words; empty where there is none.
+    Words(Vec<String>),
+}
+
+/// A column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Its name, without the unit.
+    pub name: String,
+    /// Its unit; empty of words and where it has none.
+    pub unit: String,
+    /// A value for each row.
+    pub values: Values,
+}
+
+/// A value of a row.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cell {
+    /// A number; NaN where there is none.
+    Number(f64),
+    /// A word.
+    Word(String),
+}
+
+/// A table.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// What stands before its rows.
+    pub header: Header,
+    columns: Vec<Column>,
+    /// The number of each row's line in the file that it was read from, from 1; 0 of a row that was added.
+    lines: Vec<usize>,
+}
+
+impl PartialEq for Table {
+    /// The same text, wherever they were read from.
+    fn eq(&self, other: &Self) -> bool {
+        self.text() == other.text()
+    }
+}
+
+impl Column {
+    /// A column of numbers, empty.
+    pub fn numbers(name: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self { name: name.into(), unit: unit.into(), values: Values::Numbers(Vec::new()) }
+    }
+
+    /// A column of words, empty.
+    pub fn words(name: impl Into<String>) -> Self {
+        Self { name: name.into(), unit: String::new(), values: Values::Words(Vec::new()) }
+    }
+
+    /// An empty column with the name and the unit of a heading, as [`heading`](Self::heading) writes it.
+    fn of_heading(heading: &str) -> Self {
+        let parts = heading.strip_suffix(']').and_then(|text| text.rsplit_once(" ["));
+        let (name, unit) = parts.unwrap_or((heading, ""));
+        Self { unit: unit.to_owned(), ..Self::words(name) }
+    }
+
+    /// What stands above it: `speed [m/s]`.
+    pub fn heading(&self) -> String {
+        heading(&self.name, &self.unit)
+    }
+
+    fn push(&mut self, cell: Cell) {
+        match (&mut self.values, cell) {
+            (Values::Numbers(numbers), Cell::Number(number)) => numbers.push(number),
+            (Values::Words(words), Cell::Word(word)) => words.push(word),
+            (Values::Words(words), Cell::Number(number)) => words.push(text::cell(number)),
+            (Values::Numbers(numbers), Cell::Word(word)) => numbers.push(text::parsed(&word).unwrap_or(f64::NAN)),
+        }
+    }
+
+    fn cell(&self, row: usize) -> Cell {
+        match &self.values {
+            Values::Numbers(numbers) => Cell::Number(numbers[row]),
+            Values::Words(words) => Cell::Word(words[row].clone()),
+        }
+    }
+
+    /// Numbers in place of words, where all of them are numbers or nothing.
+    fn sorted_out(mut self) -> Self {
+        if let Values::Words(words) = &self.values
+            && let Some(numbers) = words.iter().map(|word| text::parsed(word)).collect()
+        {
+            self.values = Values::Numbers(numbers);
+        }
+        self
+    }
+
+    /// The column without its values.
+    fn emptied(&self) -> Self {
+        let values = match self.values {
+            Values::Numbers(_) => Values::Numbers(Vec::new()),
+            Values::Words(_) => Values::Words(Vec::new()),
+        };
+        Self { name: self.name.clone(), unit: self.unit.clone(), values }
+    }
+}
+
+fn heading(name: &str, unit: &str) -> String {
+    if unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") }
+}
+
+impl From<f64> for Cell {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl From<Option<f64>> for Cell {
+    fn from(number: Option<f64>) -> Self {
+        Self::Number(number.unwrap_or(f64::NAN))
+    }
+}
+
+impl From<&str> for Cell {
+    fn from(word: &str) -> Self {
+        Self::Word(word.to_owned())
+    }
+}
+
+impl From<String> for Cell {
+    fn from(word: String) -> Self {
+        Self::Word(word)
+    }
+}
+
+impl Cell {
+    /// As a file has it.
+    fn text(&self) -> String {
+        match self {
+            Self::Number(number) => text::cell(*number),
+            Self::Word(word) => quoted(word),
+        }
+    }
+}
+
+impl Table {
+    /// A table without rows.
+    pub fn new(header: Header, columns: impl IntoIterator<Item = Column>) -> Self {
+        Self { header, columns: columns.into_iter().collect(), lines: Vec::new() }
+    }
+
+    /// Reads a table from its text; `file` is where it came from. A column whose fields are all numbers or empty holds
+    /// numbers.
+    ///
+    /// # Errors
+    /// [`TableError`] where a row has more or fewer fields than there are columns.
+    pub fn parse(text: &str, file: &Path) -> Result<Self, TableError> {
+        let (mut table, rows) = Self::divided(text, file);
+        for (line, fields) in rows {
+            table.check_count(line, fields.len())?;
+            table.add(line, fields.into_iter().map(Cell::Word));
+        }
+        table.columns = table.columns.into_iter().map(Column::sorted_out).collect();
+        Ok(table)
+    }
+
+    /// Reads what a command that was stopped has left of a table with the columns of this one: its rows, and what is wrong
+    /// with those that it could not have written. A last line without an end was cut off.
+    ///
+    /// # Errors
+    /// [`TableError`] where the text has other columns.
+    pub fn begun(&self, text: &str, file: &Path) -> Result<(Self, Vec<TableError>), TableError> {
+        let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
+        let (read, rows) = Self::divided(whole, file);
+        let headings = |table: &Self| table.columns.iter().map(Column::heading).collect::<Vec<_>>().join(",");
+        if headings(self) != headings(&read) {
+            return Err(read.error(format!("expected the columns {}", headings(self))));
+        }
+        let mut table = Self { header: read.header, ..Self::new(Header::default(), self.columns.iter().map(Column::emptied)) };
+        let mut corrupt = Vec::new();
+        for (line, fields) in rows {
+            match table.check_fields(line, &fields) {
+                Ok(()) => table.add(line, fields.into_iter().map(Cell::Word)),
+                Err(error) => corrupt.push(error),
+            }
+        }
+        Ok((table, corrupt))
+    }
+
+    /// The header and the columns of a text, all of words and empty, and its rows by their lines.
+    fn divided(text: &str, file: &Path) -> (Self, impl Iterator<Item = (usize, Vec<String>)>) {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let header = Header::parse(text, file);
+        let filled = |(_, line): &(usize, &str)| !line.starts_with('#') && !line.trim().is_empty();
+        let mut lines = (1..).zip(text.lines()).filter(filled).map(|(number, line)| (number, fields(line)));
+        let names = lines.next().map(|(_, names)| names).unwrap_or_default();
+        (Self::new(header, names.iter().map(|name| Column::of_heading(name))), lines)
+    }
+
+    fn check_count(&self, line: usize, found: usize) -> Result<(), TableError> {
+        match self.columns.len() {
+            expected if expected == found => Ok(()),
+            expected => Err(self.error_at(line, format!("{found} fields, expected {expected}"))),
+        }
+    }
+
+    fn check_fields(&self, line: usize, fields: &[String]) -> Result<(), TableError> {
+        self.check_count(line, fields.len())?;
+        let is_wrong = |(column, field): &(&Column, &String)| {
+            matches!(column.values, Values::Numbers(_)) && text::parsed(field).is_none()
+        };
+        match self.columns.iter().zip(fields).find(is_wrong) {
+            Some((column, field)) => {
+                Err(self.error_at(line, format!("{} = \"{field}\": expected a number", column.heading())))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn add(&mut self, line: usize, cells: impl Iterator<Item = Cell>) {
+        self.columns.iter_mut().zip(cells).for_each(|(column, cell)| column.push(cell));
+        self.lines.push(line);
+    }
+
+    /// Adds a row, a cell for each column.
+    pub fn push(&mut self, cells: impl IntoIterator<Item = Cell>) {
+        self.add(0, cells.into_iter());
+    }
+
+    /// The columns.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// The number of rows.
+    pub fn len(&self) -> usize {
+        self.lines.len()
+    }
+
+    /// Whether it has no rows.
+    pub fn is_empty(&self) -> bool {
+        self.lines.is_empty()
+    }
+
+    /// A column by its name and unit.
+    ///
+    /// # Errors
+    /// [`TableError`] where there is none.
+    pub fn column(&self, name: &str, unit: &str) -> Result<&Column, TableError> {
+        let column = self.columns.iter().find(|column| column.name == name && column.unit == unit);
+        column.ok_or_else(|| self.error(format!("no column `{}`", heading(name, unit))))
+    }
+
+    /// The number of a row in a column; `None` where it has none.
+    ///
+    /// # Errors
+    /// [`TableError`] where there is no such column, or it has a word there.
+    pub fn number(&self, row: usize, name: &str, unit: &str) -> Result<Option<f64>, TableError> {
+        let number = match &self.column(name, unit)?.values {
+            Values::Numbers(numbers) => Some(numbers[row]),
+            Values::Words(words) => text::parsed(&words[row]),
+        };
+        let number = number.ok_or_else(|| self.cell_error(row, name, unit, "a number"))?;
+        Ok((!number.is_nan()).then_some(number))
+    }
+
+    /// The word of a row in a column without a unit; empty where it has none.
+    ///
+    /// # Errors
+    /// [`TableError`] where there is no such column.
+    pub fn word(&self, row: usize, name: &str) -> Result<String, TableError> {
+        Ok(match &self.column(name, "")?.values {
+            Values::Numbers(numbers) => text::cell(numbers[row]),
+            Values::Words(words) => words[row].clone(),
+        })
+    }
+
+    /// The table with those of its rows that are `kept`.
+    #[must_use]
+    pub fn filtered(&self, kept: impl Fn(usize) -> bool) -> Self {
+        self.ordered((0..self.len()).filter(|row| kept(*row)))
+    }
+
+    /// The table with these of its rows in this order.
+    #[must_use]
+    pub fn ordered(&self, rows: impl IntoIterator<Item = usize>) -> Self {
+        let mut table = Self::new(self.header.clone(), self.columns.iter().map(Column::emptied));
+        for row in rows {
+            table.add(self.lines[row], self.columns.iter().map(|column| column.cell(row)));
+        }
+        table
+    }
+
+    /// The line of a row with these cells, its end included.
+    pub fn line(cells: impl IntoIterator<Item = Cell>) -> String {
+        cells.into_iter().map(|cell| cell.text()).collect::<Vec<_>>().join(",") + "\n"
+    }
+
+    /// The lines before the rows, the names of the columns included.
+    pub fn head(&self) -> String {
+        let headings = self.columns.iter().map(|column| quoted(&column.heading()));
+        format!("{}{}\n", self.header.text(), headings.collect::<Vec<_>>().join(","))
+    }
+
+    /// The table as files have it.
+    pub fn text(&self) -> String {
+        let line = |row: usize| Self::line(self.columns.iter().map(|column| column.cell(row)));
+        self.head() + &(0..self.len()).map(line).collect::<String>()
+    }
+
+    /// What is wrong with it.
+    pub fn error(&self, problem: impl Into<String>) -> TableError {
+        self.header.error(problem)
+    }
+
+    /// What is wrong in a row.
+    pub fn error_in(&self, row: usize, problem: impl Into<String>) -> TableError {
+        self.error_at(self.lines[row], problem)
+    }
+
+    /// What is wrong with the cell of a row in a column: what was `expected` there.
+    pub fn cell_error(&self, row: usize, name: &str, unit: &str, expected: &str) -> TableError {
+        let found = self.columns.iter().find(|column| column.name == name && column.unit == unit);
+        let found = found.map_or_else(String::new, |column| match &column.values {
+            Values::Numbers(numbers) => text::cell(numbers[row]),
+            Values::Words(words) => words[row].clone(),
+        });
+        self.error_in(row, format!("{} = \"{found}\": expected {expected}", heading(name, unit)))
+    }
+
+    fn error_at(&self, line: usize, problem: impl Into<String>) -> TableError {
+        TableError { line: (line > 0).then_some(line), ..self.error(problem) }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests may fail")]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Result<Table, TableError> {
+        Table::parse(text, Path::new("t.csv"))
+    }
+
+    #[test]
+    fn what_is_written_is_read_as_the_same() {
+        let header = Header::new("asperity numbers", 1)
+            .with("scene", "a = b,\nc")
+            .with_number("area", 1e-5 / 3.0, "m2")
+            .with_numbers("speeds", &[1e-30, 0.1 + 0.2], "m/s")
+            .with_whole("seed", u64::MAX);
+        let mut table =
+            Table::new(header, [Column::numbers("x", "m"), Column::words("status"), Column::numbers("y", "")]);
+        table.push([0.1.into(), "no, \"by far\"".into(), None.into()]);
+        table.push([(-0.0).into(), "".into(), 1e300.into()]);
+        let read = parse(&table.text()).unwrap();
+        assert_eq!((&read, read.text()), (&table, table.text()));
+        assert_eq!((read.number(0, "y", ""), read.number(0, "x", "m")), (Ok(None), Ok(Some(0.1))));
+        assert_eq!((read.word(0, "status").unwrap().as_str(), read.len()), ("no, \"by far\"", 2));
+        let header = &read.header;
+        assert_eq!((header.text_of("scene"), header.whole("seed")), (Some("a = b, c"), Ok(u64::MAX)));
+        assert_eq!(
+            (header.number("area", "m2"), header.numbers("speeds", "m/s")),
+            (Ok(1e-5 / 3.0), Ok(vec![1e-30, 0.1 + 0.2]))
+        );
+        let ordered = read.ordered([1, 0]);
+        assert_eq!((ordered.number(1, "x", "m"), ordered.filtered(|row| row == 1).len()), (Ok(Some(0.1)), 1));
+    }
+
+    #[test]
+    fn errors_say_where_and_what() {
+        let said = |error: TableError| error.to_string();
+        assert_eq!(said(parse("# a = 1\nx [m],y [1]\n\n1,2\n1\n").unwrap_err()), "t.csv:5: 1 fields, expected 2");
+        let table = parse("# a = 1 = 2\nx [m],y [1]\n1,fast\n").unwrap();
+        assert_eq!(table.header.text_of("a"), Some("1 = 2"));
+        assert_eq!(said(table.number(0, "y", "m").unwrap_err()), "t.csv: no column `y [m]`");
+        assert_eq!(said(table.number(0, "y", "1").unwrap_err()), "t.csv:3: y [1] = \"fast\": expected a number");
+        assert_eq!(said(table.header.number("b", "Pa").unwrap_err()), "t.csv: `# b = `: expected a number in Pa");
+        assert_eq!(table.header.optional("b", Header::whole), Ok(None));
+    }
+
+    #[test]
+    fn what_a_stopped_command_has_left_is_found() {
+        let table = Table::new(Header::new("n", 1), [Column::numbers("x", "m"), Column::words("status")]);
+        let text = format!("{}1,steady\nx,steady\n2\n3,4\n5,stea", table.head());
+        let (found, corrupt) = table.begun(&text, Path::new("t.csv")).unwrap();
+        assert_eq!((found.len(), found.number(1, "x", "m"), found.word(1, "status")), (2, Ok(Some(3.0)), Ok("4".into())));
+        let said: Vec<String> = corrupt.iter().map(ToString::to_string).collect();
+        assert_eq!(said, ["t.csv:4: x [m] = \"x\": expected a number", "t.csv:5: 1 fields, expected 2"]);
+        let other = table.begun("x [mm],status\n", Path::new("t.csv")).unwrap_err().to_string();
+        assert_eq!(other, "t.csv: expected the columns x [m],status");
+    }
+}
