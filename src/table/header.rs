@@ -22,9 +22,23 @@ impl PartialEq for Header {
 }
 
 impl Header {
-    /// One that begins with what the table is, and the version of that.
-    pub fn new(kind: &str, version: u64) -> Self {
+    /// One that begins with the kind of the table and the version of that.
+    pub fn new((kind, version): (&str, u64)) -> Self {
         Self::default().with_whole(kind, version)
+    }
+
+    /// Refuses a table of another kind or version.
+    ///
+    /// # Errors
+    /// [`TableError`] where it is one.
+    pub fn check_kind(&self, (kind, version): (&str, u64)) -> Result<(), TableError> {
+        match self.find(kind) {
+            Some(found) if found == version.to_string() => Ok(()),
+            found => {
+                let found = found.unwrap_or("none");
+                Err(self.error(format!("expected the line `# {kind} = {version}`, found {found}")))
+            }
+        }
     }
 
     /// That of a text.

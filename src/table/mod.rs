@@ -204,7 +204,8 @@ impl Table {
         if headings(self) != headings(&read) {
             return Err(read.error(format!("expected the columns {}", headings(self))));
         }
-        let mut table = Self { header: read.header, ..Self::new(Header::default(), self.columns.iter().map(Column::emptied)) };
+        let mut table =
+            Self { header: read.header, ..Self::new(Header::default(), self.columns.iter().map(Column::emptied)) };
         let mut corrupt = Vec::new();
         for (line, fields) in rows {
             match table.check_fields(line, &fields) {
@@ -372,7 +373,7 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read_as_the_same() {
-        let header = Header::new("asperity numbers", 1)
+        let header = Header::new(("asperity numbers", 1))
             .with("scene", "a = b,\nc")
             .with_number("area", 1e-5 / 3.0, "m2")
             .with_numbers("speeds", &[1e-30, 0.1 + 0.2], "m/s")
@@ -409,10 +410,13 @@ mod tests {
 
     #[test]
     fn what_a_stopped_command_has_left_is_found() {
-        let table = Table::new(Header::new("n", 1), [Column::numbers("x", "m"), Column::words("status")]);
+        let table = Table::new(Header::new(("n", 1)), [Column::numbers("x", "m"), Column::words("status")]);
         let text = format!("{}1,steady\nx,steady\n2\n3,4\n5,stea", table.head());
         let (found, corrupt) = table.begun(&text, Path::new("t.csv")).unwrap();
-        assert_eq!((found.len(), found.number(1, "x", "m"), found.word(1, "status")), (2, Ok(Some(3.0)), Ok("4".into())));
+        assert_eq!(
+            (found.len(), found.number(1, "x", "m"), found.word(1, "status")),
+            (2, Ok(Some(3.0)), Ok("4".into()))
+        );
         let said: Vec<String> = corrupt.iter().map(ToString::to_string).collect();
         assert_eq!(said, ["t.csv:4: x [m] = \"x\": expected a number", "t.csv:5: 1 fields, expected 2"]);
         let other = table.begun("x [mm],status\n", Path::new("t.csv")).unwrap_err().to_string();
