@@ -80,7 +80,7 @@
 //! | a_T | `Material::shift_factor()` | 1 | shift of all times with temperature (Williams, Landel and Ferry) |
 //! | E', E'' | `Material::complex_modulus()` | Pa | storage and loss modulus (2) |
 //! | f_x,i, f_z,i | `Forces::on_mass_x`, `on_mass_z` | N | forces of the links on mass i (3), (4) |
-//! | M, K, D | `CarrierBody::mass`, `stiffness`, `damping` | kg, N/m, N s/m | carrier that is a body, spring and damper to its drive |
+//! | M, K, D | `DrivenBody::mass`, `stiffness`, `damping` | kg, N/m, N s/m | carrier that is a body, spring and damper to its drive |
 //! | N, P | `Input::Load`, `Input::Pull` | N | normal load (N > 0 presses) and tangential force on a body |
 //! | u_d, w_d, R | `Outside::drive`, `drive_force()` | m, N | displacement of the drive, its force on the body |
 //! | F_x, F_z | `Forces::on_carrier()` | N | forces of the layer on the carrier |

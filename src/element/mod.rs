@@ -8,7 +8,6 @@
 
 mod backing;
 mod basis;
-mod clearance;
 mod grid;
 mod jenkins;
 mod law;
@@ -30,13 +29,13 @@ mod table_format;
 mod tests;
 
 pub use basis::{Basis, CONVERGED};
-pub use clearance::Clearance;
 pub use grid::{Load, OperatingPoint, SweepGrid};
 pub use law_points::{ElementLaw, LawPoints};
 pub use left_out::{LeftOut, left_out};
 pub(crate) use limits::ROUNDING;
 pub use limits::TableLimits;
 pub use low_end::LowEnd;
+pub use point_contact::Clearance;
 pub use point_contact::{PointContact, dependencies, variables};
 pub use point_status::PointStatus;
 pub use quantity::Quantity;

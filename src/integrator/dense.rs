@@ -9,7 +9,7 @@
 use std::ops::Range;
 
 use super::carrier_sums::{AxisSums, CarrierSums, LinkState, Placement};
-use super::dense_workspace::DenseWorkspace;
+use super::dense_weights::DenseWorkspace;
 use super::interpolation::{Interpolation, Velocities, parabola};
 use super::maxwell::by_rate;
 use super::memory;
@@ -94,7 +94,7 @@ impl<'a> DenseOutput<'a> {
         }
         self.method.heat.within(theta, &self.start.flash, self.stages(), &mut state.flash);
         let at = (self.start, self.span.length, theta);
-        memory::within(self.model, at, self.stages(), workspace, &mut state.memory);
+        memory::within(self.model, at, self.stages(), &workspace.integral, &mut state.memory);
         let mut elements = &mut state.maxwell[..];
         for row in &self.model.rows {
             let (of_row, further) = elements.split_at_mut(row.kind.count(self.masses.len()));
@@ -160,7 +160,7 @@ impl<'a> DenseOutput<'a> {
     }
 
     /// `from` plus the weighted values of the stages plus `shift`, of the masses that are meant.
-    pub(super) fn combine(
+    fn combine(
         &self,
         out: &mut [f64],
         weights: &Weights,
@@ -219,6 +219,24 @@ impl<'a> DenseOutput<'a> {
             largest = largest.max(here);
         }
         largest.sqrt()
+    }
+
+    /// Sets the weights at the fraction `theta` of the step.
+    fn set_weights(&self, workspace: &mut DenseWorkspace, theta: f64) {
+        workspace.set(self.model, self.method, self.span.length, theta);
+    }
+
+    /// Computes the accelerations of the interpolant along x and z (m/s²) at the fraction `theta` of the step, with the
+    /// carrier there.
+    fn set_accelerations(&self, workspace: &mut DenseWorkspace, theta: f64, carrier: &CarrierPoint) {
+        let slope = self.interpolation().slope(theta).map(|weight| weight / self.span.length);
+        let missing = |of_carrier: f64, rate: fn(&CarrierPoint) -> f64| {
+            of_carrier - slope.iter().zip(self.carriers()).map(|(weight, at)| weight * rate(at)).sum::<f64>()
+        };
+        let [x, z] = workspace.of_masses.each_mut().map(|values| &mut values[..self.masses.len()]);
+        let missing_x = missing(carrier.x.acceleration, |at| at.x.speed);
+        self.combine(x, &slope, None, |stage| &stage.velocity_x, missing_x);
+        self.combine(z, &slope, None, |stage| &stage.velocity_z, missing(carrier.z.acceleration, |at| at.z.speed));
     }
 
     /// The carrier at the fraction `theta`, for which the weights of `workspace` are set.
@@ -398,7 +416,7 @@ impl<'a> DenseOutput<'a> {
     /// what sticks depends on it.
     fn slip_history(&self, i: usize, theta: f64, workspace: &DenseWorkspace) -> SlipHistory {
         let at = (self.start, self.span.length, theta);
-        match memory::of_mass_within(self.model, at, self.stages(), workspace, i) {
+        match memory::of_mass_within(self.model, at, self.stages(), &workspace.integral, i) {
             None => SlipHistory::default(),
             Some(speed) => SlipHistory {
                 flash: Flash::held(self.method.heat.of_mass_within(theta, &self.start.flash, self.stages(), i)),

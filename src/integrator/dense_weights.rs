@@ -1,41 +1,89 @@
 //! The weights with which the stages of a step enter the values within it (docs/theory.md, section 5).
 
-use super::dense::DenseOutput;
-use super::dense_workspace::DenseWorkspace;
 use super::interpolation::Velocities;
+use super::maxwell::ElementWeights;
+use super::method::RungeKutta;
+use super::scheme::Scheme;
+use super::tableau::Weights;
 use crate::math::Relaxation;
-use crate::model::{ByLink, CarrierPoint};
+use crate::model::{ByLink, MaxwellRow, Model};
 
-impl DenseOutput<'_> {
-    /// Sets the weights at the fraction `theta` of the step, unless they are there already.
-    pub(super) fn set_weights(&self, workspace: &mut DenseWorkspace, theta: f64) {
-        let at = (self.method.scheme, self.span.length, theta);
-        if workspace.at == Some(at) {
+/// Workspace of [`DenseOutput`](super::DenseOutput): the weights of the stages at one fraction of a step.
+#[derive(Clone, Debug)]
+pub struct DenseWorkspace {
+    /// The scheme and the length of the step and its fraction for which the weights are set; `None` where they are not.
+    pub(super) at: Option<(Scheme, f64, f64)>,
+    /// Of the stages' values in a value.
+    pub(super) values: Weights,
+    /// Of the stages' rates in a value's change since the start, s.
+    pub(super) integral: Weights,
+    /// By relaxation time.
+    pub(super) elements: Vec<ElementWeights>,
+    /// By relaxation time: the exact solution over the whole step.
+    pub(super) whole: Vec<Relaxation>,
+    /// By kind of link: of the stages' elongation rates in the force of all Maxwell elements, N s/m.
+    pub(super) of_rate: ByLink<Weights>,
+    /// Of the masses that are meant: their accelerations in the defect, x and v_x in sums.
+    pub(super) of_masses: [Vec<f64>; 2],
+}
+
+impl DenseWorkspace {
+    /// Workspace for steps of `model`.
+    pub fn new(model: &Model) -> Self {
+        Self {
+            at: None,
+            values: Weights::default(),
+            integral: Weights::default(),
+            elements: vec![ElementWeights::default(); model.relaxation_times.len()],
+            whole: vec![Relaxation::default(); model.relaxation_times.len()],
+            of_rate: ByLink::default(),
+            of_masses: [vec![0.0; model.masses()], vec![0.0; model.masses()]],
+        }
+    }
+
+    /// Workspace for single masses alone, not for [`DenseOutput::defect`](super::DenseOutput::defect) nor for sums over the layer.
+    pub fn for_single_masses(model: &Model) -> Self {
+        Self { of_masses: [Vec::new(), Vec::new()], ..Self::new(model) }
+    }
+
+    /// Forgets the weights: the model has changed.
+    pub fn invalidate(&mut self) {
+        self.at = None;
+    }
+
+    /// The weights of the elements of one row at the fraction for which the weights are set.
+    pub(super) fn element_weights(&self, row: &MaxwellRow) -> &ElementWeights {
+        &self.elements[row.time_index]
+    }
+
+    /// Sets the weights at the fraction `theta` of a step of length `h` (s) by `method`, unless they are there already.
+    pub(super) fn set(&mut self, model: &Model, method: &RungeKutta, h: f64, theta: f64) {
+        let at = (method.scheme, h, theta);
+        if self.at == Some(at) {
             return;
         }
-        let (h, interpolation) = (self.span.length, self.interpolation());
-        workspace.values = interpolation.values(theta);
-        workspace.integral = interpolation.integral(theta).map(|weight| h * weight);
+        let interpolation = &method.coefficients.interpolation;
+        self.values = interpolation.values(theta);
+        self.integral = interpolation.integral(theta).map(|weight| h * weight);
         match interpolation.velocities() {
-            Velocities::Polynomial => self.set_relaxing_elements(workspace, theta),
-            Velocities::BrokenLine => self.set_linear_elements(workspace),
+            Velocities::Polynomial => self.set_relaxing_elements(model, method, h, theta),
+            Velocities::BrokenLine => self.set_linear_elements(method),
         }
-        workspace.of_rate = ByLink::default();
-        for row in &self.model.rows {
-            let rates = workspace.elements[row.time_index].rates;
-            for (weight, rate) in workspace.of_rate[row.kind].iter_mut().zip(rates) {
+        self.of_rate = ByLink::default();
+        for row in &model.rows {
+            let rates = self.elements[row.time_index].rates;
+            for (weight, rate) in self.of_rate[row.kind].iter_mut().zip(rates) {
                 *weight += row.stiffness * rate;
             }
         }
-        workspace.at = Some(at);
+        self.at = Some(at);
     }
 
     /// Lets the elements follow the interpolated rate exactly, less the linear share of the difference at the step's
     /// own end.
-    fn set_relaxing_elements(&self, workspace: &mut DenseWorkspace, theta: f64) {
-        let h = self.span.length;
-        let is_other_step = workspace.at.is_none_or(|(scheme, length, _)| (scheme, length) != (self.method.scheme, h));
-        let relaxations = workspace.elements.iter_mut().zip(&mut workspace.whole).zip(&self.model.relaxation_times);
+    fn set_relaxing_elements(&mut self, model: &Model, method: &RungeKutta, h: f64, theta: f64) {
+        let is_other_step = self.at.is_none_or(|(scheme, length, _)| (scheme, length) != (method.scheme, h));
+        let relaxations = self.elements.iter_mut().zip(&mut self.whole).zip(&model.relaxation_times);
         for ((elements, whole), tau) in relaxations {
             if is_other_step {
                 *whole = Relaxation::new(h / tau, 1.0);
@@ -43,29 +91,16 @@ impl DenseOutput<'_> {
             let here = if theta == 1.0 { *whole } else { Relaxation::new(h / tau, theta) };
             let driven = std::array::from_fn(|power| h * (here.driven[power] - theta * whole.driven[power]));
             elements.ends = [here.decay - theta * whole.decay, theta];
-            elements.rates = self.interpolation().combined(&driven);
+            elements.rates = method.coefficients.interpolation.combined(&driven);
         }
     }
 
     /// Puts the elements on the broken lines through their elongations at the start, at the first implicit stage and at
     /// the end.
-    fn set_linear_elements(&self, workspace: &mut DenseWorkspace) {
-        let [of_start, of_first, of_end, ..] = workspace.values;
-        for (time_index, elements) in workspace.elements.iter_mut().enumerate() {
-            *elements = self.method.maxwell.weights_between(time_index, 1, [of_start, of_first, of_end]);
+    fn set_linear_elements(&mut self, method: &RungeKutta) {
+        let [of_start, of_first, of_end, ..] = self.values;
+        for (time_index, elements) in self.elements.iter_mut().enumerate() {
+            *elements = method.maxwell.weights_between(time_index, 1, [of_start, of_first, of_end]);
         }
-    }
-
-    /// Computes the accelerations of the interpolant along x and z (m/s²) at the fraction `theta` of the step, with the
-    /// carrier there.
-    pub(super) fn set_accelerations(&self, workspace: &mut DenseWorkspace, theta: f64, carrier: &CarrierPoint) {
-        let slope = self.interpolation().slope(theta).map(|weight| weight / self.span.length);
-        let missing = |of_carrier: f64, rate: fn(&CarrierPoint) -> f64| {
-            of_carrier - slope.iter().zip(self.carriers()).map(|(weight, at)| weight * rate(at)).sum::<f64>()
-        };
-        let [x, z] = workspace.of_masses.each_mut().map(|values| &mut values[..self.masses.len()]);
-        let missing_x = missing(carrier.x.acceleration, |at| at.x.speed);
-        self.combine(x, &slope, None, |stage| &stage.velocity_x, missing_x);
-        self.combine(z, &slope, None, |stage| &stage.velocity_z, missing(carrier.z.acceleration, |at| at.z.speed));
     }
 }

@@ -4,10 +4,10 @@ use std::hint::select_unpredictable;
 
 use super::heat::StageHeat;
 use super::maxwell::Maxwell;
-use super::running_maxima::RunningMaxima;
 use super::scheme::ContactModes;
 use super::stage_values::StageValues;
 use super::tableau::Tableau;
+use super::tolerance::RunningMaxima;
 use super::tolerance::{Rod, Tolerance, square};
 use crate::math::{Jet, dot, sum_of, sum_of_pairs, sum_of_triples, weighted_sum, with_widest_vectors};
 use crate::model::{Axis, BoundaryPowers, ByAxis, CarrierPoint, LinkKind, Mode, Model, State};

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::dense::DenseOutput;
-use super::dense_workspace::DenseWorkspace;
+use super::dense_weights::DenseWorkspace;
 use crate::model::{Forces, Model, State};
 
 /// The step of a layer that its integrator has attempted last.

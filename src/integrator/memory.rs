@@ -4,8 +4,8 @@
 //! At a stage v_s = b + γh v̇_s with the contributions b of the earlier stages: a quadratic equation in v_s, which friction
 //! solves at any v_t ([`SpeedMemory`]). What sticks ages by the exact solution.
 
-use super::dense_workspace::DenseWorkspace;
 use super::stage_values::StageValues;
+use super::tableau::Weights;
 use crate::math::weighted_sum;
 use crate::model::{Mode, Model, SpeedMemory, State, aged, memory_rate};
 
@@ -68,19 +68,19 @@ impl StageMemory {
     }
 }
 
-/// Writes the speeds at the fraction `theta` of a step of length `h` (s) from `start`, for which the weights of `workspace`
-/// are set.
+/// Writes the speeds at the fraction `theta` of a step of length `h` (s) from `start`, with the
+/// weights of the stages' rates in the `integral` of one, s.
 pub(super) fn within(
     model: &Model,
     (start, h, theta): (&State, f64, f64),
     stages: &[StageValues],
-    workspace: &DenseWorkspace,
+    integral: &Weights,
     memory: &mut [f64],
 ) {
     if model.friction.memory.is_none() {
         return;
     }
-    let rates = workspace.integral.iter().zip(stages).map(|(weight, stage)| (*weight, &stage.memory_rate[..]));
+    let rates = integral.iter().zip(stages).map(|(weight, stage)| (*weight, &stage.memory_rate[..]));
     weighted_sum(memory, std::iter::once((1.0, &start.memory[..])).chain(rates));
     for (i, memory) in memory.iter_mut().enumerate() {
         *memory = exact_or(model, (start, h, theta), i, stages, *memory);
@@ -92,11 +92,11 @@ pub(super) fn of_mass_within(
     model: &Model,
     (start, h, theta): (&State, f64, f64),
     stages: &[StageValues],
-    workspace: &DenseWorkspace,
+    integral: &Weights,
     i: usize,
 ) -> Option<f64> {
     let remembered = start.memory.get(i)?;
-    let gained = workspace.integral.iter().zip(stages).map(|(weight, stage)| weight * stage.memory_rate[i]);
+    let gained = integral.iter().zip(stages).map(|(weight, stage)| weight * stage.memory_rate[i]);
     Some(exact_or(model, (start, h, theta), i, stages, remembered + gained.sum::<f64>()))
 }
 

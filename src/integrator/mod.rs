@@ -9,7 +9,6 @@
 mod carrier_sums;
 mod dense;
 mod dense_weights;
-mod dense_workspace;
 mod energy;
 mod error;
 mod heat;
@@ -20,7 +19,6 @@ mod memory;
 mod method;
 mod parabolas;
 mod polynomials;
-mod running_maxima;
 mod scheme;
 mod sensitivity;
 mod stage;
@@ -30,19 +28,19 @@ mod tableau;
 mod tolerance;
 
 pub use dense::DenseOutput;
-pub use dense_workspace::DenseWorkspace;
+pub use dense_weights::DenseWorkspace;
 pub use error::ErrorEstimate;
 pub use interpolation::Interpolation;
 pub use layer_step::{InterpolatedLayer, LayerStep, Overlay};
 pub use method::TimeSpan;
 pub use parabolas::Parabolas;
 pub use polynomials::Polynomials;
-pub use running_maxima::RunningMaxima;
 pub use scheme::{ContactModes, Scheme};
 pub use stage::NoConvergence;
 pub use stage_values::{LayerState, NO_LIMIT, StageValues};
 pub use sums::LayerSums;
 pub use tableau::{ContinuousWeights, ESDIRK3, ESDIRK5, MAX_STAGES, SDIRK2, Tableau, Weights};
+pub use tolerance::RunningMaxima;
 pub use tolerance::Tolerance;
 
 use crate::model::{Axis, Tangents};

@@ -12,8 +12,8 @@ use super::heat::StageHeat;
 use super::stage::{SlipVariation, SlippingMass, StagePoint, StageSolver};
 use super::stage_values::StageValues;
 use crate::model::{
-    Axis, ByAxis, CarrierBody, Forces, Input, LinkKind, LinkMotion, Mode, Model, SlipFriction, SlipHistory,
-    SpeedMemory, State, SurfacePoint, TangentsOf,
+    Axis, ByAxis, DrivenBody, Forces, Input, LinkKind, LinkMotion, Mode, Model, SlipFriction, SlipHistory, SpeedMemory,
+    State, SurfacePoint, TangentsOf,
 };
 
 /// The variation of the layer's state: dimensionless for positions, 1/s for velocities. Or its rate of change, each
@@ -138,7 +138,7 @@ impl Sensitivity {
     }
 
     /// The variation of what acts from outside on the body along `axis`, displaced and moving as given.
-    fn on_body(&self, body: &CarrierBody, axis: Axis, s: f64, [displacement, rate]: [f64; 2]) -> f64 {
+    fn on_body(&self, body: &DrivenBody, axis: Axis, s: f64, [displacement, rate]: [f64; 2]) -> f64 {
         let [input, input_rate] = if self.input.axis() == Some(axis) { self.ramp(s) } else { [0.0; 2] };
         let (drive, drive_rate, force) = match self.input {
             Input::U | Input::W => (input, input_rate, 0.0),

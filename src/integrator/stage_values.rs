@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::running_maxima::RunningMaxima;
+use super::tolerance::RunningMaxima;
 use crate::model::{
     BoundaryPowers, ByAxis, ByLink, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, SlipCurve,
     State, SurfacePoint, memory_rate,

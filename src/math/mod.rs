@@ -12,7 +12,6 @@ mod root;
 mod spline;
 mod sums;
 mod tridiagonal;
-mod vectors;
 
 pub use finite::not_finite;
 pub use fourier::{Direction, fourier, fourier_2d};
@@ -24,6 +23,6 @@ pub use random::SplitMix64;
 pub use relaxation::Relaxation;
 pub use root::{bracketed_root, root_between};
 pub use spline::{BLOCK, Bounds, Spline};
+pub use sums::with_widest_vectors;
 pub use sums::{add_weighted_sum, dot, dots, square_and_dots, sum, sum_of, sum_of_pairs, sum_of_triples, weighted_sum};
 pub use tridiagonal::BlockTridiagonal;
-pub use vectors::with_widest_vectors;

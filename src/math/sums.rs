@@ -1,7 +1,5 @@
 //! Weighted sums of arrays, such as the terms of a Runge-Kutta stage from the stages before.
 
-use super::with_widest_vectors;
-
 /// Terms that one pass over the memory takes.
 const MAX_TERMS: usize = 8;
 
@@ -221,6 +219,14 @@ pub fn sum_of(n: usize, term: impl Fn(usize) -> f64) -> f64 {
         }
     }
     sums.iter().sum::<f64>() + (whole..n).map(term).sum::<f64>()
+}
+
+/// Does `work` with the widest vectors of the processor (SSE2, AVX2, AVX-512); numbers are the same with all.
+///
+/// Only what is inlined into `work` takes part: it and the functions that it calls are to be `#[inline(always)]`.
+#[inline]
+pub fn with_widest_vectors<R>(work: impl FnOnce() -> R) -> R {
+    pulp::Arch::new().dispatch(work)
 }
 
 #[cfg(test)]

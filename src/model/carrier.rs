@@ -1,12 +1,10 @@
 //! The carrier's motion: prescribed along an axis, or that of a body there.
 
-use std::ops::{Index, IndexMut};
-
 use serde::{Deserialize, Serialize};
 
-use super::{EndForces, Forces, Model};
+use super::{CarrierPoint, DrivenBody, EndForces, Forces, Model};
 use crate::math::{Jet, Spline};
-use crate::scene::{Axis, ByAxis, Motion, Path, Scene};
+use crate::scene::{Axis, ByAxis, Motion, Path};
 
 /// The carrier on a smooth segment of its motion. Displacements are counted from the start of the segment, so that a
 /// carrier far away loses no digits but those of u itself.
@@ -27,46 +25,6 @@ pub struct Carrier {
     pub ends: Option<EndForces>,
 }
 
-/// The carrier at one instant of a segment.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct CarrierPoint {
-    /// u minus u at the start of the segment (m), u̇ and ü.
-    pub x: Jet,
-    /// w minus w at the start of the segment (m), ẇ and ẅ.
-    pub z: Jet,
-    /// What acts on the first and on the last mass from beyond a part of a layer, N; 0 for a whole layer.
-    #[serde(skip)]
-    pub ends: [ByAxis<f64>; 2],
-}
-
-impl CarrierPoint {
-    /// u̇ and ẇ, m/s.
-    #[inline(always)]
-    pub fn rates(&self) -> ByAxis<f64> {
-        ByAxis { x: self.x.speed, z: self.z.speed }
-    }
-}
-
-impl Index<Axis> for CarrierPoint {
-    type Output = Jet;
-
-    fn index(&self, axis: Axis) -> &Jet {
-        match axis {
-            Axis::X => &self.x,
-            Axis::Z => &self.z,
-        }
-    }
-}
-
-impl IndexMut<Axis> for CarrierPoint {
-    fn index_mut(&mut self, axis: Axis) -> &mut Jet {
-        match axis {
-            Axis::X => &mut self.x,
-            Axis::Z => &mut self.z,
-        }
-    }
-}
-
 /// Position of the carrier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CarrierPosition {
@@ -74,35 +32,6 @@ pub struct CarrierPosition {
     pub profile_position: f64,
     /// w, m.
     pub w: f64,
-}
-
-/// The carrier as a body along one axis: what does not change through a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CarrierBody {
-    /// Mass M, kg.
-    pub mass: f64,
-    /// Stiffness K of the spring to the drive, N/m.
-    pub stiffness: f64,
-    /// Damping D of the damper to the drive, N s/m.
-    pub damping: f64,
-    /// Constant part of the tangential force P or of the load N, N.
-    pub force: f64,
-}
-
-impl CarrierBody {
-    /// The bodies of `scene` along x and z.
-    pub(super) fn along_axes(scene: &Scene) -> ByAxis<Option<Self>> {
-        ByAxis::from_fn(|axis| {
-            let body = scene.carrier[axis].as_ref()?;
-            let force = match axis {
-                Axis::X => body.pull,
-                Axis::Z => body.load,
-            };
-            let or_zero = |value: Option<f64>| value.unwrap_or(0.0);
-            let (stiffness, damping) = (or_zero(body.stiffness), or_zero(body.damping));
-            Some(Self { mass: body.mass, stiffness, damping, force: or_zero(force) })
-        })
-    }
 }
 
 /// The motion of a body along one axis on a smooth segment: where it stands at the start of a step, how it moves
@@ -184,24 +113,24 @@ impl Outside {
     }
 
     /// R, the drive's force on the body, N.
-    pub fn drive_force(&self, body: &CarrierBody) -> f64 {
+    pub fn drive_force(&self, body: &DrivenBody) -> f64 {
         let stretch = self.stretch();
         -(body.stiffness * stretch.position + body.damping * stretch.speed)
     }
 
     /// Ṙ, N/s.
-    pub fn drive_force_rate(&self, body: &CarrierBody) -> f64 {
+    pub fn drive_force_rate(&self, body: &DrivenBody) -> f64 {
         let stretch = self.stretch();
         -(body.stiffness * stretch.speed + body.damping * stretch.acceleration)
     }
 
     /// The power of the load and of the drive into the body, W.
-    pub fn input(&self, body: &CarrierBody) -> f64 {
+    pub fn input(&self, body: &DrivenBody) -> f64 {
         self.force * self.body.speed + self.drive_force(body) * self.drive.speed
     }
 
     /// The power lost in the damper to the drive, W.
-    pub fn lost(&self, body: &CarrierBody) -> f64 {
+    pub fn lost(&self, body: &DrivenBody) -> f64 {
         body.damping * self.stretch().speed.powi(2)
     }
 }
@@ -371,13 +300,13 @@ impl Carrier {
 
     /// The body of `model` along `axis` and what acts on it from outside at the time `s` after the start of the
     /// segment, s.
-    pub fn outside<'a>(&self, model: &'a Model, axis: Axis, s: f64) -> Option<(&'a CarrierBody, Outside)> {
+    pub fn outside<'a>(&self, model: &'a Model, axis: Axis, s: f64) -> Option<(&'a DrivenBody, Outside)> {
         self.outside_at(model, axis, s, self.along(axis, s))
     }
 
     /// What acts from outside on the body of `model` along `axis`, displaced since the start of the segment as `at`
     /// says, at the time `s` (s).
-    pub fn outside_at<'a>(&self, model: &'a Model, axis: Axis, s: f64, at: Jet) -> Option<(&'a CarrierBody, Outside)> {
+    pub fn outside_at<'a>(&self, model: &'a Model, axis: Axis, s: f64, at: Jet) -> Option<(&'a DrivenBody, Outside)> {
         let (body, motion) = (model.bodies[axis].as_ref()?, self.bodies[axis].as_ref()?);
         let sign = match axis {
             Axis::X => 1.0,

@@ -7,7 +7,7 @@
 //!
 //! The last is the shear strength of rubber, τ_f(v) = τ_f0 exp(-c [log10(v/v_0)]²) above a creep speed v_c and constant
 //! below it (B. Lorenz et al., J. Phys.: Condens. Matter 25, 2013). Its plateau A τ_f(v_c) acts at rest too and is
-//! counted in [`FrictionLaw::shear`]; a contact that slips has the [excess](SlipCurve::excess) over it.
+//! counted in [`FrictionLaw::shear`]; a contact that slips has the [excess](super::SlipCurve::excess) over it.
 //!
 //! μ_h and the area A_r that touches are those of the roughness below the profile ([`FineFriction`]); without it A_r is A.
 //! At rest both are at v_c.
@@ -18,14 +18,13 @@
 //! Where contacts have a [memory](super::SpeedMemory), the speed that counts is the one that they remember, in slip and for
 //! the limit of what sticks.
 //!
-//! A law is what [`FrictionLaw`] answers: T(0), and the excess over it [in slip](SlipFriction), with the derivatives; its
+//! A law is what [`FrictionLaw`] answers: T(0), and the excess over it [in slip](SlipFriction) (`slip_curve`), with the derivatives; its
 //! power, the shares of its parts, and what it takes in an impact.
 
-use super::{ContactQuantity, FineContact, FineFriction, RateShearLaw, SlipCurve, SlipHistory, SpeedShift};
-use crate::scene::Scene;
+use std::f64::consts::LN_10;
 
-/// Changes up to this share of the speed are taken along the tangent instead of the curve.
-const STRAIGHT: f64 = 0.1;
+use super::{ContactQuantity, FineContact, FineFriction, SlipHistory, SpeedShift};
+use crate::scene::{self, Scene};
 
 /// The law of friction of one mass in contact.
 #[derive(Clone, Debug)]
@@ -46,6 +45,76 @@ pub struct FrictionLaw {
     pub(super) shift: Option<SpeedShift>,
     /// D, m, over which contacts are renewed, where friction depends on the speed that they remember.
     pub memory: Option<f64>,
+}
+
+/// The law A τ_f(v) of one mass in contact: its plateau A τ_f(v_c) and its excess over that.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RateShearLaw {
+    /// A τ_f0, N.
+    largest: f64,
+    /// A τ_f(v_c), N.
+    plateau: f64,
+    /// 1/v_0, s/m.
+    per_reference: f64,
+    /// b = c/ln²10, so that τ_f = τ_f0 exp(-b ln²(v/v_0)).
+    sharpness: f64,
+    /// v_c, m/s.
+    creep_speed: f64,
+    /// v/v_0 where τ_f falls fastest.
+    fastest_fall: f64,
+}
+
+impl RateShearLaw {
+    /// The law of a scene; `None` where it has no force.
+    pub fn new(law: &scene::RateShear) -> Option<Self> {
+        let largest = law.force.unwrap_or(0.0);
+        let per_reference = 1.0 / law.reference_speed;
+        let (sharpness, creep_speed) = (law.sharpness / (LN_10 * LN_10), law.creep_speed());
+        let fastest_fall = fastest_fall(sharpness);
+        let without_plateau = Self { largest, plateau: 0.0, per_reference, sharpness, creep_speed, fastest_fall };
+        (largest > 0.0).then(|| Self { plateau: without_plateau.whole(creep_speed).0, ..without_plateau })
+    }
+
+    /// A τ_f(v_c), N.
+    pub fn plateau(&self) -> f64 {
+        self.plateau
+    }
+
+    /// v_c, m/s.
+    pub fn creep_speed(&self) -> f64 {
+        self.creep_speed
+    }
+
+    /// A τ_f(v), N, and -2b ln(v/v_0), the slope of its logarithm over ln v.
+    fn whole(&self, speed: f64) -> (f64, f64) {
+        let y = (speed * self.per_reference).ln();
+        (self.largest * (-self.sharpness * y * y).exp(), -2.0 * self.sharpness * y)
+    }
+
+    /// Bounds of the excess over the plateau, N.
+    pub(super) fn bounds(&self) -> (f64, f64) {
+        (-self.plateau, self.largest - self.plateau)
+    }
+
+    /// The speeds of the largest strength and of the steepest fall, m/s.
+    pub(super) fn marks(&self) -> [f64; 2] {
+        [1.0, self.fastest_fall].map(|share| share / self.per_reference)
+    }
+
+    /// The excess over the plateau, N, and its derivative by the speed, N s/m.
+    pub(super) fn with_slope(&self, speed: f64) -> (f64, f64) {
+        let size = speed.abs();
+        if size <= self.creep_speed {
+            return (0.0, 0.0);
+        }
+        let (force, slope) = self.whole(size);
+        ((force - self.plateau) * 1.0_f64.copysign(speed), slope * force / size)
+    }
+}
+
+/// v/v_0 at which the strength falls fastest: τ_f'' = 0 beyond v_0 at 2by² + y = 1, y = ln(v/v_0).
+fn fastest_fall(sharpness: f64) -> f64 {
+    (2.0 / (1.0 + (1.0 + 8.0 * sharpness).sqrt())).exp()
 }
 
 /// Friction T of a contact in slip, with what the heat that it makes adds to its derivatives.
@@ -173,65 +242,6 @@ impl FrictionLaw {
         self.coulomb * normal + rest
     }
 
-    /// The largest friction of a contact that sticks under F_N (N) with this history, N: [T(0)](Self::limit), with memory
-    /// T at the speed that it remembers.
-    #[inline]
-    pub fn limit_with(&self, normal: f64, history: &SlipHistory) -> f64 {
-        if history.memory.is_none() { self.limit(normal) } else { self.slip(normal, 0.0, history).force() }
-    }
-
-    /// The excess in slip over T(0) under the normal force F_N (N), with what the past has left; `None` where friction
-    /// does not depend on the speed.
-    #[inline]
-    pub fn slip_curve(&self, normal: f64, history: &SlipHistory) -> Option<SlipCurve<'_>> {
-        let fine = self.fine.as_ref().map(|fine| {
-            let pressed = fine.under(normal);
-            (pressed, pressed.at_rest())
-        });
-        self.depends_on_speed().then_some(SlipCurve { law: self, fine, normal, history: *history })
-    }
-
-    /// v |∂T/∂v| where friction under F_N (N) falls at the `speed` v (m/s) of even sliding, N, at the flash temperature
-    /// `flash`, K; below 0 where it rises, and 0 where it does not depend on the speed.
-    pub fn fall(&self, normal: f64, speed: f64, flash: f64) -> f64 {
-        let curve = self.slip_curve(normal, &SlipHistory::even(flash));
-        -speed * curve.map_or(0.0, |curve| curve.with_slope(speed).1)
-    }
-
-    /// Friction under F_N (N) at the `speed` in the direction of slip, m/s. On roughness below the profile `limit` is then
-    /// Coulomb's part alone and `excess` the rest, unless the mass has turned round: their sum is what counts.
-    #[inline]
-    pub fn slip(&self, normal: f64, speed: f64, history: &SlipHistory) -> SlipFriction {
-        let is_odd = history.memory.is_none();
-        let fine = self.fine.as_ref().map(|fine| {
-            let pressed = fine.under(normal);
-            (pressed, if speed < 0.0 && is_odd { pressed.at_rest() } else { FineContact::default() })
-        });
-        match self.depends_on_speed().then_some(SlipCurve { law: self, fine, normal, history: *history }) {
-            Some(curve) => curve.at(speed),
-            None => {
-                let share = self.fine_contact(normal, speed, history).share;
-                SlipFriction {
-                    normal,
-                    limit: self.limit(normal),
-                    by_normal: self.coulomb + self.shear * share.by_normal,
-                    share: share.value,
-                    flash: history.flash.known,
-                    ..SlipFriction::default()
-                }
-            }
-        }
-    }
-
-    /// A correction `by` (m/s) of Newton's method at the `speed` of slip under F_N (N), as
-    /// [`SlipCurve::along_curve`] takes it; along the tangent where it is small, and where a memory makes friction smooth.
-    pub fn along_curve(&self, normal: f64, history: &SlipHistory, (speed, by): (f64, f64), weight: f64) -> f64 {
-        if by.abs() <= STRAIGHT * speed.abs() || history.memory.is_some() {
-            return speed + by;
-        }
-        self.slip_curve(normal, history).map_or(speed + by, |curve| curve.along_curve(speed, by, weight))
-    }
-
     /// v_c of the roughness below the profile at the layer's temperature, m/s, where friction on it depends on the speed.
     pub fn fine_creep_speed(&self) -> Option<f64> {
         Some(self.fine.as_ref().filter(|fine| fine.depends_on_speed())?.creep_speed())
@@ -277,30 +287,8 @@ impl FrictionLaw {
         self.fine.as_ref().map_or(0.0, |fine| fine.largest_hysteresis(normal))
     }
 
-    /// The parts of the [largest friction](Self::limit_with) of what sticks under F_N (N): what its force is shared out by.
-    pub fn shares_at_rest(&self, normal: f64, history: &SlipHistory) -> FrictionShares {
-        let (limit, coulomb) = (self.limit_with(normal, history), self.coulomb * normal.max(0.0));
-        if limit <= coulomb {
-            return FrictionShares::default();
-        }
-        let fine = self.hysteresis_at_rest(normal, history).value / limit;
-        FrictionShares { shear: 1.0 - coulomb / limit - fine, fine }
-    }
-
-    /// The derivatives of the [shares](Self::shares_at_rest) by F_N, 1/N, where that of the largest friction is
-    /// `by_normal`.
-    pub fn shares_by_normal(&self, normal: f64, by_normal: f64, history: &SlipHistory) -> FrictionShares {
-        let (limit, coulomb) = (self.limit_with(normal, history), self.coulomb);
-        if normal <= 0.0 || limit <= coulomb * normal {
-            return FrictionShares::default();
-        }
-        let hysteresis = self.hysteresis_at_rest(normal, history);
-        let fine = (hysteresis.by_normal - hysteresis.value * by_normal / limit) / limit;
-        FrictionShares { shear: coulomb * (normal * by_normal / limit - 1.0) / limit - fine, fine }
-    }
-
     /// The hysteresis of the waves that the profile lacks in that friction, N.
-    fn hysteresis_at_rest(&self, normal: f64, history: &SlipHistory) -> ContactQuantity {
+    pub(super) fn hysteresis_at_rest(&self, normal: f64, history: &SlipHistory) -> ContactQuantity {
         match (&self.fine, history.memory) {
             (None, _) => ContactQuantity::default(),
             (Some(fine), None) => fine.at_rest(normal).hysteresis,

@@ -3,83 +3,41 @@
 //! (`ContactForces`), and the energies.
 
 mod carrier;
+mod constants;
 mod contact;
 mod end_forces;
 mod energy;
 mod even_sliding;
 mod fine_friction;
-mod flash;
 mod forces;
 mod friction;
-mod friction_power;
 mod reduction;
 mod scales;
 mod slip_curve;
 mod slip_history;
 mod state;
-mod tangents;
 
-pub use carrier::{
-    BodyEnergy, BodyInterpolant, BodyStart, Carrier, CarrierBody, CarrierPoint, CarrierPosition, Outside,
-};
+pub use carrier::{BodyEnergy, BodyInterpolant, BodyStart, Carrier, CarrierPosition, Outside};
+pub use constants::{DrivenBody, LinkLaw, MaxwellRow, SurfacePoint};
 pub use contact::ContactForces;
+pub use contact::FrictionPower;
 pub use end_forces::EndForces;
 pub use energy::{BoundaryPowers, ChannelEnergies, Powers, elastic_energy, kinetic_energy, vertical_spring_energy_at};
 pub use even_sliding::EvenSliding;
 pub use fine_friction::{ContactQuantity, FineContact, FineFriction, PressedContact};
-pub use flash::{Flash, FlashKernel, FlashTerm, HeatParts, SURFACE_TERMS, SpeedShift, surface_kernel};
-pub use forces::{Forces, LinkLaw, LinkMotion, MaxwellRow};
-pub use friction::{FrictionLaw, FrictionShares, LinearFriction, SlipFriction};
-pub use friction_power::FrictionPower;
+pub use forces::{Forces, LinkMotion};
+pub use friction::{FrictionLaw, FrictionShares, LinearFriction, RateShearLaw, SlipFriction};
 pub use reduction::{Reduction, Replaced, Replacement};
-pub use slip_curve::{RateShearLaw, SlipCurve};
+pub use slip_curve::SlipCurve;
+pub use slip_history::{Flash, FlashKernel, FlashTerm, HeatParts, SURFACE_TERMS, SpeedShift, surface_kernel};
 pub use slip_history::{RememberedSpeed, SlipHistory, SpeedMemory, aged, memory_rate};
-pub use state::{Mode, State};
-pub use tangents::{Tangents, TangentsOf};
+pub use state::{CarrierPoint, Mode, State, Tangents, TangentsOf};
 
 use std::sync::Arc;
-
-use serde::{Deserialize, Serialize};
 
 use crate::math::Spline;
 pub use crate::scene::{Axis, ByAxis, ByLink, Input, LinkKind};
 use crate::scene::{Initial, Scene};
-
-/// The profile at one position.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct SurfacePoint {
-    /// z_r, m.
-    pub height: f64,
-    /// s = z_r', 1.
-    pub slope: f64,
-    /// κ = z_r'', 1/m.
-    pub curvature: f64,
-    /// z_r''', 1/m²: constant between two data points.
-    pub third: f64,
-}
-
-impl SurfacePoint {
-    /// The `profile` at the position `x`, m.
-    #[inline(always)]
-    pub fn on(profile: &Spline, x: f64) -> Self {
-        let (height, slope, curvature, third) = profile.evaluate(x);
-        Self { height, slope, curvature, third }
-    }
-}
-
-impl From<[f64; 4]> for SurfacePoint {
-    #[inline(always)]
-    fn from([height, slope, curvature, third]: [f64; 4]) -> Self {
-        Self { height, slope, curvature, third }
-    }
-}
-
-impl From<SurfacePoint> for [f64; 4] {
-    #[inline(always)]
-    fn from(point: SurfacePoint) -> Self {
-        [point.height, point.slope, point.curvature, point.third]
-    }
-}
 
 /// A scene as numbers to compute with. It does not change through a run.
 #[derive(Clone, Debug)]
@@ -109,7 +67,7 @@ pub struct Model {
     /// The rigid profile z_r(x).
     pub profile: Arc<Spline>,
     /// The carrier as a body along x and z; `None` where its displacement is prescribed.
-    pub bodies: ByAxis<Option<CarrierBody>>,
+    pub bodies: ByAxis<Option<DrivenBody>>,
     /// Friction in the contacts.
     pub friction: FrictionLaw,
     /// How friction heats the contacts; `None`: they stay at the layer's temperature.
@@ -128,8 +86,8 @@ impl Model {
         let k = layer.masses;
         let roughness = |i| layer.roughness.get(i).copied().unwrap_or(0.0);
         let reduction = Reduction::new(scene);
-        let (links, frozen_stiffness) = forces::link_laws(scene, reduction.as_ref());
-        let (rows, relaxation_times) = forces::maxwell_rows(scene, reduction.as_ref());
+        let (links, frozen_stiffness) = constants::link_laws(scene, reduction.as_ref());
+        let (rows, relaxation_times) = constants::maxwell_rows(scene, reduction.as_ref());
         Self {
             mass: scene.mass(),
             element_area: layer.element_area().unwrap_or(0.0),
@@ -141,9 +99,9 @@ impl Model {
             frozen_stiffness,
             rows,
             relaxation_times,
-            glassy: ByLink::from_fn(|kind| scene.link(kind).as_ref().map_or(0.0, scales::glassy)),
+            glassy: ByLink::from_fn(|kind| scene.link(kind).as_ref().map_or(0.0, constants::glassy)),
             profile: Arc::clone(scene.surface.spline()),
-            bodies: CarrierBody::along_axes(scene),
+            bodies: DrivenBody::along_axes(scene),
             friction: FrictionLaw::new(scene),
             flash: FlashKernel::new(scene),
             initial: layer.initial,

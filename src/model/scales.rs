@@ -3,7 +3,7 @@
 //! All start from the glassy stiffness c + Σ c_j of each kind of link ([`Model::glassy`]), with every dashpot at rest.
 
 use super::{LinkKind, LinkLaw, MaxwellRow, Model};
-use crate::scene::{Axis, ByLink, Link, MaxwellElement, complex_stiffness};
+use crate::scene::{Axis, ByLink, MaxwellElement, complex_stiffness};
 
 impl Model {
     /// Stiffness of all links on one mass while the dashpots are at rest, N/m, lateral links counted twice: along x or
@@ -137,12 +137,6 @@ impl Model {
         let damping = self.links.iter().map(|link| link.damping).fold(0.0, f64::max) / self.mass;
         [frequency, damping].into_iter().find(|&rate| rate > 0.0).unwrap_or(1.0)
     }
-}
-
-/// c + Σ c_j, N/m.
-pub(super) fn glassy(link: &Link) -> f64 {
-    let maxwell: f64 = link.maxwell.iter().map(|element| element.stiffness).sum();
-    link.stiffness.unwrap_or(0.0) + maxwell
 }
 
 fn on_mass(ByLink([vertical, horizontal, lateral_x, lateral_z]): ByLink<f64>) -> f64 {

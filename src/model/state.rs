@@ -1,8 +1,11 @@
-//! The layer's state.
+//! The state of the layer, and the carrier's motion at one instant.
+
+use std::ops::{Index, IndexMut};
 
 use serde::{Deserialize, Serialize};
 
-use super::{Axis, ByAxis, Flash, Model, SlipHistory, SpeedMemory, SurfacePoint};
+use super::{Axis, ByAxis, Flash, Input, Model, SlipHistory, SpeedMemory, SurfacePoint};
+use crate::math::Jet;
 
 /// The contact mode of a mass, with the conditions that hold in it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -178,5 +181,72 @@ impl State {
         self.memory.clone_from(&other.memory);
         self.mode.clone_from(&other.mode);
         self.surface.clone_from(&other.surface);
+    }
+}
+
+/// The carrier at one instant of a segment.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct CarrierPoint {
+    /// u minus u at the start of the segment (m), u̇ and ü.
+    pub x: Jet,
+    /// w minus w at the start of the segment (m), ẇ and ẅ.
+    pub z: Jet,
+    /// What acts on the first and on the last mass from beyond a part of a layer, N; 0 for a whole layer.
+    #[serde(skip)]
+    pub ends: [ByAxis<f64>; 2],
+}
+
+impl CarrierPoint {
+    /// u̇ and ẇ, m/s.
+    #[inline(always)]
+    pub fn rates(&self) -> ByAxis<f64> {
+        ByAxis { x: self.x.speed, z: self.z.speed }
+    }
+}
+
+impl Index<Axis> for CarrierPoint {
+    type Output = Jet;
+
+    fn index(&self, axis: Axis) -> &Jet {
+        match axis {
+            Axis::X => &self.x,
+            Axis::Z => &self.z,
+        }
+    }
+}
+
+impl IndexMut<Axis> for CarrierPoint {
+    fn index_mut(&mut self, axis: Axis) -> &mut Jet {
+        match axis {
+            Axis::X => &mut self.x,
+            Axis::Z => &mut self.z,
+        }
+    }
+}
+
+/// Derivatives of the run's forces and of its bodies' motion by the targets of its inputs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Tangents {
+    by_input: [TangentsOf; Input::MECHANICAL.len()],
+}
+
+/// The derivatives by the target of one input.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TangentsOf {
+    /// Of F_x and F_z.
+    pub force: ByAxis<f64>,
+    /// Of the displacement and the speed of the bodies along x and z; 0 where the displacement is prescribed.
+    pub body: ByAxis<[f64; 2]>,
+}
+
+impl Tangents {
+    /// Those by the target of `input`, which moves the carrier.
+    pub fn by(&self, input: Input) -> &TangentsOf {
+        &self.by_input[input as usize]
+    }
+
+    /// Sets those by the target of `input`.
+    pub fn set(&mut self, input: Input, tangents: TangentsOf) {
+        self.by_input[input as usize] = tangents;
     }
 }

@@ -5,8 +5,7 @@
 //! changes by -(c + Σ c_j) δu; that of a vertical link likewise with δw. On its mass a link's force counts negative:
 //! f_x,i grows by (c + Σ c_j) δu, and the contact forces follow.
 
-use super::Variable;
-use super::snapshot::{Evaluation, MassContact, Snapshot};
+use super::snapshot::{MassContact, Snapshot};
 use crate::model::{ContactForces, LinkKind, MaxwellRow, Mode, Model};
 use crate::scene::{Axis, ByAxis};
 
@@ -85,15 +84,6 @@ impl ContactChange {
 
 /// The directional derivatives.
 impl Snapshot<'_> {
-    /// Writes into `values` the derivatives of `variables`, in their order, with the carrier shifted along x and z by
-    /// `direction` (m per unit) and all states frozen.
-    pub fn differentiate(&self, variables: &[Variable], direction: (f64, f64), values: &mut [f64]) {
-        let (now, shift) = (Evaluation::new(self), CarrierShift::new(self.model, direction));
-        for (variable, value) in variables.iter().zip(values) {
-            *value = variable.row.derivative(&now, variable.mass, &shift);
-        }
-    }
-
     /// δF_x = -k (c + Σ c_j) δu of the horizontal links, δF_z likewise of the vertical ones.
     pub(super) fn force_changes(&self, shift: &CarrierShift) -> ByAxis<f64> {
         let k = self.model.masses() as f64;

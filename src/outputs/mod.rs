@@ -8,150 +8,12 @@ mod table;
 
 pub use accounts::{Accounts, Counters, Energies, Monitored};
 pub use snapshot::{LayerView, Snapshot};
+pub use table::{Dependencies, Output, OutputType, Tangent};
 
-use crate::scene::{Input, OutputGroup, Scene, Unit};
+use crate::scene::{OutputGroup, Scene, Unit};
+use carrier_shift::CarrierShift;
+use snapshot::Evaluation;
 use table::{OutputRow, TABLE};
-
-/// The quantity behind an output variable; its row in the table says more.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Output {
-    /// F_x = Σ F_x,i, N.
-    ForceX,
-    /// F_z = Σ F_z,i, N.
-    ForceZ,
-    /// u of a body, m.
-    CarrierU,
-    /// w of a body, m.
-    CarrierW,
-    /// u̇ of a body, m/s.
-    CarrierURate,
-    /// ẇ of a body, m/s.
-    CarrierWRate,
-    /// R_x, the drive's force on a body, N.
-    DriveX,
-    /// R_z, the drive's force on a body, N.
-    DriveZ,
-    /// Power dissipated in dampers, Maxwell elements and friction, W.
-    DissipatedPower,
-    /// Energy dissipated since the start through all channels, J.
-    DissipatedEnergy,
-    /// Energy dissipated in dampers, J.
-    DamperEnergy,
-    /// Energy dissipated in Maxwell elements, J.
-    MaxwellEnergy,
-    /// Energy dissipated in friction, J.
-    FrictionEnergy,
-    /// The part of it against Coulomb's friction, J.
-    CoulombEnergy,
-    /// The part of it against the shear force, J.
-    ShearEnergy,
-    /// The part of it by hysteresis of the waves that the profile lacks, J.
-    FineEnergy,
-    /// Energy dissipated in impacts, J.
-    ImpactEnergy,
-    /// Σ -(F_N s + μ_h F_N)/q, N.
-    Hysteresis,
-    /// The part of it by the waves that the profile lacks, N.
-    FineForce,
-    /// Σ -F_T/q, N.
-    Adhesion,
-    /// The part of it by Coulomb's friction, N.
-    CoulombForce,
-    /// The part of it by the shear force, N.
-    ShearForce,
-    /// |F_x|/F_z, 0 where F_z ≤ 0.
-    FrictionCoefficient,
-    /// Number of masses in contact.
-    ContactCount,
-    /// Number of masses that stick.
-    StickingCount,
-    /// Masses in contact over all masses.
-    ContactRatio,
-    /// Area of the masses in contact, m².
-    ContactArea,
-    /// Area that touches below the profile's resolution, m².
-    RealArea,
-    /// The largest flash temperature of all masses, K.
-    FlashLargest,
-    /// The mean one of the masses in contact, K.
-    FlashMean,
-    /// Sum of the contact forces on the masses along x, N.
-    ContactForceX,
-    /// Sum of the contact forces on the masses along z, N.
-    ContactForceZ,
-    /// Work of the carrier since the start, J.
-    InputEnergy,
-    /// T, J.
-    KineticEnergy,
-    /// V, J.
-    ElasticEnergy,
-    /// Heat that the rubber has taken from friction since the start, J.
-    HeatEnergy,
-    /// T_c, J.
-    CarrierKineticEnergy,
-    /// V_c, J.
-    CarrierElasticEnergy,
-    /// E_c, J.
-    CarrierDamperEnergy,
-    /// Residual of the energy balance, J.
-    EnergyResidual,
-    /// Derivative of a quantity at the end of a step by the target of an input in that step.
-    Tangent(Tangent, Input),
-    /// Accepted steps since the start.
-    Steps,
-    /// Mode changes since the start.
-    Events,
-    /// Rejected steps since the start.
-    Rejected,
-    /// Communication steps done again since the start, to the values that came in place of those extrapolated.
-    Repeated,
-    /// The larger of the estimated accumulated errors of F_x and F_z, each over its largest value so far.
-    ForceError,
-    /// Estimated accumulated error of E_diss over its largest value so far.
-    DissipationError,
-    /// Processor time since the start, s.
-    RunTime,
-    /// Position of mass `.0` (from 0) along x, m.
-    ElementX(usize),
-    /// Height of mass `.0` (from 0), m.
-    ElementZ(usize),
-    /// Normal force on mass `.0` (from 0), N.
-    ElementNormalForce(usize),
-    /// Friction force on mass `.0` (from 0), against v_t, N.
-    ElementFrictionForce(usize),
-    /// Mode of mass `.0` (from 0): 0 free, 1 or -1 slipping, 2 sticking.
-    ElementMode(usize),
-    /// The flash temperature of mass `.0` (from 0), K.
-    ElementFlash(usize),
-    /// The speed of slip that the contact of mass `.0` (from 0) remembers, m/s.
-    ElementSpeedRemembered(usize),
-}
-
-/// A quantity whose derivatives by the targets of the inputs are outputs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tangent {
-    /// F_x.
-    ForceX,
-    /// F_z.
-    ForceZ,
-    /// u of a body.
-    U,
-    /// u̇ of a body.
-    URate,
-    /// w of a body.
-    W,
-    /// ẇ of a body.
-    WRate,
-}
-
-/// The type of a variable.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OutputType {
-    /// A Real, continuous.
-    Real,
-    /// An Integer, discrete.
-    Integer,
-}
 
 /// An output variable of a scene: a column of the result file, a variable of the FMU.
 #[derive(Clone, Debug, PartialEq)]
@@ -192,6 +54,26 @@ impl Variable {
 
     fn named(row: &'static OutputRow, output: Output, mass: usize, name: String, description: String) -> Self {
         Self { output, group: row.group, name, unit: row.unit, kind: row.kind, description, row, mass }
+    }
+}
+
+impl Snapshot<'_> {
+    /// Writes the values of `variables`, in their order, into `values`; Integers as whole numbers. What no variable
+    /// asks for is not computed.
+    pub fn evaluate(&self, variables: &[Variable], values: &mut [f64]) {
+        let now = Evaluation::new(self);
+        for (variable, value) in variables.iter().zip(values) {
+            *value = variable.row.value(&now, variable.mass);
+        }
+    }
+
+    /// Writes into `values` the derivatives of `variables`, in their order, with the carrier shifted along x and z by
+    /// `direction` (m per unit) and all states frozen.
+    pub fn differentiate(&self, variables: &[Variable], direction: (f64, f64), values: &mut [f64]) {
+        let (now, shift) = (Evaluation::new(self), CarrierShift::new(self.model, direction));
+        for (variable, value) in variables.iter().zip(values) {
+            *value = variable.row.derivative(&now, variable.mass, &shift);
+        }
     }
 }
 
@@ -241,30 +123,6 @@ pub fn unit_of(name: &str) -> Option<Unit> {
     let (name, of_mass) = name.split_once("].").map_or((name, false), |(_, field)| (field, true));
     let named = |row: &&OutputRow| row.name == name && row.layer_output().is_none() == of_mass;
     TABLE.iter().find(named).map(|row| row.unit)
-}
-
-/// The inputs on which something depends directly: with all states frozen.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Dependencies {
-    /// On u.
-    pub on_u: bool,
-    /// On w.
-    pub on_w: bool,
-}
-
-impl Dependencies {
-    /// The components of a direction (along u, along w) that count.
-    pub fn part_of(self, (du, dw): (f64, f64)) -> (f64, f64) {
-        (if self.on_u { du } else { 0.0 }, if self.on_w { dw } else { 0.0 })
-    }
-
-    fn or(self, other: Self) -> Self {
-        Self { on_u: self.on_u || other.on_u, on_w: self.on_w || other.on_w }
-    }
-
-    fn only_if(self, condition: bool) -> Self {
-        if condition { self } else { Self::default() }
-    }
 }
 
 /// The inputs on which `output` depends directly in `scene`.

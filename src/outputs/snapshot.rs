@@ -2,7 +2,7 @@
 
 use std::cell::{Cell, OnceCell, RefCell};
 
-use super::{Counters, Energies, Monitored, Variable};
+use super::accounts::{Counters, Energies, Monitored};
 use crate::integrator::InterpolatedLayer;
 use crate::model::{
     BodyEnergy, Carrier, CarrierPoint, ContactForces, FineContact, Forces, FrictionShares, Mode, Model, Powers,
@@ -138,15 +138,6 @@ impl<'a> Snapshot<'a> {
     /// The forces in that state.
     pub fn forces(&self) -> &'a Forces {
         self.layer.get().1
-    }
-
-    /// Writes the values of `variables`, in their order, into `values`; Integers as whole numbers. What no variable
-    /// asks for is not computed.
-    pub fn evaluate(&self, variables: &[Variable], values: &mut [f64]) {
-        let now = Evaluation::new(self);
-        for (variable, value) in variables.iter().zip(values) {
-            *value = variable.row.value(&now, variable.mass);
-        }
     }
 
     /// The quantities whose error is estimated; E_diss where it is `tracked`.

@@ -1,14 +1,11 @@
 //! A block of elements that a step is done for together: in structure of arrays and, where possible, loops without
 //! branches.
 
-use super::block_contacts::BlockContacts;
-use super::face::Face;
-use super::face_motion::FaceMotion;
+use super::block_contacts::{BeyondTable, BlockContacts, FaceMotion, StepSums, TooWarm};
+use super::face::{BLOCK, Face, Lanes, lanes_of};
 use super::heat::{self, BlockHeat, StepHeat};
-use super::lanes::{BLOCK, Lanes, lanes_of};
 use super::motion::{BodyKinematics, Substep};
 use super::segments::{advance_in_segments, half_turn};
-use super::step_sums::{BeyondTable, StepSums, TooWarm};
 use crate::element::{ROUNDING, ResampledLaw, Segment, advance, apply_jump};
 use crate::math::Number;
 

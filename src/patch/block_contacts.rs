@@ -1,12 +1,13 @@
-//! The elements of a block at an instant: where they are, how they move, and what the contact law makes of it.
+//! The elements of a block at an instant, and the motion of their face through a step: where they are, how they move, and what the contact law makes of it.
 
-use super::face::{Face, TreadColumn};
-use super::face_motion::FaceMotion;
-use super::lanes::{BLOCK, Lanes, lanes_of};
-use super::motion::BodyKinematics;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::face::{BLOCK, Face, Lanes, TreadColumn, lanes_of};
+use super::heat::StepHeat;
+use super::motion::{BodyKinematics, PoseMotion, Substep, Substeps, TreadMotion};
 use super::segments::{Endpoint, size};
 use crate::element::{LawPoints, ResampledLaw, SpeedCell, SpringLaw};
-use crate::math::Number;
+use crate::math::{Dual, Number};
 
 /// The elements of a block at an instant: where they are, how they move, and the contact law there.
 #[derive(Clone, Debug)]
@@ -192,5 +193,174 @@ impl<T: Number> BlockContacts<T> {
             area: self.area[i],
             rise: self.rise[i],
         }
+    }
+}
+
+/// What the blocks add up to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StepSums<T> {
+    /// Force (N) and moment (N m) on the body at the end, in the ground's axes about the pose's point.
+    pub(super) wrench: [T; 6],
+    /// Force on the tread, N.
+    pub(super) transport: T,
+    /// Energy lost in the step by slip, J.
+    pub(super) slip: f64,
+    /// Energy lost in the step with contacts that were released, J.
+    pub(super) release: f64,
+    /// The first element found beyond the table.
+    pub(super) beyond: Option<BeyondTable>,
+    /// The first element found warmer than the table.
+    pub(super) too_warm: Option<TooWarm>,
+}
+
+/// An element that is warmer than the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TooWarm {
+    /// Its index, as elements are counted at that instant.
+    pub(super) element: usize,
+    /// When: the fraction of the step.
+    pub(super) fraction: f64,
+    /// By how much it is warmer than the temperature given, K.
+    pub(super) rise: f64,
+}
+
+/// An element beyond the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct BeyondTable {
+    /// Its index, as elements are counted at that instant.
+    pub(super) element: usize,
+    /// When: the fraction of the step.
+    pub(super) fraction: f64,
+    /// The pressure on it, Pa.
+    pub(super) pressure: f64,
+    /// Its speed along the plane, m/s.
+    pub(super) speed: f64,
+}
+
+impl<T: Number> StepSums<T> {
+    pub(super) fn zero() -> Self {
+        let zero = T::constant(0.0);
+        Self { wrench: [zero; 6], transport: zero, slip: 0.0, release: 0.0, beyond: None, too_warm: None }
+    }
+
+    /// Adds those of elements that follow.
+    pub(super) fn add(&mut self, further: &Self) {
+        for (sum, load) in self.wrench.iter_mut().zip(&further.wrench) {
+            *sum = *sum + *load;
+        }
+        self.transport = self.transport + further.transport;
+        self.slip += further.slip;
+        self.release += further.release;
+        if further.beyond.is_some_and(|theirs| self.beyond.is_none_or(|own| theirs.fraction < own.fraction)) {
+            self.beyond = further.beyond;
+        }
+        if further.too_warm.is_some_and(|theirs| self.too_warm.is_none_or(|own| theirs.fraction < own.fraction)) {
+            self.too_warm = further.too_warm;
+        }
+    }
+
+    /// The sums without their derivatives.
+    pub(super) fn values(&self) -> StepSums<f64> {
+        let Self { wrench, transport, slip, release, beyond, too_warm } = *self;
+        StepSums { wrench: wrench.map(T::value), transport: transport.value(), slip, release, beyond, too_warm }
+    }
+}
+
+/// The motion of the face and of its tread through a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FaceMotion<'a, T> {
+    pub(super) face: &'a Face,
+    pub(super) body: PoseMotion<T>,
+    pub(super) tread: TreadMotion,
+    pub(super) substeps: Substeps,
+    /// The speed at which the tread runs, m/s.
+    pub(super) tread_speed: f64,
+    /// Where slip warms the elements.
+    pub(super) heat: Option<StepHeat>,
+    pub(super) work: &'a WorkCounter,
+}
+
+/// The elements that a step takes in, by their indices before it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ElementRange {
+    /// The index of the first.
+    pub(super) first: isize,
+    /// How many there are.
+    pub(super) count: usize,
+    /// By how much indices grow over the step.
+    pub(super) shift: isize,
+}
+
+impl<'a> FaceMotion<'a, f64> {
+    /// The same motion with derivatives by the changes of the body's coordinates.
+    pub(super) fn with_tangents(&self) -> FaceMotion<'a, Dual<6>> {
+        let Self { face, body, tread, substeps, tread_speed, heat, work } = *self;
+        let PoseMotion { start, change, duration } = body;
+        let change = std::array::from_fn(|i| Dual::variable(change[i], i));
+        FaceMotion { face, body: PoseMotion { start, change, duration }, tread, substeps, tread_speed, heat, work }
+    }
+}
+
+impl<T> FaceMotion<'_, T> {
+    pub(super) fn elements(&self) -> ElementRange {
+        match self.face {
+            Face::Points(_) => ElementRange { first: 0, count: self.face.count(), shift: 0 },
+            Face::Tread(tread) => {
+                let (rows, (first, columns)) = (tread.rows.len(), tread.columns_of(self.tread));
+                let indices = |columns: f64| columns as isize * rows as isize;
+                let shift = indices(self.tread.whole_cells());
+                ElementRange { first: indices(first), count: columns * rows, shift }
+            }
+        }
+    }
+
+    /// The index after a fraction of the step of an element as it is counted in the step.
+    pub(super) fn index_at(&self, element: usize, fraction: f64) -> usize {
+        let Face::Tread(tread) = self.face else { return element };
+        let columns = tread.columns_of(self.tread).0 + self.tread.entered_at(fraction).floor();
+        element.saturating_add_signed(columns as isize * tread.rows.len() as isize).min(self.face.count() - 1)
+    }
+
+    /// Whether some of the `count` elements from `start` on are on the face in a substep.
+    #[inline(always)]
+    pub(super) fn is_inside(&self, start: usize, count: usize, substep: Substep) -> bool {
+        let Face::Tread(tread) = self.face else { return true };
+        let (rows, first) = (tread.rows.len(), tread.columns_of(self.tread).0);
+        let [front, rear] = [start, start + count - 1].map(|element| first + (element / rows) as f64);
+        let (before, after) = (self.tread.entered_at(substep.begin), self.tread.entered_at(substep.end));
+        // Column i is inside while it and the cells that have entered are between 0 and one more than the columns.
+        rear + before.max(after) > 0.0 && front + before.min(after) < tread.columns as f64 + 1.0
+    }
+}
+
+/// What the elements of a step have been through: parts of it and, where their pressures change much, segments.
+///
+/// A step within the limit always counts the same; one beyond it is given up, whoever of its threads finds that first.
+#[derive(Debug)]
+pub(super) struct WorkCounter {
+    done: AtomicU64,
+    most: u64,
+}
+
+impl WorkCounter {
+    /// A counter of so much work at most.
+    pub(super) fn new(most: f64) -> Self {
+        Self { done: AtomicU64::new(0), most: most as u64 }
+    }
+
+    /// Adds work; returns whether there is too much.
+    pub(super) fn add(&self, work: u64) -> bool {
+        self.done.fetch_add(work, Ordering::Relaxed).saturating_add(work) > self.most
+    }
+
+    /// Whether there was too much.
+    pub(super) fn is_exceeded(&self) -> bool {
+        self.done.load(Ordering::Relaxed) > self.most
+    }
+
+    /// The work done.
+    #[cfg(test)]
+    pub(super) fn done(&self) -> u64 {
+        self.done.load(Ordering::Relaxed)
     }
 }

@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::lanes::{BLOCK, Lanes};
+use super::face::{BLOCK, Lanes};
 use crate::math::Number;
 use crate::model::{FlashTerm, SURFACE_TERMS};
 

@@ -11,21 +11,16 @@
 //! | file | what it holds |
 //! |------|---------------|
 //! | `motion` | motion of the body and of the tread over a step, its substeps |
-//! | `face` | where elements sit |
+//! | `face` | where elements sit, how their face moves through a step, what they go through, counted and limited |
 //! | `segments` | an element whose pressure changes much in a substep |
-//! | `lanes` | elements of a block, side by side |
 //! | `heat` | elements that slip warms |
-//! | `work` | what the elements of a step go through, counted and limited |
-//! | `face_motion` | motion of the face through a step |
-//! | `step_sums` | what the blocks of a step add up to |
-//! | `block_contacts` | elements of a block at an instant, with their law |
+//! | `block_contacts` | elements of a block, side by side, at an instant, with their law, and what they add up to |
 //! | `block` | a step of a block of elements |
 //! | `worker_pool` | a step of all blocks, by several threads |
 //! | `definition` | a patch: face, table, parameters |
 //! | `state` | motions, errors, what a run holds |
 //! | `run` | a run |
-//! | `element_sums` | elements one by one, and sums over them |
-//! | `face_layout` | elements in the plane of their face, for pictures |
+//! | `element_sums` | elements one by one, in the plane of their face, and sums over them |
 //! | `derivatives` | changes of outputs with the pose and by time |
 //! | `variables` | output variables |
 
@@ -35,21 +30,16 @@ mod definition;
 mod derivatives;
 mod element_sums;
 mod face;
-mod face_layout;
-mod face_motion;
 mod heat;
-mod lanes;
 mod motion;
 mod run;
 mod segments;
 mod state;
-mod step_sums;
 mod variables;
-mod work;
 mod worker_pool;
 
 pub use definition::{Patch, PatchElement, PatchError};
-pub use face_layout::{FaceElement, FaceLayout};
+pub use element_sums::{FaceElement, FaceLayout};
 pub use run::PatchRun;
 pub use state::{MotionError, PatchMotion, PatchRestoreError, PatchStart, PatchState, Pose};
 pub use variables::{COORDINATES, PatchKind, PatchOutput, PatchOutputEntry, PatchVariable, catalogue, unit_of};

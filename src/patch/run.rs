@@ -3,17 +3,16 @@
 use std::sync::Arc;
 
 use super::block::ElementBlock;
+use super::block_contacts::{BeyondTable, FaceMotion, StepSums, TooWarm, WorkCounter};
 use super::definition::Patch;
 use super::face::Face;
-use super::face_motion::FaceMotion;
 use super::heat::{ElementHeat, StepHeat};
 use super::motion::{PoseMotion, Substeps, TreadMotion};
 use super::state::{
     MotionError, PatchMotion, PatchRestoreError, PatchStart, PatchState, Pose, Springs, Totals, check_duration,
     max_substeps, max_work,
 };
-use super::step_sums::{BeyondTable, StepSums, TooWarm};
-use super::work::WorkCounter;
+
 use super::worker_pool::{WorkerPool, threads};
 use crate::element::ResampledLaw;
 use crate::math::Dual;

@@ -5,10 +5,10 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 use super::block::{ElementBlock, ElementMode};
+use super::block_contacts::StepSums;
 use super::definition::Patch;
 use super::heat::ElementHeat;
 use super::motion::PoseMotion;
-use super::step_sums::StepSums;
 use crate::math::{Number, not_finite};
 use crate::scene::{SMALLEST, is_possible};
 

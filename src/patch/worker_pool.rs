@@ -9,10 +9,9 @@ use std::sync::Mutex;
 use std::thread;
 
 use super::block::ElementBlock;
-use super::face_motion::{ElementRange, FaceMotion};
-use super::lanes::BLOCK;
+use super::block_contacts::{ElementRange, FaceMotion, StepSums};
+use super::face::BLOCK;
 use super::state::{Springs, SpringsMut};
-use super::step_sums::StepSums;
 use crate::element::ResampledLaw;
 use crate::math::Number;
 

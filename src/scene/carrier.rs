@@ -2,9 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::error::{ParameterError, Problem};
 use super::values::Word;
-use super::{Axis, ByAxis, LinkKind, Phase, Scene, Unit};
+use super::{Axis, ByAxis, Unit};
 
 /// `[carrier]`: the axes along which the carrier is a body; `None` where its displacement is prescribed.
 pub type CarrierBodies = ByAxis<Option<CarrierBody>>;
@@ -106,56 +105,5 @@ impl Input {
     /// Whether it is a displacement, or a force.
     pub fn is_displacement(self) -> bool {
         matches!(self, Self::U | Self::W)
-    }
-}
-
-impl Scene {
-    /// The inputs of the scene's layer, in the order of the variables.
-    pub fn inputs(&self) -> Vec<Input> {
-        let acts = |input: &Input| {
-            let Some(axis) = input.axis() else { return self.temperature_input };
-            let body = &self.carrier[axis];
-            if input.is_displacement() { body.as_ref().is_none_or(CarrierBody::has_drive) } else { body.is_some() }
-        };
-        Input::ALL.into_iter().filter(acts).collect()
-    }
-
-    /// The stiffness Σ_i C with which the masses on the profile bear a body along z at its start, per mass, N/m: that
-    /// of the springs of the vertical links, with the Maxwell elements where dashpots start undeformed.
-    pub fn bearing_stiffness(&self) -> f64 {
-        let Some(link) = self.link(LinkKind::Vertical) else { return 0.0 };
-        let elements = link.maxwell.iter().map(|element| element.stiffness).sum::<f64>();
-        let undeformed = self.layer.initial == super::Initial::Undeformed;
-        link.stiffness.unwrap_or(0.0) + if undeformed { elements } else { 0.0 }
-    }
-
-    /// The load's changing part at the start of a run along the excitation, N.
-    pub fn first_load(&self) -> f64 {
-        self.excitation.first().map_or(0.0, |phase| phase.load(self.layer.area()).start.unwrap_or(0.0))
-    }
-
-    /// The value of an input before anything is set: the material's temperature, 0 for the others.
-    pub fn input_start(&self, input: Input) -> f64 {
-        if input == Input::Temperature { self.temperature().unwrap_or(0.0) } else { 0.0 }
-    }
-
-    /// The changing part of the tangential force at the start of a run along the excitation, N.
-    pub fn first_pull(&self) -> f64 {
-        self.excitation.first().and_then(|phase: &Phase| phase.pull().start).unwrap_or(0.0)
-    }
-
-    /// Refuses an equilibrium that does not exist under a load whose changing part is `load` at the start, N.
-    pub(crate) fn check_equilibrium(&self, load: f64) -> Result<(), ParameterError> {
-        let Some(body) = self.carrier.z.filter(|body| body.initial == CarrierInitial::Equilibrium) else {
-            return Ok(());
-        };
-        let load = load + body.load.unwrap_or(0.0);
-        if body.stiffness.unwrap_or(0.0) > 0.0 || (load >= 0.0 && self.bearing_stiffness() > 0.0) {
-            return Ok(());
-        }
-        let expected =
-            "a load of 0 or more on vertical springs, or carrier.z.stiffness > 0: otherwise nothing is at rest";
-        let given = format_args!("\"equilibrium\" under a load of {load:?} N");
-        Err(ParameterError::new("carrier.z.initial", Problem::value(given, expected)))
     }
 }

@@ -5,11 +5,13 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Complex;
 use serde::Serialize;
 
-use super::surface::{STEEPEST, peak_to_valley};
 use super::values::{LARGEST, SMALLEST};
-use super::{RoughnessSpectrum, Surface};
 use crate::math::{Direction, fourier_2d};
 use crate::tables::ContentError;
+
+/// The largest slope of a profile: a step of a metre from one atom to the next has less, and its square times that of
+/// the largest speed does not overflow.
+pub(super) const STEEPEST: f64 = 1e12;
 
 /// The most heights of a map.
 pub const MOST_HEIGHTS: usize = 1 << 24;
@@ -126,27 +128,6 @@ impl HeightMap {
         (self.heights.iter().map(|z| (z - mean).powi(2)).sum::<f64>() / self.heights.len() as f64).sqrt()
     }
 
-    /// Root mean square gradient, of splines along all lines and columns.
-    pub fn rms_gradient(&self, periodic: bool) -> f64 {
-        (self.slope_square(periodic) + self.transposed().slope_square(periodic)).sqrt()
-    }
-
-    /// The mean square slope along x.
-    fn slope_square(&self, periodic: bool) -> f64 {
-        let square = |j| self.profile(j, periodic).rms_slope().powi(2);
-        (0..self.ny()).map(square).sum::<f64>() / self.ny() as f64
-    }
-
-    /// Line `j` as a profile; that of a periodic map is closed by its first height.
-    pub(super) fn profile(&self, j: usize, periodic: bool) -> Surface {
-        let mut z = self.line(j).to_vec();
-        if periodic {
-            z.push(z[0]);
-        }
-        let x = (0..z.len()).map(|i| self.spacing[0] * i as f64).collect();
-        Surface::new(x, z, periodic)
-    }
-
     /// The slopes along x and y of the least squares plane.
     pub fn tilt(&self) -> [f64; 2] {
         // About the middle of an even grid neither depends on the other.
@@ -218,37 +199,6 @@ impl HeightMap {
         if possible { Ok(()) } else { Err(MapError::TooSteep) }
     }
 
-    /// The isotropic power spectrum: the mean of C over rings of wave numbers that are even in the logarithm; `None` where
-    /// fewer than two have any power.
-    pub fn spectrum(&self, periodic: bool) -> Option<RoughnessSpectrum> {
-        /// Rings of a decade.
-        const RINGS: f64 = 12.0;
-        let extent = self.spacing[0] * self.nx as f64;
-        let longest = extent.min(self.spacing[1] * self.ny() as f64);
-        let nyquist = PI / self.spacing[0].max(self.spacing[1]);
-        // Under a window the longest waves are not reliable.
-        let first = TAU / longest * if periodic { 1.0 } else { 2.0 } * (1.0 - 1e-9);
-        let count = ((nyquist / first).log10() * RINGS).ceil().max(0.0) as usize;
-        // By ring: how many, Σ ln q, Σ C.
-        let mut rings = vec![(0_usize, 0.0, 0.0); count + 1];
-        for (at, density) in self.power_density(periodic).into_iter().enumerate() {
-            let [q_x, q_y] = self.wave_numbers(at);
-            let q = q_x.hypot(q_y);
-            if (first..nyquist).contains(&q) {
-                let (number, logarithms, sum) = &mut rings[((q / first).log10() * RINGS) as usize];
-                (*number, *logarithms, *sum) = (*number + 1, *logarithms + q.ln(), *sum + density);
-            }
-        }
-        let mean = |(number, logarithms, sum): (usize, f64, f64)| {
-            let number = number as f64;
-            [(logarithms / number).exp(), sum / number]
-        };
-        let largest = rings.iter().map(|ring| mean(*ring)[1]).fold(0.0, f64::max);
-        // Beyond a cut-off there are rounding errors alone.
-        let seen: Vec<_> = rings.into_iter().map(mean).filter(|[_, density]| *density > 1e-16 * largest).collect();
-        (seen.len() > 1).then(|| RoughnessSpectrum::new(seen))
-    }
-
     /// The power spectrum C (m⁴) at the wave numbers of the transform: |h_q|² over the area of one of them in the plane
     /// of wave numbers, so that ⟨h²⟩ = ∫ C d²q; in the order of the transform. From a map that is not periodic the plane
     /// is taken and a Hann window along both axes applied, its loss of power corrected.
@@ -274,6 +224,118 @@ impl HeightMap {
             TAU * signed / (count as f64 * spacing)
         };
         [number(at % self.nx, self.nx, self.spacing[0]), number(at / self.nx, self.ny(), self.spacing[1])]
+    }
+}
+
+/// Highest minus lowest, m; 0 for no heights.
+pub fn peak_to_valley(heights: &[f64]) -> f64 {
+    let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
+    (highest - lowest).max(0.0)
+}
+
+/// A seam whose differences are, in the root mean square, more than so many times those inside is worth a word.
+const ROUGH_SEAM: f64 = 2.5;
+/// A seam with a difference of more than so many times the largest inside is none of a periodic surface.
+const STEEPEST_SEAM: f64 = 10.0;
+/// What makes a period of a surface whose ends do not meet.
+const WAYS: &str =
+    "asperity surface --mirror makes a period of a surface that ends; tilt = \"remove\" takes out the tilt of a map";
+/// Differences that are rounding beside the heights: this part of what lies between the highest and the lowest.
+const SEAM_ROUNDING: f64 = 1e-9;
+
+/// What the ends of a surface along one axis are, taken as neighbours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Seam {
+    axis: &'static str,
+    /// The largest difference over the seam, and the largest inside: slopes of a profile, heights of a map.
+    largest: [f64; 2],
+}
+
+/// Differences of neighbours: how many, their squares, the largest.
+#[derive(Clone, Copy, Debug, Default)]
+struct Differences {
+    count: usize,
+    squares: f64,
+    largest: f64,
+}
+
+impl Differences {
+    fn of(differences: impl Iterator<Item = f64>) -> Self {
+        differences.fold(Self::default(), |sum, difference| Self {
+            count: sum.count + 1,
+            squares: sum.squares + difference * difference,
+            largest: sum.largest.max(difference.abs()),
+        })
+    }
+
+    fn rms(&self) -> f64 {
+        (self.squares / self.count.max(1) as f64).sqrt()
+    }
+}
+
+impl Seam {
+    /// The seams of a map, along x and along y, that are rougher than what lies inside.
+    pub(super) fn of_map(map: &HeightMap) -> Vec<Self> {
+        let along_x = Self::of_lines("x", map);
+        along_x.into_iter().chain(Self::of_lines("y", &map.transposed())).collect()
+    }
+
+    fn of_lines(axis: &'static str, map: &HeightMap) -> Option<Self> {
+        let rounding = SEAM_ROUNDING * peak_to_valley(map.heights());
+        let lines = || (0..map.ny()).map(|j| map.line(j));
+        let over = || lines().map(|line| line[0] - line[line.len() - 1]);
+        let inside = || lines().flat_map(|line| line.windows(2).map(|pair| pair[1] - pair[0]));
+        Self::found(axis, over, inside, rounding)
+    }
+
+    /// The seam of a profile whose last point is the first one again, where it is rougher than what lies inside: slopes,
+    /// since its points need not be even.
+    pub(super) fn of_profile(x: &[f64], z: &[f64]) -> Option<Self> {
+        let slope = |i: usize| (z[i + 1] - z[i]) / (x[i + 1] - x[i]);
+        let last = x.len().checked_sub(2)?;
+        let rounding = SEAM_ROUNDING * peak_to_valley(z) / (x[last + 1] - x[0]);
+        Self::found("x", || std::iter::once(slope(last)), || (0..last).map(slope), rounding)
+    }
+
+    /// Differences as large are common within a surface of steps, whose edges may lie at its ends.
+    fn found<S: Iterator<Item = f64>, I: Iterator<Item = f64>>(
+        axis: &'static str,
+        over: impl Fn() -> S,
+        inside: impl Fn() -> I,
+        rounding: f64,
+    ) -> Option<Self> {
+        let [seam, within] = [Differences::of(over()), Differences::of(inside())];
+        let rms = seam.rms();
+        let as_large = inside().filter(|difference| difference.abs() >= rms).count();
+        let is_rough = rms > ROUGH_SEAM * within.rms() && 2 * as_large < seam.count && seam.largest > rounding;
+        (is_rough && within.count > 1).then_some(Self { axis, largest: [seam.largest, within.largest] })
+    }
+
+    /// Warnings of seams, unless one is too large for any surface that is periodic.
+    ///
+    /// # Errors
+    /// What is expected in place of `periodic = true`.
+    pub(super) fn check(seams: &[Self]) -> Result<Vec<String>, String> {
+        match seams.iter().find(|seam| seam.is_too_large()) {
+            Some(seam) => Err(format!("false, for {}: {WAYS}", seam.text())),
+            None => Ok(seams.iter().map(|seam| format!("{}; {WAYS}", seam.text())).collect()),
+        }
+    }
+
+    fn is_too_large(&self) -> bool {
+        self.largest[0] > STEEPEST_SEAM * self.largest[1]
+    }
+
+    /// What is wrong with it.
+    fn text(&self) -> String {
+        let [over, inside] = self.largest;
+        let times = if inside > 0.0 { over / inside } else { f64::INFINITY };
+        format!(
+            "the ends do not meet along {}: taken as periodic, they differ by {times:.1} times the largest difference of \
+             neighbours inside",
+            self.axis
+        )
     }
 }
 
@@ -333,5 +395,41 @@ mod tests {
         let cell = TAU.powi(2) / (6.0 * 2.0 * 10.0 * 3.0);
         let power: f64 = map.power_density(true).iter().map(|density| density * cell).sum();
         assert!((power / map.rms_height().powi(2) - 1.0).abs() < 1e-12);
+    }
+
+    fn even_map(nx: usize, ny: usize, height: impl Fn(f64, f64) -> f64) -> HeightMap {
+        HeightMap::new(nx, [1.0; 2], (0..nx * ny).map(|at| height((at % nx) as f64, (at / nx) as f64)).collect())
+    }
+
+    fn axes(map: &HeightMap) -> Vec<(&'static str, bool)> {
+        Seam::of_map(map).iter().map(|seam| (seam.axis, seam.is_too_large())).collect()
+    }
+
+    /// Whole waves meet, also where the seam lies at the steepest place, and so do grooves whose edges are there.
+    #[test]
+    fn ends_of_whole_waves_and_of_steps_meet() {
+        let wave = |phase: f64| std::f64::consts::TAU * phase;
+        assert_eq!(axes(&even_map(32, 16, |x, y| wave(x / 32.0).sin() + wave(y / 8.0 + 0.1).sin())), []);
+        assert_eq!(axes(&even_map(32, 16, |x, _| if x < 12.0 { 0.0 } else { 1.0 })), []);
+        assert_eq!(axes(&even_map(32, 16, |_, _| 3.0)), []);
+    }
+
+    #[test]
+    fn ends_of_a_cut_out_and_of_a_tilt_do_not_meet() {
+        let wave = |phase: f64| std::f64::consts::TAU * phase;
+        let cut = |x: f64, y: f64| wave(x / 64.0).cos() * wave(y / 16.0).cos();
+        assert_eq!(axes(&even_map(32, 16, cut)), [("x", true)]);
+        assert_eq!(axes(&even_map(16, 32, |x, y| cut(y, x) + 0.1 * wave(x / 16.0 + 0.1).sin())), [("y", true)]);
+        assert_eq!(axes(&even_map(8, 8, |x, y| 0.1 * x + wave(y / 8.0).sin())), [("x", false)]);
+    }
+
+    #[test]
+    fn a_profile_is_judged_by_its_slopes() {
+        let found = |x: &[f64], z: &[f64]| Seam::of_profile(x, z).map(|seam| seam.is_too_large());
+        // A long last step is no jump; a ramp that falls back at once is.
+        assert_eq!(found(&[0.0, 1.0, 2.0, 3.0, 13.0], &[0.0, 1.0, 2.0, 2.5, 0.0]), None);
+        let x: Vec<f64> = (0..=20).map(f64::from).collect();
+        let ramp: Vec<f64> = x.iter().map(|x| if *x < 20.0 { *x } else { 0.0 }).collect();
+        assert_eq!((found(&x, &ramp), found(&x[..6], &[0.0, 1.0, 2.0, 3.0, 4.0, 0.0])), (Some(true), Some(false)));
     }
 }

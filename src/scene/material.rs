@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
+use super::LinkKind;
 use super::error::{ParameterError, Problem};
-use super::keys;
-use super::{ByLink, Layer, Link, LinkKind, MaxwellElement, RateShear, Scene, is_possible};
+use super::layer::{Layer, Link, MaxwellElement};
 
 /// A linear viscoelastic solid: a spring, a dashpot and Maxwell elements in parallel, as moduli.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -161,7 +161,7 @@ impl Material {
     }
 
     /// A link whose constants are the moduli times `size`, m (docs/model.md, section 7).
-    fn link(&self, size: f64) -> Link {
+    pub(super) fn link(&self, size: f64) -> Link {
         let shift = self.shift_factor();
         let element = |term: &PronyTerm| MaxwellElement {
             stiffness: term.modulus * size,
@@ -188,217 +188,11 @@ impl Layer {
 
     /// What turns a modulus into the stiffness of a link of springs, m: A/H to the carrier, H B/Δx to the neighbour;
     /// times G/E = 1/(2(1 + ν)) where the link is sheared.
-    fn spring_size(&self, kind: LinkKind, poisson_ratio: f64) -> Option<f64> {
+    pub(super) fn spring_size(&self, kind: LinkKind, poisson_ratio: f64) -> Option<f64> {
         let (thickness, width) = (self.thickness?, self.width?);
         let size = if kind.is_lateral() { thickness * width / self.spacing } else { self.spacing * width / thickness };
         let sheared = matches!(kind, LinkKind::Horizontal | LinkKind::LateralZ);
         Some(if sheared { size / (2.0 * (1.0 + poisson_ratio)) } else { size })
-    }
-}
-
-impl Scene {
-    /// The link of a kind, if the scene has it: given, or following from the material.
-    pub fn link(&self, kind: LinkKind) -> Option<Link> {
-        match &self.material {
-            Some(material) => self.link_size(kind, material.poisson_ratio).map(|size| material.link(size)),
-            None => self.layer.links[kind].clone(),
-        }
-    }
-
-    /// What turns a modulus into the stiffness of a link, m.
-    fn link_size(&self, kind: LinkKind, poisson_ratio: f64) -> Option<f64> {
-        match &self.foundation {
-            Some(foundation) => {
-                let size = foundation.link_size(kind, &self.layer, self.layer.width?);
-                Some(size / (1.0 - poisson_ratio * poisson_ratio))
-            }
-            None => self.layer.spring_size(kind, poisson_ratio),
-        }
-    }
-
-    /// The mass of one point mass, kg: given, or ρ A H, or ρ A ℓ of a fitted [`Foundation`](super::Foundation).
-    pub fn mass(&self) -> f64 {
-        let depth = || self.foundation.as_ref().map(|foundation| foundation.depth).or(self.layer.thickness);
-        let of_material = || {
-            let area = self.layer.element_area()?;
-            Some(self.material.as_ref()?.density * area * depth()?)
-        };
-        self.layer.mass.or_else(of_material).unwrap_or(0.0)
-    }
-
-    /// τ_0 + τ_f(v), Pa, at the speed v (m/s) and the reference temperature; 0 without a shear strength.
-    pub fn shear_strength_at(&self, speed: f64) -> f64 {
-        let Some(friction) = &self.friction else { return 0.0 };
-        let of_rate = friction.rate_shear.map_or(0.0, |law| {
-            let decades = (speed.max(law.creep_speed()) / law.reference_speed).log10();
-            law.strength.unwrap_or(0.0) * (-law.sharpness * decades * decades).exp()
-        });
-        friction.shear_strength.unwrap_or(0.0) + of_rate
-    }
-
-    /// Whether contacts have Coulomb's friction.
-    pub fn has_coulomb(&self) -> bool {
-        self.friction.as_ref().is_some_and(|friction| friction.coulomb.is_some())
-    }
-
-    /// Whether contacts have a shear force, at rest or in slip.
-    pub fn has_shear(&self) -> bool {
-        self.shear_force().is_some() || self.rate_shear().is_some()
-    }
-
-    /// Whether friction in the contacts depends on the speed of slip.
-    pub fn friction_depends_on_speed(&self) -> bool {
-        self.rate_shear().is_some() || self.fine.as_ref().is_some_and(|fine| fine.waves.has_bands())
-    }
-
-    /// The way D over which contacts are renewed where their friction depends on the speed, m: as the scene says, else
-    /// [`DEFAULT_MEMORY`](Self::DEFAULT_MEMORY) of a material; 0: none, friction is that at the speed of slip.
-    pub fn memory_way(&self) -> f64 {
-        let of_form = if self.material.is_some() { Self::DEFAULT_MEMORY } else { 0.0 };
-        self.friction.as_ref().and_then(|friction| friction.memory).unwrap_or(of_form)
-    }
-
-    /// Whether friction follows the speed that contacts remember, and not that of slip.
-    pub fn has_memory(&self) -> bool {
-        self.memory_way() > 0.0 && self.friction_depends_on_speed()
-    }
-
-    /// The way over which contacts of rubber are renewed where a scene does not say it, m: of the order of the diameter of
-    /// what touches.
-    pub const DEFAULT_MEMORY: f64 = 50.0e-6;
-
-    /// Whether friction heats the contacts.
-    pub fn has_heat(&self) -> bool {
-        self.material.as_ref().is_some_and(|material| material.heat.is_some())
-    }
-
-    /// Whether the waves that the profile lacks rub.
-    pub fn has_fine_hysteresis(&self) -> bool {
-        self.fine.as_ref().is_some_and(|fine| fine.hysteresis && fine.waves.has_bands())
-    }
-
-    /// Whether the parts of friction are told apart: hysteresis of the waves that the profile lacks from any other, Coulomb's
-    /// from the shear force.
-    pub fn has_friction_parts(&self) -> bool {
-        self.has_fine_hysteresis() || (self.has_coulomb() && self.has_shear())
-    }
-
-    /// Whether contacts rub.
-    pub fn has_friction(&self) -> bool {
-        self.friction.is_some() || self.has_fine_hysteresis()
-    }
-
-    /// Adhesive shear force A τ_0 of one mass in contact, N, if the scene has it: given, or of the shear strength.
-    pub fn shear_force(&self) -> Option<f64> {
-        let friction = self.friction.as_ref()?;
-        friction.shear_force.or_else(|| Some(friction.shear_strength? * self.layer.element_area()?))
-    }
-
-    /// The shear strength that depends on the speed as the contacts have it, if the scene has it: by its force A τ_f0,
-    /// and at the layer's temperature, where v_0(T) = v_0/a_T and v_c(T) = v_c/a_T.
-    pub fn rate_shear(&self) -> Option<RateShear> {
-        let law = self.friction.as_ref()?.rate_shear?;
-        let force = law.force.or_else(|| Some(law.strength? * self.layer.element_area()?));
-        let shift = self.material.as_ref().map_or(1.0, Material::shift_factor);
-        Some(RateShear {
-            force,
-            strength: None,
-            reference_speed: law.reference_speed / shift,
-            sharpness: law.sharpness,
-            creep_speed: law.creep_speed.map(|creep| creep / shift),
-        })
-    }
-
-    /// This scene by the constants of its links; itself where it is given so.
-    pub fn direct_form(&self) -> Self {
-        let mut scene = self.clone();
-        if scene.material.take().is_some() {
-            scene.foundation = None;
-            let mass = Some(self.mass());
-            let layer = self.layer.clone();
-            scene.layer = Layer {
-                mass,
-                links: ByLink::from_fn(|kind| self.link(kind)),
-                thickness: None,
-                width: None,
-                foundation: None,
-                ..layer
-            };
-            if let Some(friction) = &mut scene.friction {
-                friction.memory = Some(self.memory_way());
-                (friction.shear_force, friction.shear_strength) = (self.shear_force(), None);
-                friction.rate_shear = self.rate_shear();
-            }
-            for phase in &mut scene.excitation {
-                (phase.until_force, phase.until_pressure) = (phase.end_force(self.layer.area()), None);
-                if phase.pressure.is_some() {
-                    (phase.load, phase.pressure) = (Some(phase.load(self.layer.area())), None);
-                }
-            }
-        }
-        scene
-    }
-
-    /// The layer's temperature, K; `None` without `material.wlf`.
-    pub fn temperature(&self) -> Option<f64> {
-        self.material.as_ref()?.wlf.as_ref().map(|wlf| wlf.temperature)
-    }
-
-    /// The scene with its layer at a temperature, K, not checked; as it is without one, or where it has no
-    /// `material.wlf`.
-    pub fn with_temperature(&self, kelvin: impl Into<Option<f64>>) -> Self {
-        let mut scene = self.clone();
-        let wlf = scene.material.as_mut().and_then(|material| material.wlf.as_mut());
-        if let (Some(wlf), Some(kelvin)) = (wlf, kelvin.into()) {
-            wlf.temperature = kelvin;
-        }
-        scene
-    }
-
-    /// The scene with its layer at a temperature, K, checked.
-    ///
-    /// # Errors
-    /// [`ParameterError`] where the scene has no `material.wlf`, or the temperature is none, or the shift has its pole
-    /// above it, or a number of the material becomes impossible.
-    pub fn at_temperature(&self, kelvin: f64) -> Result<Self, ParameterError> {
-        let has_wlf = self.material.as_ref().is_some_and(|material| material.wlf.is_some());
-        if !(has_wlf && kelvin > 0.0 && is_possible(kelvin)) {
-            let range = keys::range_of("material.wlf.temperature");
-            return Err(ParameterError::new("temperature", Problem::value(format_args!("{kelvin:?}"), range)));
-        }
-        let scene = self.with_temperature(kelvin);
-        scene.check()?;
-        Ok(scene)
-    }
-
-    /// Checks what follows from several parameters at once, and so cannot be refused when one of them is set: the
-    /// temperature, the roughness below the profile, and the constants that follow from the material.
-    ///
-    /// # Errors
-    /// [`ParameterError`] for the first that is out of range.
-    pub fn check(&self) -> Result<(), ParameterError> {
-        let Some(material) = &self.material else { return Ok(()) };
-        material.wlf.map_or(Ok(()), |wlf| wlf.check())?;
-        if let Some(Err(clash)) = self.fine.as_ref().map(|fine| fine.check(&self.surface)) {
-            let problem = Problem::value(format_args!("{:?}", clash.given), clash.expected);
-            return Err(ParameterError::new(format!("surface.fine.{}", clash.key), problem));
-        }
-        in_range("mass of a point mass, from the material", self.mass(), "layer.mass")?;
-        self.rate_shear().map_or(Ok(()), |law| law.check())?;
-        LinkKind::ALL
-            .into_iter()
-            .try_for_each(|kind| self.link(kind).map_or(Ok(()), |link| check_link(&link, kind.description())))
-    }
-}
-
-impl RateShear {
-    /// Checks the law at the layer's temperature.
-    fn check(&self) -> Result<(), ParameterError> {
-        let speed = |what: &str, speed: f64, key: &str| {
-            in_range(&format!("{what} of the shear strength, at the temperature"), speed, key)
-        };
-        speed("reference speed", self.reference_speed, "friction.rate_shear.reference_speed")?;
-        speed("creep speed", self.creep_speed(), "friction.rate_shear.creep_speed")
     }
 }
 
@@ -415,23 +209,4 @@ impl Wlf {
         let problem = Problem::value(format_args!("{:?}", self.temperature), expected);
         Err(ParameterError::new("material.wlf.temperature", problem))
     }
-}
-
-fn check_link(link: &Link, what: &str) -> Result<(), ParameterError> {
-    let check = |quantity: &str, value: f64, key: &str| {
-        in_range(&format!("{quantity} of the {what}, from the material"), value, &format!("layer.vertical.{key}"))
-    };
-    check("stiffness", link.stiffness.unwrap_or(0.0), "stiffness")?;
-    check("damping", link.damping.unwrap_or(0.0), "damping")?;
-    link.maxwell.iter().try_for_each(|element| {
-        check("stiffness of an element", element.stiffness, "maxwell.stiffness")?;
-        check("relaxation time of an element", element.relaxation_time, "maxwell.relaxation_time")
-    })
-}
-
-/// Checks a value that follows from others against the range of `key`.
-fn in_range(what: &str, value: f64, key: &str) -> Result<(), ParameterError> {
-    let range = keys::range_of(key);
-    let error = || ParameterError::new(what, Problem::value(format_args!("{value:?}"), range));
-    if range.holds(value) { Ok(()) } else { Err(error()) }
 }

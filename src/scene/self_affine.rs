@@ -4,7 +4,7 @@ use std::f64::consts::{SQRT_2, TAU};
 
 use nalgebra::Complex;
 
-use super::{HeightMap, Surface};
+use super::HeightMap;
 use crate::math::{Direction, SplitMix64, fourier, fourier_2d};
 
 /// A number of modes that is whole but for rounding is that number.
@@ -50,22 +50,8 @@ pub struct SelfAffine {
 }
 
 impl SelfAffine {
-    /// The profile; of a map line `line`, from 1, or the middle one.
-    pub(super) fn surface(&self, line: Option<usize>) -> Surface {
-        if let Some(size_y) = self.size_y {
-            let map = self.map(size_y);
-            let line = line.unwrap_or(map.ny().div_ceil(2)) - 1;
-            return map.profile(line, true).with_map(Some(Ok(map))).with_self_affine(*self);
-        }
-        let share = |i| i as f64 / self.points as f64;
-        let x = (0..=self.points).map(|i| self.length * share(i)).collect();
-        let mut z = self.heights();
-        z.push(z[0]);
-        Surface::new(x, z, true).with_self_affine(*self)
-    }
-
     /// The heights at the points of one period, m.
-    fn heights(&self) -> Vec<f64> {
+    pub(super) fn heights(&self) -> Vec<f64> {
         let sums = fourier(&self.coefficients(), Direction::Backward);
         self.scaled(sums.iter().map(|sum| sum.re).collect())
     }
@@ -75,7 +61,7 @@ impl SelfAffine {
         ((size_y / self.length * self.points as f64).round() as usize).max(1)
     }
 
-    fn map(&self, size_y: f64) -> HeightMap {
+    pub(super) fn map(&self, size_y: f64) -> HeightMap {
         let (nx, ny) = (self.points, self.lines(size_y));
         let mut sums = vec![Complex::from(0.0); nx * ny];
         for ([m, n], power) in self.modes_of_map(size_y) {

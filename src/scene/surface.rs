@@ -5,13 +5,10 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::height_map::{HeightMap, MapError, STEEPEST, peak_to_valley};
+use super::self_affine::SelfAffine;
 use super::values::{LARGEST, SMALLEST};
-use super::{HeightMap, MapError, SelfAffine};
 use crate::math::Spline;
-
-/// The largest slope of a profile: a step of a metre from one atom to the next has less, and its square times that of
-/// the largest speed does not overflow.
-pub(super) const STEEPEST: f64 = 1e12;
 
 /// Periodic ends may differ by rounding: by this part of the peak-to-valley height.
 const ROUNDING: f64 = 1.0e-12;
@@ -199,6 +196,45 @@ impl Surface {
     }
 }
 
+impl SelfAffine {
+    /// The profile; of a map line `line`, from 1, or the middle one.
+    pub(super) fn surface(&self, line: Option<usize>) -> Surface {
+        if let Some(size_y) = self.size_y {
+            let map = self.map(size_y);
+            let line = line.unwrap_or(map.ny().div_ceil(2)) - 1;
+            return map.profile(line, true).with_map(Some(Ok(map))).with_self_affine(*self);
+        }
+        let share = |i| i as f64 / self.points as f64;
+        let x = (0..=self.points).map(|i| self.length * share(i)).collect();
+        let mut z = self.heights();
+        z.push(z[0]);
+        Surface::new(x, z, true).with_self_affine(*self)
+    }
+}
+
+impl HeightMap {
+    /// Root mean square gradient, of splines along all lines and columns.
+    pub fn rms_gradient(&self, periodic: bool) -> f64 {
+        (self.slope_square(periodic) + self.transposed().slope_square(periodic)).sqrt()
+    }
+
+    /// The mean square slope along x.
+    fn slope_square(&self, periodic: bool) -> f64 {
+        let square = |j| self.profile(j, periodic).rms_slope().powi(2);
+        (0..self.ny()).map(square).sum::<f64>() / self.ny() as f64
+    }
+
+    /// Line `j` as a profile; that of a periodic map is closed by its first height.
+    pub(super) fn profile(&self, j: usize, periodic: bool) -> Surface {
+        let mut z = self.line(j).to_vec();
+        if periodic {
+            z.push(z[0]);
+        }
+        let x = (0..z.len()).map(|i| self.spacing()[0] * i as f64).collect();
+        Surface::new(x, z, periodic)
+    }
+}
+
 /// The least squares line of a profile as a curve: the weight of a point is the width of the intervals beside it, so
 /// that uneven spacing does not matter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -234,13 +270,6 @@ impl MeanLine {
 pub(super) fn remove_tilt(x: &[f64], z: &mut [f64]) {
     let line = MeanLine::through(x, z);
     z.iter_mut().zip(x).for_each(|(z, x)| *z = (*z - line.z) - line.slope * (x - line.x));
-}
-
-/// Highest minus lowest, m; 0 for no heights.
-pub fn peak_to_valley(heights: &[f64]) -> f64 {
-    let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
-    (highest - lowest).max(0.0)
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -15,9 +15,7 @@ mod controller;
 #[cfg(test)]
 mod derivative_tests;
 mod event_driven;
-mod interrupt;
 mod local_regions;
-mod memory;
 mod motion;
 mod reference_run;
 mod run;
@@ -37,7 +35,7 @@ use crate::outputs::{Output, Snapshot, Variable};
 use crate::scene::{Axis, ByAxis, ParameterError, Scene};
 use context::Context;
 use controller::WorkLimit;
-pub use interrupt::Interrupt;
+pub use motion::Interrupt;
 pub use motion::{Inaccuracy, MethodSwitch, ModeChange, Motion, OutOfRange, SimulationError, Start};
 use reference_run::ReferenceRun;
 use run::Run;
@@ -76,7 +74,7 @@ impl Simulation {
     pub fn new(scene: &Scene, start: &Start) -> Result<Self, SimulationError> {
         start.check()?;
         scene.check()?;
-        memory::check(scene)?;
+        settings::check(scene)?;
         scene.check_equilibrium(start.load)?;
         let Some(wlf) = scene.material.as_ref().and_then(|material| material.wlf).filter(|_| scene.temperature_input)
         else {
@@ -89,7 +87,7 @@ impl Simulation {
 
     /// Memory in bytes that a run of `scene` takes. It is an upper bound that tests hold against what runs allocate.
     pub fn memory(scene: &Scene) -> usize {
-        memory::of_run(scene)
+        settings::of_run(scene)
     }
 
     fn started(scene: &Scene, start: &Start) -> Self {

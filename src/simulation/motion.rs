@@ -1,10 +1,12 @@
 //! The carrier's motion, why a run may not be able to follow it or not converge, and what it records on the way.
 
 use std::fmt;
+use std::sync::Arc;
 
 use crate::math::NotEnoughMemory;
-pub use crate::scene::Motion;
 use crate::scene::{Force, LARGEST, ParameterError, Path, is_possible};
+
+pub use crate::scene::Motion;
 
 /// The carrier at the start of a run. Along the axis of a body the displacements and speeds are those of its drive; where the
 /// body starts, and how fast, is the scene's.
@@ -211,5 +213,27 @@ fn check_size(quantities: &[(&'static str, f64)]) -> Result<(), OutOfRange> {
     match quantities.iter().find(|(_, value)| !is_possible(*value)) {
         Some(&(what, value)) => Err(OutOfRange { what, value }),
         None => Ok(()),
+    }
+}
+
+/// Asked before each step of a run whether it is to stop. Copies ask the same.
+#[derive(Clone)]
+pub struct Interrupt(Arc<dyn Fn() -> bool + Send + Sync>);
+
+impl Interrupt {
+    /// Stops where `is_wanted` says so, which is called often: it has to be quick.
+    pub fn new(is_wanted: impl Fn() -> bool + Send + Sync + 'static) -> Self {
+        Self(Arc::new(is_wanted))
+    }
+
+    /// Whether to stop now.
+    pub fn is_wanted(&self) -> bool {
+        (self.0)()
+    }
+}
+
+impl fmt::Debug for Interrupt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Interrupt")
     }
 }

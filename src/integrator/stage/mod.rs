@@ -11,15 +11,14 @@
 //! breaks loose changes rows, not the shape of the system.
 
 mod border;
-mod modes;
+mod motion;
 mod newton;
-mod positions;
-mod rates;
 mod slipping_mass;
 
 use std::ops::Range;
 
 use nalgebra::Vector2;
+use slipping_mass::{NeighbourWeights, RowShares, StageFriction, largest_of};
 
 use super::heat::StageFlash;
 use super::memory::StageMemory;
@@ -28,9 +27,9 @@ use super::stage_values::StageValues;
 use super::tolerance::{NEWTON_SHARE, Tolerance};
 use crate::math::{BlockTridiagonal, weighted_sum, with_widest_vectors};
 use crate::model::{
-    ByAxis, ByLink, CarrierPoint, Forces, FrictionPower, LinkKind, LinkLaw, Mode, Model, SlipHistory, State,
+    ByAxis, ByLink, CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, LinkLaw, Mode, Model, SlipHistory,
+    State,
 };
-use newton::{NeighbourWeights, RowShares, StageFriction, largest_of};
 
 pub(super) use border::{BodyHistory, Border};
 pub(super) use slipping_mass::{SlipVariation, SlippingMass};
@@ -436,5 +435,60 @@ fn add_corrections(v_x: &mut [f64], v_z: &mut [f64], corrections: &[Vector2<f64>
     for ((v_x, v_z), correction) in v_x.iter_mut().zip(v_z).zip(corrections) {
         *v_x += correction.x;
         *v_z += correction.y;
+    }
+}
+
+impl StageSolver {
+    /// Stops the slips that have reversed and breaks the sticks that hold more than T(0), by the velocities and forces
+    /// evaluated last. Returns whether a mode has changed.
+    fn change_modes(&mut self, model: &Model, point: &StagePoint) -> bool {
+        if self.modes == ContactModes::Held || !model.friction.present {
+            return false;
+        }
+        let mut changed = false;
+        for contact in 0..self.contacts.len() {
+            let i = self.contacts[contact];
+            let mode = self.mode_by_residual(model, i, point.beta);
+            if mode == self.state.mode[i] {
+                continue;
+            }
+            changed = true;
+            self.state.mode[i] = mode;
+            if mode == Mode::Stick {
+                self.stop(model, i, point);
+            }
+        }
+        if changed {
+            self.hold_modes(model, point.beta);
+            self.evaluate(model, point);
+        }
+        changed
+    }
+
+    /// Puts mass `i` where the stages before have brought it, at rest.
+    fn stop(&mut self, model: &Model, i: usize, point: &StagePoint) {
+        (self.state.velocity_x[i], self.state.velocity_z[i]) = (0.0, 0.0);
+        let elongation = self.history.elongation_x[i] - point.moved;
+        self.state.surface[i] = model.surface_at(model.rest_x[i] + (point.profile_position() + elongation));
+    }
+
+    /// The mode in which the residual of contact `i` can vanish: a slip goes on in its direction, and a mass at rest
+    /// may need at most T(0) to be held, its momentum m v*/β included.
+    fn mode_by_residual(&self, model: &Model, i: usize, beta: f64) -> Mode {
+        let (mode, v) = (self.state.mode[i], self.state.velocity_x[i]);
+        if mode.slips() {
+            return if mode.direction() * v < 0.0 { Mode::Stick } else { mode };
+        }
+        let (surface, history) = (&self.state.surface[i], self.slip_history(i));
+        let contact = ContactForces::new(model, self.forces.on_mass(i), 0.0, surface, &history);
+        let held = contact.tangential + model.mass * contact.q * self.history.velocity_x[i] / beta;
+        if held.abs() > contact.limit.max(0.0) { Mode::along(held) } else { Mode::Stick }
+    }
+
+    /// A mass that stuck at the stage before goes on from rest: friction has taken up its momentum.
+    fn start_sticks_from_rest(&mut self) {
+        for &i in &self.sticks {
+            self.history.velocity_x[i] = 0.0;
+        }
     }
 }

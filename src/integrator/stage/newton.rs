@@ -6,11 +6,15 @@ use std::ops::Range;
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::slipping_mass::{ContactJacobian, SlipMotion, SlippingMass};
-use super::{MassHistory, StageSolver};
-use crate::math::with_widest_vectors;
+use super::border::Side;
+use super::slipping_mass::{
+    ContactJacobian, NeighbourWeights, RowShares, SlipMotion, SlippingMass, StageFriction, largest_of,
+};
+use super::{MassHistory, StagePoint, StageSolver};
+use crate::math::{Jet, with_widest_vectors};
 use crate::model::{
-    Axis, ByAxis, ByLink, ContactForces, Forces, LinearFriction, LinkLaw, Mode, Model, SlipFriction, SlipHistory, State,
+    Axis, ByAxis, ByLink, ContactForces, Forces, LinearFriction, LinkKind, LinkLaw, Mode, Model, SlipFriction,
+    SlipHistory, State,
 };
 
 impl StageSolver {
@@ -347,73 +351,6 @@ fn set_linear_residuals(
     }
 }
 
-/// The largest of all numbers; NaN where one is not finite. For use with vector instructions.
-#[inline(always)]
-pub(super) fn largest_of(values: &[Vector2<f64>]) -> f64 {
-    // A comparison ignores NaN, the sum does not.
-    let greater = |a: f64, b: f64| if a > b { a } else { b };
-    let (mut largest, mut sum) = ([Vector2::zeros(); LANES], [Vector2::zeros(); LANES]);
-    let mut take = |lane: usize, value: &Vector2<f64>| {
-        largest[lane] = value.abs().zip_map(&largest[lane], greater);
-        sum[lane] += value;
-    };
-    let (chunks, rest) = values.as_chunks::<LANES>();
-    for chunk in chunks {
-        (0..LANES).for_each(|lane| take(lane, &chunk[lane]));
-    }
-    rest.iter().for_each(|value| take(0, value));
-    let largest = largest.iter().fold(0.0, |most, of_lane| greater(of_lane.x, greater(of_lane.y, most)));
-    if sum.iter().sum::<Vector2<f64>>().sum().is_finite() { largest } else { f64::NAN }
-}
-
-/// Masses taken together, so that the operations on one do not wait for those on the one before.
-const LANES: usize = 4;
-
-/// The factors with which the forces f_x, f_z on a mass enter its two equations.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct RowShares {
-    /// f_x in the first equation.
-    x_by_x: f64,
-    /// f_z in the first equation: of a contact, by its slope.
-    x_by_z: f64,
-    /// f_z in the second equation.
-    z_by_z: f64,
-}
-
-/// The derivatives of the lateral forces on a neighbour by a mass's two unknowns.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct NeighbourWeights {
-    /// ∂f_x/∂ẋ.
-    x: f64,
-    /// ∂f_z/∂ẋ: of a mass that slips up a slope.
-    z_by_x: f64,
-    /// ∂f_z/∂ż.
-    z: f64,
-}
-
-impl RowShares {
-    /// The block beside the diagonal: the derivative of this row by the neighbour's unknowns.
-    #[inline(always)]
-    fn coupling(&self, column: &NeighbourWeights) -> Matrix2<f64> {
-        // How this row takes up forces, times how they follow the neighbour's unknowns; no link couples f_x to ż.
-        Matrix2::new(
-            -(self.x_by_x * column.x + self.x_by_z * column.z_by_x),
-            -(self.x_by_z * column.z),
-            -(self.z_by_z * column.z_by_x),
-            -(self.z_by_z * column.z),
-        )
-    }
-}
-
-/// The friction of a slipping mass at the velocities of the last residuals, where the law is not linear. Its value at rest
-/// belongs to the equation of [`SlippingMass`] already.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct StageFriction {
-    pub(super) friction: SlipFriction,
-    /// The derivative of the equation by ẋ without its excess over that at rest, kg/s.
-    derivative_without: f64,
-}
-
 impl StageSolver {
     /// Replaces the corrections of slipping masses, which follow the tangent of the friction curve, by those along the
     /// curve itself. Returns the largest of them as the velocity, m/s, that the same force would change if friction did
@@ -440,4 +377,129 @@ impl StageSolver {
         }
         largest
     }
+}
+
+/// The bodies of the carrier (docs/theory.md, section 12).
+impl StageSolver {
+    /// Assembles and eliminates the bodies' rows and columns, once the system of the masses is factored.
+    pub(super) fn factor_border(&mut self, model: &Model, beta: f64) {
+        let Some(mut border) = self.border.take() else { return };
+        for side in border.sides() {
+            self.assemble_side(model, beta, side);
+            if self.slips.is_empty() {
+                self.system.solve_uncoupled_for(&mut side.column);
+            } else {
+                self.system.solve_for(&mut side.column);
+            }
+        }
+        border.factor();
+        self.border = Some(border);
+    }
+
+    /// Assembles the row and the column of one body.
+    ///
+    /// The unknowns of free masses are relative to it, those of contacts are not. So with δ of the body a free mass
+    /// feels its inertia and the lateral links to contacts, a contact its link to the carrier and the lateral ones to
+    /// free masses.
+    fn assemble_side(&self, model: &Model, beta: f64, side: &mut Side) {
+        let (own, lateral, component) = match side.axis {
+            Axis::X => (LinkKind::Horizontal, LinkKind::LateralX, 0),
+            Axis::Z => (LinkKind::Vertical, LinkKind::LateralZ, 1),
+        };
+        // The body by itself.
+        let inertia = model.mass / beta;
+        let modes = &self.state.mode;
+        side.column.fill(Vector2::zeros());
+        side.row.fill(Vector2::zeros());
+        side.inertia = side.body.mass;
+        side.diagonal = side.body.mass / beta + beta * side.body.stiffness + side.body.damping;
+        for (i, mode) in modes.iter().enumerate() {
+            // Lateral links between a free mass and a contact.
+            let beside = [i.checked_sub(1), Some(i + 1)].into_iter().flatten().filter_map(|j| modes.get(j));
+            let other = beside.filter(|other| other.in_contact() != mode.in_contact()).count() as f64;
+            let across = other * self.weights[lateral];
+            if !mode.in_contact() {
+                side.inertia += model.mass;
+                side.diagonal += inertia + across;
+                side.column[i][component] = inertia + across;
+                side.row[i][component] = inertia + across;
+                continue;
+            }
+            // A contact: its link to the carrier, and if it slips its equation.
+            side.diagonal += self.weights[own];
+            if mode.slips() {
+                let (share, climb) = self.slip_border(model, i, beta, side.axis);
+                side.column[i].x = -share * (self.weights[own] + across);
+                side.row[i].x = -(climb.force(&self.laws[own]) + other * climb.force(&self.laws[lateral]));
+            }
+        }
+    }
+
+    /// Solves the system for the right sides of the masses and of the bodies, which are set; those of free masses
+    /// become velocities in the inertial frame. Returns the bodies' velocities along x and z.
+    pub(in crate::integrator) fn solve_bordered(&mut self) -> Vector2<f64> {
+        self.system.solve();
+        self.complete_border()
+    }
+
+    /// The bodies' part of the solution, once the masses' system is solved.
+    pub(super) fn complete_border(&mut self) -> Vector2<f64> {
+        let Some(border) = &self.border else { return Vector2::zeros() };
+        let found = border.complete(&mut self.system.right);
+        for (right, mode) in self.system.right.iter_mut().zip(&self.state.mode) {
+            if !mode.in_contact() {
+                *right += found;
+            }
+        }
+        found
+    }
+
+    /// Corrects the bodies' velocities by `change` (m/s), and the carrier at the stage with them.
+    pub(super) fn move_bodies(&mut self, change: Vector2<f64>, point: &mut StagePoint) {
+        let Some(border) = &mut self.border else { return };
+        for side in border.sides() {
+            let rate = side.outside.body.speed + change[side.axis as usize];
+            let moved = side.star.moved + point.beta * rate;
+            let displacement = side.star.start + moved;
+            let before = point.carrier[side.axis].position;
+            let acceleration = (rate - side.star.rate) / point.beta;
+            let position = side.outside.body.position + (displacement - before);
+            side.outside.body = Jet { position, speed: rate, acceleration };
+            point.carrier[side.axis] = Jet { position: displacement, speed: rate, acceleration };
+            point.integrated[side.axis] = moved;
+            if side.axis == Axis::X {
+                point.moved = moved;
+            }
+        }
+    }
+
+    /// Sets the negative residuals of the bodies' equations at the present velocities.
+    pub(super) fn set_border_residuals(&mut self, beta: f64) {
+        let Some(border) = &mut self.border else { return };
+        for side in border.sides() {
+            let gained = side.body.mass * (side.outside.body.speed - side.star.rate) / beta;
+            let outside = side.outside.force + side.outside.drive_force(&side.body) - gained;
+            side.right = outside + with_free_masses(side.axis, &self.forces, &self.system.right, &self.state.mode);
+        }
+    }
+
+    /// Sets the right side of the body's equation along `axis` to `outside` and what links with these `forces` exert
+    /// (N), as the right sides of the masses are set.
+    pub(in crate::integrator) fn set_border_right(&mut self, axis: Axis, forces: &Forces, outside: f64) {
+        let Some(border) = &mut self.border else { return };
+        if let Some(side) = &mut border.sides[axis] {
+            side.right = outside + with_free_masses(axis, forces, &self.system.right, &self.state.mode);
+        }
+    }
+}
+
+/// The force of the links on the body along `axis` and the right sides of the free masses, N: what the links between
+/// the two exert cancels.
+fn with_free_masses(axis: Axis, forces: &Forces, right: &[Vector2<f64>], modes: &[Mode]) -> f64 {
+    let links = &forces.link[axis.link()];
+    let of_mass = |(i, (right, mode)): (usize, (&Vector2<f64>, &Mode))| {
+        let link = links.get(i).copied().unwrap_or(0.0);
+        if mode.in_contact() { link } else { link + right[axis as usize] }
+    };
+    right.iter().zip(modes).enumerate().map(of_mass).sum()
 }

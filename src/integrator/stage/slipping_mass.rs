@@ -1,6 +1,8 @@
 //! The equation of motion of a slipping mass: its residual, its derivative in Newton's method, and its variations for the
 //! tangents (docs/theory.md, sections 3, 4 and 8).
 
+use nalgebra::{Matrix2, Vector2};
+
 use crate::model::{
     ByAxis, ContactForces, Forces, LinearFriction, LinkLaw, Model, SlipFriction, SlipHistory, State, SurfacePoint,
 };
@@ -244,3 +246,70 @@ impl SlippingMass {
         ContactJacobian { height: beta * self.s, rate: self.s + beta * self.kappa * self.velocity }
     }
 }
+
+/// The factors with which the forces f_x, f_z on a mass enter its two equations.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct RowShares {
+    /// f_x in the first equation.
+    pub x_by_x: f64,
+    /// f_z in the first equation: of a contact, by its slope.
+    pub x_by_z: f64,
+    /// f_z in the second equation.
+    pub z_by_z: f64,
+}
+
+/// The derivatives of the lateral forces on a neighbour by a mass's two unknowns.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct NeighbourWeights {
+    /// ∂f_x/∂ẋ.
+    pub x: f64,
+    /// ∂f_z/∂ẋ: of a mass that slips up a slope.
+    pub z_by_x: f64,
+    /// ∂f_z/∂ż.
+    pub z: f64,
+}
+
+impl RowShares {
+    /// The block beside the diagonal: the derivative of this row by the neighbour's unknowns.
+    #[inline(always)]
+    pub(super) fn coupling(&self, column: &NeighbourWeights) -> Matrix2<f64> {
+        // How this row takes up forces, times how they follow the neighbour's unknowns; no link couples f_x to ż.
+        Matrix2::new(
+            -(self.x_by_x * column.x + self.x_by_z * column.z_by_x),
+            -(self.x_by_z * column.z),
+            -(self.z_by_z * column.z_by_x),
+            -(self.z_by_z * column.z),
+        )
+    }
+}
+
+/// The friction of a slipping mass at the velocities of the last residuals, where the law is not linear. Its value at rest
+/// belongs to the equation of [`SlippingMass`] already.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct StageFriction {
+    pub friction: SlipFriction,
+    /// The derivative of the equation by ẋ without its excess over that at rest, kg/s.
+    pub derivative_without: f64,
+}
+
+/// The largest of all numbers; NaN where one is not finite. For use with vector instructions.
+#[inline(always)]
+pub(super) fn largest_of(values: &[Vector2<f64>]) -> f64 {
+    // A comparison ignores NaN, the sum does not.
+    let greater = |a: f64, b: f64| if a > b { a } else { b };
+    let (mut largest, mut sum) = ([Vector2::zeros(); LANES], [Vector2::zeros(); LANES]);
+    let mut take = |lane: usize, value: &Vector2<f64>| {
+        largest[lane] = value.abs().zip_map(&largest[lane], greater);
+        sum[lane] += value;
+    };
+    let (chunks, rest) = values.as_chunks::<LANES>();
+    for chunk in chunks {
+        (0..LANES).for_each(|lane| take(lane, &chunk[lane]));
+    }
+    rest.iter().for_each(|value| take(0, value));
+    let largest = largest.iter().fold(0.0, |most, of_lane| greater(of_lane.x, greater(of_lane.y, most)));
+    if sum.iter().sum::<Vector2<f64>>().sum().is_finite() { largest } else { f64::NAN }
+}
+
+/// Masses taken together, so that the operations on one do not wait for those on the one before.
+const LANES: usize = 4;

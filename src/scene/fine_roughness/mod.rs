@@ -1,20 +1,18 @@
 //! The roughness below the resolution of the profile, as bands of waves (`surface.fine`).
 
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use serde::Serialize;
+use spectrum::isotropic;
+
+use super::{Friction, LARGEST, Material, SelfAffine, Surface};
+
 mod files;
-mod softening;
 mod spectrum;
 mod split;
 mod warnings;
 
-use std::f64::consts::{FRAC_PI_2, TAU};
-
-use serde::Serialize;
-
-use super::{Friction, LARGEST, Material, Scene, SelfAffine, SpectrumFactors, Surface};
-use spectrum::isotropic;
-
 pub(super) use files::{Convention, read_softening, read_spectrum};
-pub use softening::{ModulusFactors, Softening, SofteningRow};
 pub use spectrum::RoughnessSpectrum;
 pub use split::{SplitError, SplitSurface};
 
@@ -116,56 +114,44 @@ const PER_DECADE: f64 = 8.0;
 const ROUNDING: f64 = 1e-9;
 /// Directions φ between 0 and π/2 at whose middles the waves of an isotropic surface are taken.
 const DIRECTIONS: u32 = 32;
-/// v_c where nothing gives it, m/s.
-const CREEP_SPEED: f64 = 1e-6;
+/// By what the density of a spectrum is multiplied.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub enum SpectrumFactors {
+    /// One factor for all waves.
+    Whole(f64),
+    /// [Decades](decade_of) of wavelengths, rising, and their factors; waves beyond them have that of the nearest.
+    Decades(Vec<(i32, f64)>),
+}
 
-impl Scene {
-    /// The bands of waves that the profile lacks, from the longest; none without them, or where their modulus is given.
-    pub fn fine_bands(&self) -> Vec<FineBand> {
-        let Some(fine) = &self.fine else { return Vec::new() };
-        let mut bands = fine.waves.bands(&self.surface);
-        if let Some(factors) = &fine.factors {
-            bands.iter_mut().for_each(|band| band.gradient_square *= factors.at(TAU / band.wave_number));
+/// The decade of a wavelength (m): d from 10^d to 10^(d+1) m, so that it is the same in every scene.
+pub fn decade_of(wavelength: f64) -> i32 {
+    /// Wavelengths that are a power of ten but for this begin its decade.
+    const ROUNDING: f64 = 1e-9;
+    (wavelength.log10() + ROUNDING).floor() as i32
+}
+
+impl SpectrumFactors {
+    /// The factor at a wavelength (m).
+    pub fn at(&self, wavelength: f64) -> f64 {
+        match self {
+            Self::Whole(factor) => *factor,
+            Self::Decades(decades) => {
+                let decade = decade_of(wavelength);
+                let nearest = decades.iter().min_by_key(|(other, _)| (other - decade).abs());
+                nearest.map_or(1.0, |(_, factor)| *factor)
+            }
         }
-        // Each band's strain is that of all waves down to its own.
-        let mut gradient_square = 0.0;
-        for band in &mut bands {
-            gradient_square += band.gradient_square;
-            band.factors = fine.softening.factors(0.5 * gradient_square.sqrt());
-        }
-        bands
     }
 
-    /// The root mean square gradient of the waves that the profile lacks, 1.
-    pub fn fine_gradient(&self) -> f64 {
-        match self.fine.as_ref().map(|fine| &fine.waves) {
-            Some(FineWaves::Modulus { rms_slope, .. }) => *rms_slope,
-            _ => self.fine_bands().iter().map(|band| band.gradient_square).sum::<f64>().sqrt(),
-        }
-    }
-
-    /// The root mean square height of the waves in the bands, m.
-    pub fn fine_height(&self) -> f64 {
-        let square = |band: &FineBand| band.gradient_square / band.wave_number.powi(2);
-        self.fine_bands().iter().map(square).sum::<f64>().sqrt()
-    }
-
-    /// v_c of the waves, m/s; `None` where there are none, or where that of the shear strength counts.
-    pub(super) fn own_fine_creep_speed(&self) -> Option<f64> {
-        let of_shear = self.friction.as_ref().is_some_and(|friction| friction.rate_shear.is_some());
-        self.fine.as_ref().filter(|fine| fine.waves.has_bands() && !of_shear).map(|_| self.fine_creep_speed())
-    }
-
-    /// v_c, m/s at the reference temperature: slip on the roughness below the profile is no slower.
-    pub fn fine_creep_speed(&self) -> f64 {
-        let of_shear = self.friction.as_ref().and_then(|friction| friction.rate_shear).map(|law| law.creep_speed());
-        self.fine.as_ref().and_then(|fine| fine.creep_speed).or(of_shear).unwrap_or(CREEP_SPEED)
+    /// The factor of a height less 1.
+    pub(super) fn of_height(&self, wavelength: f64) -> f64 {
+        self.at(wavelength).sqrt() - 1.0
     }
 }
 
 impl FineWaves {
     /// The bands, of rubber that strain does not soften; none where the modulus is given.
-    fn bands(&self, surface: &Surface) -> Vec<FineBand> {
+    pub(super) fn bands(&self, surface: &Surface) -> Vec<FineBand> {
         match self {
             &Self::SelfAffine { hurst, rms_slope, longest, shortest } => {
                 self_affine_bands(hurst, rms_slope, longest, shortest)
@@ -373,11 +359,77 @@ impl Material {
     }
 }
 
+/// By what the moduli are less in the bands, where rubber is strained by tens of per cent.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub enum Softening {
+    /// s, 1: both moduli, whatever the strain.
+    Factor(f64),
+    /// By the strain, which rises; at least two rows. Factors are linear in its logarithm, and held beyond the ends.
+    Table(Vec<SofteningRow>),
+}
+
+/// A row of a table of softening.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SofteningRow {
+    /// The strain, 1.
+    pub strain: f64,
+    /// The factors there.
+    pub factors: ModulusFactors,
+}
+
+/// Factors on the real (storage) and the imaginary (loss) part of a modulus.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ModulusFactors {
+    /// On the storage modulus, 1.
+    pub storage: f64,
+    /// On the loss modulus, 1.
+    pub loss: f64,
+}
+
+impl ModulusFactors {
+    /// Of rubber that strain does not soften.
+    pub const ONE: Self = Self { storage: 1.0, loss: 1.0 };
+}
+
+impl Softening {
+    /// The factors at a `strain` ≥ 0, 1.
+    pub fn factors(&self, strain: f64) -> ModulusFactors {
+        let rows = match self {
+            Self::Factor(factor) => return ModulusFactors { storage: *factor, loss: *factor },
+            Self::Table(rows) => rows,
+        };
+        let above = rows.partition_point(|row| row.strain <= strain);
+        match (above.checked_sub(1).and_then(|below| rows.get(below)), rows.get(above)) {
+            (Some(below), Some(above)) => {
+                let part = (strain / below.strain).ln() / (above.strain / below.strain).ln();
+                let between = |low: f64, high: f64| low + part * (high - low);
+                let (low, high) = (below.factors, above.factors);
+                ModulusFactors { storage: between(low.storage, high.storage), loss: between(low.loss, high.loss) }
+            }
+            (Some(end), None) | (None, Some(end)) => end.factors,
+            (None, None) => ModulusFactors::ONE,
+        }
+    }
+
+    /// What it is, in a few words; `None` where it changes nothing.
+    fn describe(&self) -> Option<String> {
+        match self {
+            Self::Factor(1.0) => None,
+            Self::Factor(factor) => Some(format!("softening {factor:?}")),
+            Self::Table(rows) => {
+                let [first, last] = [rows.first()?, rows.last()?].map(|row| row.strain);
+                Some(format!("softening of a table of strains from {first:?} to {last:?}"))
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::path::Path;
 
     use super::*;
+    use crate::scene::Scene;
 
     /// Rubber of two terms on a flat surface with these waves.
     fn scene(fine: FineRoughness) -> Scene {
@@ -446,5 +498,20 @@ mod tests {
             assert!(found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-12), "{band:?}");
         }
         assert!((gradient_square - 0.81).abs() < 1e-12);
+    }
+
+    #[test]
+    fn factors_are_linear_in_the_logarithm_and_held_at_the_ends() {
+        let row = |strain, storage, loss| SofteningRow { strain, factors: ModulusFactors { storage, loss } };
+        let table = Softening::Table(vec![row(0.001, 1.0, 1.0), row(0.1, 0.5, 1.5), row(1.0, 0.25, 0.75)]);
+        let at = |strain: f64| {
+            let factors = table.factors(strain);
+            [factors.storage, factors.loss]
+        };
+        assert_eq!((at(0.0), at(1e-3), at(1.0), at(7.0)), ([1.0; 2], [1.0; 2], [0.25, 0.75], [0.25, 0.75]));
+        let middle = at(0.01);
+        // Roundings of logarithms.
+        assert!((middle[0] - 0.75).abs() < 1e-15 && (middle[1] - 1.25).abs() < 1e-15, "{middle:?}");
+        assert_eq!(at(0.1), [0.5, 1.5]);
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::{LN_10, PI, TAU};
 
 use serde::Serialize;
 
-use crate::scene::{Band, Spectrum};
+use crate::scene::{Band, HeightMap, Spectrum};
 
 /// C at some wave numbers; ln C is linear in ln q between them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -164,6 +164,39 @@ pub(super) fn logarithmic_mean(a: f64, b: f64) -> f64 {
     const EQUAL: f64 = 1e-6;
     let ratio = (b / a).ln();
     if ratio.abs() < EQUAL { 0.5 * (a + b) } else { (b - a) / ratio }
+}
+
+impl HeightMap {
+    /// The isotropic power spectrum: the mean of C over rings of wave numbers that are even in the logarithm; `None` where
+    /// fewer than two have any power.
+    pub fn spectrum(&self, periodic: bool) -> Option<RoughnessSpectrum> {
+        /// Rings of a decade.
+        const RINGS: f64 = 12.0;
+        let extent = self.spacing()[0] * self.nx() as f64;
+        let longest = extent.min(self.spacing()[1] * self.ny() as f64);
+        let nyquist = PI / self.spacing()[0].max(self.spacing()[1]);
+        // Under a window the longest waves are not reliable.
+        let first = TAU / longest * if periodic { 1.0 } else { 2.0 } * (1.0 - 1e-9);
+        let count = ((nyquist / first).log10() * RINGS).ceil().max(0.0) as usize;
+        // By ring: how many, Σ ln q, Σ C.
+        let mut rings = vec![(0_usize, 0.0, 0.0); count + 1];
+        for (at, density) in self.power_density(periodic).into_iter().enumerate() {
+            let [q_x, q_y] = self.wave_numbers(at);
+            let q = q_x.hypot(q_y);
+            if (first..nyquist).contains(&q) {
+                let (number, logarithms, sum) = &mut rings[((q / first).log10() * RINGS) as usize];
+                (*number, *logarithms, *sum) = (*number + 1, *logarithms + q.ln(), *sum + density);
+            }
+        }
+        let mean = |(number, logarithms, sum): (usize, f64, f64)| {
+            let number = number as f64;
+            [(logarithms / number).exp(), sum / number]
+        };
+        let largest = rings.iter().map(|ring| mean(*ring)[1]).fold(0.0, f64::max);
+        // Beyond a cut-off there are rounding errors alone.
+        let seen: Vec<_> = rings.into_iter().map(mean).filter(|[_, density]| *density > 1e-16 * largest).collect();
+        (seen.len() > 1).then(|| RoughnessSpectrum::new(seen))
+    }
 }
 
 #[cfg(test)]

@@ -1,45 +1,18 @@
 //! What the links of a layer stand for: the stiffness of the rubber's surface below the masses, whatever their spacing.
 
-mod body;
-mod fit;
-mod quality;
-mod warnings;
-mod waves;
+use std::f64::consts::TAU;
 
 use serde::Serialize;
 
-pub use body::ElasticBody;
-pub use fit::Stiffness;
-pub use quality::Quality;
+use super::layer::{FoundationKind, Layer};
+use super::{LinkKind, Material, Surface};
+
+mod fit;
+mod warnings;
+mod waves;
+
+pub use fit::{ElasticBody, Stiffness};
 pub use waves::{Wave, Waves};
-
-use super::values::Word;
-use super::{Layer, LinkKind, Material, Surface};
-
-/// How the links follow from the material.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum FoundationKind {
-    /// By the layer's thickness and the spacing alone (docs/model.md, section 7): off by factors but near one wavelength.
-    Springs,
-    /// Fitted to a half-space.
-    HalfSpace,
-    /// Fitted to a layer of a thickness, bonded to a rigid base.
-    #[default]
-    Layer,
-}
-
-impl Word for FoundationKind {
-    const WORDS: &'static [(&'static str, Self)] =
-        &[("springs", Self::Springs), ("half_space", Self::HalfSpace), ("layer", Self::Layer)];
-}
-
-impl FoundationKind {
-    /// The word for it in a scene file.
-    pub fn word(self) -> &'static str {
-        self.as_word()
-    }
-}
 
 /// The links of a layer fitted to the surface of a body, weighted by the waves of the profile and of the roughness.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -81,7 +54,7 @@ impl Foundation {
     }
 
     /// What moves along the direction of `kind`.
-    fn stiffness(&self, kind: LinkKind) -> Stiffness {
+    pub(super) fn stiffness(&self, kind: LinkKind) -> Stiffness {
         if kind.is_along_x() { self.tangential } else { self.normal }
     }
 
@@ -118,7 +91,7 @@ impl Layer {
     }
 
     /// What springs are along the direction of `kind`, over the plane modulus (docs/model.md, section 7).
-    fn springs(&self, material: &Material, kind: LinkKind) -> Option<Stiffness> {
+    pub(super) fn springs(&self, material: &Material, kind: LinkKind) -> Option<Stiffness> {
         let (thickness, nu) = (self.thickness?, material.poisson_ratio);
         // E/M and G/M
         let (modulus, shear) = (1.0 - nu * nu, 0.5 * (1.0 - nu));
@@ -127,5 +100,55 @@ impl Layer {
         } else {
             Stiffness { alpha: modulus / thickness, beta: shear * thickness }
         })
+    }
+}
+
+/// The stiffness of the links over that of the surface, r(q), over the waves of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quality {
+    /// r at five wavelengths (m) that are even in their logarithms, from the longest to the shortest of the waves that
+    /// carry 5 to 95 % of the weight.
+    pub ratios: [(f64, f64); 5],
+    /// The least r of these waves.
+    pub least: f64,
+    /// The largest r of these waves.
+    pub largest: f64,
+    /// Root mean square of r - 1 over the weights of all waves.
+    pub rms: f64,
+    /// r at every wave: wavelength (m) and r.
+    pub curve: Vec<(f64, f64)>,
+}
+
+impl Quality {
+    /// How the `stiffness` of the links lies to that of the `body` along the direction of `kind`.
+    pub(super) fn new(waves: &Waves, stiffness: Stiffness, body: ElasticBody, kind: LinkKind) -> Option<Self> {
+        let ratio = |q: f64| stiffness.at_wave_number(waves, q) / body.stiffness_along(kind, q);
+        let carrying = waves.carrying();
+        let (first, last) = (carrying.first()?.wave_number, carrying.last()?.wave_number);
+        let at = |part: f64| first * (last / first).powf(part);
+        let of_carrying = || carrying.iter().map(|wave| ratio(wave.wave_number));
+        let whole: f64 = waves.resolved.iter().map(|wave| wave.weight).sum();
+        let missed = |q: f64| (ratio(q) - 1.0).powi(2);
+        let square: f64 = waves.resolved.iter().map(|wave| wave.weight * missed(wave.wave_number)).sum();
+        Some(Self {
+            ratios: [0.0, 0.25, 0.5, 0.75, 1.0].map(|part| (TAU / at(part), ratio(at(part)))),
+            least: of_carrying().fold(f64::INFINITY, f64::min),
+            largest: of_carrying().fold(0.0, f64::max),
+            rms: (square / whole).sqrt(),
+            curve: waves.resolved.iter().map(|wave| (TAU / wave.wave_number, ratio(wave.wave_number))).collect(),
+        })
+    }
+}
+
+impl Stiffness {
+    /// α + βD², 1/m.
+    fn at_wave_number(&self, waves: &Waves, wave_number: f64) -> f64 {
+        self.alpha + self.beta * waves.difference_square(wave_number)
+    }
+}
+
+impl ElasticBody {
+    fn stiffness_along(self, kind: LinkKind, wave_number: f64) -> f64 {
+        if kind.is_along_x() { self.tangential(wave_number) } else { self.normal(wave_number) }
     }
 }

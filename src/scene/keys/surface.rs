@@ -2,10 +2,9 @@
 
 use super::field::{Field, FieldValue, field};
 use super::{Allowed, Key, Kinds, PATH, key, kinds, number, numbers, table, whole, word};
+use crate::scene::fine_roughness::Convention;
 use crate::scene::values::{ANY, NOT_NEGATIVE, POSITIVE, Word};
-use crate::scene::{
-    Convention, Depth, FineRoughness, FineWaves, LengthUnit, Missing, Softening, ThirdColumn, Tilt, Unit,
-};
+use crate::scene::{Depth, FineRoughness, FineWaves, LengthUnit, Missing, Softening, ThirdColumn, Tilt, Unit};
 
 /// Where the heights of a surface come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

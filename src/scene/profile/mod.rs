@@ -21,8 +21,8 @@ pub use areal::{Areal, line_note};
 pub use options::{Depth, LengthUnit, MeasuredPoints, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
 
 use super::error::SceneError;
+use super::height_map::Seam;
 use super::regular_file::read_file;
-use super::seam::Seam;
 use super::surface::{Coordinate, Surface, check_points, remove_tilt};
 use super::{HeightMap, MapError};
 use crate::tables::{ContentError, ReadingNote, Sheets, Unit, decode};

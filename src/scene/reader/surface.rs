@@ -3,9 +3,9 @@
 use std::path::{Component, Path as FilePath, PathBuf};
 
 use super::table::{Entry, Result, TableReader};
+use crate::scene::height_map::Seam;
 use crate::scene::keys::{PATH, SurfaceKind};
 use crate::scene::profile::{self, Extract, ProfileOptions, ReadFailure};
-use crate::scene::seam::Seam;
 use crate::scene::surface::{Coordinate, check_points};
 use crate::scene::{Layer, MOST_HEIGHTS, SelfAffine, Surface, read_file as read_bytes, warnings};
 use crate::tables::{ContentError, ReadingNote, text_or_sheet};

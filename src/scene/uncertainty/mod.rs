@@ -13,7 +13,6 @@ use super::values::Word;
 
 pub(super) use covariance::read_covariance;
 pub use covariance::{Covariance, FittedNumber, Scale};
-pub use spectrum::{SpectrumFactors, decade_of};
 
 /// What is not known of a scene; empty where it does not say.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -3,47 +3,11 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Complex;
-use serde::Serialize;
 
 use super::Uncertainty;
 use crate::math::{Direction, fourier, fourier_2d};
 use crate::scene::error::{ParameterError, Problem};
-use crate::scene::{FineWaves, HeightMap, Scene, Spectrum, Surface};
-
-/// By what the density of a spectrum is multiplied.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub enum SpectrumFactors {
-    /// One factor for all waves.
-    Whole(f64),
-    /// [Decades](decade_of) of wavelengths, rising, and their factors; waves beyond them have that of the nearest.
-    Decades(Vec<(i32, f64)>),
-}
-
-/// The decade of a wavelength (m): d from 10^d to 10^(d+1) m, so that it is the same in every scene.
-pub fn decade_of(wavelength: f64) -> i32 {
-    /// Wavelengths that are a power of ten but for this begin its decade.
-    const ROUNDING: f64 = 1e-9;
-    (wavelength.log10() + ROUNDING).floor() as i32
-}
-
-impl SpectrumFactors {
-    /// The factor at a wavelength (m).
-    pub fn at(&self, wavelength: f64) -> f64 {
-        match self {
-            Self::Whole(factor) => *factor,
-            Self::Decades(decades) => {
-                let decade = decade_of(wavelength);
-                let nearest = decades.iter().min_by_key(|(other, _)| (other - decade).abs());
-                nearest.map_or(1.0, |(_, factor)| *factor)
-            }
-        }
-    }
-
-    /// The factor of a height less 1.
-    fn of_height(&self, wavelength: f64) -> f64 {
-        self.at(wavelength).sqrt() - 1.0
-    }
-}
+use crate::scene::{FineWaves, HeightMap, Scene, Spectrum, SpectrumFactors, Surface, decade_of};
 
 impl Scene {
     /// The decades of wavelengths that profile and bands have; none of a flat surface.
