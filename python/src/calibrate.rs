@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use asperity_study::calibration::{
     Calibration, CalibrationOptions, FitCovariance, FreeParameter, calibrate_scene, chi_square_per_degree,
 };
-use asperity_study::files::ReadError;
+use asperity_study::Error;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -58,7 +58,7 @@ pub(crate) fn calibrate<'py>(
 pub(crate) fn with_covariance(text: &str, file: &str, keys: Vec<String>) -> PyResult<String> {
     let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
     let named = asperity_study::calibration::with_covariance(text, file, &keys);
-    named.map_err(|error| ReadError::from(error).raise())
+    named.map_err(|error| Error::from(error).raise())
 }
 
 fn add_covariance(found: &Bound<'_, PyDict>, covariance: &FitCovariance) -> PyResult<()> {

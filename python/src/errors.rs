@@ -1,19 +1,17 @@
 //! Errors of the library as exceptions of `asperity`.
 
 use std::fmt::Display;
-use std::io::ErrorKind;
 use std::path::Path;
 
 use asperity::patch::{MotionError, PatchError, PatchRestoreError};
 use asperity::scene::{ParameterError, SceneError};
 use asperity::simulation::SimulationError;
+use asperity_study::{Error, ErrorKind};
 use asperity_study::calibration::{CalibrationError, MeasuredFrictionError};
 use asperity_study::comparison::ComparisonError;
 use asperity_study::contact::ContactError;
 use asperity_study::converge::ConvergeError;
-use asperity_study::files::ReadError;
 use asperity_study::fit::FitError;
-use asperity_study::pack::PackError;
 use asperity_study::rank::RankError;
 use asperity_study::settings::OverrideError;
 use asperity_study::surface::SurfaceError;
@@ -85,16 +83,14 @@ impl Raise for PatchError {
     }
 }
 
-impl Raise for ReadError {
+impl Raise for Error {
     fn raise(self) -> PyErr {
-        match self {
-            Self::Scene(error) => error.raise(),
-            Self::Set(error) => error.raise(),
-            Self::Patch(error) => error.raise(),
-            Self::Io { ref source, .. } if source.kind() == ErrorKind::NotFound => {
-                PyFileNotFoundError::new_err(self.to_string())
-            }
-            Self::Io { .. } => PyOSError::new_err(self.to_string()),
+        match self.kind() {
+            ErrorKind::Scene => scene_error(&self, self.file(), self.line(), self.key().unwrap_or_default()),
+            ErrorKind::File(std::io::ErrorKind::NotFound) => PyFileNotFoundError::new_err(self.to_string()),
+            ErrorKind::File(_) => PyOSError::new_err(self.to_string()),
+            ErrorKind::Run => simulation_error(&self),
+            ErrorKind::Value | ErrorKind::Stopped => PyValueError::new_err(self.to_string()),
         }
     }
 }
@@ -194,15 +190,6 @@ impl Raise for CalibrationError {
     fn raise(self) -> PyErr {
         match self {
             Self::Read(error) | Self::Measured(MeasuredFrictionError::Read(error)) => error.raise(),
-            error => PyValueError::new_err(error.to_string()),
-        }
-    }
-}
-
-impl Raise for PackError {
-    fn raise(self) -> PyErr {
-        match self {
-            Self::Read(error) => error.raise(),
             error => PyValueError::new_err(error.to_string()),
         }
     }

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::{fs, io, process};
 
 use asperity_fmi::Definition;
-use asperity_study::files::reason;
+use asperity_study::Error;
 use asperity_study::pack::{Fmu, Library, LibraryFile, no_start, summary};
-use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::errors::Raise as _;
@@ -51,8 +51,5 @@ fn write(output: &Path, bytes: &[u8]) -> PyResult<()> {
     let name = output.file_name().unwrap_or_default().to_string_lossy();
     let draft = output.with_file_name(format!(".{name}.{}", process::id()));
     let written = fs::write(&draft, bytes).and_then(|()| fs::rename(&draft, output));
-    written.map_err(|error: io::Error| {
-        drop(fs::remove_file(&draft));
-        PyOSError::new_err(format!("cannot write {}: {}", output.display(), reason(output, &error)))
-    })
+    written.inspect_err(|_| drop(fs::remove_file(&draft))).map_err(Error::io("write", output)).map_err(Error::raise)
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use asperity::scene::{FoundationKind, LinkKind, Scene};
-use asperity::simulation::SimulationError;
+use asperity_study::{Context as _, Error};
 use asperity_study::decimals::rounded;
 use asperity_study::settings::Setting;
 use asperity_study::summary::{
@@ -12,27 +12,15 @@ use asperity_study::summary::{
 
 use super::cli::Describe;
 use super::figure::{Below, Curve, Figure as _, Panel, PanelRow, SideBySide, Stacked, Stroke};
-use super::files::{FileError, check_outputs, load, load_patch, print};
+use super::files::{check_outputs, load, load_patch, print};
+use super::simulate::NOT_STARTED;
 use super::terminal::{LabelledLine, is_verbose, lines, screen_lines, warn};
 
-/// `asperity describe` failed.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum DescribeError {
-    #[error(transparent)]
-    File(#[from] FileError),
-    #[error("--plot: the scene has no [material], so its links stand for no body to compare them with")]
-    NothingToPlot,
-    #[error("the run cannot start: {0}")]
-    Start(#[from] SimulationError),
-    #[error("cannot be written as JSON: {0}")]
-    Json(#[from] serde_json::Error),
-}
-
 /// Prints the summary of a scene.
-pub(crate) fn describe(command: &Describe, path: &Path) -> Result<(), DescribeError> {
+pub(crate) fn describe(command: &Describe, path: &Path) -> Result<(), Error> {
     let scene = load(path, &command.set)?;
     if let Some(output) = &command.plot {
-        let picture = stiffness_picture(&scene).ok_or(DescribeError::NothingToPlot)?;
+        let picture = stiffness_picture(&scene).ok_or_else(nothing_to_plot)?;
         check_outputs([output], scene.sources(path))?;
         match friction_picture(&scene) {
             Some(friction) => Below(picture, friction).write(output)?,
@@ -40,25 +28,29 @@ pub(crate) fn describe(command: &Describe, path: &Path) -> Result<(), DescribeEr
         }
     }
     let text = if command.json { json(&scene)? } else { text(&scene)? };
-    Ok(print(&text)?)
+    print(&text)
+}
+
+fn nothing_to_plot() -> Error {
+    Error::scene("--plot: the scene has no [material], so its links stand for no body to compare them with")
 }
 
 /// Prints the summary of a patch.
-pub(crate) fn describe_patch(path: &Path, set: &[Setting]) -> Result<(), FileError> {
+pub(crate) fn describe_patch(path: &Path, set: &[Setting]) -> Result<(), Error> {
     let patch = load_patch(path, set)?;
     missing_backing(&patch).iter().for_each(|warning| warn(warning));
     print(&screen_lines(&described_patch(&patch)))
 }
 
-fn json(scene: &Scene) -> Result<String, DescribeError> {
+fn json(scene: &Scene) -> Result<String, Error> {
     Ok(serde_json::to_string(&DescribedScene::new(scene))? + "\n")
 }
 
-fn text(scene: &Scene) -> Result<String, DescribeError> {
+fn text(scene: &Scene) -> Result<String, Error> {
     if is_verbose() {
-        return Ok(lines(&described(scene)?));
+        return Ok(lines(&described(scene).context(NOT_STARTED)?));
     }
-    Ok(screen_lines(&[described_shortly(scene)?, more()].concat()))
+    Ok(screen_lines(&[described_shortly(scene).context(NOT_STARTED)?, more()].concat()))
 }
 
 fn more() -> Vec<LabelledLine> {

@@ -9,7 +9,7 @@ use asperity_study::files;
 use tempfile::{Builder, NamedTempFile, TempDir};
 
 use super::interrupt::Leftover;
-use super::output::{FileError, STANDARD_OUTPUT, is_standard_output, is_stream};
+use super::output::{FileError, STANDARD_OUTPUT, is_standard_output, is_stream, unwritten};
 
 /// An output as it is being written. It takes its place when it is [finished](Self::finish); where the run ends before,
 /// whatever was there is still there.
@@ -38,7 +38,7 @@ impl Draft {
     /// # Errors
     /// Where it could not be written: there is no such folder, no permission, or a folder has the name.
     pub(crate) fn create(path: &Path) -> Result<Self, FileError> {
-        let target = Target::new(path).map_err(FileError::io("write", path))?;
+        let target = Target::new(path).map_err(unwritten(path))?;
         Ok(Self { path: path.to_owned(), file: BufWriter::new(target) })
     }
 
@@ -51,7 +51,7 @@ impl Draft {
     /// Puts the output in its place.
     pub(crate) fn finish(self) -> Result<(), FileError> {
         let target = self.file.into_inner().map_err(io::IntoInnerError::into_error);
-        target.and_then(Target::finish).map_err(FileError::io("write", &self.path))
+        target.and_then(Target::finish).map_err(unwritten(&self.path))
     }
 }
 
@@ -163,7 +163,7 @@ fn permissions(before: Option<&fs::Metadata>) -> fs::Permissions {
 /// Writes a file at once: what is at `path` is the one before or this one, whole.
 pub(crate) fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), FileError> {
     let mut draft = Draft::create(path)?;
-    draft.write_all(content.as_ref()).map_err(FileError::io("write", path))?;
+    draft.write_all(content.as_ref()).map_err(unwritten(path))?;
     draft.finish()
 }
 

@@ -1,27 +1,19 @@
 //! The masses of a run as arrays of numpy.
 
 use std::borrow::Cow;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use asperity::outputs::OutputType;
 
+use asperity_study::Error;
 use asperity_study::elements::{ElementField, ElementHistory, Instant};
 
-use crate::files::{self, FileError};
+use crate::files;
 use crate::npz::{Array, Values, npz};
-
-/// The arrays cannot be written.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum ArraysError {
-    #[error(transparent)]
-    File(#[from] FileError),
-    #[error("cannot write {}: {source}", .path.display())]
-    Archive { path: PathBuf, source: zip::result::ZipError },
-}
 
 /// Writes the rows' times, displacements and forces, the fields of the masses with a line for each row, the masses'
 /// positions at rest, the area that each stands for where the scene gives it, and the data points of the profile.
-pub(crate) fn write_arrays(history: &ElementHistory, path: &Path) -> Result<(), ArraysError> {
+pub(crate) fn write_arrays(history: &ElementHistory, path: &Path) -> Result<(), Error> {
     let of_rows = |value: fn(&Instant) -> f64| history.rows().iter().map(value).collect::<Vec<_>>();
     let lines = [
         Array::line("time", of_rows(|row| row.time)),
@@ -36,8 +28,8 @@ pub(crate) fn write_arrays(history: &ElementHistory, path: &Path) -> Result<(), 
     let area = history.area().map(|area| Array::single("area", area));
     let fields = history.fields().fields().iter().map(|field| array(field, history.rest().len()));
     let archive = npz(lines.into_iter().chain(area).chain(fields));
-    let archive = archive.map_err(|source| ArraysError::Archive { path: path.to_owned(), source })?;
-    Ok(files::write(path, archive)?)
+    let archive = archive.map_err(|error| Error::value(format!("cannot write {}: {error}", path.display())))?;
+    files::write(path, archive)
 }
 
 fn array(field: &ElementField, masses: usize) -> Array<'_> {

@@ -10,7 +10,8 @@ use asperity::scene::Scene;
 use super::draft::Draft;
 pub(crate) use super::draft::{print, write};
 pub(crate) use super::output::FileError;
-pub(crate) use super::output::{is_standard_output, is_stream, named};
+use super::output::of_set;
+pub(crate) use super::output::{is_standard_output, is_stream, named, not_drawn, overwrites};
 use super::terminal::{LabelledLine, labelled, note, warn};
 use asperity_study::files;
 pub(crate) use asperity_study::files::name_of;
@@ -24,7 +25,7 @@ pub(crate) fn picture_beside(table: &Path, named: Option<&PathBuf>) -> Option<Pa
 
 /// Reads a scene, its keys overridden by `--set`, and prints its warnings and what was assumed in reading its tables.
 pub(crate) fn load(path: &Path, set: &[Setting]) -> Result<Scene, FileError> {
-    let scene = files::load_scene(path, set)?;
+    let scene = files::load_scene(path, set).map_err(of_set)?;
     scene.warnings.iter().for_each(|warning| warn(warning));
     print_assumptions(&scene);
     Ok(scene)
@@ -45,7 +46,7 @@ pub(crate) fn load_without_run(
     set: &[Setting],
     layer_slides: impl FnOnce(&Scene) -> bool,
 ) -> Result<Scene, FileError> {
-    let scene = files::load_scene(path, set)?;
+    let scene = files::load_scene(path, set).map_err(of_set)?;
     let mut unused = Vec::from_iter(scene.short_profile());
     if !layer_slides(&scene) {
         unused.extend(scene.link_warnings());
@@ -67,7 +68,7 @@ pub(crate) fn table_lines(scene: &Scene) -> Vec<LabelledLine> {
 
 /// Reads a patch, its keys overridden by `--set`.
 pub(crate) fn load_patch(path: &Path, set: &[Setting]) -> Result<Patch, FileError> {
-    Ok(files::load_patch(path, set)?)
+    files::load_patch(path, set).map_err(of_set)
 }
 
 /// Refuses an output that would overwrite one of `others`, by whatever name.
@@ -76,7 +77,7 @@ pub(crate) fn check_output(output: &Path, others: &[PathBuf]) -> Result<(), File
         let is_there = || same_file::is_same_file(output, other).unwrap_or(false);
         other == output || is_there() || (place(output).is_some() && place(output) == place(other))
     };
-    if others.iter().any(same) { Err(FileError::Overwrites { path: output.to_owned() }) } else { Ok(()) }
+    if others.iter().any(same) { Err(overwrites(output)) } else { Ok(()) }
 }
 
 /// Where a file is, or will be, by the one name of its folder; `None` where that is not there.
@@ -100,7 +101,7 @@ pub(crate) fn check_outputs<'a>(
 }
 
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
-    Ok(files::bytes(path)?)
+    files::bytes(path)
 }
 
 /// Prints what is said of `outputs`: to standard error where one of them has standard output for itself.

@@ -23,8 +23,8 @@
 //! | `elements` | files, npz | the masses of a run as arrays |
 //! | `run_summary` | terminal | the lines that a run ends with |
 //! | `simulate` | cli, elements, figure, files, result_file, run_summary, terminal | `simulate` of a scene |
-//! | `patch` | cli, figure, files, result_file, terminal | `simulate` of a patch |
-//! | `describe` | cli, figure, files, terminal | `describe` |
+//! | `patch` | cli, figure, files, result_file, simulate, terminal | `simulate` of a patch |
+//! | `describe` | cli, figure, files, simulate, terminal | `describe` |
 //! | `contact` | cli, figure, files, npz, terminal | `contact` |
 //! | `sweep` | cli, draft, figure, files, flags, interrupt, lock, output, resumable_table, terminal | `sweep` |
 //! | `rank` | cli, figure, files, flags, terminal | `rank` |

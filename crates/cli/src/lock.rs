@@ -24,7 +24,7 @@ impl TableLock {
     /// Takes the lock of the table at `path`.
     ///
     /// # Errors
-    /// [`FileError::Locked`] with its holder where another process has it.
+    /// Where another process has it, with its holder.
     pub(crate) fn take(path: &Path) -> Result<Self, FileError> {
         let mut name = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()).into_os_string();
         name.push(".lock");
@@ -32,7 +32,7 @@ impl TableLock {
         loop {
             match attempt(&lock).map_err(FileError::io("write", path))? {
                 Attempt::Locked(file) => return Ok(Self { _leftover: Leftover::new(&lock), path: lock, _file: file }),
-                Attempt::HeldBy(holder) => return Err(FileError::Locked { path: path.to_owned(), holder }),
+                Attempt::HeldBy(holder) => return Err(locked(path, &holder)),
                 // The holder of before removed it meanwhile.
                 Attempt::Removed => (),
             }
@@ -45,6 +45,11 @@ impl Drop for TableLock {
     fn drop(&mut self) {
         drop(fs::remove_file(&self.path));
     }
+}
+
+fn locked(path: &Path, holder: &str) -> FileError {
+    let path = path.display();
+    FileError::value(format!("cannot write {path}: {holder} writes it; wait for that, or name another -o"))
 }
 
 enum Attempt {

@@ -5,27 +5,19 @@ use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 use asperity::scene::Scene;
+use asperity_study::Error;
 use asperity_study::decimals;
 use asperity_study::material::{POINTS, Response, Responses, at_temperature, evenly};
 
 use super::cli::Material;
 use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
 use super::files::{
-    self, FileError, check_outputs, ends_in, is_standard_output, load_without_run, named, print_beside,
+    self, check_outputs, ends_in, is_standard_output, load_without_run, named, print_beside,
 };
 use super::terminal::{LabelledLine, lines};
 
-/// `asperity material` failed.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum MaterialError {
-    #[error(transparent)]
-    File(#[from] FileError),
-    #[error(transparent)]
-    Material(#[from] asperity_study::material::MaterialError),
-}
-
 /// Prints a summary and a table; writes the outputs or, if none is given, a plot.
-pub(crate) fn material(command: &Material) -> Result<(), MaterialError> {
+pub(crate) fn material(command: &Material) -> Result<(), Error> {
     let mut scene = load_without_run(&command.scene, &command.set, |_| false)?;
     if let Some(temperature) = command.temperature {
         scene = at_temperature(&scene, temperature)?;
@@ -42,7 +34,7 @@ pub(crate) fn material(command: &Material) -> Result<(), MaterialError> {
     }
     let names: Vec<String> = outputs.iter().map(|output| named(output)).collect();
     let written = lines(&[("Written", names.join(", "))]);
-    Ok(print_beside(&outputs, &(summary(&responses, &scene) + &written))?)
+    print_beside(&outputs, &(summary(&responses, &scene) + &written))
 }
 
 /// In the working directory, named after the scene file.

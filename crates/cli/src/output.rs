@@ -1,12 +1,10 @@
 //! Names of files in messages, and what goes wrong with them.
 
-use std::error::Error;
 use std::fs;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use asperity_study::files::{ReadError, reason};
-use asperity_study::settings::OverrideError;
+use asperity_study::Error;
 
 /// What stands for standard output as the name of an output.
 pub(crate) const STANDARD_OUTPUT: &str = "-";
@@ -22,19 +20,9 @@ pub(crate) fn is_stream(path: &Path) -> bool {
 }
 
 /// Whether an error, or what caused it, is that nobody reads the output.
-pub(crate) fn is_broken_pipe(error: &(dyn Error + 'static)) -> bool {
-    let mut next = Some(error);
-    while let Some(error) = next {
-        let of_file = match error.downcast_ref::<FileError>() {
-            Some(FileError::Io { source, .. }) => Some(source),
-            _ => error.downcast_ref::<io::Error>(),
-        };
-        if of_file.is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe) {
-            return true;
-        }
-        next = error.source();
-    }
-    false
+pub(crate) fn is_broken_pipe(error: &(dyn std::error::Error + 'static)) -> bool {
+    let is_one = |error: &io::Error| error.kind() == io::ErrorKind::BrokenPipe;
+    std::iter::successors(Some(error), |error| error.source()).any(|error| error.downcast_ref().is_some_and(is_one))
 }
 
 /// An output's name in messages.
@@ -42,40 +30,26 @@ pub(crate) fn named(path: &Path) -> String {
     if is_standard_output(path) { "standard output".into() } else { path.display().to_string() }
 }
 
-/// A file cannot be read or written, or its scene is invalid.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum FileError {
-    #[error(transparent)]
-    Read(ReadError),
-    #[error("--set: {0}")]
-    Set(OverrideError),
-    #[error("cannot {action} {}: {}", named(.path), reason(.path, .source))]
-    Io { action: &'static str, path: PathBuf, source: io::Error },
-    #[error("will not write {}: it is read or written here already", named(.path))]
-    Overwrites { path: PathBuf },
-    #[error("cannot write {}: {holder} writes it; wait for that, or name another -o", .path.display())]
-    Locked { path: PathBuf, holder: String },
-    #[error("cannot draw {}: {message}", .path.display())]
-    Picture { path: PathBuf, message: String },
+/// The errors of files are the study's.
+pub(crate) type FileError = Error;
+
+/// For `map_err`: an output cannot be written.
+pub(crate) fn unwritten(path: &Path) -> impl FnOnce(io::Error) -> Error + use<> {
+    Error::io("write", Path::new(&named(path)))
 }
 
-impl FileError {
-    /// For `map_err`: `action` ("read", "write") on `path` failed.
-    pub(crate) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self + use<> {
-        let path = path.to_owned();
-        move |source| Self::Io { action, path, source }
-    }
-
-    pub(crate) fn picture(path: &Path, error: &dyn std::error::Error) -> Self {
-        Self::Picture { path: path.to_owned(), message: error.to_string() }
-    }
+/// An output would take the place of another file that is read or written.
+pub(crate) fn overwrites(path: &Path) -> Error {
+    Error::value(format!("will not write {}: it is read or written here already", named(path)))
 }
 
-impl<E: Into<ReadError>> From<E> for FileError {
-    fn from(error: E) -> Self {
-        match error.into() {
-            ReadError::Set(error) => Self::Set(error),
-            error => Self::Read(error),
-        }
-    }
+/// A picture cannot be drawn.
+pub(crate) fn not_drawn(path: &Path, error: impl std::fmt::Display) -> Error {
+    Error::value(format!("cannot draw {}: {error}", path.display()))
+}
+
+/// An error of what was read with keys set: of a key that is in no file `--set` is named.
+pub(crate) fn of_set(error: impl Into<Error>) -> Error {
+    let error = error.into();
+    if error.file().is_none() && error.key().is_some() { error.context("--set") } else { error }
 }

@@ -1,34 +1,23 @@
 //! `asperity simulate --patch`: moves a patch along a motion file and writes a result file.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use asperity::outputs::OutputType;
-use asperity::patch::{MotionError, Patch, PatchRun, PatchVariable};
+use asperity::patch::{Patch, PatchRun, PatchVariable};
 
 use crate::cli::Simulate;
 use crate::figure::{Figure as _, PatchHistory};
-use crate::files::{FileError, check_outputs, load_patch, named, print_beside};
+use crate::files::{check_outputs, load_patch, named, print_beside};
 use crate::result_file::CsvWriter;
+use crate::simulate::{NOT_STARTED, ended_at};
 use crate::terminal::{lines, warn};
-use asperity_study::csv::{CsvError, Field};
+use asperity_study::csv::Field;
+use asperity_study::{Context as _, Error};
 use asperity_study::decimals::with_prefix;
 use asperity_study::patch::MotionFile;
 
-/// `asperity simulate --patch` failed.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum PatchSimulateError {
-    #[error(transparent)]
-    File(#[from] FileError),
-    #[error(transparent)]
-    Motion(#[from] CsvError),
-    #[error("the run cannot start: {0}")]
-    Start(MotionError),
-    #[error("{source}; the rows so far, up to t = {time} s, are in {}", named(.output))]
-    Run { source: MotionError, time: f64, output: PathBuf },
-}
-
 /// Moves the patch, writes the rows and draws the plot.
-pub(crate) fn simulate(command: &Simulate, patch_file: &Path, motion_file: &Path) -> Result<(), PatchSimulateError> {
+pub(crate) fn simulate(command: &Simulate, patch_file: &Path, motion_file: &Path) -> Result<(), Error> {
     let patch = load_patch(patch_file, &command.set)?;
     let mut taken = patch.sources(patch_file);
     taken.push(motion_file.to_owned());
@@ -36,12 +25,12 @@ pub(crate) fn simulate(command: &Simulate, patch_file: &Path, motion_file: &Path
     check_outputs([&output].into_iter().chain(&command.plot), taken)?;
     let motion = MotionFile::read(motion_file, &patch)?;
     let mut recorder = PatchRecorder::new(&patch, &motion, &output, command)?;
-    let mut run = PatchRun::new(&patch, &motion.start()).map_err(PatchSimulateError::Start)?;
+    let mut run = PatchRun::new(&patch, &motion.start()).context(NOT_STARTED)?;
     recorder.row(&mut run, motion.values(&motion.rows()[0]))?;
     let mut result = Ok(());
     for (step, row) in motion.motions() {
-        if let Err(source) = run.advance(&step) {
-            result = Err(PatchSimulateError::Run { source, time: run.time(), output: output.clone() });
+        if let Err(error) = run.advance(&step) {
+            result = Err(ended_at(error, run.time(), &output));
             break;
         }
         recorder.row(&mut run, motion.values(row))?;
@@ -55,7 +44,7 @@ pub(crate) fn simulate(command: &Simulate, patch_file: &Path, motion_file: &Path
     let steps = format!("{} steps to t = {} s", motion.rows().len() - 1, run.time());
     let files = [output.as_path()].into_iter().chain(command.plot.as_deref()).map(named).collect::<Vec<_>>();
     let summary = lines(&[("At the end", forces), ("Run", steps), ("Written", files.join(", "))]);
-    Ok(print_beside([&output], &summary)?)
+    print_beside([&output], &summary)
 }
 
 /// Writes the rows of a run to the file and keeps them for the plot.
@@ -67,7 +56,7 @@ struct PatchRecorder {
 }
 
 impl PatchRecorder {
-    fn new(patch: &Patch, motion: &MotionFile, output: &Path, command: &Simulate) -> Result<Self, FileError> {
+    fn new(patch: &Patch, motion: &MotionFile, output: &Path, command: &Simulate) -> Result<Self, Error> {
         let variables = patch.variables();
         let of_variables = variables.iter().map(|variable| (variable.name.as_str(), variable.unit));
         let columns = motion.columns().into_iter().chain(of_variables);
@@ -81,7 +70,7 @@ impl PatchRecorder {
     }
 
     /// Writes the row of the present instant, and says what the run has to say.
-    fn row(&mut self, run: &mut PatchRun, motion: Vec<f64>) -> Result<(), FileError> {
+    fn row(&mut self, run: &mut PatchRun, motion: Vec<f64>) -> Result<(), Error> {
         run.take_warnings().iter().for_each(|warning| warn(warning));
         run.evaluate(&self.variables, &mut self.values);
         let variables = self.variables.iter().zip(&self.values);
@@ -104,7 +93,7 @@ impl PatchRecorder {
         shown.map(text).collect::<Vec<_>>().join(", ")
     }
 
-    fn finish(self) -> Result<Option<PatchHistory>, FileError> {
+    fn finish(self) -> Result<Option<PatchHistory>, Error> {
         self.writer.finish()?;
         Ok(self.history)
     }

@@ -79,7 +79,7 @@ mod tests {
     /// A table of numbers; that of another header is refused.
     fn open(path: &Path, replace: bool) -> Result<(ResumableTable, Vec<u32>), FileError> {
         let read = |text: &str| {
-            let rows = text.strip_prefix(HEADER).ok_or_else(|| FileError::Overwrites { path: path.to_owned() })?;
+            let rows = text.strip_prefix(HEADER).ok_or_else(|| FileError::value("another table"))?;
             Ok(rows.lines().filter_map(|line| line.parse().ok()).collect())
         };
         ResumableTable::open(path, HEADER, replace, read, |row| format!("{row}\n"))

@@ -1,40 +1,35 @@
 //! `asperity simulate`: runs a scene along its excitation, writes a result file and draws what is asked for.
 
+use std::fmt::Display;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use asperity::outputs::{Snapshot, Variable, variables};
 use asperity::scene::Scene;
-use asperity::simulation::{MethodSwitch, SimulationError};
+use asperity::simulation::MethodSwitch;
 use indicatif::ProgressBar;
 
 use super::cli::Simulate;
-use super::elements::{ArraysError, write_arrays};
+use super::elements::write_arrays;
 use super::figure::{Figure as _, LayerPicture, TimeHistory, write_row};
-use super::files::{self, FileError, check_outputs, ends_in, load, named, print_beside};
+use super::files::{self, check_outputs, ends_in, load, named, print_beside};
 use super::result_file::ResultWriter;
 use super::run_summary::RunSummary;
 use super::terminal::{LabelledLine, bar, is_verbose, lines, note, warn};
+use asperity_study::{Context as _, Error};
 use asperity_study::elements::{ElementHistory, Span, animation};
 use asperity_study::runner::{InputSample, Rows, Runner};
 
-/// `asperity simulate` failed.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum SimulateError {
-    #[error(transparent)]
-    File(#[from] FileError),
-    #[error(transparent)]
-    Arrays(#[from] ArraysError),
-    #[error("--contact {time}: the run ends at t = {end} s")]
-    AfterEnd { time: f64, end: f64 },
-    #[error("the run cannot start: {0}")]
-    Start(SimulationError),
-    #[error("{source}; the rows so far, up to t = {time} s, are in {}", named(.output))]
-    Run { source: SimulationError, time: f64, output: PathBuf },
+/// What is said before why a run cannot start.
+pub(crate) const NOT_STARTED: &str = "the run cannot start";
+
+/// Why a run ended at `time` (s), and where its rows are.
+pub(crate) fn ended_at(error: impl Display, time: f64, output: &Path) -> Error {
+    Error::run(format!("{error}; the rows so far, up to t = {time} s, are in {}", named(output)))
 }
 
 /// Runs the scene, writes the rows and draws what is asked for.
-pub(crate) fn simulate(command: &Simulate, path: &Path) -> Result<(), SimulateError> {
+pub(crate) fn simulate(command: &Simulate, path: &Path) -> Result<(), Error> {
     let scene = load(path, &command.set)?;
     let output = command.output(path);
     let pictures = command.plot.iter().chain(&command.animate).chain(&command.elements);
@@ -46,12 +41,9 @@ pub(crate) fn simulate(command: &Simulate, path: &Path) -> Result<(), SimulateEr
     }
     Rows::PerPhase(command.rows)
         .check(&scene, numbers_of_masses(&scene, command))
-        .map_err(|error| SimulateError::Start(error.into()))?;
+        .context(NOT_STARTED)?;
     let mut recorder = Recorder::new(&scene, command, &output)?;
-    let result = run(&scene, command, &mut recorder);
-    if let Err(error @ (SimulateError::Start(_) | SimulateError::File(_))) = result {
-        return Err(error);
-    }
+    let result = run(&scene, command, &mut recorder)?;
     let (history, elements) = recorder.finish()?;
     let mut summary = result?;
     if let (Some(path), Some(history)) = (&command.plot, history) {
@@ -61,7 +53,7 @@ pub(crate) fn simulate(command: &Simulate, path: &Path) -> Result<(), SimulateEr
         write_elements(&elements, command)?;
     }
     summary.push(("Written", written(command, &output)));
-    Ok(print_beside([&output], &lines(&summary))?)
+    print_beside([&output], &lines(&summary))
 }
 
 /// Whether what shows the masses is asked for.
@@ -85,21 +77,21 @@ fn written(command: &Simulate, output: &Path) -> String {
 }
 
 /// Refuses a picture of a time after the run's `end` (s).
-fn check_end(command: &Simulate, end: f64) -> Result<(), SimulateError> {
+fn check_end(command: &Simulate, end: f64) -> Result<(), Error> {
     /// Relative rounding error of a sum of durations.
     const ROUNDING: f64 = 1e-9;
     let late = command.contact.iter().find(|(time, _)| *time > end * (1.0 + ROUNDING));
-    late.map_or(Ok(()), |&(time, _)| Err(SimulateError::AfterEnd { time, end }))
+    late.map_or(Ok(()), |&(time, _)| Err(Error::value(format!("--contact {time}: the run ends at t = {end} s"))))
 }
 
 /// Writes what shows the masses.
-fn write_elements(elements: &ElementHistory, command: &Simulate) -> Result<(), SimulateError> {
+fn write_elements(elements: &ElementHistory, command: &Simulate) -> Result<(), Error> {
     if let Some(path) = &command.elements {
         write_arrays(elements, path)?;
     }
     match &command.animate {
         Some(path) if ends_in(path, "html") => {
-            let page = animation(elements).map_err(|error| FileError::picture(path, &error))?;
+            let page = animation(elements).map_err(|error| files::not_drawn(path, error))?;
             files::write(path, page)?;
         }
         Some(path) => write_frames(elements, path)?,
@@ -116,17 +108,24 @@ fn write_elements(elements: &ElementHistory, command: &Simulate) -> Result<(), S
 }
 
 /// Draws the masses in a row of pictures, of which there are at most as many as one likes to wait for.
-fn write_frames(elements: &ElementHistory, path: &Path) -> Result<(), FileError> {
+fn write_frames(elements: &ElementHistory, path: &Path) -> Result<(), Error> {
     const MOST: usize = 100;
     let rows = elements.evenly_in_time(MOST);
     let span = Span::over(elements, &rows);
     write_row(rows.len(), |i| LayerPicture::in_film(elements, rows[i], span), path)
 }
 
-/// Runs the scene; what the run comes to.
-fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<Vec<LabelledLine>, SimulateError> {
+/// Runs the scene; what the run comes to, or why it ended before its end.
+///
+/// # Errors
+/// Where it cannot start, or its rows cannot be written: what is recorded of it is of no use then.
+fn run(
+    scene: &Scene,
+    command: &Simulate,
+    recorder: &mut Recorder,
+) -> Result<Result<Vec<LabelledLine>, Error>, Error> {
     let rows = Rows::PerPhase(command.rows);
-    let runner = Runner::new(recorder.shown(scene), rows, 0.0).map_err(SimulateError::Start)?;
+    let runner = Runner::new(recorder.shown(scene), rows, 0.0).context(NOT_STARTED)?;
     let mut runner = runner.with_rows_at(command.contact.iter().map(|&(time, _)| time).collect());
     let mut written = Ok(());
     let result = runner.run(&scene.excitation, |carrier, snapshot| {
@@ -140,8 +139,8 @@ fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<Vec
     if let Some(inaccuracy) = runner.simulation().inaccuracy() {
         warn(&inaccuracy.to_string());
     }
-    if let Err(source) = result {
-        return Err(SimulateError::Run { source, time: recorder.time, output: recorder.output.clone() });
+    if let Err(error) = result {
+        return Ok(Err(ended_at(error, recorder.time, &recorder.output)));
     }
     let shown = recorder.shown(scene);
     recorder.summary.warnings(shown, runner.simulation()).iter().for_each(|warning| warn(warning));
@@ -149,7 +148,7 @@ fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<Vec
     if command.stats {
         summary.extend(recorder.summary.statistics(shown, runner.simulation()));
     }
-    Ok(summary)
+    Ok(Ok(summary))
 }
 
 /// The switches of method *auto* in one line, each with why where every note is asked for.
@@ -189,7 +188,7 @@ struct Recorder {
 const PROGRESS_LENGTH: f64 = 1000.0;
 
 impl Recorder {
-    fn new(scene: &Scene, command: &Simulate, output: &Path) -> Result<Self, FileError> {
+    fn new(scene: &Scene, command: &Simulate, output: &Path) -> Result<Self, Error> {
         let variables = variables(scene);
         Ok(Self {
             values: vec![0.0; variables.len()],
@@ -210,7 +209,7 @@ impl Recorder {
         self.history.as_ref().map_or(scene, TimeHistory::scene)
     }
 
-    fn row(&mut self, carrier: InputSample, snapshot: &Snapshot<'_>) -> Result<(), FileError> {
+    fn row(&mut self, carrier: InputSample, snapshot: &Snapshot<'_>) -> Result<(), Error> {
         snapshot.evaluate(&self.variables, &mut self.values);
         self.writer.write(carrier, &self.values)?;
         if let Some(history) = &mut self.history {
@@ -228,7 +227,7 @@ impl Recorder {
         Ok(())
     }
 
-    fn finish(self) -> Result<(Option<TimeHistory>, Option<ElementHistory>), FileError> {
+    fn finish(self) -> Result<(Option<TimeHistory>, Option<ElementHistory>), Error> {
         self.progress.finish_and_clear();
         self.writer.finish()?;
         Ok((self.history, self.elements))

@@ -8,16 +8,26 @@ use asperity::scene::Unit;
 use asperity::tables::{self, ContentError, Csv, decode};
 
 use crate::decimals::file_decimal;
-use crate::files::{ReadError, bytes};
+use crate::error::Error;
+use crate::files::bytes;
 
 /// A table cannot be read.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say what they are")]
 pub enum CsvError {
     #[error(transparent)]
-    File(#[from] ReadError),
+    File(#[from] Error),
     #[error("{}", .error.within(.path))]
     Content { path: PathBuf, error: ContentError },
+}
+
+impl From<CsvError> for Error {
+    fn from(error: CsvError) -> Self {
+        match error {
+            CsvError::File(error) => error,
+            CsvError::Content { path, error } => Self::content(&path)(error),
+        }
+    }
 }
 
 impl CsvError {

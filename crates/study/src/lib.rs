@@ -17,8 +17,9 @@
 //! | [`progress`] | | how far long work is, and how it is ended |
 //! | [`implausible`] | decimals | friction and areas of contact that no rubber has |
 //! | [`settings`] | | keys of scenes and patches set to other values |
-//! | [`files`] | settings | scenes, patches and other files, read |
+//! | [`files`] | error, settings | scenes, patches and other files, read |
 //! | [`csv`] | decimals, files | tables of text with a header, read and written |
+//! | [`error`] | progress, settings | why something is not done: what was expected, what was found, and where |
 //! | [`elements`] | html | what the masses of a layer do over a run, as arrays, as pictures and as a page show it |
 //! | [`runner`] | progress | a scene along its excitation, row by row |
 //! | [`run_figures`] | implausible | forces and friction of a run, what it cost, and what would make it cheaper |
@@ -48,6 +49,7 @@ pub mod converge;
 pub mod csv;
 pub mod decimals;
 pub mod elements;
+mod error;
 pub mod files;
 pub mod fit;
 pub mod html;
@@ -71,3 +73,5 @@ pub mod summary;
 pub mod surface;
 pub mod sweep;
 pub mod uncertainty;
+
+pub use error::{Context, Error, ErrorKind};

@@ -1,30 +1,21 @@
 //! The complex modulus of a scene's compound over frequency, at its temperature; in the direct form, the complex stiffness
 //! of its links.
 
-use asperity::scene::{Link, LinkKind, MaxwellElement, ParameterError, Scene};
+use asperity::scene::{Link, LinkKind, MaxwellElement, Scene};
 
 use crate::decimals::short;
-
-/// A scene has no such response.
-#[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say what they are")]
-pub enum MaterialError {
-    #[error("`temperature`: {0}")]
-    Temperature(ParameterError),
-    #[error("`temperature`: the scene has no material.wlf, so nothing in it depends on temperature")]
-    NoTemperature,
-    #[error("the scene has neither a material nor a link, so it has no modulus or stiffness to show")]
-    NoLinks,
-}
+use crate::error::{Context as _, Error};
 
 /// The scene at another temperature, K.
 ///
 /// # Errors
 /// Where nothing in it depends on temperature, or it cannot have this one.
-pub fn at_temperature(scene: &Scene, temperature: f64) -> Result<Scene, MaterialError> {
+pub fn at_temperature(scene: &Scene, temperature: f64) -> Result<Scene, Error> {
     let wlf = scene.material.as_ref().and_then(|material| material.wlf);
-    wlf.ok_or(MaterialError::NoTemperature)?;
-    scene.at_temperature(temperature).map_err(MaterialError::Temperature)
+    if wlf.is_none() {
+        return Err(Error::scene("`temperature`: the scene has no material.wlf, so nothing in it depends on temperature"));
+    }
+    scene.at_temperature(temperature).context("`temperature`")
 }
 
 /// A range of angular frequencies, rad/s.
@@ -150,11 +141,11 @@ impl<'a> Responses<'a> {
     /// Of a scene, over the band that is asked for, or where they change.
     ///
     /// # Errors
-    /// [`MaterialError::NoLinks`] where the scene has none.
-    pub fn new(scene: &'a Scene, asked: Option<FrequencyBand>) -> Result<Self, MaterialError> {
+    /// Where the scene has none.
+    pub fn new(scene: &'a Scene, asked: Option<FrequencyBand>) -> Result<Self, Error> {
         let responses = responses(scene);
         if responses.is_empty() {
-            return Err(MaterialError::NoLinks);
+            return Err(Error::scene("the scene has neither a material nor a link, so it has no modulus or stiffness to show"));
         }
         let band = asked.unwrap_or_else(|| band(&responses));
         Ok(Self { scene, responses, band })

@@ -168,7 +168,7 @@ fn written(outputs: &Outputs, scene: String, covariance: &FitCovariance) -> Resu
     }
     // First what the scene needs.
     files::write(path, table)?;
-    files::write(&outputs.scene, covariance.named_in(&scene, &file).map_err(FileError::Set)?)?;
+    files::write(&outputs.scene, covariance.named_in(&scene, &file).map_err(FileError::from)?)?;
     Ok(true)
 }
 

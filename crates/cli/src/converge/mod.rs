@@ -40,7 +40,7 @@ pub(crate) enum ConvergeCommandError {
 impl From<ConvergeError> for ConvergeCommandError {
     fn from(error: ConvergeError) -> Self {
         match error {
-            ConvergeError::Read(error) => Self::File(error.into()),
+            ConvergeError::Read(error) => Self::File(of_set(error)),
             error => Self::Study(error),
         }
     }

@@ -114,7 +114,7 @@ pub(crate) trait Figure {
     fn write(&self, path: &Path) -> Result<(), FileError> {
         let is_png = ends_in(path, "png");
         let bytes = if is_png { self.png(SHARP) } else { self.svg().map(String::into_bytes) };
-        files::write(path, bytes.map_err(|error| FileError::picture(path, &*error))?)
+        files::write(path, bytes.map_err(|error| files::not_drawn(path, error))?)
     }
 
     /// The text of the SVG file.

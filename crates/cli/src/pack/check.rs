@@ -6,16 +6,16 @@ use std::path::{Path, PathBuf};
 
 use asperity::element::PointContact;
 use asperity::patch::Patch;
+use asperity_study::Error;
 use asperity_study::check::{
-    COMPARED_OF_ELEMENTS, COMPARED_OF_PATCHES, COMPONENTS, CheckError, Doubled, Dragged, ElementCheck, ElementErrors,
+    COMPARED_OF_ELEMENTS, COMPARED_OF_PATCHES, COMPONENTS, Doubled, Dragged, ElementCheck, ElementErrors,
     Loop, PatchCheck, PointChecks, Sliding, Wrench, WrenchSeries,
 };
 use asperity_study::decimals::real;
 
-use super::PackError;
 use crate::cli::Pack;
 use crate::figure::{Curve, Figure as _, Ladder, LadderPanel, Ladders, LinearPanel, LinearStack, Rung, Stroke};
-use crate::files::{FileError, load_without_run, write};
+use crate::files::{load_without_run, write};
 use crate::terminal::{Bars, LabelledLine, labelled};
 
 /// Compares the layer and the element, writes the results beside the FMU and summarises them.
@@ -23,10 +23,10 @@ pub(super) fn check_element(
     command: &Pack,
     contact: &PointContact,
     scene: &Path,
-) -> Result<Vec<LabelledLine>, PackError> {
+) -> Result<Vec<LabelledLine>, Error> {
     let check = ElementCheck::new(contact, load_without_run(scene, &[], |_| true)?)?;
     let folder = folder_beside(&command.output)?;
-    let points = check.points(command.check_points as usize, &Bars::new().watch()).map_err(CheckError::from)?;
+    let points = check.points(command.check_points as usize, &Bars::new().watch())?;
     write(&folder.join("points.csv"), points.table())?;
     errors_of_points(&points).write(&folder.join("errors.svg"))?;
     let mut lines = points.lines();
@@ -45,7 +45,7 @@ pub(super) fn check_element(
 
 /// Compares elements with their layers and the patch with a finer one, writes the results beside the FMU and summarises
 /// them.
-pub(super) fn check_patch(command: &Pack, patch: &Patch, scene: &Path) -> Result<Vec<LabelledLine>, PackError> {
+pub(super) fn check_patch(command: &Pack, patch: &Patch, scene: &Path) -> Result<Vec<LabelledLine>, Error> {
     let check = PatchCheck::new(patch, load_without_run(scene, &[], |_| true)?, command.check_points as usize)?;
     let folder = folder_beside(&command.output)?;
     let bars = Bars::new();
@@ -78,14 +78,14 @@ pub(super) fn check_patch(command: &Pack, patch: &Patch, scene: &Path) -> Result
     Ok(labelled("Checked", texts))
 }
 
-fn folder_beside(output: &Path) -> Result<PathBuf, FileError> {
+fn folder_beside(output: &Path) -> Result<PathBuf, Error> {
     let stem = output.file_stem().map_or_else(|| "element".into(), |stem| stem.to_string_lossy());
     let path = output.with_file_name(format!("{stem}-check"));
-    fs::create_dir_all(&path).map_err(FileError::io("create", &path))?;
+    fs::create_dir_all(&path).map_err(Error::io("create", &path))?;
     Ok(path)
 }
 
-fn write_pair(folder: &Path, names: [&str; 2], tables: [String; 2]) -> Result<(), FileError> {
+fn write_pair(folder: &Path, names: [&str; 2], tables: [String; 2]) -> Result<(), Error> {
     names.iter().zip(tables).try_for_each(|(name, table)| write(&folder.join(format!("{name}.csv")), table))
 }
 

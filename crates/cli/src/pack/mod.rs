@@ -6,57 +6,19 @@ mod quantile;
 
 use std::path::{Path, PathBuf};
 
-use asperity::element::{PointContact, Table, TableError};
+use asperity::element::{PointContact, Table};
 use asperity_fmi::Definition;
-use asperity_study::check::CheckError;
+use asperity_study::Error;
 use asperity_study::pack::{self, Fmu, Library, LibraryFile, flat_names, no_start, not_converged};
 use asperity_study::summary::missing_backing;
-use asperity_study::sweep::{SweepError, SweepTableError};
-use asperity_study::uncertainty::UncertaintyError;
 
 use super::cli::Pack;
-use super::files::{self, FileError, check_outputs, named, print, write};
+use super::files::{self, check_outputs, named, print, write};
 use super::terminal::{LabelledLine, labelled, lines, note, warn};
 use quantile::Sample;
 
-/// `asperity pack` failed.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum PackError {
-    #[error(transparent)]
-    File(#[from] FileError),
-    #[error(transparent)]
-    Table(#[from] TableError),
-    #[error(transparent)]
-    Check(#[from] CheckError),
-    #[error("expected a scene, --table or --patch; a scene beside one of these only with --quantile")]
-    SceneBeside,
-    #[error("--quantile: expected --table or --patch, whose table has the samples")]
-    NoTable,
-    #[error(transparent)]
-    Sweep(#[from] SweepError),
-    #[error("{}: {problem}", .path.display())]
-    Swept { path: PathBuf, problem: SweepTableError },
-    #[error(transparent)]
-    Uncertainty(#[from] UncertaintyError),
-    #[error("{source}{}", way_to_build(.source))]
-    Pack {
-        #[from]
-        source: pack::PackError,
-    },
-}
-
-fn way_to_build(error: &pack::PackError) -> &'static str {
-    match error {
-        pack::PackError::NoLibrary { .. } => {
-            ": build it with `cargo build --release -p asperity-fmu` and name it with --library, or use build-fmu.sh, which \
-             does both"
-        }
-        _ => "",
-    }
-}
-
 /// Writes the FMU; prints what its libraries need and, of an element or a patch, its table and errors.
-pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
+pub(crate) fn pack(command: &Pack) -> Result<(), Error> {
     check_inputs(command)?;
     let sample = command.quantile.map(|share| Sample::new(command, share)).transpose()?;
     let (table, patch) =
@@ -67,7 +29,7 @@ pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
     taken.extend(libraries.iter().map(|library| library.path().to_owned()));
     taken.extend([&command.check, &command.scene, &command.table, &command.patch].into_iter().flatten().cloned());
     check_outputs([&command.output], taken)?;
-    let libraries = Library::read_all(&libraries)?;
+    let libraries = Library::read_all(&libraries).map_err(|error| with_way_to_build(error, &libraries))?;
     no_start(&definition).iter().for_each(|warning| warn(warning));
     let names = command.flat_names.then(|| flat_names(&definition)).flatten();
     let needs = labelled("Needs", libraries.iter().filter_map(Library::needs));
@@ -91,11 +53,13 @@ pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
 }
 
 /// A scene beside a table or a patch is there for `--quantile`, which needs one of them.
-fn check_inputs(command: &Pack) -> Result<(), PackError> {
+fn check_inputs(command: &Pack) -> Result<(), Error> {
     let has_table = command.table.is_some() || command.patch.is_some();
     match (command.scene.is_some() && has_table, command.quantile.is_some()) {
-        (true, false) => Err(PackError::SceneBeside),
-        (false, true) => Err(PackError::NoTable),
+        (true, false) => {
+            Err(Error::value("expected a scene, --table or --patch; a scene beside one of these only with --quantile"))
+        }
+        (false, true) => Err(Error::value("--quantile: expected --table or --patch, whose table has the samples")),
         _ => Ok(()),
     }
 }
@@ -108,8 +72,19 @@ fn libraries(command: &Pack) -> Vec<LibraryFile> {
     command.library.iter().map(|text| LibraryFile::named(text)).collect()
 }
 
+/// The error of libraries; where one is missing, with how it is made.
+fn with_way_to_build(error: Error, libraries: &[LibraryFile]) -> Error {
+    if libraries.iter().all(|library| library.path().is_file()) {
+        return error;
+    }
+    Error::value(format!(
+        "{error}: build it with `cargo build --release -p asperity-fmu` and name it with --library, or use build-fmu.sh, \
+         which does both"
+    ))
+}
+
 /// What is packed, and the file that it is read from.
-fn load(command: &Pack, table: Option<&PathBuf>, patch: Option<&PathBuf>) -> Result<(Definition, PathBuf), PackError> {
+fn load(command: &Pack, table: Option<&PathBuf>, patch: Option<&PathBuf>) -> Result<(Definition, PathBuf), Error> {
     match (patch, table) {
         (Some(path), _) => {
             let patch = files::load_patch(path, &[])?;
@@ -130,7 +105,7 @@ fn load(command: &Pack, table: Option<&PathBuf>, patch: Option<&PathBuf>) -> Res
 }
 
 /// What there is in the scene or in the table, and the errors of an element or a patch.
-fn summary(command: &Pack, definition: &Definition) -> Result<Vec<LabelledLine>, PackError> {
+fn summary(command: &Pack, definition: &Definition) -> Result<Vec<LabelledLine>, Error> {
     let mut rows = pack::summary(definition);
     match (definition, &command.check) {
         (Definition::Element(contact), Some(scene)) => rows.extend(check::check_element(command, contact, scene)?),
@@ -141,11 +116,11 @@ fn summary(command: &Pack, definition: &Definition) -> Result<Vec<LabelledLine>,
 }
 
 /// model.png.
-fn picture(definition: &Definition) -> Result<Vec<u8>, FileError> {
+fn picture(definition: &Definition) -> Result<Vec<u8>, Error> {
     let picture = match definition {
         Definition::Layer(scene) => picture::layer_png(scene),
         Definition::Element(contact) => picture::element_png(contact.table()),
         Definition::Patch(patch) => picture::element_png(patch.table()),
     };
-    picture.map_err(|error| FileError::picture(Path::new("model.png"), &*error))
+    picture.map_err(|error| files::not_drawn(Path::new("model.png"), error))
 }

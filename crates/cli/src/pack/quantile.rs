@@ -3,15 +3,15 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use asperity_study::Error;
 use asperity_study::files::{load_patch, text};
 use asperity_study::progress::Stop;
 use asperity_study::sweep::{SweepTable, quantile_table};
 use asperity_study::uncertainty::UncertainScene;
 use tempfile::TempDir;
 
-use super::PackError;
 use crate::cli::Pack;
-use crate::files::{FileError, load_without_run, name_of};
+use crate::files::{load_without_run, name_of};
 use crate::terminal::note;
 
 /// A table of one sample, or a patch with such a table, in a folder of their own.
@@ -24,29 +24,29 @@ pub(super) struct Sample {
 
 impl Sample {
     /// The sample at the quantile `share` of the table that is packed, drawn from the scene and swept again.
-    pub(super) fn new(command: &Pack, share: f64) -> Result<Self, PackError> {
-        let folder = tempfile::tempdir().map_err(FileError::io("write", Path::new("a folder of its own")))?;
+    pub(super) fn new(command: &Pack, share: f64) -> Result<Self, Error> {
+        let folder = tempfile::tempdir().map_err(Error::io("write", Path::new("a folder of its own")))?;
         let scene = command.scene.clone().unwrap_or_default();
         let read = load_without_run(&scene, &[], |_| true)?;
-        let uncertain = UncertainScene::new(text(&scene).map_err(FileError::from)?, scene, Vec::new(), read)?;
+        let uncertain = UncertainScene::new(text(&scene)?, scene, Vec::new(), read)?;
         let packed = |table: &Path| {
-            let problem = |problem| PackError::Swept { path: table.to_owned(), problem };
+            let problem = |problem| Error::in_file(table, None, problem);
             let sample =
                 quantile_table(&uncertain, &SweepTable::read(table).map_err(problem)?, share, &Stop::default())?;
             sample.header.basis.sample.iter().for_each(|sample| note(&format!("sample {sample}")));
-            Ok::<_, PackError>(sample.text())
+            Ok::<_, Error>(sample.text())
         };
         let place = |name: &Path| folder.path().join(name);
         if let Some(path) = &command.patch {
-            let patch = load_patch(path, &[]).map_err(FileError::from)?;
+            let patch = load_patch(path, &[])?;
             let own = path.parent().unwrap_or(Path::new(""));
             for file in patch.files() {
-                let content = fs::read(own.join(file)).map_err(FileError::io("read", file))?;
+                let content = fs::read(own.join(file)).map_err(Error::io("read", file))?;
                 write(&place(file), &content)?;
             }
             write(&place(patch.table_file()), packed(&own.join(patch.table_file()))?.as_bytes())?;
             let file = place(Path::new(&name_of(path)));
-            write(&file, text(path).map_err(FileError::from)?.as_bytes())?;
+            write(&file, text(path)?.as_bytes())?;
             return Ok(Self { table: None, patch: Some(file), _folder: folder });
         }
         let table = command.table.clone().unwrap_or_default();
@@ -57,7 +57,7 @@ impl Sample {
 }
 
 /// Writes a file and the folders that it is in.
-fn write(path: &Path, content: &[u8]) -> Result<(), FileError> {
+fn write(path: &Path, content: &[u8]) -> Result<(), Error> {
     let folder = path.parent().map_or(Ok(()), fs::create_dir_all);
-    folder.and_then(|()| fs::write(path, content)).map_err(FileError::io("write", path))
+    folder.and_then(|()| fs::write(path, content)).map_err(Error::io("write", path))
 }

@@ -4,7 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::figure::{Figure as _, Ladders};
-use crate::files::{FileError, check_output, write};
+use crate::files::{FileError, check_output, not_drawn, write};
 
 /// The page.
 pub(super) const INDEX: &str = "index.html";
@@ -53,7 +53,7 @@ impl ReportFolder {
     /// Draws a picture as SVG and PNG. Returns the text of the SVG.
     pub(super) fn draw(&self, name: &str, picture: &Ladders) -> Result<String, FileError> {
         let [svg_file, png_file] = ["svg", "png"].map(|ending| self.file(name, ending));
-        let svg = picture.svg().map_err(|error| FileError::picture(&svg_file, &*error))?;
+        let svg = picture.svg().map_err(|error| not_drawn(&svg_file, error))?;
         write(&svg_file, &svg)?;
         picture.write(&png_file)?;
         Ok(svg)

@@ -39,8 +39,6 @@ pub(crate) enum SweepCommandError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]
-    Read(#[from] asperity_study::files::ReadError),
-    #[error(transparent)]
     Uncertainty(#[from] UncertaintyError),
     #[error(transparent)]
     TableFile(#[from] TableFileError),

@@ -7,7 +7,7 @@ use asperity::scene::{ParameterError, did_you_mean, similar_keys};
 use asperity::tables::ContentError;
 use rmpfit::MPError;
 
-use crate::files::ReadError;
+use crate::error::Error;
 use crate::sweep::{MethodError, NeverSteady};
 
 /// Why there is no steady sliding at a point, as tables of points have it.
@@ -36,7 +36,7 @@ pub enum ModelError {
         /// The values, by key.
         parameters: String,
         /// Why the scene is refused.
-        problem: Box<ReadError>,
+        problem: Box<Error>,
     },
     /// The scene has no steady sliding to be solved for.
     #[error("steady sliding takes a scene in the material form, with layer.width")]
@@ -100,7 +100,7 @@ pub enum FreeParameterError {
 #[expect(missing_docs, reason = "the messages say what they are")]
 pub enum MeasuredFrictionError {
     #[error(transparent)]
-    Read(#[from] ReadError),
+    Read(#[from] Error),
     #[error("{}", .error.within(.path))]
     Content { path: PathBuf, error: ContentError },
     #[error("{}: the scene has no material.wlf, so nothing in it depends on the temperature of the data", .0.display())]
@@ -116,7 +116,7 @@ pub enum MeasuredFrictionError {
 #[expect(missing_docs, reason = "the messages say what they are")]
 pub enum CalibrationError {
     #[error(transparent)]
-    Read(#[from] ReadError),
+    Read(#[from] Error),
     #[error("the scene has no material or layer.width, so nothing in it has a pressure: expected the material form")]
     NoArea,
     #[error("the scene has [carrier.x]; expected none, since the speed is prescribed")]

@@ -9,7 +9,7 @@ use super::measurements::Measurements;
 use super::options::CalibrationOptions;
 use super::parameter::FreeParameter;
 use crate::decimals::real;
-use crate::files::ReadError;
+use crate::error::Error;
 use crate::settings::{self, Setting};
 use crate::sweep::{Method, fingerprint, relevant};
 
@@ -41,7 +41,7 @@ impl<'a> FreeScene<'a> {
             return Err(CalibrationError::BodyAlongX);
         }
         let area = scene.layer.area().filter(|_| scene.material.is_some()).ok_or(CalibrationError::NoArea)?;
-        let text = settings::overridden(text, &options.set).map_err(ReadError::from)?.text;
+        let text = settings::overridden(text, &options.set).map_err(Error::from)?.text;
         let (method, of_method) = options.sliding.choose(&scene)?;
         method.check(&scene)?;
         let mut free =

@@ -3,7 +3,8 @@
 use super::calibrated::Calibration;
 use super::free_scene::FreeScene;
 use crate::decimals::{plain, short};
-use crate::files::{ReadError, name_of};
+use crate::error::Error;
+use crate::files::name_of;
 use crate::settings::overridden;
 
 /// What the lines of the header begin with; those of a calibration before are replaced.
@@ -13,7 +14,7 @@ const MARK: &str = "# asperity calibrate: ";
 ///
 /// # Errors
 /// Where one of the numbers cannot be set.
-pub fn calibrated_text(free: &FreeScene<'_>, calibration: &Calibration) -> Result<String, ReadError> {
+pub fn calibrated_text(free: &FreeScene<'_>, calibration: &Calibration) -> Result<String, Error> {
     let values = calibration.values();
     let settings: Vec<(String, String)> =
         free.parameters.iter().zip(&values).map(|(parameter, value)| (parameter.key.clone(), plain(*value))).collect();

@@ -4,7 +4,7 @@ use asperity::outputs::Variable;
 use asperity::scene::{Initial, OutputGroup, Parameter, Path, Scene, Value};
 use asperity::simulation::{Motion, Simulation, Start};
 
-use super::error::NotCompared;
+use crate::error::Error;
 use crate::runner::InputSample;
 
 /// Displacements of the motion to and fro, over the length over which the element sticks.
@@ -56,7 +56,7 @@ impl ToAndFro {
         temperature: Option<f64>,
         w: f64,
         variables: &[Variable],
-    ) -> Result<Vec<[f64; N]>, NotCompared> {
+    ) -> Result<Vec<[f64; N]>, Error> {
         let start = Start { w, ..Start::default() };
         let mut layer = Simulation::new(&relaxed(scene, temperature)?, &start)?;
         let values = |layer: &mut Simulation| {
@@ -76,7 +76,7 @@ impl ToAndFro {
 }
 
 /// The scene relaxed at the start and with the outputs that are compared.
-fn relaxed(scene: &Scene, temperature: Option<f64>) -> Result<Scene, NotCompared> {
+fn relaxed(scene: &Scene, temperature: Option<f64>) -> Result<Scene, Error> {
     let outputs = vec![OutputGroup::Forces, OutputGroup::Dissipation];
     let mut scene = Scene { outputs, excitation: Vec::new(), ..scene.clone() };
     scene.layer.initial = Initial::Relaxed;

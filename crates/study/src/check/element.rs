@@ -8,7 +8,7 @@ use asperity::simulation::Start;
 use rayon::prelude::*;
 
 use super::element_at::element_at;
-use super::error::{CheckError, NotCompared};
+use crate::error::{Context as _, Error};
 use super::measure::{ERROR, SLIDING_DISTANCE, deviation, selected};
 use super::scene::swept_scene;
 use super::to_and_fro::{LOOP_OUTPUTS, Loop};
@@ -16,7 +16,7 @@ use crate::csv::text;
 use crate::decimals::real;
 use crate::labelled::{LabelledLine, labelled};
 use crate::progress::{Counter, Stopped, Watch};
-use crate::sweep::{Method, StopBounds, Swept, SweptPoint};
+use crate::sweep::{Method, NotSteady, StopBounds, Swept, SweptPoint};
 
 /// What is compared in steady sliding.
 pub const COMPARED: [&str; 3] = ["F_x", "F_z", "P_diss"];
@@ -36,10 +36,10 @@ impl<'a> ElementCheck<'a> {
     ///
     /// # Errors
     /// Where the table was swept of another scene.
-    pub fn new(contact: &'a PointContact, scene: Scene) -> Result<Self, CheckError> {
+    pub fn new(contact: &'a PointContact, scene: Scene) -> Result<Self, Error> {
         let scene = swept_scene(contact.table(), scene)?;
         let between = centres(&contact.table().grid);
-        let swept = Swept::of_table(&scene, contact.table(), &between.temperatures)?;
+        let swept = Swept::of_table(&scene, contact.table(), &between.temperatures).context("`check`")?;
         Ok(Self { contact, scene, swept, between })
     }
 
@@ -62,13 +62,13 @@ impl<'a> ElementCheck<'a> {
         let Self { contact, scene, swept, .. } = self;
         let found = swept.sliding(scene, point, contact.table().load, StopBounds { error: ERROR, distance: None });
         let element = found.as_ref().ok().map(|found| element_sliding(contact, point, found.w));
-        let not_steady = |status| NotCompared::Swept { of: swept.name(), status };
+        let not_steady = |status| not_steady(swept, &status);
         PointCheck { point: *point, swept: found.map_err(not_steady), element }
     }
 
     /// Drags both to and fro from rest at the height and the speed of the middle one of the points that could be compared,
     /// the layer under the same load where something else was swept; `None` without such a point.
-    pub fn to_and_fro(&self, points: &PointChecks) -> Option<(OperatingPoint, Result<Loop, NotCompared>)> {
+    pub fn to_and_fro(&self, points: &PointChecks) -> Option<(OperatingPoint, Result<Loop, Error>)> {
         let compared: Vec<_> = points.points.iter().filter(|check| check.errors().is_some()).collect();
         let &&PointCheck { point, swept: Ok(ref found), .. } = compared.get(compared.len() / 2)? else { return None };
         let rows = self.height_of_layer(&point, found).and_then(|of_layer| {
@@ -78,16 +78,20 @@ impl<'a> ElementCheck<'a> {
     }
 
     /// The displacement of the carrier (m) at which the layer bears what the element does at that of `found`.
-    fn height_of_layer(&self, point: &OperatingPoint, found: &SweptPoint) -> Result<f64, NotCompared> {
+    fn height_of_layer(&self, point: &OperatingPoint, found: &SweptPoint) -> Result<f64, Error> {
         if matches!(self.swept, Swept::Layer) {
             return Ok(found.w);
         }
         Method::Layer.check(&self.scene)?;
         let bounds = StopBounds { error: ERROR, distance: None };
         let layer = Swept::Layer.sliding(&self.scene, point, self.contact.table().load, bounds);
-        let not_steady = |status| NotCompared::Swept { of: Swept::Layer.name(), status };
-        layer.map(|layer| layer.w).map_err(not_steady)
+        layer.map(|layer| layer.w).map_err(|status| not_steady(&Swept::Layer, &status))
     }
+}
+
+/// What was swept, a layer or a solution, is not steady at a point.
+pub(super) fn not_steady(swept: &Swept, status: &NotSteady) -> Error {
+    Error::run(format!("{} {status}", swept.name()))
 }
 
 /// The grid of the centres of the cells of a grid; an axis of one value keeps it.
@@ -104,7 +108,7 @@ fn centres(grid: &SweepGrid) -> SweepGrid {
     }
 }
 
-fn element_sliding(contact: &PointContact, point: &OperatingPoint, w: f64) -> Result<[f64; 3], NotCompared> {
+fn element_sliding(contact: &PointContact, point: &OperatingPoint, w: f64) -> Result<[f64; 3], Error> {
     let mut element = element_at(contact, point, &Start { w, u_rate: point.speed, ..Start::default() })?;
     element.advance(SLIDING_DISTANCE / point.speed, point.speed, 0.0)?;
     let variables = LOOP_OUTPUTS[..3].iter().copied().filter_map(variable).collect::<Vec<_>>();
@@ -130,9 +134,9 @@ pub struct PointChecks {
 pub struct PointCheck {
     /// The point.
     pub point: OperatingPoint,
-    swept: Result<SweptPoint, NotCompared>,
+    swept: Result<SweptPoint, Error>,
     /// |F_x|, F_z and P_diss of the element at the same w.
-    element: Option<Result<[f64; 3], NotCompared>>,
+    element: Option<Result<[f64; 3], Error>>,
 }
 
 impl PointCheck {

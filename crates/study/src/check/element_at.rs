@@ -4,14 +4,14 @@ use asperity::element::{Element, OperatingPoint, PointContact};
 use asperity::scene::{Parameter, Value};
 use asperity::simulation::Start;
 
-use super::error::NotCompared;
+use crate::error::Error;
 
 /// The element at the temperature of a point.
 pub(super) fn element_at(
     contact: &PointContact,
     point: &OperatingPoint,
     start: &Start,
-) -> Result<Element, NotCompared> {
+) -> Result<Element, Error> {
     let mut contact = contact.clone();
     if let (Some(kelvin), true) = (point.temperature, contact.table().grid.temperatures.len() > 1) {
         contact.set_parameter(Parameter::TEMPERATURE, Value::Real(kelvin))?;

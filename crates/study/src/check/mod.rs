@@ -3,14 +3,12 @@
 mod drag;
 mod element;
 mod element_at;
-mod error;
 mod measure;
 mod patch;
 mod scene;
 mod to_and_fro;
 
 pub use element::{COMPARED as COMPARED_OF_ELEMENTS, ElementCheck, PointCheck, PointChecks};
-pub use error::{CheckError, NotCompared};
 pub use patch::{
     COMPARED as COMPARED_OF_PATCHES, COMPONENTS, Doubled, Dragged, ElementErrors, PatchCheck, Sliding, Wrench,
     WrenchSeries,

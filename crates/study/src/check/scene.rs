@@ -3,18 +3,21 @@
 use asperity::element::{Load, Node, Quantity, Table};
 use asperity::scene::{CarrierBodies, Scene};
 
-use super::error::CheckError;
+use crate::error::Error;
 use crate::sweep::separation_at_rest;
 
 /// Difference of two numbers of the same layer, as a share of their size: rounding.
 const ROUNDING: f64 = 1e-6;
 
 /// The layer of a `scene`, which must be the one that `table` was swept of.
-pub(super) fn swept_scene(table: &Table, scene: Scene) -> Result<Scene, CheckError> {
+pub(super) fn swept_scene(table: &Table, scene: Scene) -> Result<Scene, Error> {
     // The element's w is given: what the table was swept on is held by its displacement here.
     let scene = Scene { carrier: CarrierBodies::default(), ..scene };
     if scene.name != table.scene {
-        return Err(CheckError::OtherScene { table: table.scene.clone(), scene: scene.name });
+        let (swept, found) = (&table.scene, scene.name);
+        return Err(Error::scene(format!(
+            "`check`: the table was swept of {swept:?}, the scene is {found:?}: expected the scene that was swept"
+        )));
     }
     let [most, least] = [0, table.grid.loads.len() - 1].map(|load| Node { load, ..Node::default() });
     let range = table.value(Quantity::Separation, most) - table.value(Quantity::Separation, least);
@@ -26,15 +29,21 @@ pub(super) fn swept_scene(table: &Table, scene: Scene) -> Result<Scene, CheckErr
     if has_temperature == table.grid.temperatures.is_empty() {
         let word = |has: bool| if has { "given" } else { "none" }.to_owned();
         let (found, swept) = (word(has_temperature), word(!has_temperature));
-        return Err(CheckError::OtherLayer { what: "the temperature", found, swept });
+        return Err(other_layer("the temperature", &found, &swept));
     }
     Ok(scene)
 }
 
 /// Refuses a scene in which a number differs from the table's by more than rounding, of numbers of some `size`.
-fn check_number(what: &'static str, found: f64, swept: f64, size: f64, unit: &str) -> Result<(), CheckError> {
+fn check_number(what: &'static str, found: f64, swept: f64, size: f64, unit: &str) -> Result<(), Error> {
     if (found - swept).abs() <= ROUNDING * size {
         return Ok(());
     }
-    Err(CheckError::OtherLayer { what, found: format!("{found} {unit}"), swept: format!("{swept} {unit}") })
+    Err(other_layer(what, &format!("{found} {unit}"), &format!("{swept} {unit}")))
+}
+
+fn other_layer(what: &str, found: &str, swept: &str) -> Error {
+    Error::scene(format!(
+        "`check`: {what} is {found} in the scene, {swept} in the table: expected the scene that was swept"
+    ))
 }

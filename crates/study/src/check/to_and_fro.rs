@@ -7,7 +7,7 @@ use asperity::simulation::Start;
 
 use super::drag::ToAndFro;
 use super::element_at::element_at;
-use super::error::NotCompared;
+use crate::error::Error;
 use super::measure::deviation;
 use crate::csv::{Field, text};
 use crate::labelled::LabelledLine;
@@ -31,6 +31,11 @@ pub struct Loop {
     is_of_layer: bool,
 }
 
+/// Nothing can be dragged to and fro.
+pub(super) fn nothing_sticks() -> Error {
+    Error::run("no contact, or no friction")
+}
+
 fn variables() -> Vec<Variable> {
     LOOP_OUTPUTS.into_iter().filter_map(variable).collect()
 }
@@ -43,12 +48,12 @@ impl Loop {
         point: &OperatingPoint,
         [w, of_layer]: [f64; 2],
         is_of_layer: bool,
-    ) -> Result<Self, NotCompared> {
+    ) -> Result<Self, Error> {
         let variables = variables();
         let mut element = element_at(contact, point, &Start { w, ..Start::default() })?;
         let motion = ToAndFro { speed: point.speed, length: element.stick_length() };
         if motion.length <= 0.0 {
-            return Err(NotCompared::NothingSticks);
+            return Err(nothing_sticks());
         }
         let values = |element: &Element| {
             let mut values = LoopRow::default();

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::files::ReadError;
+use crate::error::Error;
 use crate::sweep::{MethodError, NeverSteady};
 
 /// The scene does not go with what is asked of the study.
@@ -10,7 +10,7 @@ use crate::sweep::{MethodError, NeverSteady};
 #[expect(missing_docs, reason = "the messages say what they are")]
 pub enum ConvergeError {
     #[error(transparent)]
-    Read(#[from] ReadError),
+    Read(#[from] Error),
     #[error("cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
     #[error(

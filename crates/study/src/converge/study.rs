@@ -14,7 +14,7 @@ use super::plan::{Next, Plan};
 use super::table::{RunRow, StudyHeader};
 use super::variants::{Parts, Template, Variant};
 use super::verdict::{Pair, Study, Verdict};
-use crate::files::ReadError;
+use crate::error::Error;
 use crate::settings::Setting;
 use crate::steady::persson::{Roughness, Theory};
 use crate::sweep::{Method, SlidingOptions, StopBounds, SweepMethod, fingerprint, relevant};
@@ -97,7 +97,7 @@ pub struct Findings {
 #[derive(Debug)]
 pub enum Ended<B> {
     /// A variant of the scene was refused.
-    Refused(ReadError),
+    Refused(Error),
     /// The callback broke off.
     Stopped(B),
 }
@@ -201,7 +201,7 @@ impl ConvergenceStudy {
         Round { done, all: done + missing.len() + self.plan.following(missing), counts: counts.collect() }
     }
 
-    fn make(&self, variant: Variant) -> Result<RunRow, ReadError> {
+    fn make(&self, variant: Variant) -> Result<RunRow, Error> {
         let ConvergenceOptions { pressure, speed, error, distance, .. } = self.options;
         let (scene, state) = (self.template.scene(variant)?, self.options.state());
         let clock = ThreadTime::now();

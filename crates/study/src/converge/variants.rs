@@ -10,7 +10,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::ConvergeError;
-use crate::files::ReadError;
+use crate::error::Error;
 use crate::settings::{self, Overridden, Setting};
 use crate::steady::{GridSize, SurfaceGrid};
 
@@ -145,7 +145,7 @@ pub(super) struct Template {
 impl Template {
     /// Of the `text` of the scene file at `path`, its keys set to other values.
     pub(super) fn read(text: &str, path: &Path, set: &[Setting]) -> Result<Self, ConvergeError> {
-        Self::new(path, settings::overridden(text, set).map_err(ReadError::from)?)
+        Self::new(path, settings::overridden(text, set).map_err(Error::from)?)
     }
 
     fn new(path: &Path, overridden: Overridden) -> Result<Self, ConvergeError> {
@@ -213,7 +213,7 @@ impl Template {
     }
 
     /// The scene of a variant; with points in place of masses the layer has as many masses.
-    pub(super) fn scene(&self, variant: Variant) -> Result<Scene, ReadError> {
+    pub(super) fn scene(&self, variant: Variant) -> Result<Scene, Error> {
         let mut scene = Scene::parse_with(&self.text_of(variant), &self.path, &Instruments)?;
         settings::set_in_named_files(&mut scene, &self.in_named_files)?;
         Ok(scene)

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use asperity::tables::ContentError;
 
 use super::shift_error::ShiftError;
-use crate::files::ReadError;
+use crate::error::Error;
 
 /// The moduli cannot be read or put together.
 #[derive(Debug, thiserror::Error)]
@@ -14,7 +14,7 @@ pub enum FitError {
     #[error("`weight` {0}: a relaxation has one modulus, which counts alone")]
     Weight(&'static str),
     #[error(transparent)]
-    Read(#[from] ReadError),
+    Read(#[from] Error),
     #[error("{}", .error.within(.path))]
     Moduli { path: PathBuf, error: ContentError },
     #[error("{}: {error}", .path.display())]

@@ -7,10 +7,10 @@ use asperity::element::Basis;
 use asperity_fmi::{Definition, Sources, VariableTable, guid};
 
 use super::archive::{ArchiveEntry, zip};
-use super::error::PackError;
 use super::library::Library;
 use super::{description, documentation, references};
-use crate::files::{ReadError, bytes};
+use crate::error::Error;
+use crate::files::bytes;
 use crate::labelled::LabelledLine;
 use crate::summary::{patch_rows, scene_rows, table_rows};
 
@@ -39,7 +39,7 @@ impl Fmu<'_> {
     ///
     /// # Errors
     /// Where a file cannot be read, or does not lie where an FMU can carry it.
-    pub fn pack(&self) -> Result<Vec<u8>, PackError> {
+    pub fn pack(&self) -> Result<Vec<u8>, Error> {
         let identifier = self.definition.identifier();
         let binary = |library: &Library| ArchiveEntry::executable(library.place(&identifier), library.bytes.clone());
         let mut entries: Vec<ArchiveEntry> = self.libraries.iter().map(binary).collect();
@@ -53,34 +53,35 @@ impl Fmu<'_> {
         entries.extend(resources);
         entries.extend(self.documents(&variables)?);
         entries.extend(self.picture.clone().map(|picture| ArchiveEntry::new("model.png", picture)));
-        Ok(zip(entries)?)
+        zip(entries).map_err(|error| Error::value(format!("cannot pack: {error}")))
     }
 
     /// The scene or the table, under a fixed name, and the files that a scene reads.
-    fn resources(&self) -> Result<Vec<ArchiveEntry>, PackError> {
+    fn resources(&self) -> Result<Vec<ArchiveEntry>, Error> {
         let Self { definition, path, .. } = *self;
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut entries = vec![ArchiveEntry::new(format!("resources/{}", definition.file_name()), bytes(path)?)];
         for file in definition.files() {
-            let carried = definition.carried(folder, file).map_err(unread(&folder.join(file)))?;
+            let carried = definition.carried(folder, file).map_err(Error::io("read", &folder.join(file)))?;
             entries.push(ArchiveEntry::new(format!("resources/{}", archive_path(file)?), carried));
         }
         Ok(entries)
     }
 
     /// The variables, as they are called in the FMU.
-    fn variables(&self) -> Result<VariableTable, PackError> {
+    fn variables(&self) -> Result<VariableTable, Error> {
         let variables = self.definition.variables();
         if !self.flat_names {
             return Ok(variables);
         }
-        variables.flat().map_err(|[first, second]| PackError::SameName { first, second })
+        let same = |[first, second]: [String; 2]| format!("`flat-names`: {first} and {second} would have one name");
+        variables.flat().map_err(|names| Error::value(same(names)))
     }
 
     /// The description of the model and the documentation.
-    fn documents(&self, variables: &VariableTable) -> Result<Vec<ArchiveEntry>, PackError> {
+    fn documents(&self, variables: &VariableTable) -> Result<Vec<ArchiveEntry>, Error> {
         let Self { definition, path, .. } = *self;
-        let guid = guid(&Sources::new(path, &**definition).map_err(unread(path))?, &definition.variables());
+        let guid = guid(&Sources::new(path, &**definition).map_err(Error::io("read", path))?, &definition.variables());
         let naming = if self.flat_names { "flat" } else { "structured" };
         let description = description::write(&**definition, variables, (&guid, naming));
         let description = description.map_err(document("modelDescription.xml"))?;
@@ -93,21 +94,15 @@ impl Fmu<'_> {
 }
 
 /// For `map_err`: a document cannot be written.
-fn document(document: &'static str) -> impl FnOnce(io::Error) -> PackError {
-    move |source| PackError::Document { document, source }
-}
-
-/// For `map_err`: the file at `path` cannot be read.
-fn unread(path: &Path) -> impl FnOnce(io::Error) -> ReadError + use<> {
-    let path = path.to_owned();
-    move |source| ReadError::Io { path, source }
+fn document(document: &'static str) -> impl FnOnce(io::Error) -> Error {
+    move |error| Error::value(format!("cannot write {document}: {error}"))
 }
 
 /// `file` with forward slashes. It must lie below the scene's folder: the FMU is unpacked elsewhere.
-fn archive_path(file: &Path) -> Result<String, PackError> {
+fn archive_path(file: &Path) -> Result<String, Error> {
     let parts = file.components().filter(|part| *part != Component::CurDir).map(|part| match part {
         Component::Normal(name) => Ok(name.to_string_lossy()),
-        _ => Err(PackError::Outside { path: file.to_owned() }),
+        _ => Err(Error::value(format!("the scene reads {}, which is not below the scene's folder: an FMU carries only what is", file.display()))),
     });
     Ok(parts.collect::<Result<Vec<_>, _>>()?.join("/"))
 }

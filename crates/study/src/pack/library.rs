@@ -7,7 +7,7 @@ use object::Endianness;
 use object::elf::FileHeader64;
 use object::read::elf::FileHeader as _;
 
-use super::error::PackError;
+use crate::error::Error;
 use crate::files::bytes;
 
 /// A platform as FMI 2.0 names it.
@@ -83,14 +83,14 @@ impl Library {
     ///
     /// # Errors
     /// Where one is not there or cannot be read, or a platform has two.
-    pub fn read_all(files: &[LibraryFile]) -> Result<Vec<Self>, PackError> {
+    pub fn read_all(files: &[LibraryFile]) -> Result<Vec<Self>, Error> {
         check_platforms(files)?;
         files.iter().map(Self::read).collect()
     }
 
-    fn read(file: &LibraryFile) -> Result<Self, PackError> {
+    fn read(file: &LibraryFile) -> Result<Self, Error> {
         if !file.path.is_file() {
-            return Err(PackError::NoLibrary { path: file.path.clone() });
+            return Err(Error::value(format!("no shared library at {}", file.path.display())));
         }
         Ok(Self { platform: file.platform, bytes: bytes(&file.path)? })
     }
@@ -108,11 +108,16 @@ impl Library {
 }
 
 /// Each platform may have one library.
-fn check_platforms(libraries: &[LibraryFile]) -> Result<(), PackError> {
+fn check_platforms(libraries: &[LibraryFile]) -> Result<(), Error> {
     for (i, library) in libraries.iter().enumerate() {
         if let Some(other) = libraries[..i].iter().find(|other| other.platform == library.platform) {
             let (first, second) = (other.path.clone(), library.path.clone());
-            return Err(PackError::SamePlatform { platform: library.platform.folder, first, second });
+            return Err(Error::value(format!(
+                "`library`: two of {}: {} and {}",
+                library.platform.folder,
+                first.display(),
+                second.display()
+            )));
         }
     }
     Ok(())

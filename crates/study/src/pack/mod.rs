@@ -3,11 +3,9 @@
 mod archive;
 mod description;
 mod documentation;
-mod error;
 mod fmu;
 mod library;
 mod references;
 
-pub use error::PackError;
 pub use fmu::{Fmu, flat_names, no_start, not_converged, summary};
 pub use library::{Library, LibraryFile, Platform};

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchStart, Pose};
 use asperity::scene;
-use asperity::tables::{ContentError, Dimension, FINITE, Format, Others, Table, Wanted, Words, decode};
+use asperity::tables::{Dimension, FINITE, Format, Others, Table, Wanted, Words, decode};
 
-use crate::csv::CsvError;
+use crate::error::Error;
 use crate::files::{bytes, read_table};
 
 const TIME: &str = "time";
@@ -79,7 +79,7 @@ impl MotionFile {
     ///
     /// # Errors
     /// Where the file cannot be read, a column is missing or is none of these, or a field is not what its column holds.
-    pub fn read(path: &Path, patch: &Patch) -> Result<Self, CsvError> {
+    pub fn read(path: &Path, patch: &Patch) -> Result<Self, Error> {
         let (has_transport, may_have_temperature) = (patch.has_tread(), patch.has_temperatures());
         let mut format = MOTION;
         if !has_transport {
@@ -94,8 +94,7 @@ impl MotionFile {
             let Table { columns, rows, .. } = format.read(&text)?;
             Ok((rows, columns[8].is_some()))
         };
-        let content = |error: ContentError| CsvError::content(path, error);
-        let ((rows, has_temperature), _) = read_table(&bytes, read).map_err(content)?;
+        let ((rows, has_temperature), _) = read_table(&bytes, read).map_err(Error::content(path))?;
         let row = |&[time, x, y, z, roll, pitch, yaw, transport_speed, temperature]: &[f64; 9]| MotionRow {
             time,
             pose: [x, y, z, roll, pitch, yaw],

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use asperity::tables::ContentError;
 
 use crate::csv::CsvError;
-use crate::files::ReadError;
+use crate::error::Error;
 use crate::progress::Stopped;
 use crate::sweep::SweepError;
 use crate::uncertainty::UncertaintyError;
@@ -15,7 +15,7 @@ use crate::uncertainty::UncertaintyError;
 #[expect(missing_docs, reason = "the messages say what they are")]
 pub enum RankError {
     #[error(transparent)]
-    Read(#[from] ReadError),
+    Read(#[from] Error),
     #[error("{scene}: {error}")]
     Sweep { scene: String, error: Box<SweepError> },
     #[error(transparent)]

@@ -1,19 +1,11 @@
 //! The summary of a contact patch.
 
 use asperity::patch::{MotionError, Patch, PatchRun, PatchStart, Pose};
-use asperity::scene::{Backing, FaceHeat, Parameter, ParameterError, TableExtrapolation, Value};
+use asperity::scene::{Backing, FaceHeat, Parameter, TableExtrapolation, Value};
 
 use crate::decimals::rounded;
+use crate::error::Error;
 use crate::labelled::LabelledLine;
-
-/// How much of the load lies below the table could not be found.
-#[derive(Debug, thiserror::Error)]
-enum LowEndError {
-    #[error(transparent)]
-    Parameter(#[from] ParameterError),
-    #[error(transparent)]
-    Motion(#[from] MotionError),
-}
 
 /// Tangential stiffness per area, Pa/m, above which a contact is stiffer than what can stand behind it.
 const STIFF: f64 = 3e9;
@@ -71,7 +63,7 @@ fn low_end(patch: &Patch) -> String {
     }
 }
 
-fn share_below_table(patch: &Patch) -> Result<f64, LowEndError> {
+fn share_below_table(patch: &Patch) -> Result<f64, Error> {
     // The search presses the face a little beyond the table.
     let mut patch = patch.clone();
     patch.set_parameter(Parameter::TABLE_EXTRAPOLATION, Value::Text(TableExtrapolation::Hold.word().into()))?;

@@ -6,7 +6,10 @@ use asperity::scene::ParameterError;
 use super::method::MethodError;
 use super::never_steady::NeverSteady;
 use super::not_possible::NotPossible;
+use crate::error::of_kind;
 use crate::uncertainty::UncertaintyError;
+
+of_kind! { SweepError => Scene, MethodError => Scene, NeverSteady => Scene }
 
 /// The scene does not go with what is asked of a sweep.
 #[derive(Debug, thiserror::Error)]

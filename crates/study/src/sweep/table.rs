@@ -7,14 +7,15 @@ use asperity::scene::Scene;
 
 use super::low_end::low_end;
 use super::ranking::ranking;
-use crate::files::{self, ReadError};
+use crate::error::Error;
+use crate::files::self;
 
 /// A table cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum SweepTableError {
     /// The file.
     #[error(transparent)]
-    File(#[from] ReadError),
+    File(#[from] Error),
     /// What is in it.
     #[error(transparent)]
     Table(#[from] TableError),

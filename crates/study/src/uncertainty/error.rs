@@ -1,5 +1,9 @@
 //! Why no samples are drawn.
 
+use crate::error::of_kind;
+
+of_kind! { UncertaintyError => Scene }
+
 /// Scenes cannot be drawn.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say what they are")]

@@ -8,7 +8,7 @@ use asperity::simulation::Start;
 use super::tilt::TiltedFace;
 use crate::check::drag::ToAndFro;
 use crate::check::element_at::element_at;
-use crate::check::error::CheckError;
+use crate::error::{Context as _, Error};
 use crate::check::scene::swept_scene;
 use crate::sweep::Swept;
 
@@ -34,10 +34,10 @@ impl PatchCheck {
     ///
     /// # Errors
     /// Where the table was swept of another scene, or no element stands where its table has values.
-    pub fn new(patch: &Patch, scene: Scene, count: usize) -> Result<Self, CheckError> {
+    pub fn new(patch: &Patch, scene: Scene, count: usize) -> Result<Self, Error> {
         let scene = swept_scene(patch.table(), scene)?;
         let temperature = point(patch, 0.0).temperature;
-        let swept = Swept::of_table(&scene, patch.table(), temperature.as_slice())?;
+        let swept = Swept::of_table(&scene, patch.table(), temperature.as_slice()).context("`check`")?;
         // At rest, and at the middles of smaller elements, pressures are a little beyond those of the table.
         let hold = Value::Text(TableExtrapolation::Hold.word().into());
         // Layers stand on what does not give way, and at one temperature.
@@ -46,7 +46,10 @@ impl PatchCheck {
         let speeds = speeds(&patch.table().grid);
         let faces: Vec<_> = speeds.map(|speed| TiltedFace::new(&patch, speed, count)).collect();
         if faces.iter().any(|face| face.tilted_elements.is_empty()) {
-            return Err(CheckError::NoElements);
+            return Err(Error::scene(
+                "`check`: no element of the tilted face stands at a separation of the table: its places are too large to \
+                 tell them",
+            ));
         }
         let middle = &faces[faces.len() / 2];
         let mut contact = PointContact::new(patch.table().clone());

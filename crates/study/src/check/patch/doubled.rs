@@ -8,7 +8,7 @@ use super::check::PatchCheck;
 use super::elements::{Drag, table};
 use super::tilt::TiltedFace;
 use super::wrench::{COMPONENTS, Wrench, WrenchSeries, extent, text};
-use crate::check::error::CheckError;
+use crate::error::Error;
 use crate::check::measure::SLIDING_DISTANCE;
 use crate::decimals::real;
 use crate::progress::{Counter, Watch};
@@ -45,7 +45,7 @@ impl Doubled {
     ///
     /// # Errors
     /// Where a patch cannot be moved, or `watch` stops it.
-    pub fn run(check: &PatchCheck, watch: &Watch<'_>) -> Result<Result<Self, NotDoubled>, CheckError> {
+    pub fn run(check: &PatchCheck, watch: &Watch<'_>) -> Result<Result<Self, NotDoubled>, Error> {
         let finer = match check.patch.doubled() {
             Ok(finer) => finer,
             Err(reason) => return Ok(Err(reason)),
@@ -103,14 +103,14 @@ struct WrenchCourse {
 }
 
 impl WrenchCourse {
-    fn run(check: &PatchCheck, patch: &Patch, counter: &Counter<'_>) -> Result<Self, CheckError> {
+    fn run(check: &PatchCheck, patch: &Patch, counter: &Counter<'_>) -> Result<Self, Error> {
         let patch = patch.with_groups(vec![PatchGroup::Forces]);
         let slide = |face: &TiltedFace| {
             let step = (SLIDING_DISTANCE / face.speed, face.speed);
             let rows = rows(&patch, Drag::new(&patch, face, face.speed)?, std::iter::once(step), counter)?;
             Ok(rows[rows.len() - 1])
         };
-        let steady = check.faces.iter().map(slide).collect::<Result<_, CheckError>>()?;
+        let steady = check.faces.iter().map(slide).collect::<Result<_, Error>>()?;
         let face = check.middle();
         let to_and_fro = rows(&patch, Drag::new(&patch, face, 0.0)?, check.motion.steps(), counter)?;
         let rolling = if patch.has_tread() { roll(&patch, face, length(&check.patch), counter)? } else { Vec::new() };
@@ -119,7 +119,7 @@ impl WrenchCourse {
 }
 
 /// The wrench as a tread rolls through a contact of some `length` (m) and slips at the speed of a face.
-fn roll(patch: &Patch, face: &TiltedFace, length: f64, counter: &Counter<'_>) -> Result<Vec<Wrench>, CheckError> {
+fn roll(patch: &Patch, face: &TiltedFace, length: f64, counter: &Counter<'_>) -> Result<Vec<Wrench>, Error> {
     let (speed, tread) = ((1.0 + ROLLING) * face.speed, ROLLING * face.speed);
     let duration = PASSAGES * length / tread / f64::from(ROLLING_ROWS);
     rows(patch, Drag::rolling(patch, face, speed, tread)?, (0..ROLLING_ROWS).map(|_| (duration, speed)), counter)
@@ -131,7 +131,7 @@ fn rows(
     mut drag: Drag,
     steps: impl Iterator<Item = (f64, f64)>,
     counter: &Counter<'_>,
-) -> Result<Vec<Wrench>, CheckError> {
+) -> Result<Vec<Wrench>, Error> {
     let variables = chosen(patch);
     let mut rows = vec![values(&mut drag, &variables)];
     for step in steps {

@@ -1,7 +1,7 @@
 //! The elements of a tilted face as a patch of their own, and along the motion to and fro beside their layers.
 
 use asperity::outputs::{Output, Variable, variable};
-use asperity::patch::{MotionError, Patch, PatchMotion, PatchOutput, PatchRun, PatchStart, PatchVariable};
+use asperity::patch::{Patch, PatchMotion, PatchOutput, PatchRun, PatchStart, PatchVariable};
 use asperity::scene::PatchGroup;
 use rayon::prelude::*;
 
@@ -9,14 +9,18 @@ use super::check::{PatchCheck, point};
 use super::tilt::{TiltedElement, TiltedFace};
 use super::wrench::{COMPONENTS, Wrench, WrenchSeries, extent, wrench};
 use crate::check::drag::ToAndFro;
-use crate::check::error::{CheckError, NotCompared};
+use crate::check::to_and_fro::nothing_sticks;
+use crate::error::{Context as _, Error, ErrorKind};
 use crate::csv::text;
 use crate::decimals::real;
-use crate::progress::{Counter, Stopped, Watch};
+use crate::progress::{Counter, Watch};
 use crate::sweep::Swept;
 
 /// What is taken of a layer.
 const LAYER: [Output; 2] = [Output::ForceX, Output::ForceZ];
+
+/// Before what a motion is refused for.
+const NOT_DRAGGED: &str = "`check`: the patch cannot be dragged";
 
 /// A run of a patch in the pose of a tilted face, along x.
 pub(super) struct Drag {
@@ -28,7 +32,7 @@ pub(super) struct Drag {
 
 impl Drag {
     /// At a speed along x (m/s), the tread standing still.
-    pub(super) fn new(patch: &Patch, face: &TiltedFace, speed: f64) -> Result<Self, MotionError> {
+    pub(super) fn new(patch: &Patch, face: &TiltedFace, speed: f64) -> Result<Self, Error> {
         Self::rolling(patch, face, speed, 0.0)
     }
 
@@ -38,16 +42,17 @@ impl Drag {
         face: &TiltedFace,
         speed: f64,
         transport_speed: f64,
-    ) -> Result<Self, MotionError> {
+    ) -> Result<Self, Error> {
         let (rates, temperature) = (along_x(speed), patch.temperature());
         let start = PatchStart { pose: face.pose, rates, transport_speed, temperature, ..PatchStart::default() };
-        Ok(Self { run: PatchRun::new(patch, &start)?, transport_speed, temperature })
+        Ok(Self { run: PatchRun::new(patch, &start).context(NOT_DRAGGED)?, transport_speed, temperature })
     }
 
     /// For a duration (s) at a speed (m/s).
-    pub(super) fn advance(&mut self, (duration, speed): (f64, f64)) -> Result<(), MotionError> {
+    pub(super) fn advance(&mut self, (duration, speed): (f64, f64)) -> Result<(), Error> {
         let Self { transport_speed, temperature, .. } = *self;
-        self.run.advance(&PatchMotion { duration, rates: along_x(speed), transport_speed, temperature })
+        let motion = PatchMotion { duration, rates: along_x(speed), transport_speed, temperature };
+        self.run.advance(&motion).context(NOT_DRAGGED)
     }
 }
 
@@ -64,14 +69,14 @@ pub(super) struct Elements<'a> {
 }
 
 impl<'a> Elements<'a> {
-    pub(super) fn new(patch: &Patch, face: &'a TiltedFace, speed: f64) -> Result<Self, MotionError> {
+    pub(super) fn new(patch: &Patch, face: &'a TiltedFace, speed: f64) -> Result<Self, Error> {
         let patch = patch.with_elements(face.tilted_elements.iter().map(|tilted| tilted.element));
         let patch = patch.with_groups(vec![PatchGroup::Elements]);
         let (variables, drag) = (patch.variables(), Drag::new(&patch, face, speed)?);
         Ok(Self { tilted_elements: &face.tilted_elements, values: vec![0.0; variables.len()], variables, drag })
     }
 
-    pub(super) fn advance(&mut self, step: (f64, f64)) -> Result<(), MotionError> {
+    pub(super) fn advance(&mut self, step: (f64, f64)) -> Result<(), Error> {
         self.drag.advance(step)
     }
 
@@ -103,13 +108,13 @@ impl Dragged {
     ///
     /// # Errors
     /// Where the patch cannot be moved, or `watch` stops it.
-    pub fn run(check: &PatchCheck, watch: &Watch<'_>) -> Result<Result<Self, NotCompared>, CheckError> {
+    pub fn run(check: &PatchCheck, watch: &Watch<'_>) -> Result<Result<Self, Error>, Error> {
         let (face, motion) = (check.middle(), check.motion);
         if matches!(check.swept, Swept::Solved { .. }) {
-            return Ok(Err(NotCompared::AnotherModel));
+            return Ok(Err(Error::run("not done, the layer is another model than what was swept")));
         }
         if motion.length <= 0.0 {
-            return Ok(Err(NotCompared::NothingSticks));
+            return Ok(Err(nothing_sticks()));
         }
         let mut elements = Elements::new(&check.patch, face, 0.0)?;
         let sum = |forces: Vec<[f64; 3]>| wrench(face.tilted_elements.iter().map(|tilted| tilted.arm).zip(forces)).0;
@@ -120,8 +125,8 @@ impl Dragged {
         }
         let layers = match layers(check, face, watch) {
             Ok(layers) => layers,
-            Err(NotDragged::Layer(why)) => return Ok(Err(why)),
-            Err(NotDragged::Stopped(stopped)) => return Err(stopped.into()),
+            Err(stopped) if stopped.kind() == ErrorKind::Stopped => return Err(stopped),
+            Err(why) => return Ok(Err(why)),
         };
         let (reference, sizes): (Vec<_>, Vec<_>) = layers.into_iter().unzip();
         Ok(Ok(Self { motion, pair: WrenchSeries::new(reference, other, &sizes, check.lever) }))
@@ -143,27 +148,18 @@ impl Dragged {
     }
 }
 
-/// Why the layers were not dragged.
-enum NotDragged {
-    Layer(NotCompared),
-    Stopped(Stopped),
-}
-
 /// The wrench of the layers and the sums of magnitudes, row by row.
-fn layers(check: &PatchCheck, face: &TiltedFace, watch: &Watch<'_>) -> Result<Vec<(Wrench, Wrench)>, NotDragged> {
+fn layers(check: &PatchCheck, face: &TiltedFace, watch: &Watch<'_>) -> Result<Vec<(Wrench, Wrench)>, Error> {
     let variables: Vec<Variable> = LAYER.into_iter().filter_map(variable).collect();
     let (table, temperature) = (check.patch.table(), point(&check.patch, face.speed).temperature);
     let counter = Counter::new(watch, "of the layers to and fro", face.tilted_elements.len());
     let drag = |tilted: &TiltedElement| {
         let w = tilted.separation - table.rest_separation;
         let rows = check.motion.layer::<{ LAYER.len() }>(&check.scene, temperature, w, &variables);
-        counter.step().map_err(NotDragged::Stopped)?;
-        rows.map_err(|source| {
-            let number = tilted.element.index + 1;
-            NotDragged::Layer(NotCompared::LayerOf { number, source: Box::new(source) })
-        })
+        counter.step()?;
+        rows.context(format!("the layer of element {}", tilted.element.index + 1))
     };
-    let rows: Vec<_> = face.tilted_elements.par_iter().with_max_len(1).map(drag).collect::<Result<_, NotDragged>>()?;
+    let rows: Vec<_> = face.tilted_elements.par_iter().with_max_len(1).map(drag).collect::<Result<_, Error>>()?;
     let sum = |row: usize| {
         let force = |(tilted, rows): (&TiltedElement, &Vec<[f64; 2]>)| {
             let ([along, up], share) = (rows[row], tilted.element.area / check.patch.nominal_area());

@@ -7,7 +7,8 @@ use super::check::{PatchCheck, point};
 use super::elements::Elements;
 use super::tilt::{TiltedElement, TiltedFace};
 use super::wrench::{Wrench, WrenchSeries, text, wrench};
-use crate::check::error::{CheckError, NotCompared};
+use crate::check::element::not_steady;
+use crate::error::Error;
 use crate::check::measure::{ERROR, SLIDING_DISTANCE};
 use crate::csv;
 use crate::decimals::real;
@@ -34,7 +35,7 @@ struct SlidingAtSpeed<'a> {
     /// Forces on the elements, N.
     elements: Vec<[f64; 3]>,
     /// Forces on their layers, N; the status of one that was not steady.
-    layers: Vec<Result<[f64; 3], NotCompared>>,
+    layers: Vec<Result<[f64; 3], Error>>,
 }
 
 impl<'a> Sliding<'a> {
@@ -42,7 +43,7 @@ impl<'a> Sliding<'a> {
     ///
     /// # Errors
     /// Where the patch cannot be moved, or `watch` stops it.
-    pub fn run(check: &'a PatchCheck, watch: &Watch<'_>) -> Result<Self, CheckError> {
+    pub fn run(check: &'a PatchCheck, watch: &Watch<'_>) -> Result<Self, Error> {
         let steps = check.faces.iter().map(|face| face.tilted_elements.len()).sum();
         let counter = Counter::new(watch, "of the layers in steady sliding", steps);
         let speeds = check.faces.iter().map(|face| SlidingAtSpeed::run(check, face, &counter));
@@ -104,7 +105,7 @@ pub struct ElementErrors {
 }
 
 impl<'a> SlidingAtSpeed<'a> {
-    fn run(check: &PatchCheck, face: &'a TiltedFace, counter: &Counter<'_>) -> Result<Self, CheckError> {
+    fn run(check: &PatchCheck, face: &'a TiltedFace, counter: &Counter<'_>) -> Result<Self, Error> {
         let mut run = Elements::new(&check.patch, face, face.speed)?;
         run.advance((SLIDING_DISTANCE / face.speed, face.speed))?;
         let elements = run.forces();
@@ -178,12 +179,12 @@ impl<'a> SlidingAtSpeed<'a> {
 }
 
 /// The force on a layer of the area of an element in its place, N, where it is near `force_z`.
-fn layer_force(check: &PatchCheck, speed: f64, tilted: &TiltedElement, force_z: f64) -> Result<[f64; 3], NotCompared> {
+fn layer_force(check: &PatchCheck, speed: f64, tilted: &TiltedElement, force_z: f64) -> Result<[f64; 3], Error> {
     let PatchCheck { patch, scene, swept, .. } = check;
     let (load, share) = (patch.table().load, tilted.element.area / patch.nominal_area());
     let at = OperatingPoint { load: load.at_force(force_z / share), ..point(patch, speed) };
     let w = tilted.separation - patch.table().rest_separation;
     let found = swept.sliding_at(scene, &at, w, load, StopBounds { error: ERROR, distance: None });
-    let found = found.map_err(|status| NotCompared::Swept { of: swept.name(), status })?;
+    let found = found.map_err(|status| not_steady(swept, &status))?;
     Ok([-share * found.drag, 0.0, share * found.force_z])
 }
