@@ -3,10 +3,10 @@
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
+use asperity_study::Error;
 use asperity_study::calibration::{
     Calibration, CalibrationOptions, FitCovariance, FreeParameter, calibrate_scene, chi_square_per_degree,
 };
-use asperity_study::Error;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};

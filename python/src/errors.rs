@@ -6,7 +6,6 @@ use std::path::Path;
 use asperity::patch::{MotionError, PatchError, PatchRestoreError};
 use asperity::scene::{ParameterError, SceneError};
 use asperity::simulation::SimulationError;
-use asperity_study::{Error, ErrorKind};
 use asperity_study::calibration::{CalibrationError, MeasuredFrictionError};
 use asperity_study::comparison::ComparisonError;
 use asperity_study::contact::ContactError;
@@ -16,6 +15,7 @@ use asperity_study::rank::RankError;
 use asperity_study::settings::OverrideError;
 use asperity_study::surface::SurfaceError;
 use asperity_study::sweep::{SweepError, SweepTableError};
+use asperity_study::{Error, ErrorKind};
 use pyo3::exceptions::{PyFileNotFoundError, PyKeyError, PyOSError, PyValueError};
 use pyo3::prelude::*;
 

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use asperity::scene::{FoundationKind, LinkKind, Scene};
-use asperity_study::{Context as _, Error};
 use asperity_study::decimals::rounded;
 use asperity_study::settings::Setting;
 use asperity_study::summary::{
     DescribedScene, FineFrictionCurve, MIDDLE_PRESSURE, described, described_patch, described_shortly, missing_backing,
 };
+use asperity_study::{Context as _, Error};
 
 use super::cli::Describe;
 use super::figure::{Below, Curve, Figure as _, Panel, PanelRow, SideBySide, Stacked, Stroke};

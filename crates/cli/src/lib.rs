@@ -28,9 +28,9 @@
 //! | `contact` | cli, figure, files, npz, terminal | `contact` |
 //! | `sweep` | cli, draft, figure, files, flags, interrupt, lock, output, resumable_table, terminal | `sweep` |
 //! | `rank` | cli, figure, files, flags, terminal | `rank` |
-//! | `converge` | cli, draft, figure, files, flags, interrupt, resumable_table, terminal | `converge` |
+//! | `converge` | cli, draft, figure, files, flags, interrupt, output, resumable_table, terminal | `converge` |
 //! | `fit` | cli, figure, files, flags, terminal | `fit` |
-//! | `calibrate` | cli, figure, files, interrupt, measured_friction, resumable_table, terminal | `calibrate` |
+//! | `calibrate` | cli, figure, files, interrupt, measured_friction, output, resumable_table, terminal | `calibrate` |
 //! | `compare` | cli, figure, files, measured_friction, terminal | `compare` |
 //! | `material` | cli, figure, files, terminal | `material` |
 //! | `surface` | cli, figure, files, terminal | `surface` |

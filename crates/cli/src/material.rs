@@ -11,9 +11,7 @@ use asperity_study::material::{POINTS, Response, Responses, at_temperature, even
 
 use super::cli::Material;
 use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
-use super::files::{
-    self, check_outputs, ends_in, is_standard_output, load_without_run, named, print_beside,
-};
+use super::files::{self, check_outputs, ends_in, is_standard_output, load_without_run, named, print_beside};
 use super::terminal::{LabelledLine, lines};
 
 /// Prints a summary and a table; writes the outputs or, if none is given, a plot.

@@ -12,9 +12,9 @@ use crate::result_file::CsvWriter;
 use crate::simulate::{NOT_STARTED, ended_at};
 use crate::terminal::{lines, warn};
 use asperity_study::csv::Field;
-use asperity_study::{Context as _, Error};
 use asperity_study::decimals::with_prefix;
-use asperity_study::patch::MotionFile;
+use asperity_study::motion::MotionFile;
+use asperity_study::{Context as _, Error};
 
 /// Moves the patch, writes the rows and draws the plot.
 pub(crate) fn simulate(command: &Simulate, patch_file: &Path, motion_file: &Path) -> Result<(), Error> {

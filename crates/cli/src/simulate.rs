@@ -16,9 +16,9 @@ use super::files::{self, check_outputs, ends_in, load, named, print_beside};
 use super::result_file::ResultWriter;
 use super::run_summary::RunSummary;
 use super::terminal::{LabelledLine, bar, is_verbose, lines, note, warn};
-use asperity_study::{Context as _, Error};
 use asperity_study::elements::{ElementHistory, Span, animation};
 use asperity_study::runner::{InputSample, Rows, Runner};
+use asperity_study::{Context as _, Error};
 
 /// What is said before why a run cannot start.
 pub(crate) const NOT_STARTED: &str = "the run cannot start";
@@ -39,9 +39,7 @@ pub(crate) fn simulate(command: &Simulate, path: &Path) -> Result<(), Error> {
     if scene.excitation.is_empty() {
         warn("the scene has no [[excitation]]: the carrier rests, and the result file has the initial row only");
     }
-    Rows::PerPhase(command.rows)
-        .check(&scene, numbers_of_masses(&scene, command))
-        .context(NOT_STARTED)?;
+    Rows::PerPhase(command.rows).check(&scene, numbers_of_masses(&scene, command)).context(NOT_STARTED)?;
     let mut recorder = Recorder::new(&scene, command, &output)?;
     let result = run(&scene, command, &mut recorder)?;
     let (history, elements) = recorder.finish()?;
@@ -119,11 +117,7 @@ fn write_frames(elements: &ElementHistory, path: &Path) -> Result<(), Error> {
 ///
 /// # Errors
 /// Where it cannot start, or its rows cannot be written: what is recorded of it is of no use then.
-fn run(
-    scene: &Scene,
-    command: &Simulate,
-    recorder: &mut Recorder,
-) -> Result<Result<Vec<LabelledLine>, Error>, Error> {
+fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<Result<Vec<LabelledLine>, Error>, Error> {
     let rows = Rows::PerPhase(command.rows);
     let runner = Runner::new(recorder.shown(scene), rows, 0.0).context(NOT_STARTED)?;
     let mut runner = runner.with_rows_at(command.contact.iter().map(|&(time, _)| time).collect());

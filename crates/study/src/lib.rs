@@ -37,7 +37,7 @@
 //! | [`summary`] | decimals, labelled, runner, steady | what there is in a scene, a patch or a table, in lines |
 //! | [`robustness`] | | a catalogue of perturbations of a scene, and the judge of perturbed runs |
 //! | [`pack`] | decimals, files, html, labelled, robustness, runner, summary | scenes, tables and patches as FMUs |
-//! | [`patch`] | csv, files | the motion that a patch is moved along |
+//! | [`motion`] | error, files | the motion that a patch is moved along |
 //! | [`check`] | csv, decimals, labelled, progress, runner, sweep | elements and patches against what was swept |
 //! | [`report`] | csv, decimals, progress, robustness, runner | what the runs of a scene cost and how accurate they are |
 
@@ -59,8 +59,8 @@ pub mod implausible;
 mod in_tests;
 pub mod labelled;
 pub mod material;
+pub mod motion;
 pub mod pack;
-pub mod patch;
 pub mod progress;
 pub mod rank;
 pub mod report;

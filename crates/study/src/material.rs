@@ -13,7 +13,9 @@ use crate::error::{Context as _, Error};
 pub fn at_temperature(scene: &Scene, temperature: f64) -> Result<Scene, Error> {
     let wlf = scene.material.as_ref().and_then(|material| material.wlf);
     if wlf.is_none() {
-        return Err(Error::scene("`temperature`: the scene has no material.wlf, so nothing in it depends on temperature"));
+        return Err(Error::scene(
+            "`temperature`: the scene has no material.wlf, so nothing in it depends on temperature",
+        ));
     }
     scene.at_temperature(temperature).context("`temperature`")
 }
@@ -145,7 +147,9 @@ impl<'a> Responses<'a> {
     pub fn new(scene: &'a Scene, asked: Option<FrequencyBand>) -> Result<Self, Error> {
         let responses = responses(scene);
         if responses.is_empty() {
-            return Err(Error::scene("the scene has neither a material nor a link, so it has no modulus or stiffness to show"));
+            return Err(Error::scene(
+                "the scene has neither a material nor a link, so it has no modulus or stiffness to show",
+            ));
         }
         let band = asked.unwrap_or_else(|| band(&responses));
         Ok(Self { scene, responses, band })

@@ -23,6 +23,7 @@ use super::files::{
 };
 use super::interrupt::Farewell;
 use super::measured_friction::{self, ModelCurves};
+use super::output::of_set;
 use super::terminal::{self, note, warn};
 use super::{NOT_REACHED, SUCCESS};
 use kept::KeptPoints;
@@ -31,7 +32,7 @@ use kept::KeptPoints;
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum CalibrateError {
     #[error(transparent)]
-    File(#[from] FileError),
+    File(FileError),
     #[error(transparent)]
     Calibration(CalibrationError),
     #[error(
@@ -50,7 +51,7 @@ pub(crate) enum CalibrateError {
 impl<E: Into<CalibrationError>> From<E> for CalibrateError {
     fn from(error: E) -> Self {
         match error.into() {
-            CalibrationError::Read(error) => Self::File(error.into()),
+            CalibrationError::Read(error) => Self::File(of_set(error)),
             error => Self::Calibration(error),
         }
     }

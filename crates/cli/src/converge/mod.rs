@@ -16,6 +16,7 @@ use super::figure::Figure as _;
 use super::files::{FileError, check_outputs, default_output, load_without_run, picture_beside, print_beside, read};
 use super::flags::with_flags;
 use super::interrupt::Farewell;
+use super::output::of_set;
 use super::terminal::{self, warn};
 use super::{NOT_REACHED, SUCCESS};
 use table::StudyTable;

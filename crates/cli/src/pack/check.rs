@@ -8,8 +8,8 @@ use asperity::element::PointContact;
 use asperity::patch::Patch;
 use asperity_study::Error;
 use asperity_study::check::{
-    COMPARED_OF_ELEMENTS, COMPARED_OF_PATCHES, COMPONENTS, Doubled, Dragged, ElementCheck, ElementErrors,
-    Loop, PatchCheck, PointChecks, Sliding, Wrench, WrenchSeries,
+    COMPARED_OF_ELEMENTS, COMPARED_OF_PATCHES, COMPONENTS, Doubled, Dragged, ElementCheck, ElementErrors, Loop,
+    PatchCheck, PointChecks, Sliding, Wrench, WrenchSeries,
 };
 use asperity_study::decimals::real;
 
@@ -19,11 +19,7 @@ use crate::files::{load_without_run, write};
 use crate::terminal::{Bars, LabelledLine, labelled};
 
 /// Compares the layer and the element, writes the results beside the FMU and summarises them.
-pub(super) fn check_element(
-    command: &Pack,
-    contact: &PointContact,
-    scene: &Path,
-) -> Result<Vec<LabelledLine>, Error> {
+pub(super) fn check_element(command: &Pack, contact: &PointContact, scene: &Path) -> Result<Vec<LabelledLine>, Error> {
     let check = ElementCheck::new(contact, load_without_run(scene, &[], |_| true)?)?;
     let folder = folder_beside(&command.output)?;
     let points = check.points(command.check_points as usize, &Bars::new().watch())?;

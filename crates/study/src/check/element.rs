@@ -7,13 +7,11 @@ use asperity::scene::Scene;
 use asperity::simulation::Start;
 use rayon::prelude::*;
 
-use super::element_at::element_at;
-use crate::error::{Context as _, Error};
-use super::measure::{ERROR, SLIDING_DISTANCE, deviation, selected};
-use super::scene::swept_scene;
-use super::to_and_fro::{LOOP_OUTPUTS, Loop};
+use super::drag::{LOOP_OUTPUTS, Loop, element_at};
+use super::measure::{ERROR, SLIDING_DISTANCE, deviation, selected, swept_scene};
 use crate::csv::text;
 use crate::decimals::real;
+use crate::error::{Context as _, Error};
 use crate::labelled::{LabelledLine, labelled};
 use crate::progress::{Counter, Stopped, Watch};
 use crate::sweep::{Method, NotSteady, StopBounds, Swept, SweptPoint};

@@ -1,16 +1,19 @@
-//! Elements and patches against what was swept, in steady sliding and along a motion to and fro.
+//! Elements and patches against what was swept, in steady sliding and along a motion to and fro. Elements of a patch stand
+//! tilted, each beside its layer, and the patch beside one of twice as many elements along and across. Of a table that was
+//! solved for, what is solved for stands for the layers.
 
+mod doubled;
 mod drag;
 mod element;
-mod element_at;
 mod measure;
 mod patch;
-mod scene;
-mod to_and_fro;
+mod sliding;
+mod tilt;
+mod wrench;
 
+pub use doubled::Doubled;
+pub use drag::Loop;
 pub use element::{COMPARED as COMPARED_OF_ELEMENTS, ElementCheck, PointCheck, PointChecks};
-pub use patch::{
-    COMPARED as COMPARED_OF_PATCHES, COMPONENTS, Doubled, Dragged, ElementErrors, PatchCheck, Sliding, Wrench,
-    WrenchSeries,
-};
-pub use to_and_fro::Loop;
+pub use patch::{Dragged, PatchCheck};
+pub use sliding::{COMPARED as COMPARED_OF_PATCHES, ElementErrors, Sliding};
+pub use wrench::{COMPONENTS, Wrench, WrenchSeries};

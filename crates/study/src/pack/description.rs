@@ -1,36 +1,47 @@
-//! modelDescription.xml of FMI 2.0 for co-simulation.
+//! What describes an FMU: modelDescription.xml of FMI 2.0 for co-simulation; documentation/, which is the page index.html,
+//! its style sheet and the licences.
 
 use std::collections::BTreeSet;
 use std::io;
 
 use asperity::scene::{DependencyList, Unit, Value};
-use asperity_fmi::{CAPABILITIES, Category, Experiment, FmuModel, Kind, Role, VariableRef, VariableTable};
+use asperity_fmi::{CAPABILITIES, Category, Definition, Experiment, FmuModel, Kind, Role, VariableRef, VariableTable};
 use quick_xml::Writer;
+use quick_xml::escape::escape;
 use quick_xml::events::{BytesDecl, Event};
 
 use crate::decimals::decimal;
+use crate::html::{self, Cell};
+use crate::labelled::LabelledLine;
 
-type Xml = Writer<Vec<u8>>;
+pub(super) type Xml = Writer<Vec<u8>>;
 
 /// Writes the description of a model with these variables, its GUID and the convention of their names.
-pub(super) fn write(
+pub(super) fn description(
     model: &dyn FmuModel,
     variables: &VariableTable,
     (guid, naming): (&str, &str),
 ) -> io::Result<Vec<u8>> {
+    let description = clean(&model.description());
+    document(|xml| {
+        xml.create_element("fmiModelDescription")
+            .with_attribute(("fmiVersion", "2.0"))
+            .with_attribute(("modelName", clean(&model.name()).as_str()))
+            .with_attribute(("guid", guid))
+            .with_attributes(Some(("description", description.as_str())).filter(|_| !description.is_empty()))
+            .with_attribute(("generationTool", concat!("asperity ", env!("CARGO_PKG_VERSION"))))
+            .with_attribute(("variableNamingConvention", naming))
+            .with_attribute(("numberOfEventIndicators", "0"))
+            .write_inner_content(|xml| content(xml, model, variables))
+            .map(drop)
+    })
+}
+
+/// A document of XML, whose root `write` writes.
+pub(super) fn document(write: impl FnOnce(&mut Xml) -> io::Result<()>) -> io::Result<Vec<u8>> {
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
     xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-    let description = clean(&model.description());
-    let root = xml
-        .create_element("fmiModelDescription")
-        .with_attribute(("fmiVersion", "2.0"))
-        .with_attribute(("modelName", clean(&model.name()).as_str()))
-        .with_attribute(("guid", guid))
-        .with_attributes(Some(("description", description.as_str())).filter(|_| !description.is_empty()))
-        .with_attribute(("generationTool", concat!("asperity ", env!("CARGO_PKG_VERSION"))))
-        .with_attribute(("variableNamingConvention", naming))
-        .with_attribute(("numberOfEventIndicators", "0"));
-    root.write_inner_content(|xml| content(xml, model, variables))?;
+    write(&mut xml)?;
     let mut bytes = xml.into_inner();
     bytes.push(b'\n');
     Ok(bytes)
@@ -231,8 +242,67 @@ fn unknown(xml: &mut Xml, reference: u32, dependencies: Option<&str>) -> io::Res
     unknown.with_attributes(dependencies.map(|inputs| ("dependencies", inputs))).write_empty().map(drop)
 }
 
+const LAYER_PAGE: &str = include_str!("../../../../modelDescription/documentation/index.html");
+const PATCH_PAGE: &str = include_str!("../../../../modelDescription/documentation/patch.html");
+const ELEMENT_PAGE: &str = include_str!("../../../../modelDescription/documentation/element.html");
+
+/// The files that are the same in every archive: path, content.
+pub(super) const FIXED_FILES: [(&str, &str); 5] = [
+    ("documentation/style.css", include_str!("../../../../modelDescription/documentation/style.css")),
+    // The entry point that FMI 2.0 asks for: it names the others.
+    (
+        "documentation/licenses/license.txt",
+        include_str!("../../../../modelDescription/documentation/licenses/license.txt"),
+    ),
+    ("documentation/licenses/LICENSE-APACHE", include_str!("../../../../LICENSE-APACHE")),
+    ("documentation/licenses/LICENSE-MIT", include_str!("../../../../LICENSE-MIT")),
+    (
+        "documentation/licenses/third-party.txt",
+        include_str!("../../../../modelDescription/documentation/licenses/third-party.txt"),
+    ),
+];
+
+/// index.html: a summary of the scene or the table, the variables, the parameters, the equations.
+pub(super) fn documentation(
+    definition: &Definition,
+    variables: &VariableTable,
+    summary: &[LabelledLine],
+) -> io::Result<Vec<u8>> {
+    let page = match definition {
+        Definition::Layer(_) => LAYER_PAGE,
+        Definition::Element(_) => ELEMENT_PAGE,
+        Definition::Patch(_) => PATCH_PAGE,
+    };
+    let summary: Vec<_> = summary.iter().map(|(name, text)| [(*name).into(), clean(text)]).collect();
+    let is_parameter = |variable: &&VariableRef| matches!(variable.role, Role::Parameter(_));
+    let (parameters, others): (Vec<_>, Vec<_>) =
+        variables.entries().map(|(_, variable)| variable).partition(is_parameter);
+    let others: Vec<_> = others.iter().map(|variable| row(variable, causality(variable).into())).collect();
+    let start = |variable| start(variable).unwrap_or_default();
+    let parameters: Vec<_> = parameters.iter().map(|variable| row(variable, start(variable))).collect();
+    let fields = [
+        ("name", escape(clean(&definition.name())).into_owned()),
+        ("description", escape(clean(&definition.description())).into_owned()),
+        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("scene", table(["", "What is there"], &summary)?),
+        ("variables", table(["Name", "Causality", "Unit", "Description"], &others)?),
+        ("parameters", table(["Name", "Start", "Unit", "Description"], &parameters)?),
+    ];
+    Ok(html::fill(page, &fields).into_bytes())
+}
+
+fn row(variable: &VariableRef, second: String) -> [String; 4] {
+    let unit = if variable.kind == Kind::Real { variable.unit.name() } else { "" };
+    [variable.name.clone(), second, unit.into(), variable.description.clone()]
+}
+
+fn table<const N: usize>(head: [&str; N], rows: &[[String; N]]) -> io::Result<String> {
+    let rows: Vec<Vec<Cell>> = rows.iter().map(|cells| cells.iter().map(Cell::from).collect()).collect();
+    html::table(&head.map(Cell::from), &rows)
+}
+
 #[cfg(test)]
-mod tests {
+mod tests_of_description {
     use std::path::Path;
 
     use asperity::element::{PointContact, Table};
@@ -251,7 +321,7 @@ mod tests {
         let model = Definition::from(Scene::load(&path).unwrap());
         let variables = model.variables();
         let guid = guid(&Sources::new(&path, &*model).unwrap(), &variables);
-        let written = String::from_utf8(write(&*model, &variables, (&guid, "structured")).unwrap()).unwrap();
+        let written = String::from_utf8(description(&*model, &variables, (&guid, "structured")).unwrap()).unwrap();
         let golden = root.join("modelDescription/modelDescription.xml");
         if std::env::var_os("BLESS").is_some() {
             std::fs::write(&golden, &written).unwrap();
@@ -260,7 +330,7 @@ mod tests {
     }
 
     fn description_of(model: &Definition) -> String {
-        String::from_utf8(write(&**model, &model.variables(), ("{}", "structured")).unwrap()).unwrap()
+        String::from_utf8(description(&**model, &model.variables(), ("{}", "structured")).unwrap()).unwrap()
     }
 
     #[test]
@@ -299,5 +369,21 @@ mod tests {
                      excitation = [{ duration = 1e-2 }, { duration = 1e-3 }, { duration = 3e-3 }]";
         let model = Definition::from(Scene::parse(scene, Path::new("scene.toml")).unwrap());
         assert_eq!(model.default_experiment().unwrap().stop.map(real).as_deref(), Some("0.014"));
+    }
+}
+
+#[cfg(test)]
+mod tests_of_documentation {
+    use super::*;
+
+    #[test]
+    fn the_licences_have_an_entry_point_that_names_the_others() {
+        let licences: Vec<_> = FIXED_FILES
+            .iter()
+            .filter_map(|(path, text)| Some((path.strip_prefix("documentation/licenses/")?, text)))
+            .collect();
+        let (_, entry_point) = licences.iter().find(|(name, _)| *name == "license.txt").unwrap();
+        let others = licences.iter().map(|(name, _)| *name).filter(|name| *name != "license.txt");
+        assert!(others.clone().count() > 0 && others.clone().all(|name| entry_point.contains(name)), "{entry_point}");
     }
 }

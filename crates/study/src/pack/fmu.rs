@@ -7,8 +7,9 @@ use asperity::element::Basis;
 use asperity_fmi::{Definition, Sources, VariableTable, guid};
 
 use super::archive::{ArchiveEntry, zip};
+use super::description::{FIXED_FILES, description, documentation};
 use super::library::Library;
-use super::{description, documentation, references};
+use super::references;
 use crate::error::Error;
 use crate::files::bytes;
 use crate::labelled::LabelledLine;
@@ -83,12 +84,12 @@ impl Fmu<'_> {
         let Self { definition, path, .. } = *self;
         let guid = guid(&Sources::new(path, &**definition).map_err(Error::io("read", path))?, &definition.variables());
         let naming = if self.flat_names { "flat" } else { "structured" };
-        let description = description::write(&**definition, variables, (&guid, naming));
+        let description = description(&**definition, variables, (&guid, naming));
         let description = description.map_err(document("modelDescription.xml"))?;
-        let index = documentation::write(definition, variables, self.summary);
+        let index = documentation(definition, variables, self.summary);
         let index = index.map_err(document("documentation/index.html"))?;
         let written = [("modelDescription.xml", description), ("documentation/index.html", index)];
-        let fixed = documentation::FILES.iter().map(|&(name, text)| ArchiveEntry::new(name, text));
+        let fixed = FIXED_FILES.iter().map(|&(name, text)| ArchiveEntry::new(name, text));
         Ok(written.into_iter().map(|(name, bytes)| ArchiveEntry::new(name, bytes)).chain(fixed).collect())
     }
 }
@@ -102,7 +103,10 @@ fn document(document: &'static str) -> impl FnOnce(io::Error) -> Error {
 fn archive_path(file: &Path) -> Result<String, Error> {
     let parts = file.components().filter(|part| *part != Component::CurDir).map(|part| match part {
         Component::Normal(name) => Ok(name.to_string_lossy()),
-        _ => Err(Error::value(format!("the scene reads {}, which is not below the scene's folder: an FMU carries only what is", file.display()))),
+        _ => Err(Error::value(format!(
+            "the scene reads {}, which is not below the scene's folder: an FMU carries only what is",
+            file.display()
+        ))),
     });
     Ok(parts.collect::<Result<Vec<_>, _>>()?.join("/"))
 }

@@ -2,7 +2,7 @@
 
 mod archive;
 mod description;
-mod documentation;
+mod experiment;
 mod fmu;
 mod library;
 mod references;

@@ -8,7 +8,7 @@ use asperity::scene::Scene;
 use super::low_end::low_end;
 use super::ranking::ranking;
 use crate::error::Error;
-use crate::files::self;
+use crate::files;
 
 /// A table cannot be read.
 #[derive(Debug, thiserror::Error)]

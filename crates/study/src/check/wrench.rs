@@ -1,6 +1,6 @@
 //! Wrenches of a dragged face, and the differences of two series of them.
 
-use crate::check::measure;
+use super::measure;
 use crate::decimals::{decimal, rounded};
 
 /// What is compared, and its unit; without force.y, which is 0 along x.

@@ -3,15 +3,14 @@
 use asperity::element::OperatingPoint;
 use rayon::prelude::*;
 
-use super::check::{PatchCheck, point};
-use super::elements::Elements;
+use super::element::not_steady;
+use super::measure::{ERROR, SLIDING_DISTANCE};
+use super::patch::{Elements, PatchCheck, point};
 use super::tilt::{TiltedElement, TiltedFace};
 use super::wrench::{Wrench, WrenchSeries, text, wrench};
-use crate::check::element::not_steady;
-use crate::error::Error;
-use crate::check::measure::{ERROR, SLIDING_DISTANCE};
 use crate::csv;
 use crate::decimals::real;
+use crate::error::Error;
 use crate::progress::{Counter, Stopped, Watch};
 use crate::sweep::StopBounds;
 

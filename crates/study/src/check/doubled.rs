@@ -4,13 +4,12 @@
 use asperity::patch::{Patch, PatchOutput, PatchVariable};
 use asperity::scene::{NotDoubled, PatchGroup};
 
-use super::check::PatchCheck;
-use super::elements::{Drag, table};
+use super::measure::SLIDING_DISTANCE;
+use super::patch::{Drag, PatchCheck, table};
 use super::tilt::TiltedFace;
 use super::wrench::{COMPONENTS, Wrench, WrenchSeries, extent, text};
-use crate::error::Error;
-use crate::check::measure::SLIDING_DISTANCE;
 use crate::decimals::real;
+use crate::error::Error;
 use crate::progress::{Counter, Watch};
 
 /// The outputs of [`COMPONENTS`].

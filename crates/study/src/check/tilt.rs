@@ -3,7 +3,7 @@
 use asperity::element::{Node, Quantity, Table};
 use asperity::patch::{Patch, PatchElement, Pose};
 
-use crate::check::measure::selected;
+use super::measure::selected;
 
 /// The largest angle of a face, rad: of one that is small beside the separations, elements stand at some of them.
 const STEEPEST: f64 = 0.5;
