@@ -3,7 +3,6 @@
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use asperity_study::Error;
 use asperity_study::calibration::{
     Calibration, CalibrationOptions, FitCovariance, FreeParameter, calibrate_scene, chi_square_per_degree,
 };
@@ -13,7 +12,7 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::background::in_background;
 use crate::errors::Raise as _;
-use crate::scene::Scene;
+use crate::scene::{Scene, parsed};
 use crate::sweep::sliding;
 
 /// Fits numbers of the scene to the measured friction in a file.
@@ -36,7 +35,7 @@ pub(crate) fn calibrate<'py>(
     };
     let options = CalibrationOptions {
         scene: scene.file.clone(),
-        set: scene.settings.clone(),
+        set: parsed(&scene.settings),
         free: free.into_iter().map(parameter).collect::<PyResult<_>>()?,
         data,
         sliding: sliding(method, way, points, error, distance)?,
@@ -55,10 +54,9 @@ pub(crate) fn calibrate<'py>(
 
 /// The text of a scene which names the table of a covariance of `keys`, without their spreads.
 #[pyfunction]
-pub(crate) fn with_covariance(text: &str, file: &str, keys: Vec<String>) -> PyResult<String> {
+pub(crate) fn with_covariance(text: &str, file: &str, keys: Vec<String>) -> String {
     let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
-    let named = asperity_study::calibration::with_covariance(text, file, &keys);
-    named.map_err(|error| Error::from(error).raise())
+    asperity_study::calibration::with_covariance(text, file, &keys)
 }
 
 fn add_covariance(found: &Bound<'_, PyDict>, covariance: &FitCovariance) -> PyResult<()> {

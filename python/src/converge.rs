@@ -50,10 +50,9 @@ pub(crate) fn converge<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let method = sliding(method, way, points, None, distance)?.method;
     let options = ConvergenceOptions { pressure, speed, error, seeds, method, way, points, most_points, distance };
-    let (data, text) = (Arc::clone(&scene.scene), scene.text.clone());
-    let (file, set) = (scene.file.clone(), scene.settings.clone());
+    let (data, file) = (Arc::clone(&scene.scene), scene.file.clone());
     let found = in_background(py, progress, move |task| {
-        let study = ConvergenceStudy::new(&data, (&text, &file), &set, options)?;
+        let study = ConvergenceStudy::new(&data, &file, options)?;
         Ok(find(&study, task)?.map(|findings| (study, findings)))
     })?;
     let found = found.map_err(|error: ConvergeError| error.raise())?;

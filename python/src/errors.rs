@@ -12,7 +12,6 @@ use asperity_study::contact::ContactError;
 use asperity_study::converge::ConvergeError;
 use asperity_study::fit::FitError;
 use asperity_study::rank::RankError;
-use asperity_study::settings::OverrideError;
 use asperity_study::surface::SurfaceError;
 use asperity_study::sweep::{SweepError, SweepTableError};
 use asperity_study::{Error, ErrorKind};
@@ -58,19 +57,13 @@ pub(crate) trait Raise {
 
 impl Raise for SceneError {
     fn raise(self) -> PyErr {
-        scene_error(&self, Some(self.file()), self.line(), self.key())
+        scene_error(&self, Some(self.file()).filter(|_| !self.is_of_setting()), self.line(), self.key())
     }
 }
 
 impl Raise for ParameterError {
     fn raise(self) -> PyErr {
         scene_error(&self, None, None, self.name())
-    }
-}
-
-impl Raise for OverrideError {
-    fn raise(self) -> PyErr {
-        scene_error(&self, None, None, self.key())
     }
 }
 

@@ -41,12 +41,7 @@ pub(crate) fn rank<'py>(
         _ => return Err(PyValueError::new_err("expected pressures or forces, the loads to rank at")),
     };
     let options = SweepOptions { speeds, loads, temperatures, sliding: sliding(method, way, points, error, distance)? };
-    let scene = |scene: &PyRef<'_, Scene>| RankScene {
-        scene: (*scene.scene).clone(),
-        text: scene.text.clone(),
-        file: scene.file.clone(),
-        set: scene.settings.clone(),
-    };
+    let scene = |scene: &PyRef<'_, Scene>| RankScene { scene: (*scene.scene).clone(), file: scene.file.clone() };
     let scenes: Vec<RankScene> = scenes.iter().map(scene).collect();
     let found = in_background(py, progress, move |task| -> Result<_, RankError> {
         let plan = RankPlan::new(scenes, options, SampleOptions { count: samples.0, seed: samples.1 })?;

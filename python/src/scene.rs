@@ -4,16 +4,17 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use asperity::scene::Setting;
 use asperity_study::files::parse_scene;
 use asperity_study::labelled::LabelledLine;
-use asperity_study::settings::{Setting, item_at, with_settings};
+use asperity_study::settings::edited;
 use asperity_study::summary::described;
 use numpy::{PyArray1, PyArrayMethods as _, ToPyArray as _};
 use pyo3::IntoPyObjectExt as _;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use toml_edit::{Item, Value};
+use toml::Value;
 
 use crate::errors::Raise as _;
 use crate::pack::{FmuOptions, pack};
@@ -24,7 +25,7 @@ use crate::pack::{FmuOptions, pack};
 pub(crate) struct Scene {
     pub(crate) text: String,
     pub(crate) file: PathBuf,
-    pub(crate) settings: Vec<Setting>,
+    pub(crate) settings: Vec<(String, String)>,
     pub(crate) scene: Arc<asperity::scene::Scene>,
 }
 
@@ -34,8 +35,8 @@ type Map<'py> = (Bound<'py, PyArray1<f64>>, usize, [f64; 2]);
 #[pymethods]
 impl Scene {
     #[new]
-    fn new(text: String, file: PathBuf, settings: Vec<Setting>) -> PyResult<Self> {
-        let scene = parse_scene(&text, &file, &settings).map_err(|error| error.raise())?;
+    fn new(text: String, file: PathBuf, settings: Vec<(String, String)>) -> PyResult<Self> {
+        let scene = parse_scene(&text, &file, &parsed(&settings)).map_err(|error| error.raise())?;
         Ok(Self { text, file, settings, scene: Arc::new(scene) })
     }
 
@@ -55,7 +56,7 @@ impl Scene {
     }
 
     #[getter]
-    fn settings(&self) -> Vec<Setting> {
+    fn settings(&self) -> Vec<(String, String)> {
         self.settings.clone()
     }
 
@@ -86,8 +87,8 @@ impl Scene {
     }
 
     /// The text with the keys set.
-    fn text(&self) -> PyResult<String> {
-        with_settings(&self.text, &self.settings).map_err(|error| error.raise())
+    fn text(&self) -> String {
+        edited(&self.text, &parsed(&self.settings))
     }
 
     /// The files that the scene reads, as it names them.
@@ -102,9 +103,8 @@ impl Scene {
 
     /// What stands at a key of the text, tables as dictionaries.
     fn get<'py>(&self, py: Python<'py>, key: &str) -> PyResult<Bound<'py, PyAny>> {
-        let text = self.text()?;
-        let found = item_at(&text, key).ok_or_else(|| PyKeyError::new_err(key.to_owned()))?;
-        to_python(py, &found)
+        let found = self.scene.values.get(key).ok_or_else(|| PyKeyError::new_err(key.to_owned()))?;
+        to_python(py, found)
     }
 
     /// x and z of the data points of the profile.
@@ -149,45 +149,29 @@ impl Scene {
     }
 }
 
-fn to_python<'py>(py: Python<'py>, item: &Item) -> PyResult<Bound<'py, PyAny>> {
-    match item {
-        Item::None => Ok(py.None().into_bound(py)),
-        Item::Value(value) => value_to_python(py, value),
-        Item::Table(table) => {
-            let dictionary = PyDict::new(py);
-            for (key, item) in table {
-                dictionary.set_item(key, to_python(py, item)?)?;
-            }
-            Ok(dictionary.into_any())
-        }
-        Item::ArrayOfTables(tables) => {
-            let list = PyList::empty(py);
-            for table in tables {
-                list.append(to_python(py, &Item::Table(table.clone()))?)?;
-            }
-            Ok(list.into_any())
-        }
-    }
+/// The settings of `--set`.
+pub(crate) fn parsed(settings: &[(String, String)]) -> Vec<Setting> {
+    settings.iter().map(|(key, value)| Setting::parse(key, value)).collect()
 }
 
-fn value_to_python<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
+fn to_python<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
     match value {
-        Value::String(text) => text.value().into_bound_py_any(py),
-        Value::Integer(whole) => whole.value().into_bound_py_any(py),
-        Value::Float(number) => number.value().into_bound_py_any(py),
-        Value::Boolean(flag) => flag.value().into_bound_py_any(py),
-        Value::Datetime(time) => time.value().to_string().into_bound_py_any(py),
+        Value::String(text) => text.into_bound_py_any(py),
+        Value::Integer(whole) => whole.into_bound_py_any(py),
+        Value::Float(number) => number.into_bound_py_any(py),
+        Value::Boolean(flag) => flag.into_bound_py_any(py),
+        Value::Datetime(time) => time.to_string().into_bound_py_any(py),
         Value::Array(values) => {
             let list = PyList::empty(py);
             for value in values {
-                list.append(value_to_python(py, value)?)?;
+                list.append(to_python(py, value)?)?;
             }
             Ok(list.into_any())
         }
-        Value::InlineTable(table) => {
+        Value::Table(table) => {
             let dictionary = PyDict::new(py);
             for (key, value) in table {
-                dictionary.set_item(key, value_to_python(py, value)?)?;
+                dictionary.set_item(key, to_python(py, value)?)?;
             }
             Ok(dictionary.into_any())
         }

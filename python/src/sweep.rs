@@ -6,7 +6,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use asperity::element::{PointContact, Table, TableRow};
-use asperity_study::settings::Setting;
 use asperity_study::sweep::{
     Loads, SlidingOptions, SweepError, SweepMethod, SweepOptions, SweepPlan, SweepTable, quantile_table,
 };
@@ -60,20 +59,16 @@ fn plan(scene: &Source, options: &SweepOptions, samples: Option<SampleOptions>) 
 
 /// What a scene was read from.
 struct Source {
-    text: String,
-    file: PathBuf,
-    settings: Vec<Setting>,
     scene: Arc<asperity::scene::Scene>,
 }
 
 impl Source {
     fn new(scene: &Scene) -> Self {
-        let Scene { text, file, settings, scene } = scene;
-        Self { text: text.clone(), file: file.clone(), settings: settings.clone(), scene: Arc::clone(scene) }
+        Self { scene: Arc::clone(&scene.scene) }
     }
 
     fn uncertain(&self) -> Result<UncertainScene, UncertaintyError> {
-        UncertainScene::new(self.text.clone(), self.file.clone(), self.settings.clone(), (*self.scene).clone())
+        UncertainScene::new((*self.scene).clone())
     }
 }
 

@@ -7,7 +7,7 @@ use super::face::{Face, Points, Section, Tread};
 use crate::element::{Clearance, Load, Node, Quantity, ResampledLaw, Table, TableError};
 use crate::scene::{
     Backing, Extrapolation, FaceHeat, FaceShape, FmuOptions, Grid, NotDoubled, Parameter, ParameterError, PatchFile,
-    PatchGroup, Problem, SceneError, TableExtrapolation, Value,
+    PatchGroup, Problem, SceneError, Setting, TableExtrapolation, Value,
 };
 
 /// Why a patch is refused.
@@ -93,7 +93,15 @@ impl Patch {
     /// # Errors
     /// As for [`load`](Self::load).
     pub fn parse(text: &str, path: &Path) -> Result<Self, PatchError> {
-        Self::new(PatchFile::parse(text, path)?, path)
+        Self::parse_with(text, path, &[])
+    }
+
+    /// As [`parse`](Self::parse), with keys set to other values.
+    ///
+    /// # Errors
+    /// As for [`load`](Self::load); without file and line where it is the value of a key that is set.
+    pub fn parse_with(text: &str, path: &Path, settings: &[Setting]) -> Result<Self, PatchError> {
+        Self::new(PatchFile::parse_with(text, path, settings)?, path)
     }
 
     fn new(file: PatchFile, path: &Path) -> Result<Self, PatchError> {

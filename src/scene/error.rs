@@ -68,8 +68,8 @@ pub enum Problem {
     },
 }
 
-/// A line of a file, counted from 1; no line where the whole file is meant.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A line of a file, counted from 1; no line where the whole file is meant, and no file of what was set.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Location {
     pub(super) file: PathBuf,
     pub(super) line: Option<usize>,
@@ -92,7 +92,7 @@ impl SceneError {
         self
     }
 
-    /// The file with the error: the scene's or one that the scene names.
+    /// The file with the error: the scene's or one that the scene names; empty of a key that was set.
     pub fn file(&self) -> &Path {
         &self.0.location.file
     }
@@ -100,6 +100,11 @@ impl SceneError {
     /// The line of the error, counted from 1.
     pub fn line(&self) -> Option<usize> {
         self.0.location.line
+    }
+
+    /// Whether it is of a key that was set, not of a file.
+    pub fn is_of_setting(&self) -> bool {
+        self.0.location == Location::default()
     }
 
     /// The full path of the key, or the column of a profile; empty where there is none.
@@ -110,11 +115,6 @@ impl SceneError {
     /// What is wrong.
     pub fn problem(&self) -> &Problem {
         &self.0.problem
-    }
-
-    /// The error without file and line: of a key that was given elsewhere.
-    pub fn without_place(&self) -> String {
-        self.0.problem.about(&self.0.key)
     }
 }
 
@@ -168,8 +168,12 @@ pub fn did_you_mean(similar: &[String]) -> String {
 
 impl fmt::Display for Details {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.location, self.problem.about(&self.key))?;
+        if self.location != Location::default() {
+            write!(f, "{}: ", self.location)?;
+        }
+        f.write_str(&self.problem.about(&self.key))?;
         match &self.named_by {
+            Some((location, key)) if *location == Location::default() => write!(f, " (file named by {key})"),
             Some((location, key)) => write!(f, " (file named by {key}, {location})"),
             None => Ok(()),
         }

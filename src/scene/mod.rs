@@ -11,6 +11,7 @@ mod carrier;
 mod derived;
 mod error;
 mod excitation;
+mod file_values;
 mod fine_roughness;
 mod foundation;
 mod height_map;
@@ -36,6 +37,7 @@ mod warnings;
 mod tests;
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use serde::Serialize;
 
@@ -46,6 +48,7 @@ pub use axis::{Axis, ByAxis, ByLink, LinkKind};
 pub use carrier::{CarrierBodies, CarrierBody, CarrierInitial, Input};
 pub use error::{ParameterError, Problem, SceneError, did_you_mean};
 pub use excitation::{Force, Motion, Path, Phase};
+pub use file_values::{FileValues, Setting};
 pub use fine_roughness::{
     FineBand, FineRoughness, FineWaves, ModulusFactors, RoughnessSpectrum, Softening, SofteningRow, SpectrumFactors,
     SplitError, SplitSurface, WaveModuli, decade_of,
@@ -119,6 +122,9 @@ pub struct Scene {
     /// How the tables were read that the scene names: columns and units, found or assumed.
     #[serde(skip)]
     pub notes: Vec<ReadingNote>,
+    /// The values that it was read from.
+    #[serde(skip)]
+    pub values: Arc<FileValues>,
 }
 
 /// A name as a C identifier: letters, digits and underscores, no digit first.

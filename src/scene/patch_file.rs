@@ -1,10 +1,11 @@
 //! A patch file as data: which table, which elements on which face, which outputs.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
-use super::error::{Location, Problem, SceneError};
+use super::error::{Problem, SceneError};
 use super::values::Word;
-use super::{Extrapolation, FmuOptions};
+use super::{Extrapolation, FileValues, FmuOptions};
 
 /// The most elements of a patch.
 pub(super) const MAX_ELEMENTS: i64 = 1_000_000;
@@ -40,8 +41,8 @@ pub struct PatchFile {
     pub outputs: Vec<PatchGroup>,
     /// What its FMU's description says for simple importers.
     pub fmu: FmuOptions,
-    /// Where the keys are that only the table can judge: `temperature` and `nominal_area`, or the table, and `heat`.
-    pub(super) places: [Location; 3],
+    /// The values that it was read from.
+    pub values: Arc<FileValues>,
 }
 
 /// The elements of a face.
@@ -207,17 +208,22 @@ impl PatchFile {
         Ok(Self { shape, ..self.clone() })
     }
 
+    /// The error of a key that only the table can judge.
+    fn refuse(&self, key: &str, problem: Problem) -> SceneError {
+        SceneError::new(self.values.location(key), key, problem)
+    }
+
     /// The error of a temperature that the table does not reach.
     pub fn refuse_temperature(&self, expected: String) -> SceneError {
         let given = self.temperature.map_or_else(String::new, |kelvin| format!("{kelvin:?}"));
-        SceneError::new(self.places[0].clone(), "table.temperature", Problem::Value { given, expected })
+        self.refuse("table.temperature", Problem::Value { given, expected })
     }
 
     /// The error of heat with a table that does not have several temperatures.
     pub fn refuse_heat(&self, found: usize) -> SceneError {
         let given = if found == 0 { "a table without temperatures".to_owned() } else { format!("a table of {found}") };
         let expected = "a table of two temperatures or more: friction follows what slip heats".to_owned();
-        SceneError::new(self.places[2].clone(), "patch.heat", Problem::Value { given, expected })
+        self.refuse("patch.heat", Problem::Value { given, expected })
     }
 
     /// The error of a nominal area that is given with a table of pressures, or is missing with one of forces.
@@ -226,7 +232,7 @@ impl PatchFile {
             Some(area) => Problem::value(format_args!("{area:?}"), expected),
             None => Problem::Missing { expected: expected.to_owned() },
         };
-        SceneError::new(self.places[1].clone(), "table.nominal_area", problem)
+        self.refuse("table.nominal_area", problem)
     }
 
     /// Paths of the files that it reads, relative to its folder.

@@ -3,7 +3,8 @@
 use std::path::{Path as FilePath, PathBuf};
 
 use super::{
-    ByLink, Extrapolation, Initial, Link, LinkKind, MaxwellElement, Method, OutputGroup, Path, Phase, Scene, Solver,
+    ByLink, Extrapolation, Initial, Link, LinkKind, MaxwellElement, Method, OutputGroup, Path, Phase, Scene, Setting,
+    Solver,
 };
 
 fn parse(text: &str) -> Scene {
@@ -160,4 +161,45 @@ fn the_most_steps_are_written_as_they_count() {
         |solver: &str| postcard::to_stdvec(&scene("", &format!("{FLAT}\n[solver]\n{solver}")).solver).unwrap();
     assert_eq!(written("max_steps = 10_000_000"), written(""));
     assert_ne!(written("max_steps = 1_000"), written(""));
+}
+
+#[test]
+fn a_scene_varies_as_a_value_and_its_files_are_read_once() {
+    let folder = std::env::temp_dir().join(format!("asperity-with-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).unwrap();
+    write("road.csv", "x,z\n0,0\n1e-3,1e-6\n2e-3,0\n");
+    write("series.csv", "relaxation_time,modulus\n1e-3,2e6\n1e-5,3e6\n");
+    let text = "name = 'a'\nlayer = { masses = 4, spacing = 1e-4, thickness = 1e-3, width = 1e-2 }\n\
+                [surface]\nkind = 'file'\npath = 'road.csv'\n[material]\ndensity = 1e3\npoisson_ratio = 0.49\n\
+                equilibrium_modulus = 1e6\nprony = 'series.csv'\n";
+    let scene = Scene::parse(text, &folder.join("scene.toml")).unwrap();
+    std::fs::remove_dir_all(&folder).unwrap();
+    let with = |key: &str, value: &str| scene.with_all(&[Setting::parse(key, value)]);
+    let found = with("layer.masses", "8").unwrap();
+    assert_eq!((found.layer.masses, &found.surface), (8, &scene.surface));
+    assert_eq!(with("layer.width", "2 cm").unwrap().layer.width, Some(0.02));
+    assert_eq!(with("friction.coulomb", "0.3").unwrap().friction.unwrap().coulomb, Some(0.3));
+    let terms = |scene: &Scene| scene.material.as_ref().unwrap().prony.clone();
+    let mut wanted = terms(&scene);
+    wanted[1].modulus = 4e6;
+    let found = with("material.prony[2].modulus", "4e6").unwrap();
+    assert_eq!(terms(&found), wanted);
+    assert_eq!(terms(&found.with("layer.masses", 6).unwrap()), wanted);
+    for (key, value, problem) in [
+        ("layer.masses", "-1", "layer.masses = -1: expected a whole number"),
+        ("layer.mases", "4", "layer.mases: unknown; allowed"),
+        ("layer..masses", "4", "expected the path of a key"),
+        ("excitation[0].duration", "4", "expected the path of a key"),
+        ("excitation[3].duration", "4", "excitation is not there"),
+        ("name.x", "4", "name is a text there"),
+        ("material.prony[3].modulus", "4", "one of the 2 elements of material.prony"),
+    ] {
+        let error = with(key, value).unwrap_err();
+        let said = error.to_string();
+        assert!(error.is_of_setting() && said.starts_with(key) && said.contains(problem), "{said}");
+    }
+    // What stands in the file is found there.
+    let error = Scene::parse(&text.replace("1e6", "-1.0"), &folder.join("scene.toml")).unwrap_err();
+    assert_eq!((error.key(), error.line()), ("material.equilibrium_modulus", Some(9)));
 }

@@ -85,6 +85,17 @@ impl fmt::Display for Value {
     }
 }
 
+/// As a file has it.
+impl From<Value> for toml::Value {
+    fn from(value: Value) -> Self {
+        match value {
+            Value::Real(number) => number.into(),
+            Value::Integer(number) => number.into(),
+            Value::Text(word) => word.into(),
+        }
+    }
+}
+
 /// The largest relative tolerance.
 pub const LOOSEST_TOLERANCE: f64 = 0.1;
 

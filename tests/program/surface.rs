@@ -180,7 +180,7 @@ fn lines_of_an_areal_measurement_go_into_the_archive_as_text() {
     let text = scene("kind = 'file', path = 'road.x3p', line = 3, missing = 'fill', tilt = 'remove'");
     let roughness = format!("layer.mass = 1e-7\nlayer.roughness = {{ {file}, line = 1, unit = 'mm' }}");
     fs::write(&source, text.replace("layer.mass = 1e-7", &roughness)).unwrap();
-    let scene = Scene::load_with(&source, &asperity_formats::Instruments).unwrap();
+    let scene = asperity_study::files::load_scene(&source, &[]).unwrap();
     assert_eq!(scene.files, ["road.x3p.line-1.csv", "road.x3p.line-3.csv"].map(Path::new));
     // Any file serves as the library here.
     run(asperity().arg("pack").arg(&source).arg("-o").arg(&fmu).arg("--library").arg(&source));

@@ -75,7 +75,7 @@ fn a_motion_in_a_workbook_is_that_of_its_text() {
         fs::read_to_string(output).unwrap()
     };
     assert_eq!(result("book", "rig.xlsx"), result("text", "rig.csv"));
-    let book = Scene::load_with(&folder.join("book.toml"), &asperity_formats::Instruments).unwrap();
+    let book = asperity_study::files::load_scene(&folder.join("book.toml"), &[]).unwrap();
     let carried = Path::new("rig.xlsx.sheet.txt");
     assert_eq!(book.files, [carried]);
     assert!(book.notes.iter().any(|note| note.text == "rig.xlsx: sheet log"), "{:?}", book.notes);

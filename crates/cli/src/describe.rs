@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
-use asperity::scene::{FoundationKind, LinkKind, Scene};
+use asperity::scene::{FoundationKind, LinkKind, Scene, Setting};
 use asperity_study::decimals::rounded;
-use asperity_study::settings::Setting;
 use asperity_study::summary::{
     DescribedScene, FineFrictionCurve, MIDDLE_PRESSURE, described, described_patch, described_shortly, missing_backing,
 };

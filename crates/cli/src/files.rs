@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::model::EvenSliding;
 use asperity::patch::Patch;
-use asperity::scene::Scene;
+use asperity::scene::{Scene, Setting};
 
 use super::draft::Draft;
 pub(crate) use super::draft::{print, write};
@@ -15,7 +15,6 @@ pub(crate) use super::output::{is_standard_output, is_stream, named, not_drawn, 
 use super::terminal::{LabelledLine, labelled, note, warn};
 use asperity_study::files;
 pub(crate) use asperity_study::files::name_of;
-use asperity_study::settings::Setting;
 
 /// The picture beside a table: the one named, else one with the table's name; none of a table on standard output or another
 /// stream.

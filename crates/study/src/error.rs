@@ -23,7 +23,6 @@ use asperity::simulation::{OutOfRange, SimulationError};
 use asperity::tables::ContentError;
 
 use crate::progress::Stopped;
-use crate::settings::{OverrideError, Refusal};
 
 /// What a caller does differently: the class of an exception, the exit status of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -190,7 +189,8 @@ fn reason(path: &Path, error: &io::Error) -> String {
 impl From<SceneError> for Error {
     fn from(error: SceneError) -> Self {
         let mut made = Self::scene(&error).with_key(error.key());
-        (made.0.file, made.0.line) = (Some(error.file().to_owned()), error.line());
+        made.0.file = Some(error.file().to_owned()).filter(|_| !error.is_of_setting());
+        made.0.line = error.line();
         made
     }
 }
@@ -231,21 +231,6 @@ impl From<ElementError> for Error {
     fn from(error: ElementError) -> Self {
         let kind = if matches!(error, ElementError::OutOfRange(_)) { ErrorKind::Value } else { ErrorKind::Run };
         Self::new(kind, error)
-    }
-}
-
-impl From<OverrideError> for Error {
-    fn from(error: OverrideError) -> Self {
-        Self::scene(&error).with_key(error.key())
-    }
-}
-
-impl<E: Into<Self>> From<Refusal<E>> for Error {
-    fn from(refusal: Refusal<E>) -> Self {
-        match refusal {
-            Refusal::Own(error) => error.into(),
-            Refusal::Set(error) => error.into(),
-        }
     }
 }
 

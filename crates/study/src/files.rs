@@ -2,20 +2,22 @@
 
 use std::path::Path;
 
+use asperity::model::EvenSliding;
 use asperity::patch::Patch;
-use asperity::scene::{FileFormats as _, Scene, read_file, read_text};
+use asperity::scene::{FileFormats as _, Scene, Setting, read_file, read_text};
 use asperity::tables::{ContentError, text_or_sheet};
 use asperity_formats::Instruments;
 
 use crate::error::Error;
-use crate::settings::{self, Setting};
 
 /// Reads a scene from `text`, its keys set to other values, as if it were the content of `file`.
 ///
 /// # Errors
 /// Where the text or what is set in it is refused.
 pub fn parse_scene(text: &str, file: &Path, set: &[Setting]) -> Result<Scene, Error> {
-    Ok(settings::scene(text, file, set)?)
+    let mut scene = Scene::parse_with(text, file, &Instruments, set)?;
+    EvenSliding::warn_of(&mut scene);
+    Ok(scene)
 }
 
 /// Reads the scene at `path`, its keys set to other values.
@@ -31,7 +33,7 @@ pub fn load_scene(path: &Path, set: &[Setting]) -> Result<Scene, Error> {
 /// # Errors
 /// As for [`load_scene`].
 pub fn load_patch(path: &Path, set: &[Setting]) -> Result<Patch, Error> {
-    Ok(settings::patch(&text(path)?, path, set)?)
+    Ok(Patch::parse_with(&text(path)?, path, set)?)
 }
 
 /// The text of the file at `path`.

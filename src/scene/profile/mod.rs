@@ -215,7 +215,7 @@ pub struct MeasuredSurface {
 }
 
 /// The formats of files that a scene is read with, beside text of columns.
-pub trait FileFormats: fmt::Debug {
+pub trait FileFormats: fmt::Debug + Send + Sync {
     /// The measurement that a file of these `bytes` holds; `None` of a file of another format.
     fn read(&self, bytes: &[u8], options: &ProfileOptions) -> Option<Result<MeasuredSurface, ContentError>>;
 

@@ -8,8 +8,10 @@ mod table;
 mod uncertainty;
 
 use std::path::Path as FilePath;
+use std::sync::Arc;
 
-use super::keys::{self, At, Form, ROOT};
+use super::file_values::{FileValues, Setting};
+use super::keys::{self, At, Form, KeyRow, ROOT};
 use super::prony_file::{ElasticConstants, PronySeries};
 use super::values::Word;
 use super::{
@@ -29,16 +31,8 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] with the file, the line, the key, what was given and what is allowed.
     pub fn load(path: &FilePath) -> Result<Self> {
-        Self::load_with(path, &TextAlone)
-    }
-
-    /// As [`load`](Self::load), with `formats` for the files of surfaces that are no text.
-    ///
-    /// # Errors
-    /// As for [`load`](Self::load).
-    pub fn load_with(path: &FilePath, formats: &dyn FileFormats) -> Result<Self> {
         let text = read_text(path).map_err(|error| SceneError::unreadable(path, &error))?;
-        Self::parse_with(&text, path, formats)
+        Self::parse(&text, path)
     }
 
     /// Reads a scene from `text` as if it were the content of `file`; the files that it names are looked for in the
@@ -47,35 +41,98 @@ impl Scene {
     /// # Errors
     /// As for [`load`](Self::load).
     pub fn parse(text: &str, file: &FilePath) -> Result<Self> {
-        Self::parse_with(text, file, &TextAlone)
+        Self::parse_with(text, file, &TextAlone, &[])
     }
 
-    /// As [`parse`](Self::parse), with `formats` for the files of surfaces that are no text.
+    /// As [`parse`](Self::parse), with `formats` for the files of surfaces that are no text, and with keys set to other
+    /// values.
     ///
     /// # Errors
-    /// As for [`load`](Self::load).
-    pub fn parse_with(text: &str, file: &FilePath, formats: &dyn FileFormats) -> Result<Self> {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let source = Source { file, text, form: Form::Direct, keys: ROOT, formats };
-        let document = source.parse()?;
-        let document = document.get_ref();
-        let form = if document.contains_key("material") { Form::Material } else { Form::Direct };
-        read_scene(TableReader::root(Source { form, ..source }, document)?)
+    /// As for [`load`](Self::load); without file and line where it is the value of a key that is set.
+    pub fn parse_with(
+        text: &str,
+        file: &FilePath,
+        formats: &'static dyn FileFormats,
+        settings: &[Setting],
+    ) -> Result<Self> {
+        Self::of_values(FileValues::parse(text, file, formats)?, settings)
+    }
+
+    /// The scene with a key set to another value, elements of lists counted from 1: `with("friction.coulomb", 0.3)`. It is
+    /// built anew of the [values](Self::values) that it was read from, and the files are not read again; fields that code
+    /// has changed since are as they were read.
+    ///
+    /// # Errors
+    /// Where there is no such key, or the scene cannot have the value.
+    pub fn with(&self, key: &str, value: impl Into<toml::Value>) -> Result<Self> {
+        self.with_all(&[Setting::new(key, value)])
+    }
+
+    /// As [`with`](Self::with), with several keys set one after another.
+    ///
+    /// # Errors
+    /// As for [`with`](Self::with).
+    pub fn with_all(&self, settings: &[Setting]) -> Result<Self> {
+        Self::of_values(FileValues::clone(&self.values), settings)
+    }
+
+    fn of_values(mut values: FileValues, settings: &[Setting]) -> Result<Self> {
+        let in_files = values.set_all(settings)?;
+        let scene = read_scene(values)?;
+        if in_files.is_empty() {
+            return Ok(scene);
+        }
+        // What stands in a file is put in the place of its name.
+        let mut values = FileValues::clone(&scene.values);
+        for (list, setting) in &in_files {
+            let elements = scene.elements(list);
+            values.set_all(&[Setting::new(list, elements), setting.clone()])?;
+        }
+        Ok(Self { notes: scene.notes, ..read_scene(values)? })
+    }
+
+    /// The number that the file has at a key, in SI units; `None` where it has none.
+    pub fn number(&self, key: &str) -> Option<f64> {
+        table::number_of(self.values.get(key)?, keys::find(ROOT, key)?.0.unit)
+    }
+
+    /// The elements of a list, as a file would have them.
+    fn elements(&self, list: &str) -> Vec<toml::Value> {
+        let below = format!("{list}[].");
+        let rows: Vec<_> = keys::fields().into_iter().filter(|row| row.path.starts_with(&below)).collect();
+        let element = |index: usize| {
+            let value = |row: &KeyRow| {
+                let value = (row.key.field?.get)(self, row.at.element(index))?;
+                Some((row.key.name.to_owned(), value.into()))
+            };
+            let table: toml::Table = rows.iter().filter_map(value).collect();
+            (!table.is_empty()).then_some(toml::Value::Table(table))
+        };
+        (0..).map_while(element).collect()
     }
 }
 
-fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
-    let (mut scene, mut found) = (unread_scene(), Findings::default());
+fn read_scene(mut values: FileValues) -> Result<Scene> {
+    let form = if values.root.contains_key("material") { Form::Material } else { Form::Direct };
+    let source = Source { values: &values, form, keys: ROOT };
+    let mut found = Findings { named: values.files.clone(), ..Findings::default() };
+    let scene = read_root(TableReader::root(source)?, &mut found)?;
+    values.files = found.named;
+    Ok(Scene { values: Arc::new(values), files: found.files, extracts: found.extracts, notes: found.notes, ..scene })
+}
+
+fn read_root(mut root: TableReader<'_>, found: &mut Findings) -> Result<Scene> {
+    let mut scene = unread_scene();
     scene.name = read_name(&root.required("name")?)?;
     scene.description = root.entry("description").map(|entry| read_description(&entry)).transpose()?;
-    root.required("layer")?.table(|table| read_layer(table, &mut scene, &mut found))?;
+    root.required("layer")?.table(|table| read_layer(table, &mut scene, found))?;
     let material = root.entry("material");
     if let Some(entry) = &material {
-        entry.table(|table| read_material(table, &mut scene, &mut found))?;
+        entry.table(|table| read_material(table, &mut scene, found))?;
     }
     let surface = root.required("surface")?;
-    let read = surface::read(&surface, &mut found)?;
-    (scene.surface, scene.fine) = fine::read(&surface, read, &mut found)?;
+    let read = surface::read(&surface, found)?;
+    (scene.surface, scene.fine) = fine::read(&surface, read, found)?;
     let carrier = root.entry("carrier");
     if let Some(entry) = &carrier {
         entry.table(|table| carrier::read(table, &mut scene))?;
@@ -84,14 +141,13 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
     fine::check_rest(&surface, material.as_ref(), &scene)?;
     read_options(&mut root, &mut scene)?;
     let temperature = wlf(&scene).filter(|_| scene.temperature_input);
-    let phases = |table: &mut TableReader<'_>| carrier::read_phases(table, &scene.carrier, temperature, &mut found);
+    let phases = |table: &mut TableReader<'_>| carrier::read_phases(table, &scene.carrier, temperature, found);
     scene.excitation = root.tables("excitation", phases)?.concat();
     scene.foundation =
         scene.material.as_ref().and_then(|material| Foundation::new(&scene.layer, material, &scene.surface));
-    scene.uncertainty = uncertainty::read(&mut root, &scene, &mut found)?;
+    scene.uncertainty = uncertainty::read(&mut root, &scene, found)?;
     root.finish()?;
-    (scene.files, scene.extracts, scene.warnings, scene.notes) =
-        (found.files, found.extracts, found.warnings, found.notes);
+    scene.warnings = std::mem::take(&mut found.warnings);
     add_warnings(&mut scene);
     refuse_at(carrier, scene.check_equilibrium(scene.first_load()))?;
     refuse_at(material, scene.check())?;
@@ -121,6 +177,7 @@ fn unread_scene() -> Scene {
         extracts: Vec::new(),
         warnings: Vec::new(),
         notes: Vec::new(),
+        values: Arc::default(),
     };
     keys::fields().iter().for_each(|row| row.key.set_default(&mut scene, row.at));
     scene

@@ -2,10 +2,12 @@
 
 use std::f64::consts::PI;
 use std::path::Path as FilePath;
+use std::sync::Arc;
 
 use super::table::{Entry, Result, Source, TableReader};
 use super::{read_input, read_name, surface};
-use crate::scene::error::Location;
+use crate::scene::error::{Location, Problem};
+use crate::scene::file_values::{FileValues, Setting};
 use crate::scene::keys::{Form, PATCH_ROOT, ShapeKind};
 use crate::scene::patch_file::{
     Backing, FaceHeat, FaceShape, Grid, MAX_ELEMENTS, PatchFile, PatchGroup, TableExtrapolation,
@@ -50,18 +52,30 @@ impl PatchFile {
     /// # Errors
     /// As for [`load`](Self::load).
     pub fn parse(text: &str, file: &FilePath) -> Result<Self> {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let source = Source { file, text, form: Form::Direct, keys: PATCH_ROOT, formats: &TextAlone };
-        let document = source.parse()?;
-        let mut root = TableReader::root(source, document.get_ref())?;
+        Self::parse_with(text, file, &[])
+    }
+
+    /// As [`parse`](Self::parse), with keys set to other values.
+    ///
+    /// # Errors
+    /// As for [`load`](Self::load); without file and line where it is the value of a key that is set.
+    pub fn parse_with(text: &str, file: &FilePath, settings: &[Setting]) -> Result<Self> {
+        let mut values = FileValues::parse(text, file, &TextAlone)?;
+        if let Some((_, Setting { key, value })) = values.set_all(settings)?.into_iter().next() {
+            let problem = Problem::value(value, "a key of the patch file");
+            return Err(SceneError::new(Location::default(), key, problem));
+        }
+        Self::of_values(values)
+    }
+
+    fn of_values(values: FileValues) -> Result<Self> {
+        let mut root = TableReader::root(Source { values: &values, form: Form::Direct, keys: PATCH_ROOT })?;
         let name = read_name(&root.required("name")?)?;
         let table_entry = root.required("table")?;
         let mut table = table_entry.open()?;
         table.check_keys()?;
         let temperature = table.entry("temperature");
         let nominal_area = table.entry("nominal_area");
-        let place = |entry: &Option<Entry<'_>>| entry.as_ref().unwrap_or(&table_entry).location();
-        let (temperature_place, area_place) = (place(&temperature), place(&nominal_area));
         let path = surface::read_path(&table.required("path")?)?;
         let table_extrapolation = table.optional_choice("extrapolation")?.unwrap_or(TableExtrapolation::Hold);
         table.finish()?;
@@ -86,7 +100,7 @@ impl PatchFile {
             refine: u32::try_from(refine).unwrap_or(1),
             outputs,
             fmu,
-            places: [temperature_place, area_place, face.heat_place],
+            values: Arc::new(values),
         })
     }
 }
@@ -98,8 +112,6 @@ struct FaceKeys {
     offset: [f64; 3],
     backing: Option<Backing>,
     heat: Option<FaceHeat>,
-    /// Where `heat` is, or the table.
-    heat_place: Location,
 }
 
 fn read_face(entry: &Entry<'_>) -> Result<FaceKeys> {
@@ -114,11 +126,9 @@ fn read_face(entry: &Entry<'_>) -> Result<FaceKeys> {
     let transport = kind != ShapeKind::Points && table.flag("transport")?;
     let offset = table.entry("offset").map(|entry| read_offset(&entry)).transpose()?.unwrap_or_default();
     let backing = table.optional_table("backing", read_backing)?;
-    let heat_entry = table.entry("heat");
-    let heat_place = heat_entry.as_ref().unwrap_or(entry).location();
-    let heat = heat_entry.map(|entry| entry.table(read_heat)).transpose()?;
+    let heat = table.optional_table("heat", read_heat)?;
     table.finish()?;
-    Ok(FaceKeys { shape, transport, offset, backing, heat, heat_place })
+    Ok(FaceKeys { shape, transport, offset, backing, heat })
 }
 
 fn read_heat(table: &mut TableReader<'_>) -> Result<FaceHeat> {
@@ -167,7 +177,7 @@ fn read_offset(entry: &Entry<'_>) -> Result<[f64; 3]> {
 
 fn read_points(entry: &Entry<'_>) -> Result<FaceShape> {
     let path = surface::read_path(entry)?;
-    let file = entry.source().folder().join(&path);
+    let file = entry.source().values.folder().join(&path);
     let bytes = read_file(&file).map_err(|error| entry.unreadable(&error))?;
     let points = parse_points(&bytes);
     let points = points.map_err(|error| error.in_file(file).named_by(entry.location(), entry.path()))?;

@@ -1,21 +1,24 @@
 //! Reading of surfaces: `[surface]` and the layer's roughness, in the scene or from a file.
 
 use std::path::{Component, Path as FilePath, PathBuf};
+use std::sync::Arc;
 
 use super::table::{Entry, Result, TableReader};
+use crate::scene::file_values::{FileValues, NamedFiles};
 use crate::scene::height_map::Seam;
 use crate::scene::keys::{PATH, SurfaceKind};
-use crate::scene::profile::{self, Extract, ProfileOptions, ReadFailure};
+use crate::scene::profile::{self, Extract, Profile, ProfileOptions, ReadFailure};
 use crate::scene::surface::{Coordinate, check_points};
-use crate::scene::{Layer, MOST_HEIGHTS, SelfAffine, Surface, read_file as read_bytes, warnings};
+use crate::scene::{Layer, MOST_HEIGHTS, SelfAffine, Surface, warnings};
 use crate::tables::{ContentError, ReadingNote, text_or_sheet};
 
 /// A number of points that is whole but for rounding is that number.
 const ROUNDING: f64 = 1.0e-9;
 
 /// What reading finds beside the values of the scene.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Default)]
 pub(super) struct Findings {
+    pub(super) named: NamedFiles,
     pub(super) files: Vec<PathBuf>,
     pub(super) extracts: Vec<Extract>,
     pub(super) warnings: Vec<String>,
@@ -41,12 +44,13 @@ impl Findings {
         path: &FilePath,
         parse: impl Fn(&[u8]) -> std::result::Result<(T, Vec<ReadingNote>), ContentError>,
     ) -> Result<T> {
-        let (folder, formats) = (entry.source().folder(), entry.source().formats);
+        let FileValues { formats, .. } = *entry.source().values;
+        let folder = entry.source().values.folder();
         let name = sheet_name(path);
-        let (file, bytes) = match read_bytes(&folder.join(path)) {
+        let (file, bytes) = match self.named.bytes(&folder.join(path)) {
             Ok(bytes) => (path.to_owned(), bytes),
             Err(error) => {
-                let bytes = read_bytes(&folder.join(&name)).map_err(|_| entry.unreadable(&error))?;
+                let bytes = self.named.bytes(&folder.join(&name)).map_err(|_| entry.unreadable(&error))?;
                 (name.clone(), bytes)
             }
         };
@@ -64,6 +68,22 @@ impl Findings {
         }
         self.add_notes(path, notes);
         Ok(content)
+    }
+
+    /// The profile at `path`, which `entry` names: as it was read before, if it was.
+    fn profile(&mut self, entry: &Entry<'_>, path: &FilePath, options: &ProfileOptions) -> Result<Arc<Profile>> {
+        let is_it = |(file, read, _): &&(PathBuf, ProfileOptions, _)| file == path && read == options;
+        if let Some((.., profile)) = self.named.profiles.iter().find(is_it) {
+            return Ok(profile.clone());
+        }
+        let values = entry.source().values;
+        let read = profile::read(values.folder(), path, options, values.formats).map_err(|failure| match failure {
+            ReadFailure::Unreadable(error) => entry.unreadable(&error),
+            ReadFailure::Refused(error) => error.named_by(entry.location(), entry.path()),
+        })?;
+        let profile = Arc::new(read);
+        self.named.profiles.push((path.to_owned(), options.clone(), profile.clone()));
+        Ok(profile)
     }
 
     /// Adds a file that the scene reads, each once.
@@ -192,20 +212,16 @@ fn read_file(table: &mut TableReader<'_>, found: &mut Findings) -> Result<Surfac
     let options = read_options(table)?;
     let entry = table.required("path")?;
     let path = read_path(&entry)?;
-    let source = entry.source();
-    let profile = profile::read(source.folder(), &path, &options, source.formats).map_err(|failure| match failure {
-        ReadFailure::Unreadable(error) => entry.unreadable(&error),
-        ReadFailure::Refused(error) => error.named_by(entry.location(), entry.path()),
-    })?;
+    let profile = found.profile(&entry, &path, &options)?;
     let warnings = profile.warnings.iter().map(|warning| format!("{}: {warning}", path.display()));
     found.warnings.extend(warnings);
-    found.add_notes(&path, profile.notes);
+    found.add_notes(&path, profile.notes.clone());
     if !found.files.contains(&profile.file) {
         let name = profile.file.clone();
-        found.extracts.extend(profile.extract.map(|text| Extract { source: path, name, text }));
+        found.extracts.extend(profile.extract.clone().map(|text| Extract { source: path, name, text }));
     }
-    found.add_file(profile.file);
-    Ok(profile.surface)
+    found.add_file(profile.file.clone());
+    Ok(profile.surface.clone())
 }
 
 fn read_options(table: &mut TableReader<'_>) -> Result<ProfileOptions> {

@@ -1,31 +1,23 @@
-//! Typed reading of TOML tables, checked against the table of keys; every value knows where it stands in the file.
+//! Typed reading of tables of values, checked against the table of keys; every value knows its key's path, by which an
+//! error finds it in the file.
 
-use std::ops;
-use std::path::Path;
-
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::{Table, Value as TomlValue};
 
 use crate::scene::error::{Location, Problem, SceneError};
+use crate::scene::file_values::FileValues;
 use crate::scene::keys::{self, Absent, Allowed, At, Field, Form, Key, Kinds};
 use crate::scene::values::{NumberRange, POSITIVE, Value, Word, similar_word, words};
-use crate::scene::{FileFormats, Scene, Unit};
+use crate::scene::{Scene, Unit};
 
 pub(super) type Result<T> = std::result::Result<T, SceneError>;
 
-/// Longer values are cut in messages.
-const GIVEN_LENGTH: usize = 60;
-
-/// The scene file: its name for messages, its text and its form.
+/// What is read: the values of a file and what kind of file it is.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Source<'a> {
-    pub(super) file: &'a Path,
-    pub(super) text: &'a str,
+    pub(super) values: &'a FileValues,
     pub(super) form: Form,
     /// The keys that such a file has.
     pub(super) keys: &'static [Key],
-    /// What files of surfaces it may name beside text.
-    pub(super) formats: &'a dyn FileFormats,
 }
 
 /// A value, its key and the key's full path.
@@ -34,10 +26,7 @@ pub(super) struct Entry<'a> {
     source: Source<'a>,
     path: String,
     key: &'static Key,
-    value: &'a DeValue<'a>,
-    span: ops::Range<usize>,
-    /// Where to look for it: the start of the value, or of a table's name.
-    offset: usize,
+    value: &'a TomlValue,
 }
 
 /// A table that hands out its values and remembers which keys were asked for.
@@ -45,33 +34,9 @@ pub(super) struct Entry<'a> {
 pub(super) struct TableReader<'a> {
     source: Source<'a>,
     path: String,
-    offset: usize,
-    table: &'a DeTable<'a>,
+    table: &'a Table,
     keys: &'static [Key],
     asked: Vec<&'static str>,
-}
-
-impl<'a> Source<'a> {
-    fn location(&self, offset: usize) -> Location {
-        let before = self.text.as_bytes().iter().take(offset);
-        Location { file: self.file.to_owned(), line: Some(1 + before.filter(|&&byte| byte == b'\n').count()) }
-    }
-
-    pub(super) fn parse(&self) -> Result<Spanned<DeTable<'a>>> {
-        DeTable::parse(self.text).map_err(|error| {
-            let location = self.location(error.span().map_or(0, |span| span.start));
-            SceneError::new(location, "", Problem::Syntax { reason: error.message().trim().replace('\n', "; ") })
-        })
-    }
-
-    /// A line of a file beside the scene.
-    pub(super) fn place(&self, file: &Path, line: usize) -> Location {
-        Location { file: self.folder().join(file), line: Some(line) }
-    }
-
-    pub(super) fn folder(&self) -> &'a Path {
-        self.file.parent().unwrap_or(Path::new(""))
-    }
 }
 
 impl<'a> Entry<'a> {
@@ -80,7 +45,7 @@ impl<'a> Entry<'a> {
     }
 
     pub(super) fn location(&self) -> Location {
-        self.source.location(self.offset)
+        self.source.values.location(&self.path)
     }
 
     pub(super) fn source(&self) -> Source<'a> {
@@ -89,12 +54,7 @@ impl<'a> Entry<'a> {
 
     /// The value as it stands in the file, on one line and cut where it is long.
     pub(super) fn given(&self) -> String {
-        let text = self.source.text.get(self.span.clone()).unwrap_or_default();
-        let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        match line.char_indices().nth(GIVEN_LENGTH) {
-            Some((end, _)) => format!("{}...", &line[..end]),
-            None => line,
-        }
+        self.source.values.given(&self.path, self.value)
     }
 
     pub(super) fn error(&self, problem: Problem) -> SceneError {
@@ -138,8 +98,8 @@ impl<'a> Entry<'a> {
     }
 
     /// A number, in SI units or with a unit behind it: a text.
-    fn number_of(&self, value: &DeValue<'_>) -> Option<f64> {
-        number(value).or_else(|| self.key.unit.read(value.as_str()?))
+    fn number_of(&self, value: &TomlValue) -> Option<f64> {
+        number_of(value, self.key.unit)
     }
 
     /// Refuses the value for not being a number of the range; of a text that begins as one the units are named, too.
@@ -155,7 +115,7 @@ impl<'a> Entry<'a> {
 
     pub(super) fn whole(&self) -> Result<i64> {
         let Allowed::Whole(range) = self.key.allowed else { return Err(self.refuse_type()) };
-        whole(self.value).filter(|&number| range.holds(number)).ok_or_else(|| self.refuse(range))
+        self.value.as_integer().filter(|&number| range.holds(number)).ok_or_else(|| self.refuse(range))
     }
 
     /// The number or the word that its key holds.
@@ -186,9 +146,8 @@ impl<'a> Entry<'a> {
     pub(super) fn numbers(&self) -> Result<Vec<f64>> {
         let Allowed::Numbers(range) = self.key.allowed else { return Err(self.refuse_type()) };
         let values = self.value.as_array().ok_or_else(|| self.refuse_type())?;
-        let read = |(i, value): (usize, &Spanned<DeValue<'_>>)| {
-            self.number_of(value.get_ref()).filter(|&number| range.holds(number)).ok_or(i)
-        };
+        let read =
+            |(i, value): (usize, &TomlValue)| self.number_of(value).filter(|&number| range.holds(number)).ok_or(i);
         let numbers: std::result::Result<_, usize> = values.iter().enumerate().map(read).collect();
         numbers.map_err(|i| self.element(i).unwrap_or_else(|| self.clone()).refuse_number(range))
     }
@@ -212,16 +171,14 @@ impl<'a> Entry<'a> {
     /// Element `i` of an array, counted from 0.
     pub(super) fn element(&self, i: usize) -> Option<Self> {
         let value = self.value.get(i)?;
-        let path = format!("{}[{}]", self.path, i + 1);
-        let span = value.span();
-        Some(Self { path, value: value.get_ref(), offset: span.start, span, ..*self })
+        Some(Self { path: format!("{}[{}]", self.path, i + 1), value, ..*self })
     }
 
     /// The table that it is; its keys are not checked before [`check_keys`](TableReader::check_keys).
     pub(super) fn open(&self) -> Result<TableReader<'a>> {
         let table = self.value.as_table().ok_or_else(|| self.refuse("a table"))?;
         let (source, path, keys) = (self.source, self.path.clone(), self.key.keys());
-        Ok(TableReader { source, path, offset: self.offset, table, keys, asked: Vec::new() })
+        Ok(TableReader { source, path, table, keys, asked: Vec::new() })
     }
 
     /// What `read` makes of the table, all of whose keys are allowed and asked for.
@@ -239,22 +196,20 @@ impl<'a> Entry<'a> {
     }
 }
 
-fn number(value: &DeValue<'_>) -> Option<f64> {
-    match value {
-        DeValue::Float(float) => float.as_str().parse().ok(),
-        _ => whole(value).map(|number| number as f64),
-    }
+/// A number, in SI units or with a unit behind it: a text.
+pub(super) fn number_of(value: &TomlValue, unit: Unit) -> Option<f64> {
+    number(value).or_else(|| unit.read(value.as_str()?))
 }
 
-fn whole(value: &DeValue<'_>) -> Option<i64> {
-    let integer = value.as_integer()?;
-    i64::from_str_radix(integer.as_str(), integer.radix()).ok()
+fn number(value: &TomlValue) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|number| number as f64))
 }
 
 impl<'a> TableReader<'a> {
     /// The table of a whole file; its keys are checked.
-    pub(super) fn root(source: Source<'a>, table: &'a DeTable<'a>) -> Result<Self> {
-        let root = Self { source, path: String::new(), offset: 0, table, keys: source.keys, asked: Vec::new() };
+    pub(super) fn root(source: Source<'a>) -> Result<Self> {
+        let (path, table, keys) = (String::new(), &source.values.root, source.keys);
+        let root = Self { source, path, table, keys, asked: Vec::new() };
         root.check_keys()?;
         Ok(root)
     }
@@ -293,13 +248,13 @@ impl<'a> TableReader<'a> {
     }
 
     fn allow(&self, allowed: &[&'static str]) -> Result<()> {
-        let names = self.table.keys().map(|key| (key.get_ref().as_ref(), key.span().start));
-        match names.filter(|(name, _)| !allowed.contains(name)).min_by_key(|(_, offset)| *offset) {
-            Some((name, offset)) => {
+        let unknown = self.table.keys().filter(|name| !allowed.contains(&name.as_str()));
+        match unknown.min_by_key(|name| self.source.values.offset(&self.full(name))) {
+            Some(name) => {
                 let names = allowed.iter().filter(|name| self.full(name) != keys::RETIRED);
                 let allowed: Vec<String> = names.copied().map(String::from).collect();
                 let problem = Problem::Unknown { similar: self.similar(name, &allowed), allowed };
-                Err(SceneError::new(self.source.location(offset), self.full(name), problem))
+                Err(SceneError::new(self.source.values.location(&self.full(name)), self.full(name), problem))
             }
             None => Ok(()),
         }
@@ -318,33 +273,20 @@ impl<'a> TableReader<'a> {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
     }
 
-    /// All of its entries in the order of the file, each with the `key` in place of its own; names are in quotation marks.
+    /// All of its entries, each with the `key` in place of its own; names are in quotation marks.
     pub(super) fn entries(&self, key: &'static Key) -> Vec<(String, Entry<'a>)> {
-        let entry = |name: &Spanned<std::borrow::Cow<'_, str>>, value: &'a Spanned<DeValue<'a>>| {
-            let (span, name, start) = (value.span(), name.get_ref().clone().into_owned(), name.span().start);
-            let path = format!("{}.\"{name}\"", self.path);
-            let offset = if value.get_ref().is_table() { start } else { span.start };
-            (name, Entry { source: self.source, path, key, value: value.get_ref(), span, offset })
-        };
-        let mut entries: Vec<_> = self.table.iter().map(|(name, value)| entry(name, value)).collect();
-        entries.sort_by_key(|(_, entry)| entry.offset);
+        let source = self.source;
+        let path = |name: &str| format!("{}.\"{name}\"", self.path);
+        let entry =
+            |(name, value): (&String, &'a TomlValue)| (name.clone(), Entry { source, path: path(name), key, value });
+        let mut entries: Vec<_> = self.table.iter().map(entry).collect();
+        entries.sort_by_key(|(_, entry)| source.values.offset(&entry.path));
         entries
     }
 
     /// The entry at the path of a `key` of the file, elements of lists counted from 1.
     pub(super) fn at(&self, path: &str, key: &'static Key) -> Option<Entry<'a>> {
-        let (mut table, mut found) = (Some(self.table), None);
-        for part in path.split('.') {
-            let (name, element) = part.split_once('[').map_or((part, None), |(name, rest)| (name, Some(rest)));
-            let mut value = table?.get(name)?;
-            if let Some(element) = element {
-                value = value.get_ref().get(element.strip_suffix(']')?.parse::<usize>().ok()?.checked_sub(1)?)?;
-            }
-            (table, found) = (value.get_ref().as_table(), Some(value));
-        }
-        let (value, path) = (found?, path.to_owned());
-        let span = value.span();
-        Some(Entry { source: self.source, path, key, value: value.get_ref(), offset: span.start, span })
+        Some(Entry { source: self.source, path: path.to_owned(), key, value: self.source.values.get(path)? })
     }
 
     /// The problem of a path that leads to no key of the file.
@@ -367,10 +309,7 @@ impl<'a> TableReader<'a> {
     }
 
     fn find(&self, key: &'static Key) -> Option<Entry<'a>> {
-        let (found, value) = self.table.get_key_value(key.name)?;
-        let span = value.span();
-        let offset = if value.get_ref().is_table() { found.span().start } else { span.start };
-        Some(Entry { source: self.source, path: self.full(key.name), key, value: value.get_ref(), span, offset })
+        Some(Entry { source: self.source, path: self.full(key.name), key, value: self.table.get(key.name)? })
     }
 
     /// Writes what the table says of the keys that have a field into `scene`, which has the tables around them.
@@ -406,7 +345,7 @@ impl<'a> TableReader<'a> {
 
     pub(super) fn missing(&self, name: &str, expected: impl ToString) -> SceneError {
         let problem = Problem::Missing { expected: expected.to_string() };
-        SceneError::new(self.source.location(self.offset), self.full(name), problem)
+        SceneError::new(self.source.values.location(&self.path), self.full(name), problem)
     }
 
     pub(super) fn number(&mut self, name: &'static str) -> Result<f64> {

@@ -2,7 +2,7 @@
 
 use super::surface::{Findings, read_path};
 use super::table::{Entry, Result, TableReader};
-use crate::scene::error::Problem;
+use crate::scene::error::{Location, Problem};
 use crate::scene::keys::{self, Allowed, At, ROOT, SPREAD};
 use crate::scene::uncertainty::{Each, Other, read_covariance};
 use crate::scene::values::Value;
@@ -147,7 +147,13 @@ fn read_fitted(root: &TableReader<'_>, entry: &Entry<'_>, scene: &Scene, found: 
     let (mut covariance, lines) = found.read_file(entry, &path, read_covariance)?;
     let mut moved = Vec::new();
     for (fitted, line) in covariance.numbers.iter_mut().zip(lines) {
-        let refused = |problem| SceneError::new(entry.source().place(&path, line), &fitted.key, problem);
+        let refused = |problem| {
+            SceneError::new(
+                Location { file: entry.source().values.folder().join(&path), line: Some(line) },
+                &fitted.key,
+                problem,
+            )
+        };
         let number = number_of(root, &fitted.key, scene).map_err(refused)?;
         if number.value <= 0.0 && fitted.scale == Scale::Log {
             let problem = Problem::value(number.value, "a number above 0, whose logarithm was fitted");

@@ -140,6 +140,7 @@ fn cases_of(scales: Scales, method: Method) -> impl Strategy<Value = Case> {
                 extracts: Vec::new(),
                 warnings: Vec::new(),
                 notes: Vec::new(),
+                values: Default::default(),
             };
             Case { scene, start, motions }
         },

@@ -139,7 +139,7 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, CalibrateError> {
         let planned = if command.plan { Some(calibrator.plan(&calibration, &candidates(command))?) } else { None };
         bar.finish_and_clear();
         let covariance = FitCovariance::new(&free, &calibration);
-        let has_covariance = written(&outputs, calibrated_text(&free, &calibration)?, &covariance)?;
+        let has_covariance = written(&outputs, calibrated_text(&free, &calibration), &covariance)?;
         if let Some(picture) = &outputs.picture {
             drawn(&free, &calibration, &calibrator, picture)?;
         }
@@ -169,7 +169,7 @@ fn written(outputs: &Outputs, scene: String, covariance: &FitCovariance) -> Resu
     }
     // First what the scene needs.
     files::write(path, table)?;
-    files::write(&outputs.scene, covariance.named_in(&scene, &file).map_err(FileError::from)?)?;
+    files::write(&outputs.scene, covariance.named_in(&scene, &file))?;
     Ok(true)
 }
 

@@ -3,11 +3,11 @@
 use std::convert::Infallible;
 use std::ops::Deref;
 
-use asperity_study::settings::Setting;
+use asperity::scene::Setting;
 use asperity_study::sweep::SweepMethod;
 use clap::Args;
 
-use super::values::{count, key_and_value, length, pressure, renamed, share, speed, sweep_method};
+use super::values::{count, length, pressure, renamed, share, speed, sweep_method};
 
 // Not a doc comment: that would be the description of the commands that have it.
 #[derive(Debug, Args)]
@@ -15,7 +15,7 @@ pub(crate) struct Set {
     /// Overrides a key of the scene or patch file: solver.relative_tolerance=1e-9,
     /// layer.vertical.maxwell[1].stiffness=0, friction.coulomb=0.5, surface="{ kind = 'flat' }". What the file does not
     /// have is added. May be repeated.
-    #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
+    #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<Setting>,
 }
 

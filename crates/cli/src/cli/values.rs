@@ -16,14 +16,6 @@ use clap::builder::{PathBufValueParser, PossibleValue, PossibleValuesParser, Str
 
 use crate::files::{ends_in, is_standard_output};
 
-/// The key and the value of `--set`.
-pub(super) fn key_and_value(text: &str) -> Result<(String, String), String> {
-    match text.split_once('=') {
-        Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().into(), value.trim().into())),
-        _ => Err("expected KEY=VALUE, such as solver.relative_tolerance=1e-9".into()),
-    }
-}
-
 /// The key and the bounds of `--free`.
 pub(super) fn free_parameter(text: &str) -> Result<FreeParameter, String> {
     let parted = text.split_once('=').and_then(|(key, bounds)| {
@@ -320,13 +312,6 @@ impl Tolerances {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_parameter_is_split_at_the_first_equals_sign() {
-        assert_eq!(key_and_value("a.b = 1=2"), Ok(("a.b".into(), "1=2".into())));
-        assert!(key_and_value("a.b").is_err());
-        assert!(key_and_value("=1").is_err());
-    }
 
     #[test]
     fn a_condition_holds_for_a_text_and_for_a_number_however_it_is_written() {

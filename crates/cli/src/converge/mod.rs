@@ -13,7 +13,7 @@ use asperity_study::converge::{ConvergeError, ConvergenceOptions, ConvergenceStu
 use super::cli::{Converge, SteadyState};
 use super::draft::TablePlace;
 use super::figure::Figure as _;
-use super::files::{FileError, check_outputs, default_output, load_without_run, picture_beside, print_beside, read};
+use super::files::{FileError, check_outputs, default_output, load_without_run, picture_beside, print_beside};
 use super::flags::with_flags;
 use super::interrupt::Farewell;
 use super::output::of_set;
@@ -51,8 +51,7 @@ impl From<ConvergeError> for ConvergeCommandError {
 pub(crate) fn converge(command: &Converge) -> Result<u8, ConvergeCommandError> {
     let options = options(command);
     let scene = load_without_run(&command.scene, &command.set, |scene| !options.sliding().solves(scene))?;
-    let text = String::from_utf8_lossy(&read(&command.scene)?).into_owned();
-    let study = ConvergenceStudy::new(&scene, (&text, &command.scene), &command.set, options)?;
+    let study = ConvergenceStudy::new(&scene, &command.scene, options)?;
     study.warning().iter().for_each(|warning| warn(&with_flags(warning)));
     let output = command.output.clone().unwrap_or_else(|| default_output(&command.scene, "converge.csv"));
     let picture = picture_beside(&output, command.plot.as_ref());

@@ -28,7 +28,7 @@ impl Sample {
         let folder = tempfile::tempdir().map_err(Error::io("write", Path::new("a folder of its own")))?;
         let scene = command.scene.clone().unwrap_or_default();
         let read = load_without_run(&scene, &[], |_| true)?;
-        let uncertain = UncertainScene::new(text(&scene)?, scene, Vec::new(), read)?;
+        let uncertain = UncertainScene::new(read)?;
         let packed = |table: &Path| {
             let problem = |problem| Error::in_file(table, None, problem);
             let sample =

@@ -54,7 +54,7 @@ fn scenes(command: &Rank) -> Result<Vec<RankScene>, RankCommandError> {
     let scene = |file: &std::path::PathBuf| -> Result<RankScene, RankCommandError> {
         // It says what is to be said of the scene.
         let scene = load_without_run(file, &command.set, |scene| !solves.solves(scene))?;
-        Ok(RankScene { scene, ..RankScene::read(file, &command.set)? })
+        Ok(RankScene { scene, file: file.clone() })
     };
     command.scenes.iter().map(scene).collect()
 }

@@ -96,7 +96,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
         return over_ways(command, &scene, &options(command, speeds)?, (&ways.0, &output, picture.as_deref()));
     }
     let convergence = study_verdict(study.as_deref(), &scene.name)?;
-    let plan = samples::plan(command, path, scene, (&options(command, speeds)?, convergence))?;
+    let plan = samples::plan(command, scene, (&options(command, speeds)?, convergence))?;
     plan.warning().iter().for_each(|warning| warn(&with_flags(warning)));
     let maps = maps(command, plan.header(), &output)?;
     let place = TablePlace::new(&output)?;

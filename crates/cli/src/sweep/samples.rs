@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use asperity::element::{Sampled, TableRow};
 use asperity::scene::Scene;
 use asperity_study::decimals::rounded;
-use asperity_study::files;
 use asperity_study::sweep::{Matters, SweepOptions, SweepPlan, SweepTable};
 use asperity_study::uncertainty::{SampleOptions, UncertainScene};
 
@@ -19,12 +18,11 @@ use crate::terminal::{LabelledLine, labelled};
 /// The sweep of a scene, with samples where they are asked for.
 pub(super) fn plan(
     command: &Sweep,
-    path: &Path,
     scene: Scene,
     (options, convergence): (&SweepOptions, Option<String>),
 ) -> Result<SweepPlan, SweepCommandError> {
     let Some(count) = command.samples else { return Ok(SweepPlan::new(scene, options, convergence)?) };
-    let uncertain = UncertainScene::new(files::text(path)?, path.to_owned(), command.set.to_vec(), scene)?;
+    let uncertain = UncertainScene::new(scene)?;
     let samples = SampleOptions { count: count as usize, seed: command.seed };
     Ok(SweepPlan::with_samples(&uncertain, options, convergence, samples)?)
 }

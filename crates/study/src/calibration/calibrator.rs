@@ -240,6 +240,6 @@ pub fn calibrate_scene(
     let measurements = free.measurements()?;
     let calibrate = |calibrator: Calibrator<'_>| calibrator.calibrate(&measurements);
     let calibration = free.with_models(Vec::new(), &|_, _| found(), &|_| (), calibrate)?;
-    let (text, covariance) = (calibrated_text(&free, &calibration)?, FitCovariance::new(&free, &calibration));
+    let (text, covariance) = (calibrated_text(&free, &calibration), FitCovariance::new(&free, &calibration));
     Ok((calibration, text, covariance))
 }

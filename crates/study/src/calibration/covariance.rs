@@ -1,6 +1,7 @@
 //! The covariance of what was fitted, as a table beside the calibrated scene: by it the numbers are off together in the
 //! samples of a sweep.
 
+use asperity::scene::Setting;
 use toml_edit::{DocumentMut, TableLike};
 
 use super::calibrated::Calibration;
@@ -8,7 +9,7 @@ use super::free_scene::FreeScene;
 use crate::csv;
 use crate::decimals::{plain, real};
 use crate::files::name_of;
-use crate::settings::{OverrideError, item_at, overridden};
+use crate::settings::edited;
 
 /// The section of a scene that says what is not known.
 const SECTION: &str = "uncertainty";
@@ -117,10 +118,7 @@ impl FitCovariance {
 
     /// The `text` of a scene which names `file`, with its table, in `[uncertainty]`: without the spreads there of numbers that
     /// it has.
-    ///
-    /// # Errors
-    /// Where the key cannot be set.
-    pub fn named_in(&self, text: &str, file: &str) -> Result<String, OverrideError> {
+    pub fn named_in(&self, text: &str, file: &str) -> String {
         let keys: Vec<&str> = self.numbers.iter().map(|number| number.key.as_str()).collect();
         with_covariance(text, file, &keys)
     }
@@ -128,17 +126,13 @@ impl FitCovariance {
 
 /// The `text` of a scene which names `file`, the table of a covariance of some `keys`, in `[uncertainty]`: without the
 /// spreads of these.
-///
-/// # Errors
-/// Where the key cannot be set.
-pub fn with_covariance(text: &str, file: &str, keys: &[&str]) -> Result<String, OverrideError> {
-    let quoted = toml_edit::Value::from(file).to_string();
-    let text = overridden(text, &[(format!("{SECTION}.{COVARIANCE}"), quoted)])?.text;
-    let Ok(mut document) = text.parse::<DocumentMut>() else { return Ok(text) };
+pub fn with_covariance(text: &str, file: &str, keys: &[&str]) -> String {
+    let text = edited(text, &[Setting::new(format!("{SECTION}.{COVARIANCE}"), file)]);
+    let Ok(mut document) = text.parse::<DocumentMut>() else { return text };
     if let Some(section) = document.get_mut(SECTION).and_then(|section| section.as_table_like_mut()) {
         keys.iter().for_each(|key| remove(section, key));
     }
-    Ok(document.to_string())
+    document.to_string()
 }
 
 fn remove(section: &mut dyn TableLike, key: &str) {
@@ -147,14 +141,15 @@ fn remove(section: &mut dyn TableLike, key: &str) {
 
 /// The table of a covariance that a scene of this `text` names.
 pub fn named_covariance(text: &str) -> Option<String> {
-    item_at(text, &format!("{SECTION}.{COVARIANCE}"))?.as_str().map(str::to_owned)
+    let document: DocumentMut = text.parse().ok()?;
+    document.get(SECTION)?.as_table_like()?.get(COVARIANCE)?.as_str().map(str::to_owned)
 }
 
 /// The keys in `[uncertainty]`.
 fn spreads(text: &str) -> Vec<String> {
-    let section = item_at(text, SECTION);
-    let keys = section.as_ref().and_then(|section| section.as_table_like()).into_iter().flat_map(TableLike::iter);
-    keys.map(|(key, _)| key.to_owned()).collect()
+    let document: Option<DocumentMut> = text.parse().ok();
+    let section = document.as_ref().and_then(|document| document.get(SECTION)?.as_table_like());
+    section.into_iter().flat_map(TableLike::iter).map(|(key, _)| key.to_owned()).collect()
 }
 
 fn is_modulus(key: &str) -> bool {
@@ -168,13 +163,13 @@ mod tests {
     #[test]
     fn the_section_is_kept_but_for_what_was_fitted() {
         let text = "name = 'a'\n[uncertainty]\n'a.b' = { relative = 0.1 } # guessed\n'layer.width' = { factor = 2.0 } # known\n";
-        let found = with_covariance(text, "fit \"1\".csv", &["a.b", "c.d"]).unwrap();
+        let found = with_covariance(text, "fit \"1\".csv", &["a.b", "c.d"]);
         assert!(found.contains("'layer.width' = { factor = 2.0 } # known") && !found.contains("a.b"), "{found}");
         assert_eq!(named_covariance(&found).as_deref(), Some("fit \"1\".csv"));
         // Once more, under another name.
-        let again = with_covariance(&found, "2.csv", &["a.b"]).unwrap();
+        let again = with_covariance(&found, "2.csv", &["a.b"]);
         assert_eq!((named_covariance(&again).as_deref(), again.matches("covariance").count()), (Some("2.csv"), 1));
-        let added = with_covariance("name = 'a'\n[layer]\nmasses = 2\n", "x.csv", &[]).unwrap();
+        let added = with_covariance("name = 'a'\n[layer]\nmasses = 2\n", "x.csv", &[]);
         assert!(added.starts_with("name = 'a'\n[layer]\nmasses = 2\n"), "{added}");
         assert_eq!(named_covariance(&added).as_deref(), Some("x.csv"));
     }

@@ -2,15 +2,13 @@
 
 use std::path::Path;
 
-use asperity::scene::Scene;
+use asperity::scene::{Scene, Setting};
 
 use super::error::{CalibrationError, FreeParameterError, MeasuredFrictionError, ModelError};
 use super::measurements::Measurements;
 use super::options::CalibrationOptions;
 use super::parameter::FreeParameter;
-use crate::decimals::real;
-use crate::error::Error;
-use crate::settings::{self, Setting};
+use crate::settings::edited;
 use crate::sweep::{Method, fingerprint, relevant};
 
 /// Most free parameters.
@@ -41,7 +39,7 @@ impl<'a> FreeScene<'a> {
             return Err(CalibrationError::BodyAlongX);
         }
         let area = scene.layer.area().filter(|_| scene.material.is_some()).ok_or(CalibrationError::NoArea)?;
-        let text = settings::overridden(text, &options.set).map_err(Error::from)?.text;
+        let text = edited(text, &options.set);
         let (method, of_method) = options.sliding.choose(&scene)?;
         method.check(&scene)?;
         let mut free =
@@ -66,7 +64,7 @@ impl<'a> FreeScene<'a> {
             if matches!(self.method, Method::Layer) && key.starts_with("material.heat") {
                 return Err(FreeParameterError::HeatOfLayer { key: key.clone() });
             }
-            let own = settings::number(&self.text, key);
+            let own = self.scene.number(key);
             self.own.push(own.ok_or_else(|| FreeParameterError::NoNumber { key: key.clone() })?);
         }
         for (index, parameter) in self.parameters.iter().enumerate() {
@@ -108,15 +106,15 @@ impl<'a> FreeScene<'a> {
 
     /// The free keys with their values.
     fn settings(&self, values: &[f64]) -> Vec<Setting> {
-        self.parameters.iter().zip(values).map(|(parameter, value)| (parameter.key.clone(), real(*value))).collect()
+        self.parameters.iter().zip(values).map(|(parameter, value)| Setting::new(&parameter.key, *value)).collect()
     }
 
     /// The scene at some values.
     pub(super) fn at(&self, values: &[f64]) -> Result<Scene, ModelError> {
         let settings = self.settings(values);
-        settings::scene(&self.text, &self.options.scene, &settings).map_err(|refusal| {
-            let named: Vec<String> = settings.iter().map(|(key, value)| format!("{key} = {value}")).collect();
-            ModelError::Scene { parameters: named.join(", "), problem: Box::new(refusal.into()) }
+        self.scene.with_all(&settings).map_err(|problem| {
+            let named: Vec<String> = settings.iter().map(Setting::to_string).collect();
+            ModelError::Scene { parameters: named.join(", "), problem: Box::new(problem.into()) }
         })
     }
 

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use super::parameter::FreeParameter;
-use crate::settings::Setting;
 use crate::sweep::SlidingOptions;
+use asperity::scene::Setting;
 
 /// What is calibrated, and by what.
 #[derive(Clone, Debug)]

@@ -1,28 +1,27 @@
 //! The calibrated scene: the file that was read, its comments kept and its numbers replaced.
 
+use asperity::scene::Setting;
+
 use super::calibrated::Calibration;
 use super::free_scene::FreeScene;
+use super::parameter::FreeParameter;
 use crate::decimals::{plain, short};
-use crate::error::Error;
 use crate::files::name_of;
-use crate::settings::overridden;
+use crate::settings::edited;
 
 /// What the lines of the header begin with; those of a calibration before are replaced.
 const MARK: &str = "# asperity calibrate: ";
 
 /// The text of the scene.
-///
-/// # Errors
-/// Where one of the numbers cannot be set.
-pub fn calibrated_text(free: &FreeScene<'_>, calibration: &Calibration) -> Result<String, Error> {
+pub fn calibrated_text(free: &FreeScene<'_>, calibration: &Calibration) -> String {
     let values = calibration.values();
-    let settings: Vec<(String, String)> =
-        free.parameters.iter().zip(&values).map(|(parameter, value)| (parameter.key.clone(), plain(*value))).collect();
-    let edited = overridden(&free.text, &settings)?.text;
+    let setting = |(parameter, value): (&FreeParameter, &f64)| Setting::parse(&parameter.key, &plain(*value));
+    let settings: Vec<Setting> = free.parameters.iter().zip(&values).map(setting).collect();
+    let edited = edited(&free.text, &settings);
     let kept = edited.trim_start_matches('\u{feff}').lines().skip_while(|line| line.starts_with(MARK));
     let body: String = kept.map(|line| format!("{line}\n")).collect();
     let header: String = header(free, calibration).iter().map(|line| format!("{MARK}{line}\n")).collect();
-    Ok(header + &body)
+    header + &body
 }
 
 fn header(free: &FreeScene<'_>, calibration: &Calibration) -> Vec<String> {

@@ -15,7 +15,6 @@ use super::table::{RunRow, StudyHeader};
 use super::variants::{Parts, Template, Variant};
 use super::verdict::{Pair, Study, Verdict};
 use crate::error::Error;
-use crate::settings::Setting;
 use crate::steady::persson::{Roughness, Theory};
 use crate::sweep::{Method, SlidingOptions, StopBounds, SweepMethod, fingerprint, relevant};
 
@@ -103,20 +102,15 @@ pub enum Ended<B> {
 }
 
 impl ConvergenceStudy {
-    /// The study of a `scene`, which was read from this `text` of the file at `path`, its keys set to other values.
+    /// The study of a `scene`, which was read from the file at `path`.
     ///
     /// # Errors
     /// Where the scene does not go with the options, or has nothing that could be varied.
-    pub fn new(
-        scene: &Scene,
-        (text, path): (&str, &Path),
-        set: &[Setting],
-        options: ConvergenceOptions,
-    ) -> Result<Self, ConvergeError> {
+    pub fn new(scene: &Scene, path: &Path, options: ConvergenceOptions) -> Result<Self, ConvergeError> {
         if scene.material.is_none() {
             return Err(ConvergeError::DirectForm { path: path.to_owned() });
         }
-        let template = Template::read(text, path, set)?;
+        let template = Template::new(scene, path)?;
         let (method, of_method) = options.sliding().choose(scene)?;
         let template = match &method {
             Method::Steady(surface) => template.on_grid(surface),

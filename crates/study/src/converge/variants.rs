@@ -1,17 +1,11 @@
-//! Variants of a scene: another spacing, length or seed. Values of its text are replaced and it is read anew, so
-//! roughness is sampled and links are fitted as for any scene.
+//! Variants of a scene: another spacing, length or seed. Its values are replaced, so roughness is sampled and links are
+//! fitted as for any scene.
 
-use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use asperity::scene::Scene;
-use asperity_formats::Instruments;
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use asperity::scene::{Scene, SceneError, Setting};
 
 use super::error::ConvergeError;
-use crate::error::Error;
-use crate::settings::{self, Overridden, Setting};
 use crate::steady::{GridSize, SurfaceGrid};
 
 /// What a run differs in from the scene.
@@ -95,80 +89,55 @@ impl Dimensions {
     }
 }
 
-/// A number of the scene's text.
-#[derive(Clone, Debug, PartialEq)]
-struct Number {
-    span: Range<usize>,
-    value: NumberValue,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum NumberValue {
-    Whole(u64),
-    Real(f64),
-}
-
 /// The numbers of a self-affine surface that change.
 #[derive(Clone, Debug, PartialEq)]
 struct SelfAffineNumbers {
-    length: Number,
-    points: Number,
-    seed: Number,
+    /// The path of its table.
+    table: &'static str,
+    length: f64,
+    points: u64,
+    seed: u64,
 }
 
 /// The number at which the profile ends and the waves that it lacks begin.
 #[derive(Clone, Debug, PartialEq)]
-struct SplitNumber {
+struct Split {
+    key: &'static str,
     /// The wavelength, m.
-    wavelength: Number,
-    /// The points of a self-affine surface, which follow its shortest wave.
-    points: Option<Number>,
+    wavelength: f64,
+    /// Whether the points of a self-affine surface follow its shortest wave.
+    has_points: bool,
 }
 
 /// A scene in the material form of which variants are made.
 #[derive(Clone, Debug)]
 pub(super) struct Template {
-    path: PathBuf,
-    text: String,
-    /// What is set in files that the scene names.
-    in_named_files: Vec<Setting>,
-    masses: Number,
-    spacing: Number,
+    scene: Scene,
     /// The surface, then the roughness of the layer.
     self_affine: Vec<SelfAffineNumbers>,
-    split: Option<SplitNumber>,
+    split: Option<Split>,
     /// The dimensions of the scene itself.
     own: Dimensions,
     parts: Parts,
 }
 
 impl Template {
-    /// Of the `text` of the scene file at `path`, its keys set to other values.
-    pub(super) fn read(text: &str, path: &Path, set: &[Setting]) -> Result<Self, ConvergeError> {
-        Self::new(path, settings::overridden(text, set).map_err(Error::from)?)
-    }
-
-    fn new(path: &Path, overridden: Overridden) -> Result<Self, ConvergeError> {
-        let Overridden { text, in_named_files } = overridden;
-        let unclear = || ConvergeError::Unclear { path: path.to_owned() };
-        let document = DeTable::parse(&text).map_err(|_| unclear())?;
-        let document = document.get_ref();
-        let layer = table(document, "layer").ok_or_else(unclear)?;
-        let surfaces = [table(document, "surface"), table(layer, "roughness")];
-        if surfaces[1].is_some_and(|roughness| roughness.contains_key("z") && !roughness.contains_key("x")) {
+    /// Of a `scene` that was read from the file at `path`.
+    pub(super) fn new(scene: &Scene, path: &Path) -> Result<Self, ConvergeError> {
+        let has = |key: &str| scene.values.get(key).is_some();
+        if has("layer.roughness.z") && !has("layer.roughness.x") {
             return Err(ConvergeError::HeightsAtMasses { path: path.to_owned() });
         }
-        let self_affine: Vec<SelfAffineNumbers> =
-            surfaces.into_iter().flatten().filter_map(SelfAffineNumbers::new).collect();
-        let (masses, spacing) = (number(layer, "masses"), number(layer, "spacing"));
-        let (masses, spacing) = masses.zip(spacing).ok_or_else(unclear)?;
-        let seed = self_affine.first().map(|surface| surface.seed.value.whole());
-        let split = table(document, "surface").and_then(SplitNumber::new);
-        let longest = split.as_ref().map(|split| split.wavelength.value.real());
-        let (masses_of_scene, spacing_of_scene) = (masses.value.whole(), spacing.value.real());
-        let own = Dimensions { count: masses_of_scene, spacing: spacing_of_scene, seed, split: longest };
-        let parts = Parts::Masses;
-        Ok(Self { path: path.to_owned(), text, in_named_files, masses, spacing, self_affine, split, own, parts })
+        let tables = ["surface", "layer.roughness"];
+        let self_affine: Vec<_> = tables.into_iter().filter_map(|table| SelfAffineNumbers::new(scene, table)).collect();
+        let split = Split::new(scene);
+        let own = Dimensions {
+            count: scene.layer.masses as u64,
+            spacing: scene.layer.spacing,
+            seed: self_affine.first().map(|surface| surface.seed),
+            split: split.as_ref().map(|split| split.wavelength),
+        };
+        Ok(Self { scene: scene.clone(), self_affine, split, own, parts: Parts::Masses })
     }
 
     /// The same with the points of a surface in place of the masses.
@@ -213,35 +182,37 @@ impl Template {
     }
 
     /// The scene of a variant; with points in place of masses the layer has as many masses.
-    pub(super) fn scene(&self, variant: Variant) -> Result<Scene, Error> {
-        let mut scene = Scene::parse_with(&self.text_of(variant), &self.path, &Instruments)?;
-        settings::set_in_named_files(&mut scene, &self.in_named_files)?;
-        Ok(scene)
+    pub(super) fn scene(&self, variant: Variant) -> Result<Scene, SceneError> {
+        self.scene.with_all(&self.settings(variant))
     }
 
-    /// The scene's text with the numbers of a variant.
-    fn text_of(&self, variant: Variant) -> String {
+    /// The numbers of a variant that are others than those of the scene.
+    fn settings(&self, variant: Variant) -> Vec<Setting> {
         let Dimensions { count, spacing, .. } = self.dimensions(variant);
-        let factor = 1_u32 << u32::from(variant.doubled);
-        let mut changes = vec![(&self.masses, NumberValue::Whole(count)), (&self.spacing, NumberValue::Real(spacing))];
-        for SelfAffineNumbers { length, points, seed } in &self.self_affine {
-            changes.push((length, NumberValue::Real(f64::from(factor) * length.value.real())));
-            changes.push((points, NumberValue::Whole(u64::from(factor) * points.value.whole())));
-            changes.push((seed, NumberValue::Whole(shifted(seed.value.whole(), variant.seed_shift))));
+        let mut settings = Vec::new();
+        if count != self.scene.layer.masses as u64 {
+            settings.push(Setting::new("layer.masses", count as i64));
         }
-        if let Some(SplitNumber { wavelength, points }) = self.split.as_ref().filter(|_| variant.split) {
-            changes.push((wavelength, NumberValue::Real(0.5 * wavelength.value.real())));
-            changes.retain(|(number, _)| Some(*number) != points.as_ref());
-            changes.extend(
-                points.iter().map(|points| (points, NumberValue::Whole(2 * u64::from(factor) * points.value.whole()))),
-            );
+        if spacing != self.scene.layer.spacing {
+            settings.push(Setting::new("layer.spacing", spacing));
         }
-        changes.retain(|(number, value)| number.value != *value);
-        // From the end, so that those before stay where they are.
-        changes.sort_by_key(|(number, _)| std::cmp::Reverse(number.span.start));
-        let mut text = self.text.clone();
-        changes.into_iter().for_each(|(number, value)| text.replace_range(number.span.clone(), &value.text()));
-        text
+        let split = self.split.as_ref().filter(|_| variant.split);
+        settings.extend(split.map(|split| Setting::new(split.key, 0.5 * split.wavelength)));
+        for &SelfAffineNumbers { table, length, points, seed } in &self.self_affine {
+            let is_split = table == "surface" && split.is_some_and(|split| split.has_points);
+            let mut set =
+                |name: &str, value: toml::Value| settings.push(Setting::new(format!("{table}.{name}"), value));
+            if variant.doubled {
+                set("length", (2.0 * length).into());
+            }
+            if variant.doubled || is_split {
+                set("points", ((points << u32::from(variant.doubled)) << u32::from(is_split)).cast_signed().into());
+            }
+            if variant.seed_shift > 0 {
+                set("seed", shifted(seed, variant.seed_shift).cast_signed().into());
+            }
+        }
+        settings
     }
 }
 
@@ -252,68 +223,27 @@ fn shifted(seed: u64, shift: u32) -> u64 {
 
 impl SelfAffineNumbers {
     /// That of a table of a surface; `None` for every other kind.
-    fn new(surface: &DeTable<'_>) -> Option<Self> {
-        if surface.get("kind")?.get_ref().as_str() != Some("self_affine") {
+    fn new(scene: &Scene, table: &'static str) -> Option<Self> {
+        if scene.values.get(&format!("{table}.kind"))?.as_str() != Some("self_affine") {
             return None;
         }
-        Some(Self {
-            length: number(surface, "length")?,
-            points: number(surface, "points")?,
-            seed: number(surface, "seed")?,
-        })
+        let whole = |name: &str| Some(scene.values.get(&format!("{table}.{name}"))?.as_integer()?.unsigned_abs());
+        let length = scene.number(&format!("{table}.length"))?;
+        Some(Self { table, length, points: whole("points")?, seed: whole("seed")? })
     }
 }
 
-impl SplitNumber {
-    /// That of a table of a surface: of a self-affine one whose law goes on below its cut-off, or of a measured line that
-    /// is split; `None` for every other one.
-    fn new(surface: &DeTable<'_>) -> Option<Self> {
-        let fine = table(surface, "fine")?;
-        if fine.contains_key("split") {
-            return Some(Self { wavelength: number(fine, "split")?, points: None });
+impl Split {
+    /// That of a self-affine surface whose law goes on below its cut-off, or of a measured line that is split; `None` for
+    /// every other one.
+    fn new(scene: &Scene) -> Option<Self> {
+        let of = |key, has_points| Some(Self { key, wavelength: scene.number(key)?, has_points });
+        let has = |key: &str| scene.values.get(key).is_some();
+        if has("surface.fine.split") {
+            return of("surface.fine.split", false);
         }
-        let continued = fine.contains_key("shortest") && !fine.contains_key("longest");
-        let wavelength = number(surface, "cut_off_wavelength").filter(|_| continued)?;
-        Some(Self { wavelength, points: number(surface, "points") })
-    }
-}
-
-fn table<'a>(table: &'a DeTable<'a>, key: &str) -> Option<&'a DeTable<'a>> {
-    table.get(key)?.get_ref().as_table()
-}
-
-fn number(table: &DeTable<'_>, key: &str) -> Option<Number> {
-    let entry: &Spanned<DeValue<'_>> = table.get(key)?;
-    let value = match entry.get_ref() {
-        DeValue::Float(float) => NumberValue::Real(float.as_str().parse().ok()?),
-        other => {
-            let whole = other.as_integer()?;
-            NumberValue::Whole(u64::from_str_radix(whole.as_str(), whole.radix()).ok()?)
-        }
-    };
-    Some(Number { span: entry.span(), value })
-}
-
-impl NumberValue {
-    fn whole(self) -> u64 {
-        match self {
-            Self::Whole(number) => number,
-            Self::Real(number) => number as u64,
-        }
-    }
-
-    fn real(self) -> f64 {
-        match self {
-            Self::Whole(number) => number as f64,
-            Self::Real(number) => number,
-        }
-    }
-
-    fn text(self) -> String {
-        match self {
-            Self::Whole(number) => number.to_string(),
-            Self::Real(number) => format!("{number:?}"),
-        }
+        let continued = has("surface.fine.shortest") && !has("surface.fine.longest");
+        of("surface.cut_off_wavelength", true).filter(|_| continued)
     }
 }
 
@@ -330,25 +260,21 @@ mod tests {
         roll_off_wavelength = 1e-3\ncut_off_wavelength = 2e-4\nseed = 5\n[solver]\nabsolute_tolerance = 1e-4\n";
 
     fn template(text: &str) -> Result<Template, ConvergeError> {
-        Template::new("scene.toml".as_ref(), settings::overridden(text, &[]).unwrap())
-    }
-
-    #[test]
-    fn nothing_changed_is_the_same_text() {
-        assert_eq!(template(TEXT).unwrap().text_of(Variant::default()), TEXT);
+        Template::new(&Scene::parse(text, "scene.toml".as_ref()).unwrap(), "scene.toml".as_ref())
     }
 
     #[test]
     fn variants_change_spacing_length_and_seeds_alone() {
         let template = template(TEXT).unwrap();
+        assert_eq!(template.settings(Variant::default()), []);
         let variant = Variant { halvings: 2, doubled: true, seed_shift: 3, split: false };
         let expected = TEXT
             .replace("0x10, spacing = 1e-4", "128, spacing = 2.5e-5")
             .replace("9223372036854775807, length = 1.0, points = 1_000", "2, length = 2.0, points = 2000")
             .replace("length = 1.6e-3\npoints = 64", "length = 0.0032\npoints = 128")
             .replace("seed = 5", "seed = 8");
-        assert_eq!(template.text_of(variant), expected);
         let scene = template.scene(variant).unwrap();
+        assert_eq!(scene, Scene::parse(&expected, "scene.toml".as_ref()).unwrap());
         assert_eq!((scene.layer.masses, scene.layer.roughness.len(), scene.surface.x().len()), (128, 128, 129));
         let dimensions = Dimensions { count: 128, spacing: 2.5e-5, seed: Some(8), split: None };
         assert_eq!(template.dimensions(variant), dimensions);
@@ -361,8 +287,8 @@ mod tests {
         let text = TEXT.replace("[solver]", "fine = { shortest = 1e-6 }\n[solver]");
         let split = Variant { split: true, ..Variant::default() };
         let template = template(&text).unwrap();
-        let expected = text.replace("points = 64", "points = 128").replace("= 2e-4", "= 0.0001");
-        assert_eq!((template.text_of(split), template.has_split()), (expected, true));
+        let wanted = [Setting::new("surface.cut_off_wavelength", 1e-4), Setting::new("surface.points", 128)];
+        assert_eq!((template.settings(split), template.has_split()), (wanted.to_vec(), true));
         let scenes = [Variant::default(), split].map(|variant| template.scene(variant).unwrap());
         // One octave of more than seven.
         let bands = scenes.each_ref().map(|scene| scene.fine_gradient().powi(2));
@@ -371,7 +297,10 @@ mod tests {
 
     #[test]
     fn heights_at_the_masses_have_no_variants() {
-        let text = TEXT.replace("kind = 'self_affine', seed", "kind = 'points', z = [0.0], seed");
+        let points = "{ kind = 'points', z = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0] }";
+        let roughness = TEXT.find("{ kind = 'self_affine', seed").unwrap()..TEXT.find(" }\n").unwrap();
+        let mut text = TEXT.to_owned();
+        text.replace_range(roughness, points);
         assert!(matches!(template(&text), Err(ConvergeError::HeightsAtMasses { .. })));
     }
 }

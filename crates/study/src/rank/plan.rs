@@ -8,9 +8,8 @@ use asperity::scene::Scene;
 use super::error::RankError;
 use super::ranking::{Frictions, Ranking};
 use super::weights::Weights;
-use crate::files::{name_of, parse_scene, text};
+use crate::files::name_of;
 use crate::progress::{Stop, Stopped};
-use crate::settings::Setting;
 use crate::sweep::{SweepError, SweepOptions, SweepPlan, SweepTable};
 use crate::uncertainty::{Drawn, Refused, SampleOptions, Sampler, UncertainScene, UncertaintyError};
 
@@ -22,24 +21,8 @@ type Found = Result<Vec<Option<f64>>, SweepError>;
 pub struct RankScene {
     /// As it was read.
     pub scene: Scene,
-    /// Its text and file, ...
-    pub text: String,
-    /// ... beside which the files are that it names.
+    /// Its file.
     pub file: PathBuf,
-    /// Keys that are set in it.
-    pub set: Vec<Setting>,
-}
-
-impl RankScene {
-    /// The scene in a file, with keys set.
-    ///
-    /// # Errors
-    /// Where it cannot be read.
-    pub fn read(file: &Path, set: &[Setting]) -> Result<Self, RankError> {
-        let text = text(file)?;
-        let scene = parse_scene(&text, file, set)?;
-        Ok(Self { scene, text, file: file.to_owned(), set: set.to_vec() })
-    }
 }
 
 /// Scenes to be ranked, nothing of it computed yet.
@@ -81,11 +64,11 @@ impl RankPlan {
             check_temperatures(&scenes, &labels)?;
         }
         let entry = |(scene, label): (RankScene, String)| -> Result<Entry, RankError> {
-            let RankScene { scene, text, file, set } = scene;
+            let RankScene { scene, file } = scene;
             let refused = |error| RankError::Sweep { scene: label.clone(), error: Box::new(error) };
             let plan = SweepPlan::new(scene.clone(), &options, None).map_err(refused)?;
             let is_known = scene.uncertainty.is_empty();
-            let uncertain = (!is_known).then(|| UncertainScene::new(text, file.clone(), set, scene)).transpose()?;
+            let uncertain = (!is_known).then(|| UncertainScene::new(scene)).transpose()?;
             Ok(Entry { label, file, plan, uncertain })
         };
         let entries = scenes.into_iter().zip(labels).map(entry).collect::<Result<Vec<_>, _>>()?;

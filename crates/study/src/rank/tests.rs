@@ -16,7 +16,7 @@ fn scene(name: &str, strength: f64, uncertain: &str) -> RankScene {
     );
     let file = std::path::PathBuf::from(format!("{name}.toml"));
     let scene = parse_scene(&text, &file, &[]).unwrap_or_else(|error| panic!("{error}"));
-    RankScene { scene, text, file, set: Vec::new() }
+    RankScene { scene, file }
 }
 
 const TEN_PER_CENT: &str = "[uncertainty]\n'friction.shear_strength' = { relative = 0.1 }\n";

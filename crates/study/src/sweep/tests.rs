@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 
 use asperity::element::{OperatingPoint, Quantity, Sampled, TableRow};
+use asperity::scene::Setting;
 
 use super::*;
 use crate::files::parse_scene;
@@ -55,7 +56,7 @@ fine = { shortest = 1e-5 }
 fn uncertain(text: &str, section: &str) -> UncertainScene {
     let text = format!("{text}{section}");
     let scene = parse_scene(&text, "scene.toml".as_ref(), &[]).unwrap_or_else(|error| panic!("{error}"));
-    UncertainScene::new(text, "scene.toml".into(), Vec::new(), scene).unwrap()
+    UncertainScene::new(scene).unwrap()
 }
 
 fn options(speeds: &[f64], temperatures: Option<&[f64]>) -> SweepOptions {
@@ -221,8 +222,8 @@ fn a_quantile_is_a_sample_of_its_own() {
     let low = quantile_table(&scene, &swept, 0.05, &Stop::default()).unwrap();
     let number = swept.ranking()[0];
     assert!(low.header.basis.sample.as_ref().unwrap().starts_with(&format!("{number} of 16, seed 1: quantile 0.05")));
-    let drawn: Vec<(String, String)> =
-        plan.drawn().into_iter().map(|(key, values)| (key, format!("{:?}", values[number - 1]))).collect();
+    let drawn: Vec<Setting> =
+        plan.drawn().into_iter().map(|(key, values)| Setting::new(key, values[number - 1])).collect();
     let set = parse_scene(ROUGH, "scene.toml".as_ref(), &drawn).unwrap();
     let wanted = table(&SweepPlan::new(set, &options, None).unwrap());
     for ((low, wanted), own) in low.rows.iter().zip(&wanted.rows).zip(all(&swept)) {

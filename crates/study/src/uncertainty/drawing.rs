@@ -1,21 +1,17 @@
 //! Scenes drawn from what is not known of one.
 
-use std::path::PathBuf;
-
-use asperity::scene::{Covariance, Distribution, Scale, Scene, SpectrumFactors, Spread, UncertainKey, Uncertainty};
+use asperity::scene::{
+    Covariance, Distribution, Scale, Scene, SceneError, Setting, SpectrumFactors, Spread, UncertainKey, Uncertainty,
+};
 use rayon::prelude::*;
 
 use super::error::UncertaintyError;
 use super::groups::{Group, decade_name, fitted_axis, groups, process};
 use super::sampler::Sampler;
-use crate::settings::{self, Refusal, Setting};
 
-/// A scene of which something is not known, as it was read: drawn numbers are set in its text, as others are.
+/// A scene of which something is not known, as it was read.
 #[derive(Clone, Debug)]
 pub struct UncertainScene {
-    text: String,
-    file: PathBuf,
-    set: Vec<Setting>,
     scene: Scene,
     groups: Vec<Group>,
 }
@@ -54,16 +50,16 @@ pub struct Draws<T> {
 const MOST_ATTEMPTS: u32 = 32;
 
 impl UncertainScene {
-    /// The `scene` that is the `text` of a `file` with keys set.
+    /// Of a `scene`.
     ///
     /// # Errors
     /// Where everything is known of it.
-    pub fn new(text: String, file: PathBuf, set: Vec<Setting>, scene: Scene) -> Result<Self, UncertaintyError> {
+    pub fn new(scene: Scene) -> Result<Self, UncertaintyError> {
         if scene.uncertainty.is_empty() {
             return Err(UncertaintyError::Nothing);
         }
         let groups = groups(&scene);
-        Ok(Self { text, file, set, scene, groups })
+        Ok(Self { scene, groups })
     }
 
     /// The scene as it was read.
@@ -94,7 +90,7 @@ impl UncertainScene {
         let normal = |axis: &str| sampler.normal(index, attempt, axis);
         let unit = |axis: &str| sampler.unit(index, attempt, axis);
         let Uncertainty { keys, covariance } = &self.scene.uncertainty;
-        let (mut values, mut set) = (Vec::new(), self.set.clone());
+        let (mut values, mut set) = (Vec::new(), Vec::new());
         for UncertainKey { key, spread } in keys {
             match spread {
                 Spread::Number { value, distribution } => {
@@ -102,7 +98,7 @@ impl UncertainScene {
                 }
                 Spread::Seed => {
                     let seed = sampler.surface_seed(index, attempt);
-                    set.push(("surface.seed".to_owned(), seed.to_string()));
+                    set.push(Setting::new("surface.seed", seed));
                     values.push((key.clone(), seed.into()));
                 }
                 Spread::Prony { .. } | Spread::Spectrum { .. } => (),
@@ -110,8 +106,8 @@ impl UncertainScene {
         }
         values.extend(covariance.iter().flat_map(|covariance| fitted(covariance, normal)));
         let numbers = values.iter().filter(|(key, _)| key != Uncertainty::SURFACE);
-        set.extend(numbers.map(|(key, value)| (key.clone(), format!("{value:?}"))));
-        let mut scene = settings::scene(&self.text, &self.file, &set).map_err(refused)?;
+        set.extend(numbers.map(|(key, value)| Setting::new(key, *value)));
+        let mut scene = self.scene.with_all(&set).map_err(Refused::from)?;
         for UncertainKey { key, spread } in keys {
             scene = transformed(scene, key, spread, normal, &mut values)?;
         }
@@ -234,10 +230,9 @@ fn transformed(
     }
 }
 
-fn refused(refusal: Refusal<asperity::scene::SceneError>) -> Refused {
-    match refusal {
-        Refusal::Own(error) => Refused { key: error.key().to_owned(), problem: error.to_string() },
-        Refusal::Set(error) => Refused { key: error.key().to_owned(), problem: error.to_string() },
+impl From<SceneError> for Refused {
+    fn from(error: SceneError) -> Self {
+        Self { key: error.key().to_owned(), problem: error.to_string() }
     }
 }
 

@@ -1,6 +1,6 @@
 use super::*;
 use crate::files::parse_scene;
-use asperity::scene::Scene;
+use asperity::scene::{Scene, Setting};
 
 const SCENE: &str = "
 name = 'rough'
@@ -28,7 +28,7 @@ fine = { shortest = 2e-6 }
 fn uncertain(section: &str) -> UncertainScene {
     let text = format!("{SCENE}{section}");
     let scene = parse_scene(&text, "rough.toml".as_ref(), &[]).unwrap_or_else(|error| panic!("{error}"));
-    UncertainScene::new(text, "rough.toml".into(), Vec::new(), scene).unwrap()
+    UncertainScene::new(scene).unwrap()
 }
 
 fn sampler(scene: &UncertainScene, count: usize) -> Sampler {
@@ -82,7 +82,7 @@ fn all_that_is_derived_follows() {
     for drawn in all(&scene, 16) {
         let value = |name: &str| drawn.values.iter().find(|(key, _)| key == name).unwrap().1;
         let set = [("surface.rms", value("surface.rms")), ("surface.seed", value("surface"))];
-        let set = set.map(|(key, number)| (key.to_owned(), format!("{number}")));
+        let set = set.map(|(key, number)| Setting::parse(key, &number.to_string()));
         let wanted = parse_scene(SCENE, "rough.toml".as_ref(), &set).unwrap();
         assert_eq!((&drawn.scene.surface, drawn.scene.fine_bands()), (&wanted.surface, wanted.fine_bands()));
         let moduli: Vec<f64> = drawn.scene.material.unwrap().prony.iter().map(|term| term.modulus).collect();

@@ -1,0 +1,335 @@
+//! What a scene or a patch was read from, as values: with some of them changed it is read anew, by the same reader and
+//! without its files.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::io;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::sync::Arc;
+
+use toml::de::{DeTable, DeValue};
+use toml::{Spanned, Table, Value};
+
+use super::error::{Location, Problem, SceneError};
+use super::profile::{Profile, ProfileOptions};
+use super::{FileFormats, TextAlone, read_file};
+
+type Result<T> = std::result::Result<T, SceneError>;
+
+/// Longer values are cut in messages.
+const GIVEN_LENGTH: usize = 60;
+
+/// A key of a scene or a patch and the value that it is to have.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Setting {
+    /// The path of the key, elements of lists counted from 1.
+    pub key: String,
+    /// The value, as a file has it.
+    pub value: Value,
+}
+
+impl Setting {
+    /// A key with a value.
+    pub fn new(key: impl Into<String>, value: impl Into<Value>) -> Self {
+        Self { key: key.into(), value: value.into() }
+    }
+
+    /// A key with the value that a text stands for. What is no value of TOML is a text, so that words need no quotation
+    /// marks, or a number such as `.5`.
+    pub fn parse(key: impl Into<String>, text: &str) -> Self {
+        let is_digit_or_sign = |first: char| first.is_ascii_digit() || "+-.".contains(first);
+        let number = || text.parse::<f64>().ok().filter(|_| text.starts_with(is_digit_or_sign));
+        Self::new(key, text.parse().unwrap_or_else(|_| number().map_or_else(|| text.into(), Value::from)))
+    }
+}
+
+/// Of `key=value`.
+impl FromStr for Setting {
+    type Err = String;
+
+    fn from_str(text: &str) -> std::result::Result<Self, String> {
+        match text.split_once('=') {
+            Some((key, value)) if !key.trim().is_empty() => Ok(Self::parse(key.trim(), value.trim())),
+            _ => Err("expected KEY=VALUE, such as solver.relative_tolerance=1e-9".to_owned()),
+        }
+    }
+}
+
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} = {}", self.key, self.value)
+    }
+}
+
+/// The values of a scene file or of a patch file, and the files that it names.
+#[derive(Clone)]
+pub struct FileValues {
+    file: PathBuf,
+    /// The text of the file, for the places of its keys; nothing is read from it again.
+    text: Arc<str>,
+    pub(super) root: Table,
+    /// The keys that were set: they have no place in the file.
+    set: Vec<String>,
+    pub(super) formats: &'static dyn FileFormats,
+    pub(super) files: NamedFiles,
+}
+
+/// The files that a scene names, read once.
+#[derive(Clone, Default)]
+pub(super) struct NamedFiles {
+    contents: BTreeMap<PathBuf, Arc<[u8]>>,
+    pub(super) profiles: Vec<(PathBuf, ProfileOptions, Arc<Profile>)>,
+}
+
+impl NamedFiles {
+    /// The bytes of the file at `path`.
+    pub(super) fn bytes(&mut self, path: &Path) -> io::Result<Arc<[u8]>> {
+        if let Some(bytes) = self.contents.get(path) {
+            return Ok(bytes.clone());
+        }
+        let bytes: Arc<[u8]> = read_file(path)?.into();
+        self.contents.insert(path.to_owned(), bytes.clone());
+        Ok(bytes)
+    }
+}
+
+/// Of what was made in code.
+impl Default for FileValues {
+    fn default() -> Self {
+        let (file, text, root, set) = (PathBuf::new(), "".into(), Table::new(), Vec::new());
+        Self { file, text, root, set, formats: &TextAlone, files: NamedFiles::default() }
+    }
+}
+
+impl fmt::Debug for FileValues {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.file.display())
+    }
+}
+
+/// What something was read from is no part of what it is.
+impl PartialEq for FileValues {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+/// The values as the text of a file, without its comments.
+impl fmt::Display for FileValues {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.root.fmt(f)
+    }
+}
+
+/// A name on the path of a key, and which element of its list, from 0.
+#[derive(Clone, Copy, Debug)]
+struct PathPart<'a> {
+    name: &'a str,
+    element: Option<usize>,
+}
+
+/// The parts of a path, whose names may be in quotation marks; `None` where it is none.
+fn parts(path: &str) -> Option<Vec<PathPart<'_>>> {
+    let is_name = |name: &str| !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-');
+    let (mut parts, mut rest) = (Vec::new(), Some(path));
+    while let Some(path) = rest {
+        let (name, behind) = match path.strip_prefix('"') {
+            Some(quoted) => quoted.split_once('"')?,
+            None => path.split_at(path.find(['.', '[']).unwrap_or(path.len())),
+        };
+        let (element, behind) = match behind.strip_prefix('[') {
+            Some(list) => list.split_once(']').map(|(number, behind)| (Some(number), behind))?,
+            None => (None, behind),
+        };
+        let element = match element {
+            Some(number) => Some(number.parse::<usize>().ok()?.checked_sub(1)?),
+            None => None,
+        };
+        if !is_name(name) && !path.starts_with('"') {
+            return None;
+        }
+        parts.push(PathPart { name, element });
+        rest = if behind.is_empty() { None } else { Some(behind.strip_prefix('.')?) };
+    }
+    Some(parts)
+}
+
+/// Why a key cannot be set: what stands on its way.
+enum Obstacle {
+    /// A list that is the name of a file.
+    NamedList(String),
+    Other(String),
+}
+
+impl FileValues {
+    /// The values of a `text` as if it were the content of `file`.
+    pub(super) fn parse(text: &str, file: &Path, formats: &'static dyn FileFormats) -> Result<Self> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let values = Self { file: file.to_owned(), text: text.into(), formats, ..Self::default() };
+        let root = text.parse().map_err(|error: toml::de::Error| {
+            let location = values.place(error.span().map_or(0, |span| span.start));
+            SceneError::new(location, "", Problem::Syntax { reason: error.message().trim().replace('\n', "; ") })
+        })?;
+        Ok(Self { root, ..values })
+    }
+
+    /// The path of the file.
+    pub fn file(&self) -> &Path {
+        &self.file
+    }
+
+    /// Its folder, where the files are that it names.
+    pub(super) fn folder(&self) -> &Path {
+        self.file.parent().unwrap_or(Path::new(""))
+    }
+
+    /// What stands at a key, elements of lists counted from 1; `None` where nothing does.
+    pub fn get(&self, key: &str) -> Option<&Value> {
+        let mut parts = parts(key)?.into_iter();
+        let first = parts.next()?;
+        parts.try_fold(at(&self.root, first)?, |value, part| at(value.as_table()?, part))
+    }
+
+    /// Gives keys values, those in lists that are files left out: these lists with the settings in them.
+    ///
+    /// # Errors
+    /// Where a key leads nowhere.
+    pub(super) fn set_all(&mut self, settings: &[Setting]) -> Result<Vec<(String, Setting)>> {
+        let mut in_files = Vec::new();
+        for setting in settings {
+            let Setting { key, value } = setting;
+            let refused = |expected: String| SceneError::new(Location::default(), key, Problem::value(value, expected));
+            let expected =
+                "the path of a key, such as solver.relative_tolerance or layer.vertical.maxwell[1].stiffness";
+            let parts = parts(key).ok_or_else(|| refused(expected.to_owned()))?;
+            match set_below(&mut self.root, "", &parts, value) {
+                Ok(()) => self.set.push(key.clone()),
+                Err(Obstacle::NamedList(list)) => in_files.push((list, setting.clone())),
+                Err(Obstacle::Other(expected)) => return Err(refused(expected)),
+            }
+        }
+        Ok(in_files)
+    }
+
+    /// Where the value at a path stands in the file, or the name of a table; where it is not there, what is around it. No
+    /// place of what was set.
+    pub(super) fn location(&self, path: &str) -> Location {
+        let is_below = |set: &String| {
+            path.strip_prefix(set.as_str()).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+        };
+        match self.set.iter().any(is_below) {
+            true => Location::default(),
+            false => self.place(self.span(path).offset),
+        }
+    }
+
+    fn place(&self, offset: usize) -> Location {
+        let before = self.text.as_bytes().iter().take(offset);
+        Location { file: self.file.clone(), line: Some(1 + before.filter(|&&byte| byte == b'\n').count()) }
+    }
+
+    /// Where something is in the text, to name the first of several.
+    pub(super) fn offset(&self, path: &str) -> usize {
+        self.span(path).offset
+    }
+
+    /// The value at a path as it was written, on one line and cut where it is long.
+    pub(super) fn given(&self, path: &str, value: &Value) -> String {
+        let written = self.span(path).whole.filter(|_| self.location(path) != Location::default());
+        let text = written.and_then(|span| self.text.get(span).map(str::to_owned)).unwrap_or_else(|| value.to_string());
+        let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        match line.char_indices().nth(GIVEN_LENGTH) {
+            Some((end, _)) => format!("{}...", &line[..end]),
+            None => line,
+        }
+    }
+
+    fn span(&self, path: &str) -> Span {
+        let mut span = Span::default();
+        let (Ok(document), Some(parts)) = (DeTable::parse(&self.text), parts(path)) else { return span };
+        let mut table = Some(document.get_ref());
+        for part in parts {
+            let found = table.and_then(|table| table.get_key_value(part.name));
+            let Some((name, value)) = found else { return Span { whole: None, ..span } };
+            span = Span::of(value, name.span().start);
+            let element = part.element.map_or(Some(value), |element| value.get_ref().get(element));
+            let Some(value) = element else { return Span { whole: None, ..span } };
+            if part.element.is_some() {
+                span = Span::of(value, value.span().start);
+            }
+            table = value.get_ref().as_table();
+        }
+        span
+    }
+}
+
+/// Where a value is in the text.
+#[derive(Default)]
+struct Span {
+    /// Where to look for it: its start, or that of a table's name.
+    offset: usize,
+    /// `None` of what is not there.
+    whole: Option<Range<usize>>,
+}
+
+impl Span {
+    fn of(value: &Spanned<DeValue<'_>>, name: usize) -> Self {
+        let whole = value.span();
+        Self { offset: if value.get_ref().is_table() { name } else { whole.start }, whole: Some(whole) }
+    }
+}
+
+fn at<'a>(table: &'a Table, part: PathPart<'_>) -> Option<&'a Value> {
+    let value = table.get(part.name)?;
+    part.element.map_or(Some(value), |element| value.get(element))
+}
+
+/// Sets what is at the path below a table, whose name is `start` with a dot behind it.
+fn set_below(
+    table: &mut Table,
+    start: &str,
+    path: &[PathPart<'_>],
+    value: &Value,
+) -> std::result::Result<(), Obstacle> {
+    let [part, rest @ ..] = path else { return Ok(()) };
+    let name = format!("{start}{}", part.name);
+    let nothing_below = |found: &str| Obstacle::Other(format!("a key that the file can have; {name} is {found} there"));
+    let place = match part.element {
+        None if rest.is_empty() => {
+            table.insert(part.name.to_owned(), value.clone());
+            return Ok(());
+        }
+        None => table.entry(part.name).or_insert_with(|| Table::new().into()),
+        Some(_) => table.get_mut(part.name).ok_or_else(|| nothing_below("not"))?,
+    };
+    let (place, name) = match (part.element, place) {
+        (None, place) => (place, name.clone()),
+        (Some(_), Value::String(_)) if !rest.is_empty() => return Err(Obstacle::NamedList(name)),
+        (Some(element), Value::Array(list)) => {
+            let count = list.len();
+            let outside = || Obstacle::Other(format!("one of the {count} elements of {name}, counted from 1"));
+            (list.get_mut(element).ok_or_else(outside)?, format!("{name}[{}]", element + 1))
+        }
+        (Some(_), place) => return Err(nothing_below(kind(place))),
+    };
+    if rest.is_empty() {
+        *place = value.clone();
+        return Ok(());
+    }
+    match place {
+        Value::Table(table) => set_below(table, &format!("{name}."), rest, value),
+        place => Err(nothing_below(kind(place))),
+    }
+}
+
+fn kind(value: &Value) -> &'static str {
+    match value {
+        Value::Table(_) => "a table",
+        Value::Array(_) => "a list",
+        Value::String(_) => "a text",
+        Value::Boolean(_) => "true or false",
+        _ => "a number",
+    }
+}
