@@ -5,8 +5,7 @@ use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use asperity::patch::{PatchMotion, PatchStart, PatchVariable, Pose};
-use asperity_study::labelled::LabelledLine;
-use asperity_study::summary::{described_patch, missing_backing};
+use asperity_study::summary::{LabelledLine, described_patch, missing_backing};
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -6,9 +6,8 @@ use std::sync::Arc;
 
 use asperity::scene::Setting;
 use asperity_study::files::parse_scene;
-use asperity_study::labelled::LabelledLine;
 use asperity_study::settings::edited;
-use asperity_study::summary::described;
+use asperity_study::summary::{LabelledLine, described};
 use numpy::{PyArray1, PyArrayMethods as _, ToPyArray as _};
 use pyo3::IntoPyObjectExt as _;
 use pyo3::exceptions::PyKeyError;

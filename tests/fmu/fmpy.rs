@@ -205,7 +205,7 @@ fn driven_along_its_excitation_the_fmu_gives_what_the_library_gives() {
 fn from_the_command_line_fmpy_comes_as_close_as_its_step_is_short() {
     let folder = scratch("fmpy-command-line");
     let scene = root().join(DEFAULT_SCENE);
-    let own = simulate(&scene, &folder, &["--points", "400"]);
+    let own = simulate(&scene, &folder, &["--rows", "400"]);
     let fmu = pack(&scene, &folder);
     let errors = [1e-5, 2.5e-6].map(|step| command_line_error(&fmu, &folder.join("tread-block.csv"), &own, step));
     assert!(errors[0] < 0.05 && errors[1] < 0.5 * errors[0], "{errors:?}");

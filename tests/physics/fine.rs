@@ -111,8 +111,7 @@ fn heated_runs_are_those_of_the_reference() {
 #[test]
 fn heat_is_the_work_of_friction() {
     let set = ["--set", "fmu.outputs=['energy', 'dissipation', 'elements']", "--set", "solver.relative_tolerance=1e-6"];
-    let found =
-        simulate(&file("fine-heat.toml"), &scratch("heat-energy"), &[&set[..], &["--points", "20001"]].concat());
+    let found = simulate(&file("fine-heat.toml"), &scratch("heat-energy"), &[&set[..], &["--rows", "20001"]].concat());
     let [time, force, x] = ["time", "element[1].F_T", "element[1].x"].map(|name| found.column(name));
     let mut work = 0.0;
     for i in 1..time.len() {

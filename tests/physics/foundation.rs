@@ -74,7 +74,7 @@ fn area_ratio(name: &str, finer: usize, pressure: f64, folder: &Path) -> f64 {
          duration = 10.0\nw_rate = -3e-5\nuntil_pressure = {pressure:?}\n",
         1e-4 * modulus
     );
-    let run = simulate(&write(name, &scene, folder), folder, &["--points", "10"]);
+    let run = simulate(&write(name, &scene, folder), folder, &["--rows", "10"]);
     *run.column("contact.ratio").last().unwrap()
 }
 
@@ -153,7 +153,7 @@ fn block(edits: &[(&str, &str)], folder: &Path) -> [f64; 2] {
     }
     let path = folder.join("block.toml");
     fs::write(&path, text).unwrap();
-    let run = simulate(&path, folder, &["--points", "600"]);
+    let run = simulate(&path, folder, &["--rows", "600"]);
     let place = run.column("u");
     let mean = |name: &str| {
         let values = run.column(name);

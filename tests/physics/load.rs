@@ -96,7 +96,7 @@ fn momentum_is_kept() {
     for (method, tolerance) in [("event", "1e-6"), ("step", "1e-3")] {
         let folder = scratch(&format!("load-momentum-{method}"));
         let settings = [format!("solver.method={method}"), format!("solver.relative_tolerance={tolerance}")];
-        let options = ["--set", &settings[0], "--set", &settings[1], "--points", "4000"];
+        let options = ["--set", &settings[0], "--set", &settings[1], "--rows", "4000"];
         let found = simulate(&case.scene(), &folder, &options);
         let [time, force, drive, rate, load] =
             ["time", "F_z", "carrier.drive_z", "carrier.w_rate", "load"].map(|name| found.column(name));

@@ -148,7 +148,7 @@ fn fmu_with_sines(name: &'static str) {
     const STEPS: usize = 1000;
     let case = Case::new(name, "fmu");
     let fmu = pack(&case.scene, &case.folder);
-    simulate(&case.scene, &case.folder, &["--points", &(50 * STEPS).to_string()]);
+    simulate(&case.scene, &case.folder, &["--rows", &(50 * STEPS).to_string()]);
     let motion = case.folder.join(format!("{name}.csv"));
     case.compare(&drive(&fmu, &motion, &[FINE]).every(STEPS), FINE, AT_DEFAULT);
 }

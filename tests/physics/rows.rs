@@ -47,7 +47,7 @@ fn a_row_ends_no_run() {
     let scene = folder.join("steep.toml");
     fs::write(&scene, STEEP).unwrap();
     let run = |points: &str| {
-        let options = ["--points", points, "--set", "solver.relative_tolerance=1e-4"];
+        let options = ["--rows", points, "--set", "solver.relative_tolerance=1e-4"];
         let table = simulate(&scene, &folder, &options);
         (table.column("time").len(), *table.column("time").last().unwrap())
     };

@@ -35,7 +35,7 @@ fn warnings(scene: &Path, folder: &Path) -> String {
 
 #[test]
 fn a_result_file_has_the_variables_in_their_order_and_even_rows() {
-    let table = simulate(&reference("sinusoid"), &scratch("program-rows"), &["--points", "4"]);
+    let table = simulate(&reference("sinusoid"), &scratch("program-rows"), &["--rows", "4"]);
     assert_eq!(table.names()[..7], ["time", "u", "w", "F_x", "F_z", "P_diss", "E_diss"]);
     assert!(table.get("dissipation.E_friction").is_none(), "no friction in the scene");
     let wanted = [0.0, 0.000125, 0.00025, 0.000375, 0.0005, 0.0015, 0.0025, 0.0035, 0.0045];
@@ -85,7 +85,7 @@ fn errors_on_the_command_line_say_what_was_expected() {
         ),
         (&["plot", &ragged, "--y", "u", "-o", "out.svg"], "3: fields = 3: expected 2, as in line 1, that of the names"),
         (&["simulate", &scene, "-o", &nowhere], "nowhere/out.csv: there is no folder "),
-        (&["simulate", &scene, "-o", "x.csv", "--points", "0"], "expected a whole number, 1 or more"),
+        (&["simulate", &scene, "-o", "x.csv", "--rows", "0"], "expected a whole number, 1 or more"),
         (&["material", &scene, "-o", "out.pdf"], "expected a name that ends in .svg, .png or .csv"),
         (&["material", &scene, "--temperature", "-5"], "expected a temperature above 0 K"),
         (&["pack", "-o", "x.fmu"], "<SCENE.toml|--table <TABLE.csv>|--patch <PATCH.toml>>"),
@@ -113,7 +113,7 @@ fn a_picture_is_png_where_its_name_says_so() {
 fn elements_are_columns() {
     let folder = scratch("program-elements");
     let scene = changed(&folder, "[\"forces\",", "[\"elements\", \"forces\",");
-    let table = simulate(&scene, &folder, &["--points", "1"]);
+    let table = simulate(&scene, &folder, &["--rows", "1"]);
     let names = table.names();
     assert_eq!(names[names.len() - 5..], ["x", "z", "F_N", "F_T", "mode"].map(|field| format!("element[1].{field}")));
 }
@@ -121,18 +121,11 @@ fn elements_are_columns() {
 #[test]
 fn a_parameter_is_overridden_by_its_name() {
     let folder = scratch("program-set");
-    let plain = simulate(&reference("sinusoid"), &folder, &["--points", "2"]);
+    let plain = simulate(&reference("sinusoid"), &folder, &["--rows", "2"]);
     let softer = simulate(
         &reference("sinusoid"),
         &folder,
-        &[
-            "--points",
-            "2",
-            "--set",
-            "layer.vertical.stiffness=1000",
-            "--set",
-            "layer.vertical.maxwell[1].stiffness = 0",
-        ],
+        &["--rows", "2", "--set", "layer.vertical.stiffness=1000", "--set", "layer.vertical.maxwell[1].stiffness = 0"],
     );
     assert!(softer.column("F_z")[4] < 0.5 * plain.column("F_z")[4]);
     let text = failure(&["simulate", reference("sinusoid").to_str().unwrap(), "-o", "x.csv", "--set", "layer.mass=-1"]);
@@ -165,7 +158,7 @@ fn a_run_that_fails_keeps_its_rows_and_says_so() {
 fn a_phase_that_a_force_ends_takes_the_time_that_it_takes() {
     let folder = scratch("program-force");
     let scene = changed(&folder, "w_rate = -0.12", "w_rate = -0.12\nuntil_force = 0.02");
-    let table = simulate(&scene, &folder, &["--points", "10"]);
+    let table = simulate(&scene, &folder, &["--rows", "10"]);
     assert_eq!(table.column("time").len(), 21);
     assert!((table.column("F_z")[10] - 0.02).abs() < 1e-6, "{}", table.column("F_z")[10]);
     assert!(table.column("time")[10] < 5e-4);
@@ -175,7 +168,7 @@ fn a_phase_that_a_force_ends_takes_the_time_that_it_takes() {
 fn a_phase_that_ends_at_once_adds_no_rows() {
     let folder = scratch("program-at-once");
     let scene = changed(&folder, "u_rate = 0.5", "until_force = 0.0\nu_rate = 0.5");
-    assert_eq!(simulate(&scene, &folder, &["--points", "10"]).column("time").len(), 11);
+    assert_eq!(simulate(&scene, &folder, &["--rows", "10"]).column("time").len(), 11);
 }
 
 #[test]
@@ -218,8 +211,8 @@ fn drawing_a_picture_changes_no_column() {
     let folder = scratch("program-drawn");
     let scene = changed(&folder, "outputs = [", "outputs = [\"tangent\", ");
     let picture = folder.join("out.svg");
-    let plain = simulate(&scene, &folder, &["--points", "3"]);
-    let drawn = simulate(&scene, &folder, &["--points", "3", "--plot", picture.to_str().unwrap()]);
+    let plain = simulate(&scene, &folder, &["--rows", "3"]);
+    let drawn = simulate(&scene, &folder, &["--rows", "3", "--plot", picture.to_str().unwrap()]);
     for name in plain.names().iter().filter(|name| *name != "solver.run_time") {
         assert_eq!(plain.column(name), drawn.column(name), "{name}");
     }
@@ -345,7 +338,7 @@ fn rubber(folder: &Path, until_pressure: f64) -> PathBuf {
 fn a_phase_ends_at_a_pressure_on_the_whole_layer() {
     let folder = scratch("program-pressure");
     let scene = rubber(&folder, 1e4);
-    let table = simulate(&scene, &folder, &["--points", "10"]);
+    let table = simulate(&scene, &folder, &["--rows", "10"]);
     let force = table.column("F_z")[10];
     assert!((force / (2.0 * 1e-6) - 1e4).abs() < 0.1, "{force}");
     assert!(table.column("time")[10] < 1e-3);

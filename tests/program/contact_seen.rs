@@ -76,7 +76,7 @@ const USE: &str = "<script>
 #[test]
 fn an_animation_opens_in_a_browser_and_is_moved_by_slider_keys_and_clock() {
     let folder = scratch("contact-page");
-    run(&mut simulate(&folder, &["--animate", "out.html", "--points", "20"]));
+    run(&mut simulate(&folder, &["--animate", "out.html", "--rows", "20"]));
     let page = fs::read_to_string(folder.join("out.html")).unwrap();
     assert!(!page.contains("http") && !page.contains("{{"), "all of the page is in its file");
     let used = page.replacen("<head>", &format!("<head>{LISTEN}"), 1).replacen("</body>", &format!("{USE}</body>"), 1);
@@ -113,7 +113,7 @@ fn the_masses_are_arrays_that_numpy_reads() {
     let folder = scratch("contact-arrays");
     run(&mut simulate(
         &folder,
-        &["--elements", "out.npz", "--points", "7", "--set", "fmu.outputs=['forces','elements']"],
+        &["--elements", "out.npz", "--rows", "7", "--set", "fmu.outputs=['forces','elements']"],
     ));
     let script = "
 import csv, numpy
@@ -137,12 +137,12 @@ print(masses)
 #[test]
 fn a_contact_is_drawn_at_its_time_which_is_a_row() {
     let folder = scratch("contact-moment");
-    run(&mut simulate(&folder, &["--points", "4"]));
+    run(&mut simulate(&folder, &["--rows", "4"]));
     let before = Table::read(&folder.join("out.csv"));
     let end = *before.column("time").last().unwrap();
     let time = 0.77 * end;
     let options = [format!("{time}=out.svg"), format!("{end}=out.png")];
-    run(&mut simulate(&folder, &["--points", "4", "--contact", &options[0], "--contact", &options[1]]));
+    run(&mut simulate(&folder, &["--rows", "4", "--contact", &options[0], "--contact", &options[1]]));
     let svg = fs::read_to_string(folder.join("out.svg")).unwrap();
     assert!(["sticks", "slips", "free", "x in "].iter().all(|text| svg.contains(text)));
     assert!(fs::read(folder.join("out.png")).unwrap().starts_with(b"\x89PNG"));
@@ -168,7 +168,7 @@ fn a_contact_is_drawn_at_its_time_which_is_a_row() {
 #[test]
 fn an_animation_may_be_a_row_of_pictures() {
     let folder = scratch("contact-film");
-    run(&mut simulate(&folder, &["--animate", "row.png", "--points", "2"]));
+    run(&mut simulate(&folder, &["--animate", "row.png", "--rows", "2"]));
     let rows = Table::read(&folder.join("out.csv")).column("time").len();
     let pictures = (1..=rows).map(|i| fs::read(folder.join(format!("row-{i:03}.png"))).unwrap());
     let pictures: std::collections::BTreeSet<_> = pictures.collect();
@@ -179,6 +179,6 @@ fn an_animation_may_be_a_row_of_pictures() {
 #[test]
 fn a_result_file_has_a_name_by_default() {
     let folder = scratch("contact-default");
-    run(asperity().current_dir(&folder).arg("simulate").arg(scene()).args(["--points", "1"]));
+    run(asperity().current_dir(&folder).arg("simulate").arg(scene()).args(["--rows", "1"]));
     assert!(Table::read(&folder.join("rough-coulomb.csv")).column("time").len() > 1);
 }

@@ -119,7 +119,7 @@ fn swept_packed_and_checked_it_is_near_the_layer() {
     fs::write(&scene, waves().text()).unwrap();
     let sweep = ["--speeds", "0.02..0.5/4", "--forces", "0.01,0.02,0.04", "-o"];
     run(asperity().arg("sweep").arg(&scene).args(sweep).arg(&path));
-    let (fmu, text) = pack(&path, &["--check", scene.to_str().unwrap(), "--points", "6"]);
+    let (fmu, text) = pack(&path, &["--check", scene.to_str().unwrap(), "--check-points", "6"]);
     assert!(text.contains("6 of 6 points between the table's, in steady sliding"), "{text}");
     let checked = folder.join("wave-check");
     for file in ["points.csv", "errors.svg", "loop-layer.csv", "loop-element.csv", "loop.svg"] {

@@ -65,7 +65,7 @@ fn commands(folder: &Path) -> Vec<(&'static str, Vec<String>, Vec<String>)> {
     let (scene, library, moduli, profile, result) =
         (text(&scene), text(&library), text(&moduli), text(&profile), text(&result));
     vec![
-        ("simulated.csv", owned(&["simulate", scene]), owned(&["--points", "20000"])),
+        ("simulated.csv", owned(&["simulate", scene]), owned(&["--rows", "20000"])),
         ("packed.fmu", owned(&["pack", scene, "--library", library]), owned(&["--library", "win64=any.so"])),
         ("plotted.svg", owned(&["plot", result, "--y", "F_x"]), owned(&["--title", "another"])),
         ("plotted.png", owned(&["plot", result, "--y", "F_x"]), owned(&["--title", "another"])),

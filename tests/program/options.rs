@@ -141,28 +141,6 @@ fn help_fits_the_terminal() {
     assert!(widest("60") <= 60 && (80..=100).contains(&widest("100")) && widest("200") > 100);
 }
 
-/// One name, one meaning: names that an option had are refused by those that it has, but for those that specified command
-/// lines have.
-#[test]
-fn options_that_were_renamed_say_so() {
-    for (line, expected) in [
-        ("fit a.csv -o b.csv --error 0.1", "--error is now --fit-error"),
-        ("sweep a.toml --speeds 1 --error 0.1", "--error is now --friction-error"),
-        ("calibrate a.toml --data b.csv --free a=1..2 --error=0.1", "--error is now --friction-error"),
-        ("report a.toml -o b --points 3", "--points is now --rows"),
-    ] {
-        let message = refused(&line.split(' ').collect::<Vec<_>>());
-        assert!(message.contains(expected), "{line}: {message}");
-    }
-    let folder = scratch("options-renamed");
-    let rows = |option: &str| {
-        let out = folder.join("out.csv");
-        run(asperity().args(["simulate", &sinusoid(), option, "3", "-o"]).arg(&out));
-        fs::read_to_string(&out).unwrap().lines().count()
-    };
-    assert_eq!(rows("--points"), rows("--rows"));
-}
-
 /// All keys of a scene can be set, words without quotation marks, lists whole or by their elements; a run is that of the
 /// file so changed.
 #[test]
@@ -171,7 +149,7 @@ fn every_key_can_be_set() {
     let out = folder.join("out.csv");
     let run_with = |scene: &str, settings: &[&str]| {
         let settings = settings.iter().flat_map(|setting| ["--set", setting]);
-        run(asperity().args(["simulate", scene, "--points", "3", "-o"]).arg(&out).args(settings));
+        run(asperity().args(["simulate", scene, "--rows", "3", "-o"]).arg(&out).args(settings));
         fs::read_to_string(&out).unwrap()
     };
     let text = fs::read_to_string(sinusoid()).unwrap();
@@ -269,7 +247,7 @@ fn tables_go_to_standard_output() {
     let [rubber, flat, moduli, profile] = [&rubber, &flat, &moduli, &profile].map(|path| path.to_str().unwrap());
     let scene = sinusoid();
     for (arguments, option) in [
-        (&["simulate", &scene, "--points", "3", "--set", "fmu.outputs=['forces']"][..], "-o"),
+        (&["simulate", &scene, "--rows", "3", "--set", "fmu.outputs=['forces']"][..], "-o"),
         (&["material", rubber], "-o"),
         (&["sweep", flat, "--speeds", "0.1,1", "--forces", "0.5,1"], "-o"),
         (&["fit", moduli, "--fit-error", "0.2", "--plot", "fit.svg"], "-o"),

@@ -68,7 +68,7 @@ fn share(found: &Table, reference: &Table, name: &str) -> f64 {
 #[test]
 fn elements_are_near_their_layers_and_the_wrench_is_theirs() {
     let folder = example("patch-check", FLAT);
-    let text = checked(&folder, &["--points", "7"]);
+    let text = checked(&folder, &["--check-points", "7"]);
     assert!(text.contains("21 of 21 elements beside their layers, from "), "{text}");
     assert!(text.contains("the whole patch beside one of 16 by 10 elements"), "{text}");
     for file in ["points.csv", "elements.svg", "errors.svg", "loop.svg"] {
@@ -106,7 +106,7 @@ fn elements_are_near_their_layers_and_the_wrench_is_theirs() {
 #[test]
 fn doubling_shows_what_a_coarse_grid_lacks() {
     let folder = example("patch-check-doubled", FLAT);
-    let text = checked(&folder, &["--points", "1"]);
+    let text = checked(&folder, &["--check-points", "1"]);
     let (coarse, fine) = (loops(&folder, "patch"), loops(&folder, "doubled"));
     assert!(share(&coarse, &fine, "force.z") < 1e-3);
     let [across, along] = ["moment.x", "moment.y"].map(|name| share(&coarse, &fine, name));
@@ -124,7 +124,7 @@ fn doubling_shows_what_a_coarse_grid_lacks() {
 fn a_tread_also_rolls() {
     let tread = "shape = 'cylinder'\nradius = 0.02\nlength = 4e-4\nwidth = 2e-4\nnx = 8\nny = 2\ntransport = true";
     let folder = example("patch-check-tread", tread);
-    let text = checked(&folder, &["--points", "2"]);
+    let text = checked(&folder, &["--check-points", "2"]);
     assert!(text.contains("6 of 6 elements") && text.contains("one of 16 by 4 elements"), "{text}");
     assert!(text.contains("rolling at 0.584804 m/s, slipping at 0.0584804 m/s, at most: force.x"), "{text}");
 }
@@ -143,7 +143,7 @@ fn points_cannot_be_doubled_and_may_be_few() {
 #[test]
 fn too_many_elements_are_not_doubled() {
     let folder = example("patch-check-large", &FLAT.replace("ny = 5", "ny = 31251"));
-    let text = checked(&folder, &["--points", "1"]);
+    let text = checked(&folder, &["--check-points", "1"]);
     assert!(text.contains("not done, 16 by 62502 would be more than 1000000 elements"), "{text}");
 }
 
@@ -157,6 +157,6 @@ fn another_scene_is_refused() {
     scene(waves().set("layer.clearance", 1e-6).text());
     let text = refused(&folder, &[]);
     assert!(text.contains("the separation at w = 0 is") && text.contains("in the table"), "{text}");
-    let text = refused(&folder, &["--points", "0"]);
+    let text = refused(&folder, &["--check-points", "0"]);
     assert!(text.contains("expected a whole number, 1 or more"), "{text}");
 }

@@ -300,7 +300,7 @@ fn a_contact_is_drawn_and_written() {
         .arg(reference("steady/steady-ridges.toml"))
         .args(["--pressure", "3e5", "--speed", "0.1", "-o"])
         .arg(&picture)
-        .arg("--data")
+        .arg("--write")
         .arg(&data));
     assert!(said.contains("Contact     0.1636 of the area"), "{said}");
     assert!(fs::read(&picture).unwrap().starts_with(b"\x89PNG"));
@@ -325,7 +325,7 @@ fn an_element_of_solutions_is_checked_with_solutions() {
     let pack = |options: &[&str], name: &str| {
         let mut command = asperity();
         command.arg("pack").args(options).arg("-o").arg(folder.join(name)).arg("--library").arg(&library);
-        run(command.arg("--check").arg(&scene).args(["--points", "4"]))
+        run(command.arg("--check").arg(&scene).args(["--check-points", "4"]))
     };
     let said = pack(&["--table", table.to_str().unwrap()], "sine.fmu");
     assert!(said.contains("4 of 4 points between the table's") && said.contains("which is another model"), "{said}");

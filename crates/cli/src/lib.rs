@@ -21,8 +21,7 @@
 //! | `figure` | cli, files, terminal | charts, maps and moments, drawn with plotters |
 //! | `measured_friction` | figure | measured friction beside that of a model |
 //! | `elements` | files, npz | the masses of a run as arrays |
-//! | `run_summary` | terminal | the lines that a run ends with |
-//! | `simulate` | cli, elements, figure, files, result_file, run_summary, terminal | `simulate` of a scene |
+//! | `simulate` | cli, elements, figure, files, result_file, terminal | `simulate` of a scene |
 //! | `patch` | cli, figure, files, result_file, simulate, terminal | `simulate` of a patch |
 //! | `describe` | cli, figure, files, simulate, terminal | `describe` |
 //! | `contact` | cli, figure, files, npz, terminal | `contact` |
@@ -63,7 +62,6 @@ mod reference;
 mod report;
 mod result_file;
 mod resumable_table;
-mod run_summary;
 mod simulate;
 mod surface;
 mod sweep;

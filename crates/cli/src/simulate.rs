@@ -14,9 +14,9 @@ use super::elements::write_arrays;
 use super::figure::{Figure as _, LayerPicture, TimeHistory, write_row};
 use super::files::{self, check_outputs, ends_in, load, named, print_beside};
 use super::result_file::ResultWriter;
-use super::run_summary::RunSummary;
 use super::terminal::{LabelledLine, bar, is_verbose, lines, note, warn};
 use asperity_study::elements::{ElementHistory, Span, animation};
+use asperity_study::run_figures::{RunFigures, implausible_run};
 use asperity_study::runner::{InputSample, Rows, Runner};
 use asperity_study::{Context as _, Error};
 
@@ -137,10 +137,10 @@ fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<Res
         return Ok(Err(ended_at(error, recorder.time, &recorder.output)));
     }
     let shown = recorder.shown(scene);
-    recorder.summary.warnings(shown, runner.simulation()).iter().for_each(|warning| warn(warning));
-    let mut summary = recorder.summary.lines(shown, runner.simulation());
+    implausible_run(shown, &recorder.figures, runner.simulation()).iter().for_each(|warning| warn(warning));
+    let mut summary = recorder.figures.lines(shown, runner.simulation());
     if command.stats {
-        summary.extend(recorder.summary.statistics(shown, runner.simulation()));
+        summary.extend(recorder.figures.statistics(shown, runner.simulation()));
     }
     Ok(Ok(summary))
 }
@@ -173,7 +173,7 @@ struct Recorder {
     writer: ResultWriter,
     history: Option<TimeHistory>,
     elements: Option<ElementHistory>,
-    summary: RunSummary,
+    figures: RunFigures,
     progress: ProgressBar,
     duration: f64,
     time: f64,
@@ -191,7 +191,7 @@ impl Recorder {
             variables,
             history: command.plot.is_some().then(|| TimeHistory::new(scene)),
             elements: shows_elements(command).then(|| ElementHistory::new(scene)),
-            summary: RunSummary::new(),
+            figures: RunFigures::default(),
             progress: bar(PROGRESS_LENGTH as u64),
             duration: scene.duration(),
             time: 0.0,
@@ -212,7 +212,7 @@ impl Recorder {
         if let Some(elements) = &mut self.elements {
             elements.add(carrier.time, snapshot);
         }
-        self.summary.add(snapshot);
+        self.figures.add(snapshot);
         self.time = carrier.time;
         if self.duration > 0.0 && !self.progress.is_hidden() {
             self.progress.set_position((PROGRESS_LENGTH * self.time / self.duration) as u64);

@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-pub(crate) use asperity_study::labelled::{LabelledLine, labelled};
 use asperity_study::progress::Progress;
+pub(crate) use asperity_study::summary::{LabelledLine, labelled};
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle, TermLike};
 
 /// The lines as text, aligned after their labels, and broken between words where they are long.

@@ -12,33 +12,32 @@
 //! | module | uses | contents |
 //! |---|---|---|
 //! | [`decimals`] | | numbers as text: in all their digits, rounded, with prefixes of units |
-//! | [`labelled`] | | lines with labels, of which summaries are made |
 //! | [`html`] | | pages in HTML: templates filled in, tables |
 //! | [`progress`] | | how far long work is, and how it is ended |
 //! | [`implausible`] | decimals | friction and areas of contact that no rubber has |
 //! | [`settings`] | | keys of scenes and patches set to other values |
-//! | [`files`] | error, settings | scenes, patches and other files, read |
-//! | [`csv`] | decimals, files | tables of text with a header, read and written |
-//! | [`error`] | progress, settings | why something is not done: what was expected, what was found, and where |
+//! | `error` | progress | why something is not done: what was expected, what was found, and where |
+//! | [`files`] | error | scenes, patches and other files, read |
+//! | [`csv`] | decimals, error, files | tables of text with a header, read and written |
 //! | [`elements`] | html | what the masses of a layer do over a run, as arrays, as pictures and as a page show it |
 //! | [`runner`] | progress | a scene along its excitation, row by row |
-//! | [`run_figures`] | implausible | forces and friction of a run, what it cost, and what would make it cheaper |
 //! | [`steady`] | | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
-//! | [`uncertainty`] | settings | scenes drawn from what is not known of one: Sobol' points, distributions, indices |
-//! | [`sweep`] | csv, decimals, files, implausible, progress, steady, uncertainty | friction over speed, load and temperature, as a table |
+//! | [`uncertainty`] | error | scenes drawn from what is not known of one: Sobol' points, distributions, indices |
+//! | [`sweep`] | csv, decimals, error, files, implausible, progress, steady, uncertainty | friction over speed, load and temperature, as a table |
 //! | [`contact`] | implausible, steady, sweep | the contact of a surface in steady sliding |
-//! | [`converge`] | decimals, files, settings, steady, sweep | whether area and friction depend on spacing, length or chance |
-//! | [`calibration`] | csv, decimals, files, implausible, settings, steady, sweep | free numbers of a scene from measured friction: models, least squares, errors, plans |
-//! | [`comparison`] | calibration, steady, sweep | a table of a sweep beside measured friction |
-//! | [`rank`] | calibration, comparison, csv, decimals, files, progress, settings, sweep, uncertainty | scenes in the order of their friction, and how sure that is |
-//! | [`fit`] | decimals, files | Prony series and shift factors from measured moduli |
-//! | [`material`] | decimals | moduli of a scene's compound, or stiffnesses of its links, over frequency |
+//! | [`converge`] | decimals, error, steady, sweep | whether area and friction depend on spacing, length or chance |
+//! | [`calibration`] | csv, decimals, error, files, implausible, settings, steady, sweep | free numbers of a scene from measured friction: models, least squares, errors, plans |
+//! | [`comparison`] | calibration, sweep | a table of a sweep beside measured friction |
+//! | [`rank`] | calibration, comparison, csv, decimals, error, files, progress, sweep, uncertainty | scenes in the order of their friction, and how sure that is |
+//! | [`fit`] | decimals, error, files | Prony series and shift factors from measured moduli |
+//! | [`material`] | decimals, error | moduli of a scene's compound, or stiffnesses of its links, over frequency |
 //! | [`surface`] | decimals | numbers, spectra and power laws of a surface; smoothed, split and made periodic |
-//! | [`summary`] | decimals, labelled, runner, steady | what there is in a scene, a patch or a table, in lines |
+//! | [`summary`] | decimals, error, runner, steady | what there is in a scene, a patch or a table, in lines |
+//! | [`run_figures`] | decimals, implausible, summary | forces and friction of a run, what it cost, and what would make it cheaper |
 //! | [`robustness`] | | a catalogue of perturbations of a scene, and the judge of perturbed runs |
-//! | [`pack`] | decimals, files, html, labelled, robustness, runner, summary | scenes, tables and patches as FMUs |
+//! | [`pack`] | decimals, error, files, html, robustness, runner, summary | scenes, tables and patches as FMUs |
 //! | [`motion`] | error, files | the motion that a patch is moved along |
-//! | [`check`] | csv, decimals, labelled, progress, runner, sweep | elements and patches against what was swept |
+//! | [`check`] | csv, decimals, error, progress, runner, summary, sweep | elements and patches against what was swept |
 //! | [`report`] | csv, decimals, progress, robustness, runner | what the runs of a scene cost and how accurate they are |
 
 pub mod calibration;
@@ -57,7 +56,6 @@ pub mod implausible;
 #[cfg(test)]
 #[path = "../../../src/in_tests.rs"]
 mod in_tests;
-pub mod labelled;
 pub mod material;
 pub mod motion;
 pub mod pack;

@@ -1,6 +1,5 @@
 //! The arguments of `fit` and `surface`.
 
-use std::convert::Infallible;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
@@ -10,7 +9,7 @@ use clap::Args;
 
 use super::values::{
     FitVertical, FitWeight, column_unit, count, expansion, fit_error, frequency, length, picture, poisson_ratio,
-    renamed, temperature, wavelengths, wlf_constants,
+    temperature, wavelengths, wlf_constants,
 };
 
 #[derive(Debug, Args)]
@@ -27,8 +26,6 @@ pub(crate) struct Fit {
     /// The admissible error of the fit: the root mean square of the relative errors of E' and E'' at all points.
     #[arg(long, value_name = "E", default_value_t = 0.02, value_parser = fit_error)]
     pub(crate) fit_error: f64,
-    #[arg(long = "error", hide = true, value_parser = renamed("--error", "--fit-error"))]
-    _error: Option<Infallible>,
     /// Constants of the Williams-Landel-Ferry equation, which shifts rows at other temperatures to TREF: C1 (1), C2
     /// (K), TREF (K). Default: shift factors are found where the curves overlap, and constants for them.
     #[arg(long, value_name = "C1,C2,TREF", value_parser = wlf_constants)]

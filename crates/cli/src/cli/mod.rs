@@ -1,8 +1,7 @@
 //! The command line: the arguments of every command, by what it is about. [`values`] parses and checks single values.
 //!
 //! A name means the same in all commands that have it: `points` those of the surface's period, `error` what a study of
-//! convergence may leave open, `data` measured friction. Names that commands had besides are refused by the new ones, or
-//! stay as aliases where users' scripts have them by the specification.
+//! convergence may leave open, `data` measured friction.
 
 #[macro_use]
 mod example;

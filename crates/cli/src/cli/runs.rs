@@ -1,15 +1,12 @@
 //! The arguments of `simulate`, `plot` and `report`.
 
-use std::convert::Infallible;
 use std::path::{Path, PathBuf};
 
 use asperity_study::csv::Head;
 use clap::{ArgGroup, Args};
 
 use super::shared::Set;
-use super::values::{
-    Condition, PlotAxis, Tolerances, animation, arrays, count, moment, picture, powers, renamed, seconds,
-};
+use super::values::{Condition, PlotAxis, Tolerances, animation, arrays, count, moment, picture, powers, seconds};
 use crate::files::default_output;
 
 #[derive(Debug, Args)]
@@ -31,7 +28,7 @@ pub(crate) struct Simulate {
     #[arg(short, long, value_name = "OUT.csv")]
     output: Option<PathBuf>,
     /// Number of result rows for each phase of the excitation.
-    #[arg(long, alias = "points", value_name = "N", default_value_t = 50, value_parser = count)]
+    #[arg(long, value_name = "N", default_value_t = 50, value_parser = count)]
     #[arg(conflicts_with = "patch")]
     pub(crate) rows: u32,
     #[command(flatten)]
@@ -130,8 +127,6 @@ pub(crate) struct Report {
     /// Number of rows for each phase of the excitation at which runs are compared.
     #[arg(long, value_name = "N", default_value_t = 50, value_parser = count)]
     pub(crate) rows: u32,
-    #[arg(long = "points", hide = true, value_parser = renamed("--points", "--rows"))]
-    _points: Option<Infallible>,
     /// Most timings of each run, done for short runs; long ones are timed three times. The least and the spread are
     /// reported.
     #[arg(long, value_name = "N", default_value_t = 25, value_parser = count)]

@@ -75,7 +75,7 @@ pub(crate) struct Pack {
     #[arg(long, value_name = "SCENE.toml", conflicts_with = "scene")]
     pub(crate) check: Option<PathBuf>,
     /// Maximum number of points, or of elements of a patch, that --check compares with the layer.
-    #[arg(long, alias = "points", value_name = "N", default_value_t = 12, value_parser = count, requires = "check")]
+    #[arg(long, value_name = "N", default_value_t = 12, value_parser = count, requires = "check")]
     #[arg(conflicts_with = "scene")]
     pub(crate) check_points: u32,
     /// The FMU to write.

@@ -1,13 +1,12 @@
 //! Options that several commands have.
 
-use std::convert::Infallible;
 use std::ops::Deref;
 
 use asperity::scene::Setting;
 use asperity_study::sweep::SweepMethod;
 use clap::Args;
 
-use super::values::{count, length, pressure, renamed, share, speed, sweep_method};
+use super::values::{count, length, pressure, share, speed, sweep_method};
 
 // Not a doc comment: that would be the description of the commands that have it.
 #[derive(Debug, Args)]
@@ -56,8 +55,6 @@ pub(crate) struct Sliding {
     /// Admissible standard error of the friction coefficient, relative to it, with --method layer. Default: 5e-3.
     #[arg(long, value_name = "SHARE", value_parser = share)]
     pub(crate) friction_error: Option<f64>,
-    #[arg(long = "error", hide = true, value_parser = renamed("--error", "--friction-error"))]
-    _error: Option<Infallible>,
     /// Maximum sliding distance in m for a point to become steady, with --method layer. Default: 100 blocks; a block is a
     /// whole number of profile periods or layer lengths.
     #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]

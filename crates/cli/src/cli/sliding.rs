@@ -172,7 +172,7 @@ pub(crate) struct Contact {
     #[arg(short, long, value_name = "OUT.png", value_parser = picture())]
     pub(crate) output: PathBuf,
     /// All points to write: x, y, height, pressure, gap, as a table or, with .npz, as arrays of numpy with a row for each y.
-    #[arg(long, alias = "data", value_name = "OUT.csv|.npz", value_parser = table_or_arrays())]
+    #[arg(long, value_name = "OUT.csv|.npz", value_parser = table_or_arrays())]
     pub(crate) write: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) set: Set,

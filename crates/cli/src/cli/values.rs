@@ -1,6 +1,5 @@
 //! Values of command line options, parsed and checked. An error says what was expected.
 
-use std::convert::Infallible;
 use std::f64::consts::TAU;
 use std::fmt::{self, Display, Formatter};
 use std::ops::RangeInclusive;
@@ -25,11 +24,6 @@ pub(super) fn free_parameter(text: &str) -> Result<FreeParameter, String> {
     parted.filter(|parameter| !parameter.key.is_empty()).ok_or_else(|| {
         "expected KEY=LOW..HIGH in SI units, LOW below HIGH, such as friction.rate_shear.strength=1e5..2e7".into()
     })
-}
-
-/// Refuses what an option is given under the name that it had: it says the present one.
-pub(super) fn renamed(old: &'static str, new: &'static str) -> impl TypedValueParser<Value = Infallible> {
-    StringValueParser::new().try_map(move |_| Err::<Infallible, _>(format!("{old} is now {new}")))
 }
 
 /// How steady sliding is found.

@@ -8,8 +8,8 @@ use asperity::simulation::{Motion, Simulation, Start};
 use super::measure::deviation;
 use crate::csv::{Field, text};
 use crate::error::Error;
-use crate::labelled::LabelledLine;
 use crate::runner::InputSample;
+use crate::summary::LabelledLine;
 
 /// Displacements of the motion to and fro, over the length over which the element sticks.
 const LEGS: [f64; 3] = [10.0, -20.0, 20.0];

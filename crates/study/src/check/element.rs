@@ -12,8 +12,8 @@ use super::measure::{ERROR, SLIDING_DISTANCE, deviation, selected, swept_scene};
 use crate::csv::text;
 use crate::decimals::real;
 use crate::error::{Context as _, Error};
-use crate::labelled::{LabelledLine, labelled};
 use crate::progress::{Counter, Stopped, Watch};
+use crate::summary::{LabelledLine, labelled};
 use crate::sweep::{Method, NotSteady, StopBounds, Swept, SweptPoint};
 
 /// What is compared in steady sliding.

@@ -12,7 +12,7 @@ use quick_xml::events::{BytesDecl, Event};
 
 use crate::decimals::decimal;
 use crate::html::{self, Cell};
-use crate::labelled::LabelledLine;
+use crate::summary::LabelledLine;
 
 pub(super) type Xml = Writer<Vec<u8>>;
 

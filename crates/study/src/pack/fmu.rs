@@ -12,8 +12,7 @@ use super::library::Library;
 use super::references;
 use crate::error::Error;
 use crate::files::bytes;
-use crate::labelled::LabelledLine;
-use crate::summary::{patch_rows, scene_rows, table_rows};
+use crate::summary::{LabelledLine, patch_rows, scene_rows, table_rows};
 
 /// An FMU before it is packed.
 #[derive(Debug)]

@@ -1,16 +1,16 @@
-//! What `describe` says of a scene and of a patch.
+//! What `describe` says of a scene and of a patch; a scene with all constants that follow from it, as JSON.
 
 use std::sync::Arc;
 
 use asperity::patch::Patch;
-use asperity::scene::Scene;
+use asperity::scene::{Friction, Layer, Material, Phase, Scene};
 use asperity::simulation::{Simulation, SimulationError};
 use asperity_fmi::FmuModel;
+use serde::Serialize;
 
 use super::patch::patch_rows;
-use super::scene::scene_rows;
-use super::short::short_scene_rows;
-use crate::labelled::{LabelledLine, labelled};
+use super::scene::{scene_rows, short_scene_rows};
+use super::{LabelledLine, labelled};
 use crate::runner::start;
 
 /// The summary of a scene, with how its tables were read and the memory of its FMU.
@@ -43,4 +43,32 @@ fn title(scene: &Scene) -> LabelledLine {
 /// The summary of a patch.
 pub fn described_patch(patch: &Patch) -> Vec<LabelledLine> {
     [vec![("Name", patch.name().to_owned())], patch_rows(patch)].concat()
+}
+
+/// A scene as JSON has it: as read, plus, in the material form, the constants that the direct form would give.
+#[derive(Debug, Serialize)]
+pub struct DescribedScene {
+    #[serde(flatten)]
+    scene: Scene,
+    /// a_T, 1; null in the direct form.
+    shift_factor: Option<f64>,
+}
+
+impl DescribedScene {
+    /// Of the scene as given.
+    pub fn new(given: &Scene) -> Self {
+        let direct = given.direct_form();
+        let (thickness, width) = (given.layer.thickness, given.layer.width);
+        let shear_strength = given.friction.as_ref().and_then(|friction| friction.shear_strength);
+        let phases = direct.excitation.into_iter().zip(&given.excitation);
+        let scene = Scene {
+            material: given.material.clone(),
+            foundation: given.foundation.clone(),
+            layer: Layer { thickness, width, foundation: given.layer.foundation, ..direct.layer },
+            friction: direct.friction.map(|friction| Friction { shear_strength, ..friction }),
+            excitation: phases.map(|(phase, given)| Phase { until_pressure: given.until_pressure, ..phase }).collect(),
+            ..direct
+        };
+        Self { scene, shift_factor: given.material.as_ref().map(Material::shift_factor) }
+    }
 }

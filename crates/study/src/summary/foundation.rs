@@ -1,11 +1,14 @@
-//! How well the links of a scene stand for the surface of its material: rows of the summary.
+//! How well the links of a scene stand for the surface of its material, and which of their elements `solver.reduce`
+//! replaces: rows of the summary.
 
-use asperity::scene::{Foundation, FoundationKind, LinkKind, Material, PronyTerm, Quality, Scene};
+use asperity::model::{Reduction, Replaced, Replacement};
+use asperity::scene::{Foundation, FoundationKind, Initial, LinkKind, Material, PronyTerm, Quality, Scene};
 
-use crate::decimals::{decimal, rounded};
+use super::words::{LEFT_OUT, each_once, number, six_digits};
+use super::{LabelledLine, labelled};
 
 /// What the links stand for, in a line each; nothing in the direct form.
-pub(super) fn rows(scene: &Scene) -> Vec<String> {
+pub(super) fn foundation(scene: &Scene) -> Vec<String> {
     let (Some(material), Some(quality)) = (&scene.material, scene.quality(LinkKind::Vertical)) else {
         return Vec::new();
     };
@@ -22,7 +25,7 @@ pub(super) fn rows(scene: &Scene) -> Vec<String> {
 }
 
 /// What the links stand for, and how far their stiffness is from that.
-pub(super) fn short_rows(scene: &Scene) -> Vec<String> {
+pub(super) fn foundation_in_brief(scene: &Scene) -> Vec<String> {
     if scene.material.is_none() {
         return Vec::new();
     }
@@ -52,20 +55,20 @@ fn title(scene: &Scene) -> String {
     }
 }
 
-fn number(value: f64) -> String {
-    decimal(rounded(value, 6), 1e-3..1e6)
-}
-
 fn constants(scene: &Scene, foundation: &Foundation) -> Vec<String> {
     let Foundation { normal, tangential, depth, .. } = foundation;
     let mut rows = vec![format!(
         "α = {} 1/m, β = {} m, ℓ = {} m, the depth whose mass the masses have",
-        number(normal.alpha),
-        number(normal.beta),
-        number(*depth)
+        six_digits(normal.alpha),
+        six_digits(normal.beta),
+        six_digits(*depth)
     )];
     if scene.layer.foundation == Some(FoundationKind::Layer) {
-        rows.push(format!("α_t = {} 1/m, β_t = {} m, along x", number(tangential.alpha), number(tangential.beta)));
+        rows.push(format!(
+            "α_t = {} 1/m, β_t = {} m, along x",
+            six_digits(tangential.alpha),
+            six_digits(tangential.beta)
+        ));
     }
     rows
 }
@@ -73,7 +76,7 @@ fn constants(scene: &Scene, foundation: &Foundation) -> Vec<String> {
 /// The stiffness against a displacement of the whole carrier.
 fn mean_stiffness(material: &Material, foundation: &Foundation) -> String {
     let prony: f64 = material.prony.iter().map(|term: &PronyTerm| term.modulus).sum();
-    let stiffness = |modulus: f64| number(material.plane_modulus(modulus) * foundation.normal.alpha);
+    let stiffness = |modulus: f64| six_digits(material.plane_modulus(modulus) * foundation.normal.alpha);
     let rest = material.equilibrium_modulus;
     format!("Mα = {} Pa/m at rest, {} Pa/m glassy, against w", stiffness(rest), stiffness(rest + prony))
 }
@@ -87,4 +90,65 @@ fn quality_rows(direction: &str, quality: &Quality) -> [String; 2] {
             "", quality.least, quality.largest, quality.rms
         ),
     ]
+}
+
+/// The Maxwell elements that `solver.reduce` replaces, why, and the bounds on the error.
+pub(super) fn reduction(scene: &Scene) -> Vec<LabelledLine> {
+    let Some(reduction) = Reduction::new(scene) else { return vec![("Reduce", LEFT_OUT.into())] };
+    let meaning = format!(
+        "{}: the largest relative change of a link's force by the elements left out",
+        number(scene.solver.reduce)
+    );
+    let links = each_once(LinkKind::ALL.map(|kind| (kind.name(), reduced_link(scene, &reduction, kind))));
+    labelled("Reduce", [meaning, long_times(&reduction), short_times(scene, &reduction)].into_iter().chain(links))
+}
+
+fn long_times(reduction: &Reduction) -> String {
+    if reduction.run.is_finite() {
+        format!(
+            "elements with relaxation times much longer than the run of {:.4e} s become springs; for a longer run the bound grows in proportion",
+            reduction.run
+        )
+    } else {
+        "no [[excitation]], so the duration of the run is not known: no element becomes a spring".into()
+    }
+}
+
+fn short_times(scene: &Scene, reduction: &Reduction) -> String {
+    if scene.layer.initial == Initial::Undeformed {
+        return "undeformed at the start, where no damper is equivalent to an element: no element becomes a damper"
+            .into();
+    }
+    let period = if reduction.run.is_finite() {
+        "the shortest period of carrier, profile and layer"
+    } else {
+        "the layer's own shortest period (the carrier's motion is not known),"
+    };
+    format!(
+        "elements with relaxation times much shorter than {period} 2π/ω, ω = {:.4e} rad/s, become dampers; a jump of the elongation rate ė adds an error of d |Δė| for about τ",
+        reduction.frequency
+    )
+}
+
+fn reduced_link(scene: &Scene, reduction: &Reduction, kind: LinkKind) -> Vec<String> {
+    let Some(link) = scene.link(kind).filter(|link| !link.maxwell.is_empty()) else { return Vec::new() };
+    let stiffness = reduction.stiffness[kind];
+    let replaced: Vec<_> = reduction.replaced.iter().filter(|one| one.kind == kind).collect();
+    let left = link.maxwell.len() - replaced.len();
+    let head = format!("{left} of {} elements stay, K' = {stiffness:.4e} N/m", link.maxwell.len());
+    [head].into_iter().chain(replaced.iter().map(|one| replaced_element(one, stiffness))).collect()
+}
+
+fn replaced_element(one: &Replaced, stiffness: f64) -> String {
+    let (replacement, why) = match one.by {
+        Replacement::Spring => ("spring", "long"),
+        Replacement::Damper => ("damper", "short"),
+    };
+    let share = if one.bound > 0.0 { one.bound / stiffness } else { 0.0 };
+    format!(
+        "[{}] {} N/m at {} s is {why}: a {replacement}, bound {share:.2e}",
+        one.index + 1,
+        number(one.element.stiffness),
+        number(one.element.relaxation_time)
+    )
 }

@@ -7,7 +7,7 @@ use asperity::scene::{RateShear, Scene};
 
 use super::fine::MIDDLE;
 use super::words::{LEFT_OUT, number, or_left_out};
-use crate::labelled::{LabelledLine, labelled};
+use super::{LabelledLine, labelled};
 
 /// The friction of a scene; of the speeds of its excitation `all`, or that at which sliding is least even.
 pub(super) fn friction(scene: &Scene, all: bool) -> Vec<LabelledLine> {

@@ -5,20 +5,20 @@ mod described;
 mod fine;
 mod foundation;
 mod friction;
-mod heating;
-mod json;
-mod motion;
 mod patch;
-mod reduction;
 mod scene;
-mod short;
-mod table;
 mod words;
 
-pub use described::{described, described_patch, described_shortly};
+pub use described::{DescribedScene, described, described_patch, described_shortly};
 pub use fine::{FineFrictionCurve, MIDDLE as MIDDLE_PRESSURE};
 pub use friction::FallingFriction;
-pub use json::DescribedScene;
-pub use patch::{missing_backing, patch_rows};
+pub use patch::{missing_backing, patch_rows, table_rows};
 pub use scene::scene_rows;
-pub use table::table_rows;
+
+/// A line with a label; without one it continues the line above.
+pub type LabelledLine = (&'static str, String);
+
+/// Lines of which the first has the label.
+pub fn labelled(label: &'static str, texts: impl IntoIterator<Item = String>) -> Vec<LabelledLine> {
+    texts.into_iter().enumerate().map(|(i, text)| (if i == 0 { label } else { "" }, text)).collect()
+}

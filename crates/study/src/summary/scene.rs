@@ -1,17 +1,18 @@
-//! The summary of a scene.
+//! The summary of a scene, and that on a screen: what it is, what is computed and what is left out, without what follows
+//! from that.
 
 use asperity::model::Model;
 use asperity::outputs::variables;
 use asperity::scene::{
-    Extrapolation, Input, Link, LinkKind, Material, OutputGroup, Parameter, Scene, Surface, Wlf, peak_to_valley,
+    Axis, CarrierBody, CarrierInitial, Extrapolation, Force, Input, Link, LinkKind, Material, OutputGroup, Parameter,
+    Path, Phase, Scene, Surface, Wlf, peak_to_valley,
 };
 
+use super::fine::{fine, fine_in_brief};
+use super::foundation::{foundation, foundation_in_brief, reduction};
 use super::friction::friction;
-use super::motion::{carrier, excitation};
-use super::reduction::reduction;
 use super::words::{LEFT_OUT, each_once, number, or_left_out, word};
-use super::{fine, foundation};
-use crate::labelled::{LabelledLine, labelled};
+use super::{LabelledLine, labelled};
 
 /// The summary without the scene's name.
 pub fn scene_rows(scene: &Scene) -> Vec<LabelledLine> {
@@ -23,11 +24,11 @@ pub fn scene_rows(scene: &Scene) -> Vec<LabelledLine> {
         "Links",
         each_once(links(scene).map(|(name, link, count)| (name, vec![link_text(link, count)]))),
     ));
-    rows.extend(labelled("Foundation", foundation::rows(scene)));
+    rows.extend(labelled("Foundation", foundation(scene)));
     rows.extend(labelled("Order", [paper_order(scene), order_as_coded(scene)]));
     rows.push(("Profile", profile(&scene.surface)));
     rows.extend(friction(scene, true));
-    rows.extend(labelled("Fine", fine::rows(scene)));
+    rows.extend(labelled("Fine", fine(scene)));
     rows.extend(labelled("Outputs", OutputGroup::ALL.map(|group| outputs(scene, group))));
     rows.push(("Solver", solver(scene)));
     rows.extend(reduction(scene));
@@ -37,7 +38,7 @@ pub fn scene_rows(scene: &Scene) -> Vec<LabelledLine> {
     rows
 }
 
-pub(super) fn masses(scene: &Scene) -> String {
+fn masses(scene: &Scene) -> String {
     let layer = &scene.layer;
     format!(
         "{} masses of {} kg, {} m apart from x = {} m, clearance {} m, {} at the start",
@@ -50,12 +51,12 @@ pub(super) fn masses(scene: &Scene) -> String {
     )
 }
 
-pub(super) fn roughness(scene: &Scene) -> String {
+fn roughness(scene: &Scene) -> String {
     let heights = &scene.layer.roughness;
     if heights.is_empty() { LEFT_OUT.into() } else { format!("{} m peak to valley", number(peak_to_valley(heights))) }
 }
 
-pub(super) fn body(scene: &Scene, material: &Material) -> String {
+fn body(scene: &Scene, material: &Material) -> String {
     let thickness =
         scene.layer.thickness.map_or_else(|| "a half-space".into(), |size| format!("{} m thick", number(size)));
     format!(
@@ -66,7 +67,7 @@ pub(super) fn body(scene: &Scene, material: &Material) -> String {
     )
 }
 
-pub(super) fn series(material: &Material) -> String {
+fn series(material: &Material) -> String {
     let glassy: f64 = material.prony.iter().map(|term| term.modulus).sum();
     format!(
         "E_∞ {} Pa, viscosity {}, {} Prony terms, glassy modulus {:.4e} Pa",
@@ -77,7 +78,7 @@ pub(super) fn series(material: &Material) -> String {
     )
 }
 
-pub(super) fn temperature(material: &Material) -> String {
+fn temperature(material: &Material) -> String {
     let shift = |wlf: Wlf| {
         format!(
             "{} K, times given at {} K: a_T = {:.4e} (C_1 {}, C_2 {} K)",
@@ -133,7 +134,7 @@ fn order_as_coded(scene: &Scene) -> String {
     format!("as coded {order}: two coordinates and two velocities a mass, {maxwell} Maxwell variables")
 }
 
-pub(super) fn profile(surface: &Surface) -> String {
+fn profile(surface: &Surface) -> String {
     let length = surface.x()[surface.x().len() - 1] - surface.x()[0];
     let kind = if surface.is_periodic() { "periodic" } else { "natural" };
     format!(
@@ -173,7 +174,7 @@ fn solver(scene: &Scene) -> String {
     )
 }
 
-pub(super) fn input(scene: &Scene) -> String {
+fn input(scene: &Scene) -> String {
     let names: Vec<_> = scene.inputs().into_iter().map(Input::name).collect();
     let rule = match scene.extrapolation {
         Extrapolation::Linear => {
@@ -182,4 +183,173 @@ pub(super) fn input(scene: &Scene) -> String {
         Extrapolation::Hold => "values without rates are reached at the end of the step (hold)",
     };
     format!("{}; {rule}", names.join(", "))
+}
+
+/// The summary on a screen, without the scene's name.
+pub(super) fn short_scene_rows(scene: &Scene) -> Vec<LabelledLine> {
+    let mut rows = vec![("Layer", masses(scene))];
+    if !scene.layer.roughness.is_empty() {
+        rows.push(("Roughness", roughness(scene)));
+    }
+    if let Some(material) = &scene.material {
+        rows.extend(labelled("Material", [body(scene, material), series(material), temperature(material)]));
+    }
+    rows.extend(labelled("Foundation", foundation_in_brief(scene)));
+    rows.push(("Profile", profile(&scene.surface)));
+    rows.extend(labelled(
+        "Friction",
+        friction(scene, false).into_iter().map(|(_, text)| text).filter(|text| !is_left_out(text)),
+    ));
+    rows.extend(labelled("Fine", fine_in_brief(scene)));
+    rows.extend(carrier(scene));
+    rows.push(("Input", input(scene)));
+    rows.extend(phases(scene));
+    rows.push(("Solver", solver_in_brief(scene)));
+    rows.push(("Outputs", groups(scene, true)));
+    rows.push(("Left out", left_out(scene)));
+    rows
+}
+
+fn is_left_out(text: &str) -> bool {
+    text.ends_with(LEFT_OUT)
+}
+
+/// The first phases, and how many others there are.
+fn phases(scene: &Scene) -> Vec<LabelledLine> {
+    const MOST: usize = 4;
+    let mut rows = excitation(scene);
+    if rows.iter().any(|(_, text)| is_left_out(text)) {
+        return Vec::new();
+    }
+    let more = rows.len().saturating_sub(MOST);
+    if more > 0 {
+        rows.truncate(MOST);
+        rows.push(("", format!("and {more} more phases")));
+    }
+    rows
+}
+
+fn solver_in_brief(scene: &Scene) -> String {
+    let reduce = scene.solver.reduce;
+    let reduced = if reduce > 0.0 { format!(", reduce {}", number(reduce)) } else { String::new() };
+    let tolerance = number(scene.solver.relative_tolerance);
+    format!("method {}, relative_tolerance {tolerance}{reduced}", word(scene, Parameter::METHOD))
+}
+
+/// The words of the groups of outputs that are written, or that are not.
+fn groups(scene: &Scene, written: bool) -> String {
+    let chosen = OutputGroup::ALL.into_iter().filter(|group| scene.outputs.contains(group) == written);
+    let words: Vec<&str> = chosen.map(OutputGroup::word).collect();
+    if words.is_empty() { "none".into() } else { words.join(", ") }
+}
+
+/// What a scene can have and this one has not.
+fn left_out(scene: &Scene) -> String {
+    let friction = scene.friction.as_ref();
+    let material = scene.material.as_ref();
+    let has_shear = friction.is_some_and(|law| law.shear_strength.is_some() || law.shear_force.is_some());
+    let links = LinkKind::ALL.into_iter().filter(|kind| scene.link(*kind).is_none());
+    let parts = [
+        (scene.layer.roughness.is_empty(), "layer.roughness"),
+        (material.is_some_and(|material| material.viscosity.is_none()), "material.viscosity"),
+        (material.is_some_and(|material| material.wlf.is_none()), "material.wlf"),
+        (material.is_some_and(|material| material.heat.is_none()), "material.heat"),
+        (friction.is_none(), "friction"),
+        (friction.is_some_and(|law| law.coulomb.is_none()), "friction.coulomb"),
+        (friction.is_some() && !has_shear, "a constant shear strength or force"),
+        (friction.is_some() && scene.rate_shear().is_none(), "friction.rate_shear"),
+        (material.is_some() && scene.fine.is_none(), "surface.fine"),
+        (Axis::ALL.into_iter().all(|axis| scene.carrier[axis].is_none()), "bodies of the carrier"),
+        (scene.excitation.is_empty(), "excitation"),
+    ];
+    let names = parts.into_iter().filter(|(is_left_out, _)| *is_left_out).map(|(_, name)| name.to_owned());
+    let links = links.map(|kind| format!("layer.{}", kind.name()));
+    let all: Vec<String> = names.chain(links).collect();
+    format!("{}; outputs: {}", all.join(", "), groups(scene, false))
+}
+
+/// The axes along which the carrier is a body.
+fn carrier(scene: &Scene) -> Vec<LabelledLine> {
+    let bodies = Axis::ALL.into_iter().filter_map(|axis| Some((axis, scene.carrier[axis].as_ref()?)));
+    labelled("Carrier", bodies.map(|(axis, body)| body_text(axis, body)))
+}
+
+fn body_text(axis: Axis, body: &CarrierBody) -> String {
+    let mut text = format!("a body along {}: {} kg", axis.name(), number(body.mass));
+    let parts = [
+        (body.load, "load", "N"),
+        (body.pull, "pull", "N"),
+        (body.stiffness, "spring to the drive", "N/m"),
+        (body.damping, "damper to the drive", "N s/m"),
+        (body.start, "start", "m"),
+        (body.start_rate, "start rate", "m/s"),
+    ];
+    for (value, name, unit) in parts {
+        text += &value.map_or_else(String::new, |value| format!(", {name} {} {unit}", number(value)));
+    }
+    if body.initial == CarrierInitial::Equilibrium {
+        text += ", from equilibrium";
+    }
+    text
+}
+
+fn excitation(scene: &Scene) -> Vec<LabelledLine> {
+    if scene.excitation.is_empty() {
+        return vec![("Excitation", LEFT_OUT.into())];
+    }
+    let same_file = |a: &Phase, b: &Phase| a.is_row && b.is_row;
+    let parts = scene.excitation.chunk_by(same_file).enumerate();
+    labelled("Excitation", parts.map(|(i, phases)| phases_text(i + 1, phases)))
+}
+
+/// A phase, or all those from row to row of a motion file.
+fn phases_text(number_of: usize, phases: &[Phase]) -> String {
+    match phases {
+        [phase] => phase_text(number_of, phase),
+        _ => {
+            let duration: f64 = phases.iter().map(|phase| phase.duration).sum();
+            let [u, w] = [|phase: &Phase| phase.u.rate, |phase: &Phase| phase.w.rate].map(|rate| {
+                let changes = phases.iter().map(|phase| rate(phase) * phase.duration);
+                let (mut at, mut range) = (0.0, (0.0_f64, 0.0_f64));
+                for change in changes {
+                    at += change;
+                    range = (range.0.min(at), range.1.max(at));
+                }
+                format!("{} to {} m", number(range.0), number(range.1))
+            });
+            format!("{number_of}  {} s in {} rows from files, u {u}, w {w}", number(duration), phases.len())
+        }
+    }
+}
+
+fn phase_text(number_of: usize, phase: &Phase) -> String {
+    let motion = path_text("u", "m", &phase.u) + &path_text("w", "m", &phase.w);
+    let forces = phase.load.map_or_else(String::new, |load| force_text("load", "N", &load))
+        + &phase.pull.map_or_else(String::new, |pull| force_text("pull", "N", &pull));
+    let pressure = phase.pressure.map_or_else(String::new, |pressure| force_text("pressure", "Pa", &pressure));
+    let temperature = phase.temperature.map_or_else(String::new, |kelvin| format!(", at {} K", number(kelvin)));
+    let motion = motion + &forces + &pressure + &temperature;
+    let motion = if motion.is_empty() { ", at rest".into() } else { motion };
+    let end = match (phase.until_force, phase.until_pressure) {
+        (Some(force), _) => format!(", until F_z = {} N", number(force)),
+        (None, Some(pressure)) => format!(", until F_z = {} Pa times the layer's area", number(pressure)),
+        (None, None) => String::new(),
+    };
+    format!("{number_of}  {} s{motion}{end}", number(phase.duration))
+}
+
+fn force_text(name: &str, unit: &str, force: &Force) -> String {
+    let start = force.start.map_or_else(String::new, |start| format!(", {name} from {} {unit}", number(start)));
+    start + &path_text(name, unit, &force.change)
+}
+
+fn path_text(name: &str, unit: &str, path: &Path) -> String {
+    let mut text = String::new();
+    if path.rate != 0.0 {
+        text += &format!(", {name} at {} {unit}/s", number(path.rate));
+    }
+    if path.amplitude != 0.0 {
+        text += &format!(", {name} by {} {unit} at {} Hz", number(path.amplitude), number(path.frequency));
+    }
+    text
 }

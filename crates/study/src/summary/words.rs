@@ -1,7 +1,6 @@
 //! Words and numbers of a summary.
 
-use asperity::scene::Value;
-use asperity::scene::{Parameter, Scene};
+use asperity::scene::{Parameter, Scene, Value};
 
 use crate::decimals::{decimal, rounded};
 
@@ -11,6 +10,11 @@ pub(super) const LEFT_OUT: &str = "left out";
 /// A number for reading: five digits, as of 293.15 K.
 pub(super) fn number(value: f64) -> String {
     decimal(rounded(value, 5), 1e-3..1e6)
+}
+
+/// The same with six digits.
+pub(super) fn six_digits(value: f64) -> String {
+    decimal(rounded(value, 6), 1e-3..1e6)
 }
 
 pub(super) fn or_left_out(value: Option<f64>, unit: &str) -> String {
