@@ -12,7 +12,7 @@ mod sweeps;
 use std::path::Path;
 use std::time::Duration;
 
-use asperity::element::{Element, PointContact, Table};
+use asperity::element::{Element, FrictionTable, PointContact};
 use asperity::scene::{self, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 use common::{prints_tables, side_by_side};
@@ -53,7 +53,7 @@ fn slide() -> Motion {
 
 /// The cost of an element depends only on the number of pressures in its table: 4.
 fn element() -> Element {
-    let table = Table::parse(&Grid::plain().text(), Path::new("table.csv")).unwrap();
+    let table = FrictionTable::parse(&Grid::plain().text(), Path::new("table.csv")).unwrap();
     let w = separation(SPEED, 2e5, WARM) - REST;
     Element::new(&PointContact::new(table), &Start { w, u_rate: SPEED, ..Start::default() }).unwrap()
 }

@@ -12,7 +12,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::path::Path as FilePath;
 
-use asperity::element::{PointContact, Table};
+use asperity::element::{FrictionTable, PointContact};
 use asperity::outputs::{Snapshot, Variable, variables};
 use asperity::patch::{Patch, PatchMotion, PatchRun, PatchStart, Pose};
 use asperity::scene::{Force, Path, Scene};
@@ -277,7 +277,7 @@ fn memory_reckoned_of_a_patch_is_memory_taken() {
 #[test]
 fn memory_reckoned_of_an_element_is_memory_taken() {
     let path = FilePath::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch/block.table.csv");
-    let model = Definition::from(PointContact::new(Table::load(&path).unwrap()));
+    let model = Definition::from(PointContact::new(FrictionTable::load(&path).unwrap()));
     let inputs = Inputs::default();
     let taken = peak(|| (model.variables(), model.start(&inputs, 0.0).unwrap()));
     assert!(taken < model.memory(), "{taken} of {} bytes", model.memory());

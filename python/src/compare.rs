@@ -28,7 +28,7 @@ pub(crate) fn compare<'py>(py: Python<'py>, table: PathBuf, data: PathBuf) -> Py
     }
     let found = PyDict::new(py);
     found.set_item("refused", comparison.check(&data).err().map(|error| error.to_string()))?;
-    found.set_item("scene", &swept.header.scene)?;
+    found.set_item("scene", swept.header.scene())?;
     found.set_item("worst", worst)?;
     found.set_item("left_out", left_out)?;
     found.set_item("chi_square", comparison.chi_square())?;

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use asperity::element::PointStatus;
-use asperity_study::contact::{ContactOptions, SolvedContact, solve_contact};
+use asperity_study::contact::{SolvedContact, SteadyState, solve_contact};
+use asperity_study::sweep::SlidingOptions;
 use numpy::IntoPyArray as _;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -22,8 +23,9 @@ pub(crate) fn contact<'py>(
     way: Option<f64>,
     points: Option<u32>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (scene, options) = (Arc::clone(&scene.scene), ContactOptions { pressure, speed, way, points });
-    let solved = in_background(py, None, move |_| solve_contact(&scene, &options))?;
+    let (scene, at) = (Arc::clone(&scene.scene), SteadyState { pressure, speed });
+    let sliding = SlidingOptions { way, points, ..SlidingOptions::default() };
+    let solved = in_background(py, None, move |_| solve_contact(&scene, at, sliding))?;
     let SolvedContact { slide, fields, problem, warnings, .. } = solved.map_err(|error| error.raise())?;
     let found = PyDict::new(py);
     let (friction, separation) = (slide.friction(), slide.contact.separation);

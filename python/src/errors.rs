@@ -7,13 +7,10 @@ use asperity::patch::{MotionError, PatchError, PatchRestoreError};
 use asperity::scene::{ParameterError, SceneError};
 use asperity::simulation::SimulationError;
 use asperity_study::calibration::{CalibrationError, MeasuredFrictionError};
-use asperity_study::comparison::ComparisonError;
-use asperity_study::contact::ContactError;
 use asperity_study::converge::ConvergeError;
 use asperity_study::fit::FitError;
 use asperity_study::rank::RankError;
 use asperity_study::surface::SurfaceError;
-use asperity_study::sweep::{SweepError, SweepTableError};
 use asperity_study::{Error, ErrorKind};
 use pyo3::exceptions::{PyFileNotFoundError, PyKeyError, PyOSError, PyValueError};
 use pyo3::prelude::*;
@@ -113,12 +110,6 @@ impl Raise for PatchRestoreError {
     }
 }
 
-impl Raise for SweepError {
-    fn raise(self) -> PyErr {
-        scene_error(&self, None, None, "")
-    }
-}
-
 impl Raise for RankError {
     fn raise(self) -> PyErr {
         match self {
@@ -128,12 +119,6 @@ impl Raise for RankError {
             }
             error => PyValueError::new_err(error.to_string()),
         }
-    }
-}
-
-impl Raise for ContactError {
-    fn raise(self) -> PyErr {
-        scene_error(&self, None, None, "")
     }
 }
 
@@ -149,24 +134,6 @@ impl Raise for ConvergeError {
 impl Raise for SurfaceError {
     fn raise(self) -> PyErr {
         PyValueError::new_err(self.to_string())
-    }
-}
-
-impl Raise for SweepTableError {
-    fn raise(self) -> PyErr {
-        match self {
-            Self::File(error) => error.raise(),
-            error => PyValueError::new_err(error.to_string()),
-        }
-    }
-}
-
-impl Raise for ComparisonError {
-    fn raise(self) -> PyErr {
-        match self {
-            Self::Measured(MeasuredFrictionError::Read(error)) => error.raise(),
-            error => PyValueError::new_err(error.to_string()),
-        }
     }
 }
 

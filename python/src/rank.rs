@@ -4,16 +4,14 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use asperity_study::rank::{MeasuredRanking, RankError, RankPlan, RankScene, Ranking, Weights, measured_ranking};
-use asperity_study::sweep::{Loads, SweepOptions};
 use asperity_study::uncertainty::SampleOptions;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::background::in_background;
 use crate::errors::Raise as _;
 use crate::scene::Scene;
-use crate::sweep::sliding;
+use crate::sweep::{options, sliding};
 
 /// Ranks scenes.
 #[pyfunction]
@@ -35,12 +33,7 @@ pub(crate) fn rank<'py>(
     distance: Option<f64>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let loads = match (pressures, forces) {
-        (Some(pressures), None) => Loads::Pressures(pressures),
-        (None, Some(forces)) => Loads::Forces(forces),
-        _ => return Err(PyValueError::new_err("expected pressures or forces, the loads to rank at")),
-    };
-    let options = SweepOptions { speeds, loads, temperatures, sliding: sliding(method, way, points, error, distance)? };
+    let options = options(speeds, (pressures, forces), temperatures, sliding(method, way, points, error, distance)?);
     let scene = |scene: &PyRef<'_, Scene>| RankScene { scene: (*scene.scene).clone(), file: scene.file.clone() };
     let scenes: Vec<RankScene> = scenes.iter().map(scene).collect();
     let found = in_background(py, progress, move |task| -> Result<_, RankError> {

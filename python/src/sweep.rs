@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use asperity::element::{PointContact, Table, TableRow};
-use asperity_study::sweep::{
-    Loads, SlidingOptions, SweepError, SweepMethod, SweepOptions, SweepPlan, SweepTable, quantile_table,
-};
+use asperity::element::{FrictionTable, PointContact};
+use asperity_study::Error;
+use asperity_study::sweep::{SlidingOptions, SweepMethod, SweepOptions, SweepPlan, SweepTable, quantile_table};
 use asperity_study::uncertainty::{SampleOptions, UncertainScene, UncertaintyError};
+use asperity_study::values::Values;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -34,7 +34,19 @@ pub(crate) fn sliding(
             return Err(PyValueError::new_err(format!("method = {other:?}: expected \"steady\" or \"layer\"")));
         }
     };
-    Ok(SlidingOptions { method, way, points, error, distance })
+    Ok(SlidingOptions { method, way, points, friction_error: error, distance })
+}
+
+/// What a sweep goes over, as Python has it.
+pub(crate) fn options(
+    speeds: Vec<f64>,
+    (pressures, forces): (Option<Vec<f64>>, Option<Vec<f64>>),
+    temperatures: Option<Vec<f64>>,
+    sliding: SlidingOptions,
+) -> SweepOptions {
+    let values = |values: Option<Vec<f64>>| values.map(Values::from);
+    let (pressures, forces, temperatures) = (values(pressures), values(forces), values(temperatures));
+    SweepOptions { speeds: Some(speeds.into()), pressures, forces, temperatures, sliding }
 }
 
 /// All points of a sweep; `None` where nobody waits for them any more.
@@ -50,7 +62,7 @@ fn find(plan: &SweepPlan, task: &Task) -> Option<SweepTable> {
 type Found = (String, Vec<String>, String, Vec<(String, Vec<f64>)>);
 
 /// A sweep of a scene, with samples or without.
-fn plan(scene: &Source, options: &SweepOptions, samples: Option<SampleOptions>) -> Result<SweepPlan, SweepError> {
+fn plan(scene: &Source, options: &SweepOptions, samples: Option<SampleOptions>) -> Result<SweepPlan, Error> {
     match samples {
         Some(samples) => SweepPlan::with_samples(&scene.uncertain()?, options, None, samples),
         None => SweepPlan::new((*scene.scene).clone(), options, None),
@@ -91,24 +103,19 @@ pub(crate) fn sweep(
     seed: u64,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Found> {
-    let loads = match (pressures, forces) {
-        (Some(pressures), None) => Loads::Pressures(pressures),
-        (None, Some(forces)) => Loads::Forces(forces),
-        _ => return Err(PyValueError::new_err("expected pressures or forces, the loads to sweep over")),
-    };
-    let options = SweepOptions { speeds, loads, temperatures, sliding: sliding(method, way, points, error, distance)? };
+    let options = options(speeds, (pressures, forces), temperatures, sliding(method, way, points, error, distance)?);
     let (scene, samples) = (Source::new(scene), samples.map(|count| SampleOptions { count, seed }));
     let found = in_background(py, progress, move |task| {
         let plan = plan(&scene, &options, samples)?;
         Ok(find(&plan, task).map(|table| {
-            let rows: Vec<&TableRow> = table.rows.iter().map(|stored| &stored.row).collect();
-            let found = plan.warnings(rows.iter().copied());
+            let found = plan.warnings(&table.rows);
             let warnings = plan.warning().map(str::to_owned).into_iter().chain(found).collect();
-            let matters = plan.matters(&rows).map(|matters| matters.text(table.header.load)).unwrap_or_default();
+            let matters = plan.matters(&table.rows).map(|matters| matters.table(table.header.load).text());
+            let matters = matters.unwrap_or_default();
             (table.text(), warnings, matters, plan.drawn())
         }))
     })?;
-    let found = found.map_err(|error: SweepError| error.raise())?;
+    let found = found.map_err(|error: Error| error.raise())?;
     // It is only stopped where nobody waits.
     found.ok_or_else(|| PyValueError::new_err("stopped"))
 }
@@ -122,13 +129,12 @@ pub(crate) fn quantile(
     probability: f64,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<String> {
-    let (table, _) =
-        SweepTable::parse(&table, "table".as_ref()).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    let table = SweepTable::parse(&table, "table".as_ref()).map_err(|error| Error::from(error).raise())?;
     let scene = Source::new(scene);
     let found = in_background(py, progress, move |task| {
         quantile_table(&scene.uncertain()?, &table, probability, &task.stop()).map(|table| table.text())
     })?;
-    found.map_err(|error: SweepError| error.raise())
+    found.map_err(|error: Error| error.raise())
 }
 
 /// Packs the table of a sweep as an FMU, a point-contact element.
@@ -139,6 +145,6 @@ pub(crate) fn pack_table(
     libraries: Vec<OsString>,
     options: FmuOptions,
 ) -> PyResult<Option<String>> {
-    let read = Table::load(&table).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    let read = FrictionTable::load(&table).map_err(|error| PyValueError::new_err(error.to_string()))?;
     pack(&PointContact::new(read).into(), &table, &libraries, (&output, options))
 }

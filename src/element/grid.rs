@@ -1,5 +1,8 @@
 //! The points of a sweep: speeds, loads and temperatures.
 
+use crate::scene::{SMALLEST, is_possible};
+use crate::table::{Cell, Column, Table, TableError};
+
 /// What presses the layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Load {
@@ -37,6 +40,20 @@ impl Load {
         }
     }
 
+    /// What the loads of a sweep's table are: pressures need the area of its header.
+    ///
+    /// # Errors
+    /// [`TableError`] where they are pressures, and it has none.
+    pub fn of_table(table: &Table) -> Result<Self, TableError> {
+        if table.column(Self::Force.name(), Self::Force.unit()).is_ok() {
+            return Ok(Self::Force);
+        }
+        match table.header.number("nominal_area", "m2")? {
+            area if area > 0.0 && is_possible(area) => Ok(Self::Pressure { area }),
+            area => Err(table.error(format!("`# nominal_area = {area} m2`: expected an area above 0"))),
+        }
+    }
+
     /// F_z of a load, N.
     pub fn force(self, load: f64) -> f64 {
         load * self.area()
@@ -62,6 +79,37 @@ pub struct OperatingPoint {
 }
 
 impl OperatingPoint {
+    /// The columns that a point has in a table of such loads.
+    pub fn columns(load: Load) -> [Column; 3] {
+        [("speed", "m/s"), (load.name(), load.unit()), ("temperature", "K")]
+            .map(|(name, unit)| Column::numbers(name, unit))
+    }
+
+    /// Its cells in these columns.
+    pub fn cells(&self) -> [Cell; 3] {
+        [self.speed.into(), self.load.into(), self.temperature.into()]
+    }
+
+    /// The point of a row.
+    ///
+    /// # Errors
+    /// [`TableError`] where it is not given by positive numbers.
+    pub fn of_row(table: &Table, row: usize, load: Load) -> Result<Self, TableError> {
+        let positive = |name: &str, unit: &str| {
+            let number = table.number(row, name, unit);
+            let found = table.column(name, unit).and(Ok(number.ok().flatten()))?;
+            let number = found.filter(|&number| number >= SMALLEST && is_possible(number));
+            number.ok_or_else(|| table.cell_error(row, name, unit, "a number above 0"))
+        };
+        let has_temperature = table.number(row, "temperature", "K")? != None;
+        Ok(Self {
+            speed: positive("speed", "m/s")?,
+            load: positive(load.name(), load.unit())?,
+            temperature: if has_temperature { Some(positive("temperature", "K")?) } else { None },
+            way: None,
+        })
+    }
+
     /// The point in words: `0.1 m/s, 200000 Pa, 293.15 K, after 0.02 m`.
     pub fn describe(&self, load: Load) -> String {
         let temperature = self.temperature.map_or_else(String::new, |temperature| format!(", {temperature} K"));

@@ -13,9 +13,9 @@
 //!
 //! Below the least speed of the table everything is as at the least, above the largest as at the largest.
 
+use super::friction_table::{FrictionTable, Node};
 use super::grid::Load;
 use super::quantity::Quantity;
-use super::table::{Node, Table};
 use crate::math::{Expansion, cubic, interval_of, monotone_slopes};
 
 /// Largest change of y over one segment of the approach: over it the limit of the friction force is so close to a
@@ -81,7 +81,7 @@ pub(super) struct Law {
 
 impl Law {
     /// The table at `temperature` (K), where it has temperatures.
-    pub(super) fn new(table: &Table, temperature: f64) -> Self {
+    pub(super) fn new(table: &FrictionTable, temperature: f64) -> Self {
         let grid = &table.grid;
         let (speeds, loads) = (grid.speeds.len(), grid.loads.len());
         let cell = |quantity, index: usize| {
@@ -183,7 +183,7 @@ impl Law {
 }
 
 /// What is interpolated: the value of a quantity; for the separation, its difference to the next pressure.
-fn interpolated(table: &Table, quantity: Quantity, node: Node) -> f64 {
+fn interpolated(table: &FrictionTable, quantity: Quantity, node: Node) -> f64 {
     let here = table.value(quantity, node);
     if quantity == Quantity::Separation && node.load + 1 < table.grid.loads.len() {
         here - table.value(quantity, Node { load: node.load + 1, ..node })
@@ -193,7 +193,7 @@ fn interpolated(table: &Table, quantity: Quantity, node: Node) -> f64 {
 }
 
 /// What is interpolated at all temperatures of the table, whatever that of `node` is.
-fn along_temperature(table: &Table, quantity: Quantity, node: Node) -> Series {
+fn along_temperature(table: &FrictionTable, quantity: Quantity, node: Node) -> Series {
     let temperatures = &table.grid.temperatures;
     let of = |temperature| interpolated(table, quantity, Node { temperature, ..node });
     Series::new(temperatures, (0..temperatures.len().max(1)).map(of).collect())

@@ -1,9 +1,9 @@
 //! How well a table's points serve: the errors of looking them up in the rest.
 
+use super::friction_table::{FrictionTable, Node, TableAxis};
 use super::grid::OperatingPoint;
 use super::law::{Law, LawAtSpeed};
 use super::quantity::Quantity;
-use super::table::{Node, Table, TableAxis};
 
 /// The interpolation errors of a table along an axis, found by leaving its inner points out one by one and looking them
 /// up in the rest.
@@ -22,7 +22,7 @@ pub struct LeftOut {
 ///
 /// The steps that are interpolated over are then twice as long as the table's: of a method of third order, the table's
 /// own errors are some eight times smaller.
-pub fn left_out(table: &Table) -> [LeftOut; 3] {
+pub fn left_out(table: &FrictionTable) -> [LeftOut; 3] {
     TableAxis::ALL.map(|axis| {
         let name = match axis {
             TableAxis::Speed => "speed",
@@ -39,7 +39,7 @@ pub fn left_out(table: &Table) -> [LeftOut; 3] {
 
 impl LeftOut {
     /// Looks the points at `index` of an axis up in the rest of the table.
-    fn leave_out(&mut self, table: &Table, axis: TableAxis, index: usize) {
+    fn leave_out(&mut self, table: &FrictionTable, axis: TableAxis, index: usize) {
         let rest = table.without(axis, index);
         let indices = |other: TableAxis| {
             if other == axis { index..index + 1 } else { 0..other.values(&table.grid).len().max(1) }
@@ -55,7 +55,7 @@ impl LeftOut {
         }
     }
 
-    fn compare(&mut self, table: &Table, curve: &LawAtSpeed, node: Node) {
+    fn compare(&mut self, table: &FrictionTable, curve: &LawAtSpeed, node: Node) {
         let point = table.point(node);
         let found = curve.at(-table.value(Quantity::Separation, node));
         keep_larger(&mut self.force_z, found.normal.value / table.load.force(point.load) - 1.0, point);

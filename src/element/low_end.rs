@@ -1,7 +1,7 @@
 //! The low end of a table: what lies below its least load, where the law goes on as a parabola.
 
+use super::friction_table::FrictionTable;
 use super::law::{Law, LawAtSpeed};
-use super::table::Table;
 
 /// What lies below the least load of a table at a speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,7 +13,7 @@ pub struct LowEnd {
     pub share: f64,
 }
 
-impl Table {
+impl FrictionTable {
     /// The low end at a speed (m/s) and a temperature (K), which counts where the table has temperatures.
     pub fn low_end(&self, speed: f64, temperature: f64) -> LowEnd {
         let curve = LawAtSpeed::new(&Law::new(self, temperature), speed);
@@ -45,7 +45,7 @@ mod tests {
         let rows = format!("1,1e4,,steady,0.5,3e-6,1\n1,{},,steady,0.5,2e-6,1\n", 1e4 * std::f64::consts::E);
         let text =
             format!("# asperity sweep = 1\n# nominal_area = 1e-6 m2\n# rest_separation = 0 m\n{columns}\n{rows}");
-        let low_end = Table::parse(&text, Path::new("t.csv")).unwrap().low_end(1.0, 0.0);
+        let low_end = FrictionTable::parse(&text, Path::new("t.csv")).unwrap().low_end(1.0, 0.0);
         assert!((low_end.reach - 2e-6).abs() < 1e-15, "{low_end:?}");
         let share = 2.0 / 3.0 / (2.0 / 3.0 + std::f64::consts::E - 1.0);
         assert!((low_end.share - share).abs() < 1e-6, "{low_end:?} {share}");

@@ -7,7 +7,7 @@
 //! elastic at each speed and dissipates nothing.
 
 mod backing;
-mod basis;
+mod friction_table;
 mod grid;
 mod jenkins;
 mod law;
@@ -20,15 +20,11 @@ mod point_status;
 mod quantity;
 mod resampled;
 mod run;
-mod samples;
 mod spring;
-mod table;
-mod table_error;
-mod table_format;
 #[cfg(test)]
 mod tests;
 
-pub use basis::{Basis, CONVERGED};
+pub use friction_table::{FrictionTable, Node, SWEEP, rest_separation, some_of};
 pub use grid::{Load, OperatingPoint, SweepGrid};
 pub use law_points::{ElementLaw, LawPoints};
 pub use left_out::{LeftOut, left_out};
@@ -41,8 +37,4 @@ pub use point_status::PointStatus;
 pub use quantity::Quantity;
 pub use resampled::{LawPlace, ResampledLaw, SpeedCell, SpeedRange};
 pub use run::{Element, ElementError, ElementRestoreError, ElementState};
-pub use samples::{SampleHeader, SampleValues, Sampled, quantile};
 pub(crate) use spring::{Advanced, Segment, SpringLaw, advance, apply_jump};
-pub use table::{Node, Table, some_of};
-pub use table_error::TableError;
-pub use table_format::{FORMAT, TableHeader, TableRow, TableText};

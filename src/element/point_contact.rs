@@ -3,9 +3,9 @@
 use std::iter;
 use std::sync::Arc;
 
+use super::friction_table::FrictionTable;
 use super::law::{Law, LawAtSpeed};
 use super::quantity::Quantity;
-use super::table::Table;
 use crate::outputs::{Dependencies, Output, Variable, variable};
 use crate::scene::{Extrapolation, Parameter, ParameterError, Problem, TableExtrapolation, Value};
 
@@ -13,7 +13,7 @@ use crate::scene::{Extrapolation, Parameter, ParameterError, Problem, TableExtra
 /// that a master may set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointContact {
-    table: Arc<Table>,
+    table: Arc<FrictionTable>,
     clearance: Clearance,
     /// The temperature, K; 0 where the table has none.
     temperature: f64,
@@ -24,7 +24,7 @@ pub struct PointContact {
 
 impl PointContact {
     /// An element of `table` at the middle one of its temperatures; motions beyond the table are refused.
-    pub fn new(table: Table) -> Self {
+    pub fn new(table: FrictionTable) -> Self {
         let temperatures = &table.grid.temperatures;
         let temperature = temperatures.get(temperatures.len() / 2).copied().unwrap_or(0.0);
         Self {
@@ -37,7 +37,7 @@ impl PointContact {
     }
 
     /// The table.
-    pub fn table(&self) -> &Table {
+    pub fn table(&self) -> &FrictionTable {
         &self.table
     }
 
@@ -58,12 +58,12 @@ impl PointContact {
 
     /// The model's name.
     pub fn name(&self) -> String {
-        format!("{} element", self.table.scene)
+        format!("{} element", self.table.scene())
     }
 
     /// What it is, in a sentence.
     pub fn description(&self) -> String {
-        format!("Point-contact element from {} points swept of {}", self.table.grid.count(), self.table.scene)
+        format!("Point-contact element from {} points swept of {}", self.table.grid.count(), self.table.scene())
     }
 
     /// Its output variables.
@@ -206,7 +206,7 @@ pub(super) fn element_output(output: Output) -> Option<&'static ElementOutput> {
 }
 
 /// The variables of an element, named as a layer's, in the order of the result files.
-pub fn variables(table: &Table) -> Vec<Variable> {
+pub fn variables(table: &FrictionTable) -> Vec<Variable> {
     let known = OUTPUTS.iter().filter(|known| known.needs.is_none_or(|quantity| table.has(quantity)));
     known.filter_map(|known| variable(known.output)).collect()
 }
@@ -231,7 +231,7 @@ pub struct Clearance {
 
 impl Clearance {
     /// The first touch at any speed and temperature of `table`.
-    pub fn new(table: &Table) -> Self {
+    pub fn new(table: &FrictionTable) -> Self {
         let temperatures = with_middles(&table.grid.temperatures, |low, high| 0.5 * (low + high));
         let speeds = with_middles(&table.grid.speeds, |low, high| (low * high).sqrt());
         let first = temperatures.first().copied().unwrap_or_default();
@@ -290,7 +290,7 @@ mod tests {
     fn nothing_touches_there_and_a_little_lower_something_does() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch");
         for name in ["block.table.csv", "winkler.table.csv"] {
-            let table = Table::load(&folder.join(name)).unwrap();
+            let table = FrictionTable::load(&folder.join(name)).unwrap();
             let clearance = Clearance::new(&table);
             let mut random = SplitMix64::new(7);
             let mut between = |values: &[f64]| match values {

@@ -1,5 +1,7 @@
 //! Whether the values of a point can be relied on.
 
+use crate::table::{Column, Table, TableError};
+
 /// The status of a point.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PointStatus {
@@ -36,6 +38,19 @@ impl PointStatus {
             FULL_CONTACT => Self::FullContact,
             problem => Self::Problem(problem.to_owned()),
         }
+    }
+
+    /// Its column.
+    pub fn column() -> Column {
+        Column::words("status")
+    }
+
+    /// That of a row.
+    ///
+    /// # Errors
+    /// [`TableError`] where the table has no such column.
+    pub fn of_row(table: &Table, row: usize) -> Result<Self, TableError> {
+        table.word(row, "status").map(|text| Self::read(&text))
     }
 
     /// Whether friction and area are a result.

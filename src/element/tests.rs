@@ -14,8 +14,8 @@ use crate::scene::{Parameter, Value};
 use crate::simulation::Start;
 use sweeps::{AREA, Grid, REST, WARM, friction, logarithmic, separation, stiffness};
 
-fn table(grid: &Grid) -> Table {
-    Table::parse(&grid.text(), Path::new("table.csv")).unwrap()
+fn table(grid: &Grid) -> FrictionTable {
+    FrictionTable::parse(&grid.text(), Path::new("table.csv")).unwrap()
 }
 
 fn contact() -> PointContact {
@@ -368,13 +368,13 @@ fn left_out_points_show_the_interpolation_error() {
 #[test]
 fn an_incomplete_table_is_refused_with_what_is_missing() {
     let text = Grid::plain().text();
-    let refused = |text: &str| Table::parse(text, Path::new("t.csv")).unwrap_err().to_string();
+    let refused = |text: &str| FrictionTable::parse(text, Path::new("t.csv")).unwrap_err().to_string();
     let lines: Vec<&str> = text.lines().collect();
     let without = |skip: usize| {
         let kept: Vec<&str> = lines.iter().enumerate().filter(|(i, _)| *i != skip).map(|(_, line)| *line).collect();
         kept.join("\n")
     };
-    assert!(refused(&without(0)).contains("not the table of a sweep"));
+    assert!(refused(&without(0)).contains("expected the line `# asperity sweep = 1`"));
     assert!(refused(&without(3)).contains("nominal_area"));
     let missing = refused(&without(8));
     assert!(missing.starts_with("t.csv: no row of ") && missing.contains("m/s, 100000 Pa"), "{missing}");

@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::face::{Face, Points, Section, Tread};
-use crate::element::{Clearance, Load, Node, Quantity, ResampledLaw, Table, TableError};
+use crate::element::{Clearance, FrictionTable, Load, Node, Quantity, ResampledLaw};
 use crate::scene::{
     Backing, Extrapolation, FaceHeat, FaceShape, FmuOptions, Grid, NotDoubled, Parameter, ParameterError, PatchFile,
     PatchGroup, Problem, SceneError, Setting, TableExtrapolation, Value,
 };
+use crate::table::TableError;
 
 /// Why a patch is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -48,7 +49,7 @@ pub(super) struct ElementSite {
 pub struct Patch {
     file: Arc<PatchFile>,
     files: Arc<[PathBuf]>,
-    table: Arc<Table>,
+    table: Arc<FrictionTable>,
     clearance: Clearance,
     pub(super) face: Arc<Face>,
     pub(super) nominal_area: f64,
@@ -105,7 +106,7 @@ impl Patch {
     }
 
     fn new(file: PatchFile, path: &Path) -> Result<Self, PatchError> {
-        let table = Table::load(&path.parent().unwrap_or(Path::new("")).join(&file.table))?;
+        let table = FrictionTable::load(&path.parent().unwrap_or(Path::new("")).join(&file.table))?;
         Ok(Self {
             nominal_area: nominal_area(&file, &table)?,
             temperature: temperature(&file, &table)?,
@@ -129,12 +130,12 @@ impl Patch {
 
     /// What it is, in a sentence.
     pub fn description(&self) -> String {
-        let (count, table) = (self.face.count(), &self.table.scene);
+        let (count, table) = (self.face.count(), self.table.scene());
         format!("Contact patch of {count} elements from {} points swept of {table}", self.table.grid.count())
     }
 
     /// The table.
-    pub fn table(&self) -> &Table {
+    pub fn table(&self) -> &FrictionTable {
         &self.table
     }
 
@@ -391,13 +392,13 @@ impl Patch {
 }
 
 /// Slip that warms the elements takes a table that says what their temperature does.
-fn heat(file: &PatchFile, table: &Table) -> Result<Option<FaceHeat>, PatchError> {
+fn heat(file: &PatchFile, table: &FrictionTable) -> Result<Option<FaceHeat>, PatchError> {
     let temperatures = table.grid.temperatures.len();
     if file.heat.is_some() && temperatures < 2 { Err(file.refuse_heat(temperatures).into()) } else { Ok(file.heat) }
 }
 
 /// A table of pressures says the area itself, one of forces does not.
-fn nominal_area(file: &PatchFile, table: &Table) -> Result<f64, PatchError> {
+fn nominal_area(file: &PatchFile, table: &FrictionTable) -> Result<f64, PatchError> {
     match (table.load, file.nominal_area) {
         (Load::Pressure { area }, None) => Ok(area),
         (Load::Force, Some(area)) => Ok(area),
@@ -406,7 +407,7 @@ fn nominal_area(file: &PatchFile, table: &Table) -> Result<f64, PatchError> {
     }
 }
 
-fn temperature(file: &PatchFile, table: &Table) -> Result<f64, PatchError> {
+fn temperature(file: &PatchFile, table: &FrictionTable) -> Result<f64, PatchError> {
     let all = &table.grid.temperatures;
     let (Some(low), Some(high)) = (all.first(), all.last()) else {
         let refused = || file.refuse_temperature("none: the table has no temperatures".into());

@@ -32,8 +32,25 @@ impl Header {
     /// # Errors
     /// [`TableError`] where it is one.
     pub fn check_kind(&self, (kind, version): (&str, u64)) -> Result<(), TableError> {
+        self.check_line(kind, &version.to_string())
+    }
+
+    /// Refuses the header of another table: of another kind or version, which stand in the first line, or with another
+    /// value of the key `fingerprint`, which tells tables of a kind from one another.
+    pub(super) fn check_same(&self, other: &Self) -> Result<(), TableError> {
+        let Some((kind, version)) = self.values.first() else { return Ok(()) };
+        other.check_line(kind, version)?;
+        let [found, ours] = [other, self].map(|header| header.find("fingerprint").unwrap_or("none"));
+        if found == ours {
+            return Ok(());
+        }
+        let kind = kind.trim_start_matches("asperity ");
+        Err(other.error(format!("is the table of another {kind}: its fingerprint is {found}, expected {ours}")))
+    }
+
+    fn check_line(&self, kind: &str, version: &str) -> Result<(), TableError> {
         match self.find(kind) {
-            Some(found) if found == version.to_string() => Ok(()),
+            Some(found) if found == version => Ok(()),
             found => {
                 let found = found.unwrap_or("none");
                 Err(self.error(format!("expected the line `# {kind} = {version}`, found {found}")))

@@ -192,21 +192,26 @@ impl Table {
         Ok(table)
     }
 
-    /// Reads what a command that was stopped has left of a table with the columns of this one: its rows, and what is wrong
-    /// with those that it could not have written. A last line without an end was cut off.
+    /// Reads what a command that was stopped has left of this table: its rows, and what is wrong with those that it could
+    /// not have written. A last line without an end was cut off.
     ///
     /// # Errors
-    /// [`TableError`] where the text has other columns.
+    /// [`TableError`] where the text is of another table: of another kind, fingerprint or other columns.
     pub fn begun(&self, text: &str, file: &Path) -> Result<(Self, Vec<TableError>), TableError> {
+        let mut table = self.ordered([]);
+        let mut corrupt = Vec::new();
+        if self.head().starts_with(text) {
+            return Ok((table, corrupt));
+        }
         let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
         let (read, rows) = Self::divided(whole, file);
+        self.header.check_same(&read.header)?;
         let headings = |table: &Self| table.columns.iter().map(Column::heading).collect::<Vec<_>>().join(",");
-        if headings(self) != headings(&read) {
+        // Even the names may have been cut off.
+        if !read.columns.is_empty() && headings(self) != headings(&read) {
             return Err(read.error(format!("expected the columns {}", headings(self))));
         }
-        let mut table =
-            Self { header: read.header, ..Self::new(Header::default(), self.columns.iter().map(Column::emptied)) };
-        let mut corrupt = Vec::new();
+        table.header = read.header;
         for (line, fields) in rows {
             match table.check_fields(line, &fields) {
                 Ok(()) => table.add(line, fields.into_iter().map(Cell::Word)),
@@ -410,16 +415,30 @@ mod tests {
 
     #[test]
     fn what_a_stopped_command_has_left_is_found() {
-        let table = Table::new(Header::new(("n", 1)), [Column::numbers("x", "m"), Column::words("status")]);
+        let header = Header::new(("n", 1)).with("fingerprint", "00");
+        let table = Table::new(header, [Column::numbers("x", "m"), Column::words("status")]);
+        let begun = |text: &str| table.begun(text, Path::new("t.csv"));
         let text = format!("{}1,steady\nx,steady\n2\n3,4\n5,stea", table.head());
-        let (found, corrupt) = table.begun(&text, Path::new("t.csv")).unwrap();
+        let (found, corrupt) = begun(&text).unwrap();
         assert_eq!(
             (found.len(), found.number(1, "x", "m"), found.word(1, "status")),
             (2, Ok(Some(3.0)), Ok("4".into()))
         );
         let said: Vec<String> = corrupt.iter().map(ToString::to_string).collect();
-        assert_eq!(said, ["t.csv:4: x [m] = \"x\": expected a number", "t.csv:5: 1 fields, expected 2"]);
-        let other = table.begun("x [mm],status\n", Path::new("t.csv")).unwrap_err().to_string();
-        assert_eq!(other, "t.csv: expected the columns x [m],status");
+        assert_eq!(said, ["t.csv:5: x [m] = \"x\": expected a number", "t.csv:6: 1 fields, expected 2"]);
+        // Cut off anywhere: the rows whose lines are whole.
+        for cut in 0..text.len() {
+            let rows = begun(&text[..cut]).unwrap().0.len();
+            assert!(rows <= 2 && (rows == 0) == (cut < table.head().len() + "1,steady\n".len()), "cut off after {cut}");
+        }
+        for (other, why) in [
+            ("# n = 1\n# fingerprint = 00\nx [mm],status\n", "expected the columns x [m],status"),
+            ("# n = 1\n# fingerprint = 01\n", "another n: its fingerprint is 01, expected 00"),
+            ("# n = 2\n", "expected the line `# n = 1`, found 2"),
+            ("notes", "expected the line `# n = 1`, found none"),
+        ] {
+            let error = begun(other).unwrap_err().to_string();
+            assert!(error.starts_with("t.csv: ") && error.contains(why), "{error}");
+        }
     }
 }

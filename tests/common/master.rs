@@ -7,7 +7,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::{fs, mem, process, ptr};
 
-use asperity::element::{PointContact, Table};
+use asperity::element::{FrictionTable, PointContact};
 use asperity::patch::Patch;
 use asperity::scene::Scene;
 use asperity_fmi::bindings::*;
@@ -123,7 +123,7 @@ pub fn describe(file: &Path) -> (String, VariableTable) {
     let definition: Definition = if file.ends_with(PATCH_FILE) {
         Patch::load(file).unwrap().into()
     } else if file.ends_with(TABLE_FILE) {
-        PointContact::new(Table::load(file).unwrap()).into()
+        PointContact::new(FrictionTable::load(file).unwrap()).into()
     } else {
         Scene::load(file).unwrap().into()
     };

@@ -8,7 +8,7 @@ use std::process::Command;
 use crate::common::scenes::SceneText;
 use crate::common::sweeps::{Grid, REST, WARM, separation};
 use crate::common::{Table, asperity, drive, fmpy, largest, library, python, run, scratch};
-use asperity::element::{Element, PointContact, Table as Sweep};
+use asperity::element::{Element, FrictionTable as Sweep, PointContact};
 use asperity::simulation::Start;
 
 /// Packs a table beside it and returns the FMU and what was printed.

@@ -251,7 +251,9 @@ fn invalid_commands_are_refused() {
     assert!(!table.exists());
     // Another file, another sweep, a table of more points: none is replaced without --force.
     fs::write(&table, "time,u,w\n0,0,0\n").unwrap();
-    assert!(asked(&["--speeds", "1", "--forces", "1"]).contains("not the table of a sweep: expected the line"));
+    assert!(
+        asked(&["--speeds", "1", "--forces", "1"]).contains("expected the line `# asperity sweep = 1`, found none")
+    );
     sweep(&scene, &table, &["--speeds", "1,2", "--forces", "1", "--force"]);
     let whole = fs::read(&table).unwrap();
     assert!(

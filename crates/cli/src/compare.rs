@@ -2,33 +2,23 @@
 
 use std::path::Path;
 
+use asperity_study::Error;
 use asperity_study::calibration::{Measured, chi_square_per_degree};
-use asperity_study::comparison::{Comparison, ComparisonError};
+use asperity_study::comparison::Comparison;
 use asperity_study::decimals::rounded;
-use asperity_study::sweep::{SweepTable, SweepTableError};
+use asperity_study::sweep::SweepTable;
 
 use super::cli::Compare;
 use super::figure::{Figure as _, Stroke};
-use super::files::{FileError, check_outputs, name_of, named, print_beside};
+use super::files::{check_outputs, name_of, named, print_beside};
 use super::measured_friction::{self, ModelCurves, off};
 use super::terminal::{labelled, lines, note, warn};
-
-/// `asperity compare` failed.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum CompareError {
-    #[error(transparent)]
-    File(#[from] FileError),
-    #[error(transparent)]
-    Table(#[from] SweepTableError),
-    #[error(transparent)]
-    Comparison(#[from] ComparisonError),
-}
 
 /// Measurements that are off the most are named up to this many.
 const WORST: usize = 5;
 
 /// Draws the curves and the points, and says how far these are off.
-pub(crate) fn compare(command: &Compare) -> Result<(), CompareError> {
+pub(crate) fn compare(command: &Compare) -> Result<(), Error> {
     let picture = command.output.clone().unwrap_or_else(|| command.table.with_extension("compare.svg"));
     check_outputs([&picture], vec![command.table.clone(), command.data.clone()])?;
     let table = SweepTable::read(&command.table)?;
@@ -38,8 +28,8 @@ pub(crate) fn compare(command: &Compare) -> Result<(), CompareError> {
     comparison.check(&command.data)?;
     let rows: Vec<Measured> = comparison.within.iter().map(|(row, _)| *row).collect();
     let swept = ModelCurves { name: "swept", stroke: Stroke::Line, points: comparison.swept.clone() };
-    measured_friction::picture(&table.header.scene, &comparison.grid, &rows, &[swept]).write(&picture)?;
-    Ok(print_beside([&picture], &summary(command, &comparison, &picture))?)
+    measured_friction::picture(table.header.scene(), &comparison.grid, &rows, &[swept]).write(&picture)?;
+    print_beside([&picture], &summary(command, &comparison, &picture))
 }
 
 fn summary(command: &Compare, comparison: &Comparison, picture: &Path) -> String {

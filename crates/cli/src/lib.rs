@@ -16,6 +16,7 @@
 //! | `files` | draft, output, terminal | scenes and other files that commands read and write |
 //! | `lock` | interrupt, output, terminal | a table that one process writes at a time |
 //! | `resumable_table` | files, lock | tables that a stopped command goes on with |
+//! | `table_file` | draft, files, lock, output, terminal | tables that a stopped command goes on with, which add rows |
 //! | `result_file` | draft, files | results of runs, row by row |
 //! | `cli` | files | the command line: commands and their options |
 //! | `figure` | cli, files, terminal | charts, maps and moments, drawn with plotters |
@@ -25,7 +26,7 @@
 //! | `patch` | cli, figure, files, result_file, simulate, terminal | `simulate` of a patch |
 //! | `describe` | cli, figure, files, simulate, terminal | `describe` |
 //! | `contact` | cli, figure, files, npz, terminal | `contact` |
-//! | `sweep` | cli, draft, figure, files, flags, interrupt, lock, output, resumable_table, terminal | `sweep` |
+//! | `sweep` | cli, figure, files, flags, interrupt, output, table_file, terminal | `sweep` |
 //! | `rank` | cli, figure, files, flags, terminal | `rank` |
 //! | `converge` | cli, draft, figure, files, flags, interrupt, output, resumable_table, terminal | `converge` |
 //! | `fit` | cli, figure, files, flags, terminal | `fit` |
@@ -65,6 +66,7 @@ mod resumable_table;
 mod simulate;
 mod surface;
 mod sweep;
+mod table_file;
 mod terminal;
 
 use std::error::Error;

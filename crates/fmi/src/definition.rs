@@ -13,7 +13,7 @@ use super::memory;
 use super::model::FmuModel;
 use super::resources::{self, PATCH_FILE, Resource, SCENE_FILE, TABLE_FILE};
 use super::variables::VariableTable;
-use asperity::element::{PointContact, Table};
+use asperity::element::{FrictionTable, PointContact};
 use asperity::model::EvenSliding;
 use asperity::patch::Patch;
 use asperity::scene::{Parameter, ParameterError, Scene, Value};
@@ -77,7 +77,7 @@ impl Definition {
         let path = &found.path;
         memory::check("reading the resources", READING.saturating_mul(size_of_files_beside(path)))?;
         let definition = if path.ends_with(TABLE_FILE) {
-            PointContact::new(Table::load(path)?).into()
+            PointContact::new(FrictionTable::load(path)?).into()
         } else if path.ends_with(PATCH_FILE) {
             Patch::load(path)?.into()
         } else {

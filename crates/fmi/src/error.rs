@@ -8,10 +8,11 @@ use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
-use asperity::element::{self, ElementError, TableError};
+use asperity::element::{self, ElementError};
 use asperity::patch::{self, MotionError, PatchError};
 use asperity::scene::{LARGEST, ParameterError, SMALLEST, SceneError};
 use asperity::simulation::{self, SimulationError};
+use asperity::table::TableError;
 
 use super::lifecycle::{Function, LifecycleState};
 

@@ -1,32 +1,12 @@
 //! The curves of a sweep beside measured friction.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use asperity::element::{Load, OperatingPoint, Quantity, TableHeader};
+use asperity::element::{Load, OperatingPoint, Quantity};
 
-use crate::calibration::{CurveGrid, Measured, MeasuredFrictionError, Measurements, left_out_in_words};
-use crate::sweep::{SweepTable, way_of};
-
-/// A table cannot be compared with measurements.
-#[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say what they are")]
-pub enum ComparisonError {
-    #[error(transparent)]
-    Measured(#[from] MeasuredFrictionError),
-    #[error(
-        "{}: no temperatures: expected a column temperature [°C], for the table has several; or a table of one temperature",
-        .0.display()
-    )]
-    NoTemperature(PathBuf),
-    #[error("{}: a table over forces: expected one over pressures, as `asperity sweep --pressures` makes", .0.display())]
-    OverForces(PathBuf),
-    #[error(
-        "{}: expected measurements within the speeds, pressures and temperatures of the table, where its points have a result; it \
-         has none",
-        .0.display()
-    )]
-    NoneWithin(PathBuf),
-}
+use crate::Error;
+use crate::calibration::{CurveGrid, Measured, Measurements, left_out_in_words};
+use crate::sweep::{SweepHeader, SweepTable, way_of};
 
 /// Measurements and the friction of a table there.
 #[derive(Clone, Debug)]
@@ -65,7 +45,7 @@ impl Comparison {
     ///
     /// # Errors
     /// Where the table is over forces, or the measurements cannot be read.
-    pub fn new(table: &SweepTable, path: &Path, data: &Path) -> Result<Self, ComparisonError> {
+    pub fn new(table: &SweepTable, path: &Path, data: &Path) -> Result<Self, Error> {
         let measurements = measured_beside(&table.header, path, data)?;
         let curves = SweptFriction { table };
         let (mut within, mut left_out) = (Vec::<(Measured, f64)>::new(), Vec::<(Measured, NoFriction)>::new());
@@ -86,8 +66,16 @@ impl Comparison {
     ///
     /// # Errors
     /// Where it has none.
-    pub fn check(&self, data: &Path) -> Result<(), ComparisonError> {
-        if self.within.is_empty() { Err(ComparisonError::NoneWithin(data.to_owned())) } else { Ok(()) }
+    pub fn check(&self, data: &Path) -> Result<(), Error> {
+        if !self.within.is_empty() {
+            return Ok(());
+        }
+        Err(Error::in_file(
+            data,
+            None,
+            "expected measurements within the speeds, pressures and temperatures of the table, where its points have a \
+             result; it has none",
+        ))
     }
 
     /// Sum of the squared deviations of the table from the measurements.
@@ -115,14 +103,22 @@ impl Comparison {
 ///
 /// # Errors
 /// Where the table is over forces, or the measurements cannot be read, or say nothing of the temperature that they need.
-pub fn measured_beside(header: &TableHeader, path: &Path, data: &Path) -> Result<Measurements, ComparisonError> {
+pub fn measured_beside(header: &SweepHeader, path: &Path, data: &Path) -> Result<Measurements, Error> {
     let Load::Pressure { area } = header.load else {
-        return Err(ComparisonError::OverForces(path.to_owned()));
+        return Err(Error::in_file(
+            path,
+            None,
+            "a table over forces: expected one over pressures, as `asperity sweep --pressures` makes",
+        ));
     };
     let mut measurements = Measurements::read(data, area)?;
     let temperatures = &header.grid.temperatures;
     if temperatures.len() > 1 && !measurements.has_temperature() {
-        return Err(ComparisonError::NoTemperature(data.to_owned()));
+        return Err(Error::in_file(
+            data,
+            None,
+            "no temperatures: expected a column temperature [°C], for the table has several; or a table of one temperature",
+        ));
     }
     if temperatures.is_empty() && measurements.has_temperature() {
         measurements.notes.push(without_temperature(&measurements.rows));
@@ -187,7 +183,7 @@ impl SweptFriction<'_> {
     /// Friction at a point, unless it is beyond the table or beside a point of it without a result.
     fn at(&self, point: &OperatingPoint) -> Result<f64, NoFriction> {
         let header = &self.table.header;
-        if point.way.is_some() && point.way != way_of(&header.basis) {
+        if point.way.is_some() && point.way != way_of(&header.keys) {
             return Err(NoFriction::OtherWay);
         }
         let grid = &header.grid;
@@ -215,9 +211,9 @@ impl SweptFriction<'_> {
     }
 
     fn on_grid(&self, point: &OperatingPoint) -> Result<f64, NoFriction> {
-        let found = self.table.rows.iter().find(|stored| stored.row.point == *point).ok_or(NoFriction::Beyond)?;
-        let friction = found.row.value(Quantity::Friction).filter(|_| found.row.is_result());
-        friction.ok_or_else(|| NoFriction::Failed(found.row.status.text().to_owned()))
+        let found = self.table.rows.iter().find(|row| row.point == *point).ok_or(NoFriction::Beyond)?;
+        let friction = found.value(Quantity::Friction).filter(|_| found.is_result());
+        friction.ok_or_else(|| NoFriction::Failed(found.status.text().to_owned()))
     }
 }
 

@@ -1,22 +1,14 @@
 //! Where the rubber touches in steady sliding, and how hard.
 
 use asperity::scene::Scene;
+use clap::Args;
+use serde::{Deserialize, Serialize};
 
+use crate::Error;
 use crate::implausible::{FoundFriction, implausible};
 use crate::steady::{SlideProblem, SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
-use crate::sweep::{Method, MethodError, NotPossible, SlidingOptions, SweepMethod};
-
-/// The contact of a scene cannot be solved for.
-#[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say what they are")]
-pub enum ContactError {
-    #[error(transparent)]
-    Method(#[from] MethodError),
-    #[error(transparent)]
-    Range(#[from] NotPossible),
-    #[error("the scene has no material or layer.width, so its contact has no pressure")]
-    NoMaterial,
-}
+use crate::sweep::{Method, SlidingOptions, SweepMethod, check_possible};
+use crate::values::{pressure, speed};
 
 /// What stands at every point of a surface, row by row along x, and where.
 #[derive(Clone, Debug)]
@@ -48,40 +40,38 @@ pub struct SolvedContact {
     pub warnings: Vec<String>,
 }
 
-/// One state of steady sliding, and on how many points it is solved for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactOptions {
-    /// Mean pressure, Pa.
+// One state of steady sliding, and how it is found. Not a doc comment: that would be the description of the command.
+#[expect(missing_docs, reason = "clap would print it")]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Args)]
+pub struct SteadyState {
+    /// Mean pressure in Pa.
+    #[arg(long, value_name = "PRESSURE", value_parser = pressure, allow_negative_numbers = true)]
     pub pressure: f64,
-    /// Sliding speed, m/s.
+    /// Sliding speed in m/s.
+    #[arg(long, value_name = "SPEED", value_parser = speed, allow_negative_numbers = true)]
     pub speed: f64,
-    /// The way that rubber as warm as the scene has slid, m; `None`: its surface is as warm.
-    pub way: Option<f64>,
-    /// Points of a period along x; `None`: as [`SlidingOptions::points`].
-    pub points: Option<u32>,
 }
 
 /// Solves for steady sliding of a scene.
 ///
 /// # Errors
 /// Where the scene cannot be solved for, or there is no such state.
-pub fn solve_contact(scene: &Scene, options: &ContactOptions) -> Result<SolvedContact, ContactError> {
-    NotPossible::check("speed", "m/s", &[options.speed])?;
-    NotPossible::check("pressure", "Pa", &[options.pressure])?;
-    let sliding = SlidingOptions {
-        method: Some(SweepMethod::Steady),
-        way: options.way,
-        points: options.points,
-        ..SlidingOptions::default()
-    };
+pub fn solve_contact(scene: &Scene, at: SteadyState, sliding: SlidingOptions) -> Result<SolvedContact, Error> {
+    check_possible("speed", "m/s", &[at.speed])?;
+    check_possible("pressure", "Pa", &[at.pressure])?;
+    let no_material = || Error::scene("the scene has no material or layer.width, so its contact has no pressure");
+    if sliding.method == Some(SweepMethod::Layer) {
+        return Err(Error::scene("`method`: expected steady, which has pressures at all points"));
+    }
     // What is asked for is chosen or refused.
-    let (Method::Steady(surface), _) = sliding.choose(scene)? else { return Err(ContactError::NoMaterial) };
-    let rubber = SlidingRubber::new(scene).ok_or(ContactError::NoMaterial)?;
+    let asked = SlidingOptions { method: Some(SweepMethod::Steady), ..sliding };
+    let (Method::Steady(surface), _) = asked.choose(scene)? else { return Err(no_material()) };
+    let rubber = SlidingRubber::new(scene).ok_or_else(no_material)?;
     let mut solver = SteadySolver::new(surface);
-    let slide = solver.slide_over(&rubber, options.speed, options.pressure, options.way);
+    let slide = solver.slide_over(&rubber, at.speed, at.pressure, sliding.way);
     let surface = solver.surface().clone();
     let (fields, problem) = (ContactFields::new(&surface, &slide), slide.problem());
-    let place = format!("at {} m/s, {} Pa", options.speed, options.pressure);
+    let place = format!("at {} m/s, {} Pa", at.speed, at.pressure);
     let area = slide.real_area.unwrap_or(slide.area);
     let rise = slide.flash_mean.map(|flash| flash + slide.surface_rise.unwrap_or(0.0));
     let found = slide.friction().map(|friction| FoundFriction { place, friction, area: Some(area), rise });

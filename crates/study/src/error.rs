@@ -15,11 +15,12 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use asperity::element::{ElementError, TableError};
+use asperity::element::ElementError;
 use asperity::math::NotEnoughMemory;
 use asperity::patch::{MotionError, PatchError, PatchRestoreError};
 use asperity::scene::{ParameterError, SceneError};
 use asperity::simulation::{OutOfRange, SimulationError};
+use asperity::table::TableError;
 use asperity::tables::ContentError;
 
 use crate::progress::Stopped;
@@ -248,11 +249,16 @@ pub(crate) use of_kind;
 
 of_kind! {
     ContentError => Value,
-    TableError => Value,
     PatchRestoreError => Value,
     OutOfRange => Value,
     NotEnoughMemory => Scene,
     Stopped => Stopped,
+}
+
+impl From<TableError> for Error {
+    fn from(error: TableError) -> Self {
+        Self::in_file(&error.file, error.line, error.problem)
+    }
 }
 
 impl From<serde_json::Error> for Error {

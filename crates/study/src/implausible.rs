@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use asperity::element::{Load, OperatingPoint, Quantity, TableRow};
+use asperity::element::{Load, OperatingPoint};
 use asperity::scene::{Friction, Scene};
 
 use crate::decimals::rounded;
@@ -25,16 +25,6 @@ pub struct FoundFriction {
     pub area: Option<f64>,
     /// How warm contacts are on the average above the scene's temperature, K; `None` where friction heats nothing.
     pub rise: Option<f64>,
-}
-
-impl FoundFriction {
-    /// What is in the row of a point that has a result.
-    pub fn of_row(row: &TableRow, load: Load) -> Option<Self> {
-        let friction = row.value(Quantity::Friction).filter(|_| row.is_result())?;
-        let area = row.value(Quantity::RealArea).or(row.value(Quantity::ContactRatio));
-        let rise = row.value(Quantity::FlashMean).map(|flash| flash + row.value(Quantity::SurfaceRise).unwrap_or(0.0));
-        Some(Self { place: at(&row.point, load), friction, area, rise })
-    }
 }
 
 /// A point as a place.

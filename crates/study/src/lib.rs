@@ -2,7 +2,8 @@
 //! Inputs and results are typed, what is written of them is made as text, and long work tells how far it is by a callback
 //! whose answer may end it.
 //!
-//! It knows nothing of arguments, of the terminal, of pictures and of the process: its errors speak of options in
+//! What is asked for are types that say what each option means, from which the program's arguments are made. It knows
+//! nothing else of arguments, and nothing of the terminal, of pictures and of the process: its errors speak of options in
 //! backquotes, which the program makes flags of.
 //!
 //! # Modules
@@ -12,6 +13,7 @@
 //! | module | uses | contents |
 //! |---|---|---|
 //! | [`decimals`] | | numbers as text: in all their digits, rounded, with prefixes of units |
+//! | [`values`] | decimals | values of options as people write them: with units, lists, ranges |
 //! | [`html`] | | pages in HTML: templates filled in, tables |
 //! | [`progress`] | | how far long work is, and how it is ended |
 //! | [`implausible`] | decimals | friction and areas of contact that no rubber has |
@@ -23,8 +25,8 @@
 //! | [`runner`] | progress | a scene along its excitation, row by row |
 //! | [`steady`] | | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
 //! | [`uncertainty`] | error | scenes drawn from what is not known of one: Sobol' points, distributions, indices |
-//! | [`sweep`] | csv, decimals, error, files, implausible, progress, steady, uncertainty | friction over speed, load and temperature, as a table |
-//! | [`contact`] | implausible, steady, sweep | the contact of a surface in steady sliding |
+//! | [`sweep`] | decimals, error, files, implausible, progress, steady, uncertainty, values | friction over speed, load and temperature, as a table |
+//! | [`contact`] | implausible, steady, sweep, values | the contact of a surface in steady sliding |
 //! | [`converge`] | decimals, error, steady, sweep | whether area and friction depend on spacing, length or chance |
 //! | [`calibration`] | csv, decimals, error, files, implausible, settings, steady, sweep | free numbers of a scene from measured friction: models, least squares, errors, plans |
 //! | [`comparison`] | calibration, sweep | a table of a sweep beside measured friction |
@@ -35,7 +37,7 @@
 //! | [`summary`] | decimals, error, runner, steady | what there is in a scene, a patch or a table, in lines |
 //! | [`run_figures`] | decimals, implausible, summary | forces and friction of a run, what it cost, and what would make it cheaper |
 //! | [`robustness`] | | a catalogue of perturbations of a scene, and the judge of perturbed runs |
-//! | [`pack`] | decimals, error, files, html, robustness, runner, summary | scenes, tables and patches as FMUs |
+//! | [`pack`] | decimals, error, files, html, robustness, runner, summary, sweep | scenes, tables and patches as FMUs |
 //! | [`motion`] | error, files | the motion that a patch is moved along |
 //! | [`check`] | csv, decimals, error, progress, runner, summary, sweep | elements and patches against what was swept |
 //! | [`report`] | csv, decimals, progress, robustness, runner | what the runs of a scene cost and how accurate they are |
@@ -71,5 +73,6 @@ pub mod summary;
 pub mod surface;
 pub mod sweep;
 pub mod uncertainty;
+pub mod values;
 
 pub use error::{Context, Error, ErrorKind};

@@ -16,11 +16,11 @@ mod tests;
 pub use speed_grid::{SpeedCell, SpeedRange};
 
 use super::backing::{SeriesBacking, SeriesIntervals};
+use super::friction_table::FrictionTable;
 use super::law::{Law, LawAtSpeed};
 use super::law_points::{ElementLaw, Intervals, LawPoints};
 use super::limits::TableLimits;
 use super::quantity::Quantity;
-use super::table::Table;
 use crate::math::Number;
 use crate::scene::Backing;
 use planes::Planes;
@@ -111,16 +111,22 @@ pub struct ResampledLaw {
 
 impl ResampledLaw {
     /// The law of `table` at `temperature` (K), of a layer that stands for `area` (m²), in series with a backing.
-    pub fn new(table: &Table, area: f64, temperature: f64, backing: Option<Backing>) -> Self {
+    pub fn new(table: &FrictionTable, area: f64, temperature: f64, backing: Option<Backing>) -> Self {
         Self::with_planes(table, area, temperature, backing, false)
     }
 
     /// As [`new`](Self::new), of a table of several temperatures and of elements that are warmer than `temperature`.
-    pub fn of_warm_elements(table: &Table, area: f64, temperature: f64, backing: Option<Backing>) -> Self {
+    pub fn of_warm_elements(table: &FrictionTable, area: f64, temperature: f64, backing: Option<Backing>) -> Self {
         Self::with_planes(table, area, temperature, backing, true)
     }
 
-    fn with_planes(table: &Table, area: f64, temperature: f64, backing: Option<Backing>, has_planes: bool) -> Self {
+    fn with_planes(
+        table: &FrictionTable,
+        area: f64,
+        temperature: f64,
+        backing: Option<Backing>,
+        has_planes: bool,
+    ) -> Self {
         let mut law = Law::new(table, temperature);
         let curve = LawAtSpeed::new(&law, 0.0);
         let shift = (table.load.area() / area).ln();
@@ -153,7 +159,7 @@ impl ResampledLaw {
     }
 
     /// Memory in bytes that the law of `table` takes, of elements that are warmer or not.
-    pub fn memory(table: &Table, is_warm: bool) -> usize {
+    pub fn memory(table: &FrictionTable, is_warm: bool) -> usize {
         let speeds = table.grid.speeds.iter().map(|speed| speed.ln()).collect();
         let width = if is_warm { MAX_WIDTH_OF_PLANES } else { MAX_WIDTH };
         let cells = SpeedGrid::new(speeds, width).cells();

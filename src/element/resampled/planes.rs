@@ -1,6 +1,6 @@
 //! The temperatures at which a law is kept where elements have temperatures of their own.
 
-use super::{Law, Table};
+use super::{FrictionTable, Law};
 
 /// Distance of planes, K, at most; closer where the table bends with the temperature so that p and μp would err by more
 /// than their tolerance at the table's points; and how many there are at most.
@@ -22,7 +22,7 @@ pub(super) struct Planes {
 
 impl Planes {
     /// Those of a table of several temperatures, with so many cells each.
-    pub(super) fn new(table: &Table, law: &Law, cells: usize) -> Option<Self> {
+    pub(super) fn new(table: &FrictionTable, law: &Law, cells: usize) -> Option<Self> {
         let [first, .., last] = *table.grid.temperatures.as_slice() else { return None };
         // A straight line over a parabola is off by its second derivative times the distance² over 8.
         let distance = (8.0 * PLANE_TOLERANCE / law.bend_over_temperature()).sqrt().min(MAX_DISTANCE);

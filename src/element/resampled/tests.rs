@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::*;
 
-fn table(name: &str) -> Table {
-    Table::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch").join(name)).unwrap()
+fn table(name: &str) -> FrictionTable {
+    FrictionTable::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch").join(name)).unwrap()
 }
 
 /// Where more of its speeds lie together than there are bins for.
@@ -24,7 +24,7 @@ fn close_speeds_of_a_table_are_told_apart() {
     }
     let path = std::env::temp_dir().join(format!("asperity-close-{}.csv", std::process::id()));
     std::fs::write(&path, text).unwrap();
-    let table = Table::load(&path).unwrap();
+    let table = FrictionTable::load(&path).unwrap();
     std::fs::remove_file(&path).unwrap();
     let mut law = ResampledLaw::new(&table, 1.0, 0.0, None);
     for (j, speed) in speeds.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use asperity::element::{Node, Quantity, Table};
+use asperity::element::{FrictionTable, Node, Quantity};
 use asperity::patch::COORDINATES;
 
 use crate::common::root;
@@ -452,7 +452,7 @@ fn start_values_initialise() {
         assert_eq!(fmu.real(across), 0.0);
     }
     // So does a patch, which starts no higher above its table than the table goes.
-    let table = Table::load(&root().join("tests/reference/patch/block.table.csv")).unwrap();
+    let table = FrictionTable::load(&root().join("tests/reference/patch/block.table.csv")).unwrap();
     let (shape, count) = (table.grid.clone(), table.grid.count());
     let (speeds, loads) = (shape.speeds.len(), shape.loads.len());
     let node = |i: usize| Node { temperature: i / (speeds * loads), load: i / speeds % loads, speed: i % speeds };

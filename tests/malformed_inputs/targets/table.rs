@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use asperity::element::{Element, Node, PointContact, Quantity, Table};
+use asperity::element::{Element, FrictionTable, Node, PointContact, Quantity};
 use asperity::outputs::Variable;
 use asperity::scene::{Parameter, Value};
 use asperity::simulation::Start;
@@ -11,7 +11,7 @@ use asperity::simulation::Start;
 pub fn run(bytes: &[u8]) {
     let Some((first, text)) = bytes.split_first() else { return };
     let Ok(text) = std::str::from_utf8(text) else { return };
-    match Table::parse(text, Path::new("table.csv")) {
+    match FrictionTable::parse(text, Path::new("table.csv")) {
         Ok(table) => run_table(table, first % 2 == 1),
         Err(error) => {
             let message = error.to_string();
@@ -21,7 +21,7 @@ pub fn run(bytes: &[u8]) {
 }
 
 /// From the middle of the table to its ends and past them, along both axes.
-fn run_table(table: Table, goes_beyond: bool) {
+fn run_table(table: FrictionTable, goes_beyond: bool) {
     let (slow, fast) = (table.grid.speeds[0], table.grid.speeds[table.grid.speeds.len() - 1]);
     let separations =
         [0, table.grid.loads.len() - 1].map(|load| table.value(Quantity::Separation, Node { load, ..Node::default() }));

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use crate::common::{root, scratch};
-use asperity::element::{Element, PointContact, Table, variables as element_variables};
+use asperity::element::{Element, FrictionTable, PointContact, variables as element_variables};
 use asperity::patch::{Patch, PatchMotion, PatchOutput, PatchRun, PatchStart, Pose};
 use asperity::simulation::Start;
 
@@ -261,7 +261,7 @@ fn a_straight_path_may_be_cut_anyhow() {
 /// the times beside them (s), after every motion.
 fn one_element_and_the_other(height: f64, motions: &[([f64; 2], f64)]) -> Vec<[[f64; 2]; 3]> {
     let path = root().join("tests/reference/patch/block.table.csv");
-    let table = Table::load(&path).unwrap();
+    let table = FrictionTable::load(&path).unwrap();
     let (area, rest) = (table.load.area(), table.rest_separation);
     let patch = points("one", "block.table.csv", &[[0.0, 0.0, 0.0, area]]);
     let rates = |[x, z]: [f64; 2]| [x, 0.0, z, 0.0, 0.0, 0.0];

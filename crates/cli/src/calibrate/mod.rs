@@ -67,7 +67,7 @@ impl From<&Calibrate> for CalibrationOptions {
             set: command.set.to_vec(),
             free: command.free.clone(),
             data: command.data.clone(),
-            sliding: command.sliding.options(),
+            sliding: command.sliding,
         }
     }
 }
@@ -105,7 +105,7 @@ impl Outputs {
 
 /// Fits, writes the scene and the picture, and says what the data tell.
 pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, CalibrateError> {
-    let scene = load_without_run(&command.scene, &command.set, |scene| !command.sliding.options().solves(scene))?;
+    let scene = load_without_run(&command.scene, &command.set, |scene| !command.sliding.solves(scene))?;
     let text = read_text(&command.scene).map_err(FileError::io("read", &command.scene))?;
     let options = command.into();
     let free = FreeScene::new(&options, &text, scene)?;

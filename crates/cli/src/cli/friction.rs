@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use asperity_study::calibration::FreeParameter;
+use asperity_study::sweep::SlidingOptions;
+use asperity_study::values::Values;
 use clap::Args;
 
-use super::shared::{Set, Sliding};
-use super::sweep_values::Values;
+use super::shared::Set;
 use super::values::{free_parameter, picture};
 
 #[derive(Debug, Args)]
@@ -34,7 +35,7 @@ pub(crate) struct Calibrate {
     #[arg(long, value_name = "OUT.svg", value_parser = picture())]
     pub(crate) plot: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) sliding: Sliding,
+    pub(crate) sliding: SlidingOptions,
     /// Also proposes three points to measure that would tell most (D-optimal among a grid).
     #[arg(long)]
     pub(crate) plan: bool,

@@ -24,7 +24,6 @@ pub(crate) use measurements::{Fit, Reading, Surface};
 pub(crate) use rank::Rank;
 pub(crate) use runs::{Plot, Report, Simulate};
 pub(crate) use scenes::{Describe, Material, Pack};
-pub(crate) use shared::{Sliding, SteadyState};
 pub(crate) use sliding::{Contact, Converge, Sweep};
 pub(crate) use values::{Condition, FitVertical, FitWeight, PlotAxis};
 

@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
+use asperity_study::sweep::SweepOptions;
 use clap::{ArgGroup, Args};
 
-use super::shared::{Set, Sliding};
-use super::sweep_values::Values;
+use super::shared::Set;
 use super::values::{count, picture};
 
 #[derive(Debug, Args)]
+#[command(mut_arg("speeds", |speeds| speeds.required(true)))]
 #[command(group(ArgGroup::new("loads").required(true).args(["pressures", "forces"])))]
 #[command(after_help = example!(
     "asperity rank scenes/road/road.toml scenes/two-maxima/two-maxima.toml --speeds 0.1..10/5 --pressures 2bar \\\n\
@@ -18,18 +19,8 @@ pub(crate) struct Rank {
     /// The scene files, two or more; the index of the first is 100.
     #[arg(value_name = "SCENE.toml", num_args = 2.., required = true)]
     pub(crate) scenes: Vec<PathBuf>,
-    /// Speeds in m/s, in the format of asperity sweep.
-    #[arg(long, value_name = "VALUES", value_parser = Values::speeds)]
-    pub(crate) speeds: Values,
-    /// Mean pressures in Pa, in the format of --speeds.
-    #[arg(long, value_name = "VALUES", value_parser = Values::pressures)]
-    pub(crate) pressures: Option<Values>,
-    /// Mean normal forces F_z of the whole layer in N, in place of pressures.
-    #[arg(long, value_name = "VALUES", value_parser = Values::forces)]
-    pub(crate) forces: Option<Values>,
-    /// Temperatures in K: a..b/n for n evenly spaced values. Default: the scenes' own, which must be the same.
-    #[arg(long, value_name = "VALUES", value_parser = Values::temperatures)]
-    pub(crate) temperatures: Option<Values>,
+    #[command(flatten)]
+    pub(crate) options: SweepOptions,
     /// The weights of the points in the mean: a table with a column weight and those of speed, pressure and temperature that it
     /// depends on. Default: all the same.
     #[arg(long, value_name = "WEIGHTS.csv")]
@@ -51,8 +42,6 @@ pub(crate) struct Rank {
     /// friction over speed and temperature. Default: the table's name with .svg.
     #[arg(long, value_name = "OUT.svg", value_parser = picture())]
     pub(crate) plot: Option<PathBuf>,
-    #[command(flatten)]
-    pub(crate) sliding: Sliding,
     #[command(flatten)]
     pub(crate) set: Set,
 }

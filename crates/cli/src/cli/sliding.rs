@@ -2,12 +2,14 @@
 
 use std::path::PathBuf;
 
-use asperity_study::sweep::SweepMethod;
+use asperity_study::contact::SteadyState;
+use asperity_study::sweep::{SlidingOptions, SweepOptions};
+use asperity_study::values::Values;
 use clap::{ArgGroup, Args};
 
-use super::shared::{Set, Sliding, SteadyState};
-use super::sweep_values::{Over, Shard, Values};
-use super::values::{count, length, picture, seeds, share, sweep_method, table_or_arrays};
+use super::shared::Set;
+use super::sweep_values::{Over, Shard};
+use super::values::{count, picture, seeds, share, table_or_arrays};
 
 /// Options of a sweep that --merge does not take.
 const OF_A_SCENE: [&str; 15] = [
@@ -30,6 +32,7 @@ const OF_A_SCENE: [&str; 15] = [
 
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("input").required(true)))]
+#[command(mut_arg("speeds", |speeds| speeds.required_unless_present("merge")))]
 #[command(after_help = example!(
     "asperity sweep scenes/road/road.toml --speeds 1e-4..10/11 --pressures 3bar \\\n      --temperatures 5°C,20°C,40°C -o friction.csv"
 ))]
@@ -37,18 +40,8 @@ pub(crate) struct Sweep {
     /// The scene file; its excitation and outputs are not used.
     #[arg(value_name = "SCENE.toml", group = "input")]
     pub(crate) scene: Option<PathBuf>,
-    /// Speeds in m/s: a..b/n for n values evenly spaced in the logarithm, a list, or both, separated by commas.
-    #[arg(long, value_name = "VALUES", value_parser = Values::speeds, required_unless_present = "merge")]
-    pub(crate) speeds: Option<Values>,
-    /// Mean pressures in Pa, in the format of --speeds. Requires a scene in the material form.
-    #[arg(long, value_name = "VALUES", value_parser = Values::pressures, conflicts_with = "forces")]
-    pub(crate) pressures: Option<Values>,
-    /// Mean normal forces F_z of the whole layer in N, in place of pressures. Works with either form of scene.
-    #[arg(long, value_name = "VALUES", value_parser = Values::forces)]
-    pub(crate) forces: Option<Values>,
-    /// Temperatures in K: a..b/n for n evenly spaced values. Default: the scene's temperature.
-    #[arg(long, value_name = "VALUES", value_parser = Values::temperatures)]
-    pub(crate) temperatures: Option<Values>,
+    #[command(flatten)]
+    pub(crate) options: SweepOptions,
     /// The table to write, - for standard output; an existing table of the same sweep is continued. Default: the
     /// scene's file name with .sweep.csv.
     #[arg(short, long, value_name = "TABLE.csv")]
@@ -67,8 +60,6 @@ pub(crate) struct Sweep {
     /// Also plots the master curve: friction over a_T v, the speed at the reference temperature of material.wlf.
     #[arg(long, value_name = "OUT.svg", value_parser = picture(), conflicts_with = "shard")]
     pub(crate) master: Option<PathBuf>,
-    #[command(flatten)]
-    pub(crate) sliding: Sliding,
     /// Several ways in m, in the format of --speeds: the table has a column way [m], and friction is plotted over the way. It
     /// is not to be packed or continued.
     #[arg(long, value_name = "VALUES", value_parser = Values::ways)]
@@ -118,16 +109,8 @@ pub(crate) struct Converge {
     /// Number of seeds of a self-affine surface or roughness, the scene's own included. Default: 4.
     #[arg(long, value_name = "N", value_parser = seeds)]
     pub(crate) seeds: Option<u32>,
-    /// How steady sliding is found, as in a sweep. Default: as a sweep's.
-    #[arg(long, value_name = "METHOD", value_parser = sweep_method())]
-    pub(crate) method: Option<SweepMethod>,
-    /// The way slid so far, in m: the scene's temperature is that of the rubber before it slid, not that of the surface around
-    /// its contacts. With --method steady, of a scene with material.heat.
-    #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
-    pub(crate) way: Option<f64>,
-    /// Points of a period along x to begin with, with --method steady. Default: as of a sweep.
-    #[arg(long, value_name = "N", value_parser = count)]
-    pub(crate) points: Option<u32>,
+    #[command(flatten)]
+    pub(crate) sliding: SlidingOptions,
     /// Most masses, or points of the whole surface with --method steady, that the halved spacing may come to; with twice
     /// the length there are twice as many. Default: 4096 masses, 2097152 points.
     #[arg(long, value_name = "N", visible_alias = "most-masses", value_parser = count)]
@@ -139,10 +122,6 @@ pub(crate) struct Converge {
     /// The plot to write, as SVG or PNG according to the file name. Default: the table's name with .svg.
     #[arg(long, value_name = "OUT.svg", value_parser = picture())]
     pub(crate) plot: Option<PathBuf>,
-    /// Maximum sliding distance in m for a run to become steady, with --method layer. Default: 100 blocks; a block is a
-    /// whole number of profile periods or layer lengths.
-    #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
-    pub(crate) distance: Option<f64>,
     /// Replaces an existing table instead of continuing it.
     #[arg(long)]
     pub(crate) force: bool,
@@ -159,14 +138,8 @@ pub(crate) struct Contact {
     pub(crate) scene: PathBuf,
     #[command(flatten)]
     pub(crate) at: SteadyState,
-    /// The way slid so far, in m: the scene's temperature is that of the rubber before it slid, not that of the surface around
-    /// its contacts. Of a scene with material.heat.
-    #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
-    pub(crate) way: Option<f64>,
-    /// Points of a period along x; of a map with those along y in proportion. Default: the surface's own, or of a profile 8
-    /// to its shortest wave where they are uneven or fewer.
-    #[arg(long, value_name = "N", value_parser = count)]
-    pub(crate) points: Option<u32>,
+    #[command(flatten)]
+    pub(crate) sliding: SlidingOptions,
     /// The picture to write, as SVG or PNG according to the file name: along a profile heights and pressure; of a map
     /// pressure, gap and where it is touched.
     #[arg(short, long, value_name = "OUT.png", value_parser = picture())]

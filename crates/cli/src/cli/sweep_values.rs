@@ -1,104 +1,9 @@
-//! The values of a sweep and its shards as the command line gives them.
+//! What a map of a sweep is over, and shards of a sweep, as the command line gives them.
 
 use std::fmt;
 
 use asperity::element::{OperatingPoint, SweepGrid};
-use asperity::tables::{Dimension, POSITIVE, Unit, quantity};
-
-use asperity_study::decimals::{as_given, rounded};
-
-/// Values of a quantity, rising, each once.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Values(pub(crate) Vec<f64>);
-
-/// The spacing of the values of `a..b/n`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Spacing {
-    Logarithmic,
-    Linear,
-}
-
-/// Most values between two ends.
-const MOST: usize = 10_000;
-/// Significant digits of the values between two ends.
-const DIGITS: usize = 6;
-
-impl Values {
-    /// Speeds, in m/s or with their unit: `1e-4..10/20` is 20 values evenly spaced in the logarithm, ends included;
-    /// also a list, or both separated by commas.
-    pub(crate) fn speeds(text: &str) -> Result<Self, String> {
-        Self::parse(text, Spacing::Logarithmic, Dimension::Speed)
-    }
-
-    /// Pressures, in Pa or with their unit, as [`speeds`](Self::speeds).
-    pub(crate) fn pressures(text: &str) -> Result<Self, String> {
-        Self::parse(text, Spacing::Logarithmic, Dimension::Pressure)
-    }
-
-    /// Ways, in m or with their unit, as [`speeds`](Self::speeds).
-    pub(crate) fn ways(text: &str) -> Result<Self, String> {
-        Self::parse(text, Spacing::Logarithmic, Dimension::Length)
-    }
-
-    /// Forces, in N or with their unit, as [`speeds`](Self::speeds).
-    pub(crate) fn forces(text: &str) -> Result<Self, String> {
-        Self::parse(text, Spacing::Logarithmic, Dimension::Force)
-    }
-
-    /// Temperatures, in K or with their unit: `273..313/3` is 3 evenly spaced values.
-    pub(crate) fn temperatures(text: &str) -> Result<Self, String> {
-        Self::parse(text, Spacing::Linear, Dimension::Temperature)
-    }
-
-    fn parse(text: &str, spacing: Spacing, dimension: Dimension) -> Result<Self, String> {
-        let mut numbers = Numbers { dimension, with_unit: None };
-        let parts: Result<Vec<Vec<f64>>, String> =
-            text.split(',').map(|part| values(part.trim(), spacing, &mut numbers)).collect();
-        let mut all = parts?.concat();
-        all.sort_by(f64::total_cmp);
-        all.dedup();
-        Ok(Self(all))
-    }
-}
-
-fn values(part: &str, spacing: Spacing, numbers: &mut Numbers) -> Result<Vec<f64>, String> {
-    let Some((low, rest)) = part.split_once("..") else { return Ok(vec![numbers.read(part)?]) };
-    let (high, count) = rest.rsplit_once('/').ok_or_else(|| wrong(part, "a..b/n, such as 1e-4..10/20"))?;
-    let (low, high) = (numbers.read(low)?, numbers.read(high)?);
-    let count: usize = count.trim().parse().map_err(|_| wrong(count, "a whole number of values"))?;
-    if low >= high || !(2..=MOST).contains(&count) {
-        return Err(wrong(part, &format!("a..b/n with a < b and 2 to {MOST} values")));
-    }
-    let last = count - 1;
-    let at = |i: usize| match (i, spacing) {
-        (0, _) => low,
-        (i, _) if i == last => high,
-        (i, Spacing::Logarithmic) => rounded(low * (high / low).powf(i as f64 / last as f64), DIGITS),
-        (i, Spacing::Linear) => rounded(low + (high - low) * (i as f64 / last as f64), DIGITS),
-    };
-    Ok((0..count).map(at).collect())
-}
-
-/// Reads the numbers of an option, all of them with units or none.
-struct Numbers {
-    dimension: Dimension,
-    with_unit: Option<bool>,
-}
-
-impl Numbers {
-    fn read(&mut self, text: &str) -> Result<f64, String> {
-        let found = quantity(text, self.dimension).filter(|&(number, _)| POSITIVE.holds(number));
-        let (number, unit) = found.ok_or_else(|| wrong(text, &self.expected()))?;
-        match *self.with_unit.get_or_insert(unit.is_some()) == unit.is_some() {
-            true => Ok(number),
-            false => Err(wrong(text, "a unit behind each number or behind none")),
-        }
-    }
-
-    fn expected(&self) -> String {
-        format!("{POSITIVE} in {}, or with its unit, one of {}", Unit::si(self.dimension), self.dimension.units())
-    }
-}
+use asperity_study::decimals::as_given;
 
 fn wrong(found: &str, expected: &str) -> String {
     format!("expected {expected}, found {found:?}")
@@ -221,43 +126,6 @@ impl Shard {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn values_are_lists_ranges_or_both() {
-        let logarithm = |text| Values::speeds(text).unwrap().0;
-        assert_eq!(logarithm("1e-4..10/6"), [1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0]);
-        assert_eq!(logarithm("2, 1,1..100/3,0.5"), [0.5, 1.0, 2.0, 10.0, 100.0]);
-        assert_eq!(Values::temperatures("273.15..313.15/3").unwrap().0, [273.15, 293.15, 313.15]);
-        assert_eq!(Values::temperatures("0 °C, 20°C").unwrap().0, [273.15, 293.15]);
-        assert_eq!(Values::pressures("1bar..4bar/3, 8 bar").unwrap().0, [1e5, 2e5, 4e5, 8e5]);
-        assert_eq!(logarithm("1mm/s..1m/s/4"), [1e-3, 1e-2, 0.1, 1.0]);
-        let even = logarithm("1e-2..10/20");
-        // Rounded to six digits.
-        let ratio = 10_f64.powf(3.0 / 19.0);
-        assert!(even.len() == 20 && even.windows(2).all(|pair| (pair[1] / pair[0] / ratio - 1.0).abs() < 1e-5));
-    }
-
-    #[test]
-    fn wrong_values_are_refused_with_what_was_expected() {
-        for (text, part) in [
-            ("", "a number from 1e-30 to 1e30"),
-            ("1,,2", "a number from 1e-30 to 1e30"),
-            ("-1", "a number from 1e-30 to 1e30"),
-            ("0..1/3", "a number from 1e-30 to 1e30"),
-            ("NaN", "a number from 1e-30 to 1e30"),
-            ("1e-300", "a number from 1e-30 to 1e30"),
-            ("1e99", "a number from 1e-30 to 1e30"),
-            ("1..2", "a..b/n"),
-            ("2..1/3", "a < b"),
-            ("1..2/1", "2 to"),
-            ("1..2/x", "a whole number"),
-            ("1..2 mm/s/3", "behind each number or behind none"),
-            ("1 bar", "one of m/s, mm/s, km/h"),
-        ] {
-            let message = Values::speeds(text).unwrap_err();
-            assert!(message.contains(part), "{text}: {message}");
-        }
-    }
 
     #[test]
     fn a_map_is_over_two_quantities() {

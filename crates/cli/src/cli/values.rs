@@ -6,12 +6,13 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use asperity::scene::Wlf;
-use asperity::tables::{Dimension, POSITIVE, Unit, quantity};
+use asperity::tables::{Dimension, Unit, quantity};
 use asperity_study::calibration::FreeParameter;
 use asperity_study::decimals::tenth;
 use asperity_study::fit::WlfConstants;
-use asperity_study::sweep::SweepMethod;
-use clap::builder::{PathBufValueParser, PossibleValue, PossibleValuesParser, StringValueParser, TypedValueParser};
+use asperity_study::values::{above_zero, number};
+pub(super) use asperity_study::values::{count, length, share, temperature};
+use clap::builder::{PathBufValueParser, StringValueParser, TypedValueParser};
 
 use crate::files::{ends_in, is_standard_output};
 
@@ -24,16 +25,6 @@ pub(super) fn free_parameter(text: &str) -> Result<FreeParameter, String> {
     parted.filter(|parameter| !parameter.key.is_empty()).ok_or_else(|| {
         "expected KEY=LOW..HIGH in SI units, LOW below HIGH, such as friction.rate_shear.strength=1e5..2e7".into()
     })
-}
-
-/// How steady sliding is found.
-pub(super) fn sweep_method() -> impl TypedValueParser<Value = SweepMethod> {
-    let methods = [
-        PossibleValue::new("steady").help("Solves for steady sliding over one period of the surface"),
-        PossibleValue::new("layer").help("Lets the layer slide until its means are steady"),
-    ];
-    PossibleValuesParser::new(methods)
-        .map(|word| if word == "steady" { SweepMethod::Steady } else { SweepMethod::Layer })
 }
 
 /// Which rows `--where` chooses.
@@ -78,11 +69,6 @@ pub(crate) enum PlotAxis {
     Y,
 }
 
-pub(super) fn count(text: &str) -> Result<u32, String> {
-    let number = text.trim().parse().ok().filter(|&number: &u32| number > 0);
-    number.ok_or_else(|| "expected a whole number, 1 or more".into())
-}
-
 pub(super) fn seeds(text: &str) -> Result<u32, String> {
     let number = text.trim().parse().ok().filter(|number| (2..=1000).contains(number));
     number.ok_or_else(|| "expected a whole number from 2 to 1000".into())
@@ -91,31 +77,6 @@ pub(super) fn seeds(text: &str) -> Result<u32, String> {
 /// Powers of ten of the robustness test.
 pub(super) fn powers(text: &str) -> Result<u32, String> {
     text.trim().parse().ok().filter(|&powers| powers <= 12).ok_or_else(|| "expected a whole number from 0 to 12".into())
-}
-
-/// A number that is `allowed`; `expected` describes those.
-fn number(text: &str, allowed: impl Fn(&f64) -> bool, expected: &str) -> Result<f64, String> {
-    text.trim().parse().ok().filter(allowed).ok_or_else(|| format!("expected {expected}"))
-}
-
-/// A number above 0, such as a quantity can have, in SI units or in the unit behind it.
-fn above_zero(text: &str, dimension: Dimension) -> Option<f64> {
-    quantity(text, dimension).map(|(number, _)| number).filter(|number| POSITIVE.holds(*number))
-}
-
-/// A pressure above 0, in Pa or in the unit behind it.
-pub(super) fn pressure(text: &str) -> Result<f64, String> {
-    above_zero(text, Dimension::Pressure).ok_or_else(|| format!("expected {POSITIVE}, such as 2e5 (in Pa) or 2bar"))
-}
-
-/// A speed above 0, in m/s or in the unit behind it.
-pub(super) fn speed(text: &str) -> Result<f64, String> {
-    above_zero(text, Dimension::Speed).ok_or_else(|| format!("expected {POSITIVE}, such as 0.1 (in m/s) or 100mm/s"))
-}
-
-/// A length above 0, in m or in the unit behind it.
-pub(super) fn length(text: &str) -> Result<f64, String> {
-    above_zero(text, Dimension::Length).ok_or_else(|| "expected a length above 0, such as 5e-5 (in m) or 0.05mm".into())
 }
 
 /// A frequency above 0 in rad/s, or in the unit behind it.
@@ -134,10 +95,6 @@ pub(super) fn column_unit(text: &str) -> Result<(String, Unit), String> {
     parted
         .filter(|(name, _)| !name.is_empty())
         .ok_or_else(|| "expected COLUMN=UNIT with a known unit, such as 'Temperature=°C'".into())
-}
-
-pub(super) fn share(text: &str) -> Result<f64, String> {
-    number(text, |share| *share > 0.0 && *share <= 1.0, "a share above 0, up to 1, such as 5e-3")
 }
 
 /// Which modulus the error of a fit counts.
@@ -171,11 +128,6 @@ pub(super) fn expansion(text: &str) -> Result<f64, String> {
 
 pub(super) fn fit_error(text: &str) -> Result<f64, String> {
     number(text, |error| (1e-12..=0.5).contains(error), "a number from 1e-12 to 0.5, such as 0.02 for 2 %")
-}
-
-pub(super) fn temperature(text: &str) -> Result<f64, String> {
-    let found = above_zero(text, Dimension::Temperature);
-    found.ok_or_else(|| "expected a temperature above 0 K, such as 293.15 (in K) or 20°C".into())
 }
 
 pub(super) fn seconds(text: &str) -> Result<f64, String> {

@@ -3,48 +3,34 @@
 mod data;
 mod picture;
 
-use std::path::PathBuf;
-
 use asperity::scene::Scene;
-use asperity_study::contact::{ContactError, ContactFields, ContactOptions, SolvedContact, solve_contact};
+use asperity_study::Error;
+use asperity_study::contact::{ContactFields, SolvedContact, solve_contact};
 use asperity_study::steady::SteadySlide;
-use zip::result::ZipError;
 
-use super::cli::{Contact, SteadyState};
-use super::files::{self, FileError, check_outputs, ends_in, load_without_run, named, print_beside};
+use super::cli::Contact;
+use super::files::{self, check_outputs, ends_in, load_without_run, named, print_beside};
 use super::terminal::{lines, warn};
 use asperity_study::decimals::rounded;
 
-/// `asperity contact` failed.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum ContactCommandError {
-    #[error(transparent)]
-    Contact(#[from] ContactError),
-    #[error(transparent)]
-    File(#[from] FileError),
-    #[error("cannot write {}: {source}", .path.display())]
-    Data { path: PathBuf, source: ZipError },
-}
-
 /// Solves for steady sliding, prints what it is, and writes the picture and the data.
-pub(crate) fn contact(command: &Contact) -> Result<(), ContactCommandError> {
+pub(crate) fn contact(command: &Contact) -> Result<(), Error> {
     let scene = load_without_run(&command.scene, &command.set, |_| false)?;
     let outputs: Vec<_> = [&command.output].into_iter().chain(&command.write).cloned().collect();
     check_outputs(&outputs, scene.sources(&command.scene))?;
-    let SteadyState { pressure, speed } = command.at;
-    let solved = solve_contact(&scene, &ContactOptions { pressure, speed, way: command.way, points: command.points })?;
+    let solved = solve_contact(&scene, command.at, command.sliding)?;
     let SolvedContact { surface, slide, fields, problem, warnings } = &solved;
     picture::write(surface, fields, slide.area, &command.output)?;
     if let Some(path) = &command.write {
         let bytes = if ends_in(path, "npz") {
-            data::npz(fields).map_err(|source| ContactCommandError::Data { path: path.clone(), source })?
+            data::npz(fields).map_err(|error| Error::value(format!("cannot write {}: {error}", path.display())))?
         } else {
             data::csv(fields).into_bytes()
         };
         files::write(path, bytes)?;
     }
     problem.iter().map(ToString::to_string).chain(warnings.iter().cloned()).for_each(|text| warn(&text));
-    Ok(print_beside(&outputs, &summary(&scene, command, slide, fields))?)
+    print_beside(&outputs, &summary(&scene, command, slide, fields))
 }
 
 fn summary(scene: &Scene, command: &Contact, slide: &SteadySlide, fields: &ContactFields) -> String {
@@ -56,7 +42,7 @@ fn summary(scene: &Scene, command: &Contact, slide: &SteadySlide, fields: &Conta
         ("Separation", format!("{} m between the mean planes", digits(slide.contact.separation))),
         ("Friction", friction_line(slide)),
     ];
-    if let (Some(rise), Some(way)) = (slide.surface_rise, command.way) {
+    if let (Some(rise), Some(way)) = (slide.surface_rise, command.sliding.way) {
         labelled.push(("Surface", format!("{} K warmer than the rubber was {way} m before", digits(rise))));
     }
     if let Some(flash) = slide.flash_mean {

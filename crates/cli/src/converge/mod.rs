@@ -8,9 +8,11 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use asperity_study::contact::SteadyState;
 use asperity_study::converge::{ConvergeError, ConvergenceOptions, ConvergenceStudy, Ended, Findings, Round, RunRow};
+use asperity_study::sweep::SlidingOptions;
 
-use super::cli::{Converge, SteadyState};
+use super::cli::Converge;
 use super::draft::TablePlace;
 use super::figure::Figure as _;
 use super::files::{FileError, check_outputs, default_output, load_without_run, picture_beside, print_beside};
@@ -71,8 +73,8 @@ pub(crate) fn converge(command: &Converge) -> Result<u8, ConvergeCommandError> {
 }
 
 fn options(command: &Converge) -> ConvergenceOptions {
-    let Converge { at, way, error, seeds, method, points, most_points, distance, .. } = *command;
-    let SteadyState { pressure, speed } = at;
+    let Converge { at: SteadyState { pressure, speed }, error, seeds, most_points, sliding, .. } = *command;
+    let SlidingOptions { method, way, points, distance, .. } = sliding;
     ConvergenceOptions { pressure, speed, way, error, seeds, method, points, most_points, distance }
 }
 

@@ -6,7 +6,7 @@ mod quantile;
 
 use std::path::{Path, PathBuf};
 
-use asperity::element::{PointContact, Table};
+use asperity::element::{FrictionTable, PointContact};
 use asperity_fmi::Definition;
 use asperity_study::Error;
 use asperity_study::pack::{self, Fmu, Library, LibraryFile, flat_names, no_start, not_converged};
@@ -88,13 +88,13 @@ fn load(command: &Pack, table: Option<&PathBuf>, patch: Option<&PathBuf>) -> Res
     match (patch, table) {
         (Some(path), _) => {
             let patch = files::load_patch(path, &[])?;
-            let warnings = not_converged(&patch.table().basis).into_iter().chain(missing_backing(&patch));
+            let warnings = not_converged(&patch.table().header).into_iter().chain(missing_backing(&patch));
             warnings.for_each(|warning| warn(&warning));
             Ok((patch.into(), path.clone()))
         }
         (None, Some(path)) => {
-            let table = Table::load(path)?;
-            not_converged(&table.basis).iter().for_each(|warning| warn(warning));
+            let table = FrictionTable::load(path)?;
+            not_converged(&table.header).iter().for_each(|warning| warn(warning));
             Ok((PointContact::new(table).into(), path.clone()))
         }
         (None, None) => {

@@ -3,7 +3,7 @@
 
 use std::error::Error;
 
-use asperity::element::{Node, Quantity, Table};
+use asperity::element::{FrictionTable, Node, Quantity};
 use asperity::math::Spline;
 use asperity::scene::{LinkKind, Scene};
 use plotters::prelude::*;
@@ -127,13 +127,13 @@ const POINT: f64 = 2.0;
 const PRESSURES: [[u8; 3]; 2] = [[86, 160, 210], [0, 60, 100]];
 
 /// The PNG file of an element.
-pub(super) fn element_png(table: &Table) -> Result<Vec<u8>, Box<dyn Error>> {
+pub(super) fn element_png(table: &FrictionTable) -> Result<Vec<u8>, Box<dyn Error>> {
     ElementPicture(table).png(1)
 }
 
 /// Friction coefficients over the logarithm of speed, a line for each pressure; of several temperatures, at the middle
 /// one.
-struct ElementPicture<'a>(&'a Table);
+struct ElementPicture<'a>(&'a FrictionTable);
 
 impl Figure for ElementPicture<'_> {
     fn size(&self) -> (u32, u32) {

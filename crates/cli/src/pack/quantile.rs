@@ -30,10 +30,8 @@ impl Sample {
         let read = load_without_run(&scene, &[], |_| true)?;
         let uncertain = UncertainScene::new(read)?;
         let packed = |table: &Path| {
-            let problem = |problem| Error::in_file(table, None, problem);
-            let sample =
-                quantile_table(&uncertain, &SweepTable::read(table).map_err(problem)?, share, &Stop::default())?;
-            sample.header.basis.sample.iter().for_each(|sample| note(&format!("sample {sample}")));
+            let sample = quantile_table(&uncertain, &SweepTable::read(table)?, share, &Stop::default())?;
+            sample.header.keys.text_of("sample").iter().for_each(|sample| note(&format!("sample {sample}")));
             Ok::<_, Error>(sample.text())
         };
         let place = |name: &Path| folder.path().join(name);

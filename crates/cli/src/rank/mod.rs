@@ -7,7 +7,6 @@ use std::time::Duration;
 
 use asperity_study::progress::Stop;
 use asperity_study::rank::{RankError, RankFound, RankPlan, RankScene, Weights, measured_ranking, table};
-use asperity_study::sweep::{Loads, SweepOptions};
 use asperity_study::uncertainty::SampleOptions;
 
 use super::cli::Rank;
@@ -32,7 +31,7 @@ pub(crate) fn rank(command: &Rank) -> Result<u8, RankCommandError> {
     let sources = scenes.iter().flat_map(|scene| scene.scene.sources(&scene.file));
     let taken = sources.chain(command.weights.iter().chain(&command.data).cloned()).collect();
     check_outputs([&command.output].into_iter().chain(&picture), taken)?;
-    let plan = RankPlan::new(scenes, options(command), samples(command))?;
+    let plan = RankPlan::new(scenes, command.options.clone(), samples(command))?;
     plan.warnings().iter().for_each(|warning| warn(&with_flags(warning)));
     let weights = command.weights.as_deref().map(Weights::read).transpose()?.unwrap_or_default();
     let found = found(&plan, &weights)?;
@@ -50,27 +49,13 @@ pub(crate) fn rank(command: &Rank) -> Result<u8, RankCommandError> {
 }
 
 fn scenes(command: &Rank) -> Result<Vec<RankScene>, RankCommandError> {
-    let solves = command.sliding.options();
+    let solves = command.options.sliding;
     let scene = |file: &std::path::PathBuf| -> Result<RankScene, RankCommandError> {
         // It says what is to be said of the scene.
         let scene = load_without_run(file, &command.set, |scene| !solves.solves(scene))?;
         Ok(RankScene { scene, file: file.clone() })
     };
     command.scenes.iter().map(scene).collect()
-}
-
-fn options(command: &Rank) -> SweepOptions {
-    let loads = match (&command.forces, &command.pressures) {
-        (Some(forces), _) => Loads::Forces(forces.0.clone()),
-        // The command line has one of them.
-        (None, pressures) => Loads::Pressures(pressures.as_ref().map(|values| values.0.clone()).unwrap_or_default()),
-    };
-    SweepOptions {
-        speeds: command.speeds.0.clone(),
-        loads,
-        temperatures: command.temperatures.as_ref().map(|values| values.0.clone()),
-        sliding: command.sliding.options(),
-    }
 }
 
 fn samples(command: &Rank) -> SampleOptions {

@@ -3,34 +3,15 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use asperity::element::{Load, Quantity, SweepGrid, TableHeader, some_of};
+use asperity::element::{Load, Quantity, SweepGrid, some_of};
+use asperity_study::Error;
 use asperity_study::calibration::{Measured, left_out_in_words};
-use asperity_study::comparison::{ComparisonError, measured_beside};
-use asperity_study::sweep::{SweepTable, way_of};
+use asperity_study::comparison::measured_beside;
+use asperity_study::sweep::{SweepHeader, SweepTable, is_converged, way_of};
 
 use crate::cli::sweep_values::{Over, SweptQuantity};
 use crate::figure::{FieldGrid, FieldPanel, GridAxis, MeasuredPlace};
 use crate::terminal::{note, warn};
-
-/// A table has no such maps.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum MapError {
-    #[error("--over {over}: the table is over {found}, not over {asked}: --over {instead}")]
-    OtherLoad { over: Over, asked: &'static str, found: &'static str, instead: Over },
-    #[error(
-        "--over {over}: the scene has no material.wlf, so that there is one temperature alone: expected speed and load"
-    )]
-    NoTemperature { over: Over },
-    #[error(
-        "--over {over}: expected at least 2 values along each side of a map, of the {quantity} there is one: give more, as \
-         --{example}"
-    )]
-    TooFew { over: Over, quantity: &'static str, example: &'static str },
-    #[error("--over {over}: the table goes to {}, beside which no picture belongs: name one by --plot", crate::files::named(.output))]
-    NoPicture { over: Over, output: PathBuf },
-    #[error(transparent)]
-    Data(#[from] ComparisonError),
-}
 
 /// The maps that are asked for, and what was measured.
 #[derive(Debug)]
@@ -42,22 +23,33 @@ pub(super) struct Maps {
 
 impl Maps {
     /// Of a table at `path` with this header, with the measurements in the file `data`.
-    pub(super) fn new(over: Over, header: &TableHeader, path: &Path, data: Option<&PathBuf>) -> Result<Self, MapError> {
+    pub(super) fn new(over: Over, header: &SweepHeader, path: &Path, data: Option<&PathBuf>) -> Result<Self, Error> {
         let load = match header.load {
             Load::Pressure { .. } => SweptQuantity::Pressure,
             Load::Force => SweptQuantity::Force,
         };
         if let Some(asked) = over.0.into_iter().find(|quantity| quantity.is_load() && *quantity != load) {
             let instead = Over(over.0.map(|quantity| if quantity == asked { load } else { quantity }));
-            return Err(MapError::OtherLoad { over, asked: asked.word(), found: load.word(), instead });
+            let (asked, found) = (asked.word(), load.word());
+            return Err(Error::value(format!(
+                "--over {over}: the table is over {found}, not over {asked}: --over {instead}"
+            )));
         }
         for quantity in over.0 {
             let values = quantity.values(&header.grid);
             if values.is_empty() {
-                return Err(MapError::NoTemperature { over });
+                return Err(Error::value(format!(
+                    "--over {over}: the scene has no material.wlf, so that there is one temperature alone: expected speed and \
+                     load"
+                )));
             }
             if values.len() < 2 {
-                return Err(MapError::TooFew { over, quantity: quantity.word(), example: example(quantity) });
+                return Err(Error::value(format!(
+                    "--over {over}: expected at least 2 values along each side of a map, of the {} there is one: give more, \
+                     as --{}",
+                    quantity.word(),
+                    example(quantity)
+                )));
             }
         }
         let all = [SweptQuantity::Speed, load, SweptQuantity::Temperature];
@@ -86,14 +78,13 @@ impl Maps {
                 measured: places.iter().filter(|(panel, _)| *panel == index).map(|(_, place)| *place).collect(),
             }
         };
-        let basis = &table.header.basis;
-        let is_open = basis.convergence.is_some() && !basis.is_converged();
+        let is_open = is_converged(&table.header.keys) == Some(false);
         let open = is_open.then_some("not converged: see the table");
         let own =
             table.header.samples.is_some().then_some("the scene's own numbers: bands of the samples are in the table");
         let remark: Vec<&str> = open.into_iter().chain(own).collect();
         FieldGrid {
-            title: table.header.scene.clone(),
+            title: table.header.scene().to_owned(),
             remark: remark.join("; "),
             quantity: "friction",
             ridge: format!("largest over the {}", x.quantity),
@@ -107,7 +98,7 @@ impl Maps {
     pub(super) fn empty(table: &SweepTable) -> Option<String> {
         let header = &table.header;
         let without = header.grid.points().filter_map(|point| {
-            let row = table.rows.iter().map(|stored| &stored.row).find(|row| row.point == point);
+            let row = table.rows.iter().find(|row| row.point == point);
             let why = match row {
                 Some(row) if row.is_result() => return None,
                 Some(row) => row.status.text(),
@@ -129,7 +120,7 @@ impl Maps {
     fn values(&self, table: &SweepTable, third: Option<f64>) -> Vec<Option<f64>> {
         let grid = &table.header.grid;
         let mut found = vec![None; grid.count()];
-        for row in table.rows.iter().map(|stored| &stored.row).filter(|row| row.is_result()) {
+        for row in table.rows.iter().filter(|row| row.is_result()) {
             if let Some(index) = grid.index(&row.point) {
                 found[index] = row.value(Quantity::Friction);
             }
@@ -149,7 +140,7 @@ impl Maps {
         let thirds = self.thirds(&table.header.grid);
         let (mut places, mut left_out) = (Vec::new(), Vec::new());
         for row in &self.measured {
-            if row.point.way.is_some() && row.point.way != way_of(&table.header.basis) {
+            if row.point.way.is_some() && row.point.way != way_of(&table.header.keys) {
                 left_out.push((*row, NoPlace::OtherWay));
                 continue;
             }

@@ -4,81 +4,120 @@ mod map;
 mod plot;
 mod printed;
 mod samples;
-mod table_file;
 mod ways;
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
-use asperity::element::{OperatingPoint, TableHeader};
+use asperity::element::{OperatingPoint, some_of};
 use asperity::scene::{Scene, Wlf};
+use asperity::table::{Table, TableError};
+use asperity_study::Error;
 use asperity_study::progress::Stop;
-use asperity_study::sweep::{
-    Loads, NotAStudy, SlidingOptions, SweepError, SweepOptions, SweepPlan, SweepTable, verdict,
-};
-use asperity_study::uncertainty::UncertaintyError;
+use asperity_study::sweep::{SweepHeader, SweepPlan, SweepRow, SweepTable, verdict};
 
-use super::cli::{Sliding, Sweep};
-use super::draft::TablePlace;
+use super::cli::Sweep;
 use super::figure::Figure as _;
-use super::files::{
-    FileError, check_outputs, default_output, load_without_run, named, picture_beside, print_beside, read, write,
-};
+use super::files::{check_outputs, default_output, load_without_run, named, picture_beside, print_beside, read};
 use super::flags::with_flags;
 use super::interrupt::Farewell;
+use super::table_file::TableFile;
 use super::terminal::{self, LabelledLine, lines, warn};
-use crate::cli::sweep_values::Values;
-use map::{MapError, Maps};
-use table_file::{TableFile, TableFileError};
-
-/// `asperity sweep` failed, or not all of its points are steady.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum SweepCommandError {
-    #[error(transparent)]
-    Sweep(#[from] SweepError),
-    #[error(transparent)]
-    File(#[from] FileError),
-    #[error(transparent)]
-    Uncertainty(#[from] UncertaintyError),
-    #[error(transparent)]
-    TableFile(#[from] TableFileError),
-    #[error(transparent)]
-    Map(#[from] MapError),
-    #[error("expected --pressures or --forces, the loads to sweep over")]
-    NoLoad,
-    #[error("--master: the scene has no material.wlf, by whose factors speeds would be shifted")]
-    NoMaster,
-    #[error("{}: not a study of this scene's convergence: {problem}", .path.display())]
-    NotAStudy { path: PathBuf, problem: NotAStudy },
-    #[error("{}: is there, and a table over --ways is not continued: name another -o, or give --force to replace it", .0.display())]
-    IsThere(PathBuf),
-    #[error("{failed} of {total} points are not steady or failed: the column status in {} says why", named(.path))]
-    NotSteady { failed: usize, total: usize, path: PathBuf },
-}
+use map::Maps;
 
 /// Computes a table or merges several.
-pub(crate) fn sweep(command: &Sweep) -> Result<(), SweepCommandError> {
-    match (&command.scene, &command.speeds, &command.output) {
-        (Some(scene), Some(speeds), _) => compute(command, scene, speeds),
-        (_, _, Some(output)) => merge(command, output),
-        // clap requires a scene and speeds, or tables and an output.
+pub(crate) fn sweep(command: &Sweep) -> Result<(), Error> {
+    match (&command.scene, &command.output) {
+        (Some(scene), _) => compute(command, scene),
+        (_, Some(output)) => merge(command, output),
+        // clap requires a scene, or tables and an output.
         _ => Ok(()),
     }
 }
 
-fn merge(command: &Sweep, output: &PathBuf) -> Result<(), SweepCommandError> {
+/// Merges the tables of shards with the one of the same sweep at `output`, unless that is to be replaced.
+fn merge(command: &Sweep, output: &PathBuf) -> Result<(), Error> {
     let picture = picture(command, output);
     let taken = command.merge.iter().chain(&command.data).cloned().collect();
     check_outputs([output].into_iter().chain(&picture), taken)?;
-    let place = TablePlace::new(output)?;
-    let table = table_file::merge(&command.merge, &place.path, command.force)?;
-    place.finish()?;
+    let tables = command.merge.iter().map(|path| SweepTable::read(path)).collect::<Result<Vec<_>, _>>()?;
+    let (header, first) = (&tables[0].header, command.merge[0].display());
+    for (path, table) in command.merge.iter().zip(&tables).filter(|(_, table)| table.header != *header) {
+        let found = [header, &table.header].map(SweepHeader::fingerprint);
+        let difference = if found[0] == found[1] {
+            "they have different points".to_owned()
+        } else {
+            format!("fingerprint {} and {}", found[0], found[1])
+        };
+        return Err(Error::value(format!(
+            "--merge: {first} and {} are of different sweeps: {difference}",
+            path.display()
+        )));
+    }
+    let (file, own) = TableFile::open(output, &header.table(), command.force, |table| rows(table, header))?;
+    let of_table =
+        |(path, table): (&PathBuf, SweepTable)| table.rows.into_iter().map(|row| (path.clone(), row)).collect();
+    let header = header.clone();
+    let all: Vec<Vec<(PathBuf, SweepRow)>> = command.merge.iter().zip(tables).map(of_table).collect();
+    let all = all.into_iter().flatten().chain(own.into_iter().map(|row| (output.clone(), row)));
+    let table = SweepTable::new(header.clone(), merged(&header, all.collect())?);
+    file.finish(&table.table())?;
+    let (found, total) = (table.rows.len(), header.grid.count());
+    if found < total {
+        let is_missing = |point: &OperatingPoint| table.rows.iter().all(|row| row.point != *point);
+        let missing = header.grid.points().filter(is_missing).map(|point| point.describe(header.load));
+        return Err(Error::value(format!(
+            "{} of {total} points are missing: {}; {} has the others, and `asperity sweep` with this -o continues it",
+            total - found,
+            some_of(&missing.collect::<Vec<_>>()),
+            output.display()
+        )));
+    }
     let maps = maps(command, &table.header, output)?;
     finish(output, &table, &Pictures { friction: picture.as_deref(), maps, master: None }, (&[], &[]))
 }
 
-fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCommandError> {
-    let scene = load_without_run(path, &command.set, |scene| !command.sliding.options().solves(scene))?;
+/// The row of each point, which is the same in all tables that have it.
+fn merged(header: &SweepHeader, all: Vec<(PathBuf, SweepRow)>) -> Result<Vec<SweepRow>, Error> {
+    let mut found: Vec<Option<(PathBuf, SweepRow)>> = vec![None; header.grid.count()];
+    for (path, row) in all {
+        let Some(place) = header.grid.index(&row.point) else { continue };
+        match &found[place] {
+            Some((first, other)) if *other != row => {
+                let (first, other, point) = (first.display(), path.display(), row.point.describe(header.load));
+                return Err(Error::value(format!("--merge: {first} and {other} differ at {point}")));
+            }
+            Some(_) => (),
+            None => found[place] = Some((path, row)),
+        }
+    }
+    Ok(found.into_iter().flatten().map(|(_, row)| row).collect())
+}
+
+/// The rows of a table that was begun, which a sweep with this header goes on with.
+fn rows(table: &Table, header: &SweepHeader) -> Result<Vec<Result<SweepRow, TableError>>, TableError> {
+    let own = SweepHeader::of_table(table)?;
+    let mut is_there = vec![false; own.grid.count()];
+    let row = |row| {
+        let found = SweepRow::of_table(table, row, &own)?;
+        match own.grid.index(&found.point).map(|place| std::mem::replace(&mut is_there[place], true)) {
+            Some(true) => Err(table.error_in(row, "the same point as in a row above")),
+            _ => Ok(found),
+        }
+    };
+    let rows: Vec<_> = (0..table.len()).map(row).collect();
+    match rows.iter().flatten().find(|row| header.grid.index(&row.point).is_none()) {
+        Some(row) => Err(table.error(format!(
+            "has points that this sweep does not have, the first at {}: include their values",
+            row.point.describe(header.load)
+        ))),
+        None => Ok(rows),
+    }
+}
+
+fn compute(command: &Sweep, path: &Path) -> Result<(), Error> {
+    let scene = load_without_run(path, &command.set, |scene| !command.options.sliding.solves(scene))?;
     let output = command
         .output
         .clone()
@@ -88,29 +127,24 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
     let taken = scene.sources(path).into_iter().chain(study.clone()).chain(command.data.clone()).collect();
     let beside = samples::files(command, &output);
     check_outputs([&output].into_iter().chain(&picture).chain(&command.master).chain(&beside), taken)?;
+    let no_master =
+        || Error::value("--master: the scene has no material.wlf, by whose factors speeds would be shifted");
     let master = match &command.master {
-        Some(path) => Some((path.as_path(), wlf(&scene).ok_or(SweepCommandError::NoMaster)?)),
+        Some(path) => Some((path.as_path(), wlf(&scene).ok_or_else(no_master)?)),
         None => None,
     };
     if let Some(ways) = &command.ways {
-        return over_ways(command, &scene, &options(command, speeds)?, (&ways.0, &output, picture.as_deref()));
+        return over_ways(command, &scene, (&ways.0, &output, picture.as_deref()));
     }
     let convergence = study_verdict(study.as_deref(), &scene.name)?;
-    let plan = samples::plan(command, scene, (&options(command, speeds)?, convergence))?;
+    let plan = samples::plan(command, scene, convergence)?;
     plan.warning().iter().for_each(|warning| warn(&with_flags(warning)));
     let maps = maps(command, plan.header(), &output)?;
-    let place = TablePlace::new(&output)?;
-    let file = TableFile::open(&place.path, plan.header(), command.force)?;
-    run(command, &plan, &file, &output)?;
-    let mut table =
-        SweepTable { header: plan.header().clone(), ..SweepTable::read(&place.path).map_err(TableFileError::from)? };
-    table.sort();
-    let found = plan.warnings(table.rows.iter().map(|stored| &stored.row));
-    found.iter().for_each(|warning| warn(&with_flags(warning)));
-    table.conclude(&output);
-    write(&place.path, table.text())?;
-    drop(file);
-    place.finish()?;
+    let header = plan.header();
+    let (file, done) = TableFile::open(&output, &header.table(), command.force, |table| rows(table, header))?;
+    let table = SweepTable::new(header.clone(), run(command, &plan, (&file, done), &output)?);
+    plan.warnings(&table.rows).iter().for_each(|warning| warn(&with_flags(warning)));
+    file.finish(&table.table())?;
     let said = samples::write(command, &plan, &table, &beside)?;
     finish(&output, &table, &Pictures { friction: picture.as_deref(), maps, master }, (&said, &beside))
 }
@@ -119,16 +153,29 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepCom
 fn over_ways(
     command: &Sweep,
     scene: &Scene,
-    options: &SweepOptions,
     (ways, output, picture): (&[f64], &PathBuf, Option<&Path>),
-) -> Result<(), SweepCommandError> {
+) -> Result<(), Error> {
     if output.exists() && !command.force {
-        return Err(SweepCommandError::IsThere(output.to_owned()));
+        return Err(Error::value(format!(
+            "{}: is there, and a table over --ways is not continued: name another -o, or give --force to replace it",
+            output.display()
+        )));
     }
-    let [total, failed] = ways::sweep(scene, options, ways, (output, picture))?;
+    let [total, failed] = ways::sweep(scene, &command.options, ways, (output, picture))?;
     let files = [output.as_path()].into_iter().chain(picture).map(named).collect::<Vec<_>>().join(", ");
     print_beside([output], &lines(&[("Points", format!("{total}, at {} ways", ways.len())), ("Written", files)]))?;
-    if failed == 0 { Ok(()) } else { Err(SweepCommandError::NotSteady { failed, total, path: output.to_owned() }) }
+    check_steady([total, failed], output)
+}
+
+/// Refuses a table with points that are not steady or failed.
+fn check_steady([total, failed]: [usize; 2], output: &Path) -> Result<(), Error> {
+    if failed == 0 {
+        return Ok(());
+    }
+    let table = named(output);
+    Err(Error::run(format!(
+        "{failed} of {total} points are not steady or failed: the column status in {table} says why"
+    )))
 }
 
 /// The table of the study named, or of the one that `asperity converge` has written for the scene; `None` without one.
@@ -138,64 +185,45 @@ fn study_file(named: Option<&PathBuf>, scene_file: &Path) -> Option<PathBuf> {
 }
 
 /// The verdict of the study at `path` on `scene`.
-fn study_verdict(path: Option<&Path>, scene: &str) -> Result<Option<String>, SweepCommandError> {
+fn study_verdict(path: Option<&Path>, scene: &str) -> Result<Option<String>, Error> {
     let Some(path) = path else { return Ok(None) };
-    let text = String::from_utf8_lossy(&read(path)?).into_owned();
-    match verdict(&text, scene) {
-        Ok(verdict) => Ok(Some(verdict)),
-        Err(problem) => Err(SweepCommandError::NotAStudy { path: path.to_owned(), problem }),
-    }
+    verdict(&String::from_utf8_lossy(&read(path)?), path, scene).map(Some)
 }
 
-fn options(command: &Sweep, speeds: &Values) -> Result<SweepOptions, SweepCommandError> {
-    let loads = match (&command.pressures, &command.forces) {
-        (_, Some(forces)) => Loads::Forces(forces.0.clone()),
-        (Some(pressures), None) => Loads::Pressures(pressures.0.clone()),
-        (None, None) => return Err(SweepCommandError::NoLoad),
-    };
-    Ok(SweepOptions {
-        speeds: speeds.0.clone(),
-        loads,
-        temperatures: command.temperatures.as_ref().map(|values| values.0.clone()),
-        sliding: command.sliding.options(),
-    })
-}
-
-/// Computes the points that are not done yet, on all cores.
-fn run(command: &Sweep, plan: &SweepPlan, file: &TableFile, output: &Path) -> Result<(), FileError> {
+/// Computes the points that are not done yet, on all cores, and adds their rows to the file and to those that are.
+fn run(
+    command: &Sweep,
+    plan: &SweepPlan,
+    (file, done): (&TableFile, Vec<SweepRow>),
+    output: &Path,
+) -> Result<Vec<SweepRow>, Error> {
     let in_shard = |index: usize| command.shard.is_none_or(|shard| shard.has(index));
     let points = plan.header().grid.points().enumerate().filter(|(index, _)| in_shard(*index)).map(|(_, point)| point);
     let points: Vec<OperatingPoint> = points.collect();
-    let is_done = |point: &OperatingPoint| file.done.iter().any(|stored| stored.row.point == *point);
+    let is_done = |point: &OperatingPoint| done.iter().any(|row| row.point == *point);
     let left: Vec<OperatingPoint> = points.iter().filter(|point| !is_done(point)).copied().collect();
     let bar = terminal::bar(points.len() as u64);
     bar.set_position((points.len() - left.len()) as u64);
     bar.reset_eta();
     bar.set_message(format!("of {} points", points.len()));
     bar.enable_steady_tick(std::time::Duration::from_secs(1));
-    let done = bar.clone();
+    let counted = bar.clone();
     let _farewell = Farewell::new(output, move || {
-        let (points, all) = (done.position(), done.length().unwrap_or_default());
-        done.finish_and_clear();
+        let (points, all) = (counted.position(), counted.length().unwrap_or_default());
+        counted.finish_and_clear();
         format!("{points} of {all} points are done")
     });
+    let rows = Mutex::new(done);
     let work = plan.find(&left, &Stop::default(), |row| {
-        if let Err(error) = file.add(&row) {
+        if let Err(error) = file.add(row.cells()) {
             return ControlFlow::Break(error);
         }
+        rows.lock().unwrap_or_else(PoisonError::into_inner).push(row);
         bar.inc(1);
         ControlFlow::Continue(())
     });
     bar.finish_and_clear();
-    work.break_value().map_or(Ok(()), Err)
-}
-
-impl Sliding {
-    /// What of it is not the command line's.
-    pub(crate) fn options(&self) -> SlidingOptions {
-        let Self { method, way, points, friction_error: error, distance, .. } = *self;
-        SlidingOptions { method, way, points, error, distance }
-    }
+    work.break_value().map_or_else(|| Ok(rows.into_inner().unwrap_or_else(PoisonError::into_inner)), Err)
 }
 
 /// The picture to draw; none of a shard.
@@ -204,10 +232,13 @@ fn picture(command: &Sweep, output: &Path) -> Option<PathBuf> {
 }
 
 /// The maps that are asked for, if any are, of the table at `output`.
-fn maps(command: &Sweep, header: &TableHeader, output: &Path) -> Result<Option<Maps>, MapError> {
+fn maps(command: &Sweep, header: &SweepHeader, output: &Path) -> Result<Option<Maps>, Error> {
     let Some(over) = command.over else { return Ok(None) };
     if picture(command, output).is_none() {
-        return Err(MapError::NoPicture { over, output: output.to_owned() });
+        return Err(Error::value(format!(
+            "--over {over}: the table goes to {}, beside which no picture belongs: name one by --plot",
+            named(output)
+        )));
     }
     Maps::new(over, header, output, command.data.as_ref()).map(Some)
 }
@@ -228,7 +259,7 @@ fn finish(
     table: &SweepTable,
     pictures: &Pictures<'_>,
     (said, beside): (&[LabelledLine], &[PathBuf]),
-) -> Result<(), SweepCommandError> {
+) -> Result<(), Error> {
     let Pictures { friction, maps, master } = pictures;
     friction.map_or(Ok(()), |path| match maps {
         Some(maps) => maps.picture(table).write(path),
@@ -236,15 +267,14 @@ fn finish(
     })?;
     master.map_or(Ok(()), |(path, wlf)| plot::draw_master(path, table, &wlf))?;
     let mut summary = printed::lines(table);
-    summary.extend(table.header.low_end.iter().map(|low_end| ("Low end", low_end.clone())));
+    summary.extend(table.header.keys.text_of("low_end").map(|low_end| ("Low end", low_end.to_owned())));
     summary.extend(maps.iter().filter_map(|_| Some(("No result", Maps::empty(table)?))));
     summary.extend_from_slice(said);
     let files = [output.as_path()].into_iter().chain(*friction).chain(master.map(|(path, _)| path));
     let files = files.chain(beside.iter().map(PathBuf::as_path)).map(named);
     summary.push(("Written", files.collect::<Vec<_>>().join(", ")));
     print_beside([output], &lines(&summary))?;
-    let (failed, total) = (table.rows.iter().filter(|stored| !stored.row.is_result()).count(), table.rows.len());
-    if failed == 0 { Ok(()) } else { Err(SweepCommandError::NotSteady { failed, total, path: output.to_owned() }) }
+    check_steady([table.rows.len(), table.rows.iter().filter(|row| !row.is_result()).count()], output)
 }
 
 /// The shift of the compound with temperature.

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use asperity::element::{OperatingPoint, Quantity, Sampled, TableRow};
+use asperity::element::{OperatingPoint, Quantity};
 use asperity::scene::Wlf;
 
 use crate::figure::{Curve, Figure as _, Panel, PanelRow, SideBySide, Stroke};
 use crate::files::FileError;
 use asperity_study::decimals::as_given;
-use asperity_study::sweep::SweepTable;
+use asperity_study::sweep::{Sampled, SweepRow, SweepTable, is_converged};
 
 /// Draws friction over speed at `path`: a panel for each temperature, a colour for each load; with one load, one panel
 /// and a colour for each temperature.
@@ -33,7 +33,7 @@ pub(super) fn draw_master(path: &Path, table: &SweepTable, wlf: &Wlf) -> Result<
 #[derive(Debug)]
 struct Group<'a> {
     name: String,
-    rows: Vec<&'a TableRow>,
+    rows: Vec<&'a SweepRow>,
 }
 
 /// The title of a panel, and what has a colour in it.
@@ -75,9 +75,8 @@ fn load_name(table: &SweepTable, load: f64) -> String {
     as_given(load, table.header.load.unit())
 }
 
-fn rows(table: &SweepTable, load: f64, temperature: Option<f64>) -> Vec<&TableRow> {
-    let all = table.rows.iter().map(|stored| &stored.row);
-    all.filter(|row| row.point.load == load && row.point.temperature == temperature).collect()
+fn rows(table: &SweepTable, load: f64, temperature: Option<f64>) -> Vec<&SweepRow> {
+    table.rows.iter().filter(|row| row.point.load == load && row.point.temperature == temperature).collect()
 }
 
 /// The friction coefficient and, below it, each part of it that is there and not all of it.
@@ -102,7 +101,7 @@ fn plot(
     if has_parts {
         rows.push(row("adhesion", Quantity::Adhesion, None));
     }
-    SideBySide { title: table.header.scene.clone(), x_title, rows }
+    SideBySide { title: table.header.scene().to_owned(), x_title, rows }
 }
 
 /// The name of what the scene's own numbers give, beside the median of samples.
@@ -119,7 +118,7 @@ fn sampled(quantity: Quantity) -> Option<Sampled> {
 
 /// Whether a part of the friction is not 0 everywhere.
 fn is_there(table: &SweepTable, part: Quantity) -> bool {
-    table.rows.iter().any(|stored| stored.row.value(part).is_some_and(|value| value != 0.0))
+    table.rows.iter().any(|row| row.value(part).is_some_and(|value| value != 0.0))
 }
 
 /// Which points cannot be relied on, in a word: they are hollow.
@@ -132,8 +131,7 @@ enum Hollow {
 
 impl Hollow {
     fn of(table: &SweepTable) -> Self {
-        let basis = &table.header.basis;
-        if basis.convergence.is_some() && !basis.is_converged() { Self::NotConverged } else { Self::NotSteady }
+        if is_converged(&table.header.keys) == Some(false) { Self::NotConverged } else { Self::NotSteady }
     }
 
     fn name(self) -> &'static str {
@@ -157,7 +155,7 @@ impl<X: Fn(&OperatingPoint) -> f64> Points<X> {
         let bands = groups.iter().enumerate().flat_map(|(look, Group { rows, .. })| self.bands(quantity, rows, look));
         let curves = groups.iter().enumerate().flat_map(|(look, Group { name, rows })| {
             let median = self.median(quantity, rows, (name, look));
-            let steady = self.points(quantity, rows, TableRow::is_result);
+            let steady = self.points(quantity, rows, SweepRow::is_result);
             let (stroke, hollow) = match self.hollow {
                 Hollow::NotSteady => (Stroke::Marked, self.points(quantity, rows, |row| !row.is_result())),
                 Hollow::NotConverged => (Stroke::Line, self.points(quantity, rows, |_| true)),
@@ -168,7 +166,7 @@ impl<X: Fn(&OperatingPoint) -> f64> Points<X> {
             };
             let whole = Curve { name, look, stroke, points: steady };
             let part = part.map(|(name, part)| {
-                let points = self.points(part, rows, TableRow::is_result);
+                let points = self.points(part, rows, SweepRow::is_result);
                 let stroke = if median.is_some() { Stroke::Dotted } else { Stroke::Dashed };
                 Curve { name: name.into(), look, stroke, points }
             });
@@ -184,7 +182,7 @@ impl<X: Fn(&OperatingPoint) -> f64> Points<X> {
     }
 
     /// The bands of the samples in which 90 and 50 % of them lie; none of a table without.
-    fn bands(&self, quantity: Quantity, rows: &[&TableRow], look: usize) -> Vec<Curve> {
+    fn bands(&self, quantity: Quantity, rows: &[&SweepRow], look: usize) -> Vec<Curve> {
         let Some(sampled) = sampled(quantity) else { return Vec::new() };
         let bands =
             [("90 % of the samples", 0.05, Stroke::WideBand), ("50 % of the samples", 0.25, Stroke::NarrowBand)];
@@ -197,17 +195,17 @@ impl<X: Fn(&OperatingPoint) -> f64> Points<X> {
     }
 
     /// The median of the samples, with the name and the look of its group; `None` of a table without.
-    fn median(&self, quantity: Quantity, rows: &[&TableRow], (name, look): (&str, usize)) -> Option<Curve> {
+    fn median(&self, quantity: Quantity, rows: &[&SweepRow], (name, look): (&str, usize)) -> Option<Curve> {
         let points = self.quantile(sampled(quantity)?, 0.5, rows);
         (!points.is_empty()).then(|| Curve { name: name.to_owned(), look, stroke: Stroke::Marked, points })
     }
 
-    fn quantile(&self, sampled: Sampled, probability: f64, rows: &[&TableRow]) -> Vec<(f64, f64)> {
-        let of = |row: &&TableRow| row.samples.as_ref()?.quantile(sampled, probability);
+    fn quantile(&self, sampled: Sampled, probability: f64, rows: &[&SweepRow]) -> Vec<(f64, f64)> {
+        let of = |row: &&SweepRow| row.samples.as_ref()?.quantile(sampled, probability);
         rows.iter().filter_map(|row| Some(((self.x)(&row.point), of(row)?))).collect()
     }
 
-    fn points(&self, quantity: Quantity, rows: &[&TableRow], is_drawn: impl Fn(&TableRow) -> bool) -> Vec<(f64, f64)> {
+    fn points(&self, quantity: Quantity, rows: &[&SweepRow], is_drawn: impl Fn(&SweepRow) -> bool) -> Vec<(f64, f64)> {
         let drawn = rows.iter().filter(|row| is_drawn(row));
         drawn.filter_map(|row| Some(((self.x)(&row.point), row.value(quantity)?))).collect()
     }
@@ -215,7 +213,9 @@ impl<X: Fn(&OperatingPoint) -> f64> Points<X> {
 
 #[cfg(test)]
 mod tests {
-    use asperity::element::{Basis, Load, PointStatus, SweepGrid, TableHeader};
+    use asperity::element::{Load, PointStatus, SweepGrid};
+    use asperity::table::Header;
+    use asperity_study::sweep::SweepHeader;
 
     use super::*;
 
@@ -223,23 +223,19 @@ mod tests {
     fn table(adhesion: f64, convergence: Option<&str>) -> SweepTable {
         let grid = SweepGrid { speeds: vec![0.1, 1.0], loads: vec![1e5], temperatures: vec![293.15, 313.15] };
         let row = |(i, point): (usize, OperatingPoint)| {
-            let mut row = TableRow::new(point, PointStatus::new((i == 3).then_some("stick-slip")));
+            let mut row = SweepRow::new(point, PointStatus::new((i == 3).then_some("stick-slip")));
             row.set(Quantity::Friction, Some(1.0 + point.speed));
             row.set(Quantity::Hysteresis, Some(1.0 + point.speed - adhesion));
             row.set(Quantity::Adhesion, Some(adhesion));
             row
         };
         let rows = grid.points().enumerate().map(row).collect::<Vec<_>>();
-        let header = TableHeader {
-            scene: "block".into(),
-            fingerprint: String::new(),
+        let header = SweepHeader {
+            keys: Header::default().with("scene", "block").with_some("convergence", convergence),
             load: Load::Pressure { area: 1.0 },
             rest_separation: 0.0,
-            basis: Basis { convergence: convergence.map(String::from), ..Basis::default() },
             grid,
-            low_end: None,
             samples: None,
-            ranking: Vec::new(),
         };
         SweepTable::new(header, rows)
     }

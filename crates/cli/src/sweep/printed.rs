@@ -5,7 +5,7 @@ use asperity::element::{PointStatus, Quantity};
 
 use crate::terminal::{LabelledLine, labelled};
 use asperity_study::decimals::{as_given, rounded, with_prefix};
-use asperity_study::sweep::{StoredRow, SweepTable};
+use asperity_study::sweep::{SweepRow, SweepTable};
 
 /// Most speeds and most loads that are printed: a terminal's worth.
 const MOST: (usize, usize) = (60, 7);
@@ -28,18 +28,18 @@ pub(super) fn lines(table: &SweepTable) -> Vec<LabelledLine> {
     };
     let mut texts: Vec<String> = Vec::new();
     for temperature in temperatures {
-        let of_block = || table.rows.iter().filter(move |stored| stored.row.point.temperature == temperature);
+        let of_block = || table.rows.iter().filter(move |row| row.point.temperature == temperature);
         let title = temperature.map_or_else(|| "speed".to_owned(), |kelvin| format!("{kelvin} K"));
         texts.push(columns(title, grid.loads.iter().map(|&load| as_given(load, unit))));
         for &speed in &grid.speeds {
             let friction = |&load: &f64| {
-                let found = of_block().find(|one| one.row.point.speed == speed && one.row.point.load == load);
+                let found = of_block().find(|row| row.point.speed == speed && row.point.load == load);
                 found.map_or_else(String::new, friction)
             };
             texts.push(columns(with_prefix(speed, speed, "m/s"), grid.loads.iter().map(friction)));
         }
     }
-    let has = |status: fn(&PointStatus) -> bool| table.rows.iter().any(|stored| status(&stored.row.status));
+    let has = |status: fn(&PointStatus) -> bool| table.rows.iter().any(|row| status(&row.status));
     if has(|status| !status.is_result()) {
         texts.push(format!("{NOT_STEADY} not steady"));
     }
@@ -49,10 +49,9 @@ pub(super) fn lines(table: &SweepTable) -> Vec<LabelledLine> {
     labelled("Friction", texts)
 }
 
-fn friction(stored: &StoredRow) -> String {
-    let value =
-        stored.row.value(Quantity::Friction).map_or_else(|| "-".to_owned(), |value| rounded(value, 4).to_string());
-    match stored.row.status {
+fn friction(row: &SweepRow) -> String {
+    let value = row.value(Quantity::Friction).map_or_else(|| "-".to_owned(), |value| rounded(value, 4).to_string());
+    match row.status {
         PointStatus::Steady => value,
         PointStatus::FullContact => format!("{value}{FULL_CONTACT}"),
         PointStatus::Problem(_) => format!("{value}{NOT_STEADY}"),

@@ -2,13 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::element::{Sampled, TableRow};
 use asperity::scene::Scene;
+use asperity_study::Error;
 use asperity_study::decimals::rounded;
-use asperity_study::sweep::{Matters, SweepOptions, SweepPlan, SweepTable};
+use asperity_study::sweep::{Matters, Sampled, SweepPlan, SweepRow, SweepTable};
 use asperity_study::uncertainty::{SampleOptions, UncertainScene};
 
-use super::SweepCommandError;
 use crate::cli::Sweep;
 use crate::figure::{Bar, Bars, Figure as _};
 use crate::files::write as write_file;
@@ -16,15 +15,12 @@ use crate::output::is_stream;
 use crate::terminal::{LabelledLine, labelled};
 
 /// The sweep of a scene, with samples where they are asked for.
-pub(super) fn plan(
-    command: &Sweep,
-    scene: Scene,
-    (options, convergence): (&SweepOptions, Option<String>),
-) -> Result<SweepPlan, SweepCommandError> {
-    let Some(count) = command.samples else { return Ok(SweepPlan::new(scene, options, convergence)?) };
+pub(super) fn plan(command: &Sweep, scene: Scene, convergence: Option<String>) -> Result<SweepPlan, Error> {
+    let options = &command.options;
+    let Some(count) = command.samples else { return SweepPlan::new(scene, options, convergence) };
     let uncertain = UncertainScene::new(scene)?;
     let samples = SampleOptions { count: count as usize, seed: command.seed };
-    Ok(SweepPlan::with_samples(&uncertain, options, convergence, samples)?)
+    SweepPlan::with_samples(&uncertain, options, convergence, samples)
 }
 
 /// The files that are written beside the table: what matters, as a table and as a picture, and all samples. Of a shard none,
@@ -44,34 +40,33 @@ pub(super) fn write(
     plan: &SweepPlan,
     table: &SweepTable,
     files: &[PathBuf],
-) -> Result<Vec<LabelledLine>, SweepCommandError> {
-    let rows: Vec<&TableRow> = table.rows.iter().map(|stored| &stored.row).collect();
-    let Some(matters) = plan.matters(&rows).filter(|_| command.shard.is_none()) else { return Ok(Vec::new()) };
+) -> Result<Vec<LabelledLine>, Error> {
+    let Some(matters) = plan.matters(&table.rows).filter(|_| command.shard.is_none()) else { return Ok(Vec::new()) };
     for file in files {
         match file.extension().and_then(|extension| extension.to_str()) {
-            _ if command.keep.as_ref() == Some(file) => write_file(file, plan.samples_text(&rows))?,
+            _ if command.keep.as_ref() == Some(file) => write_file(file, plan.samples_table(&table.rows).text())?,
             Some("svg") => picture(table, &matters).write(file)?,
-            _ => write_file(file, matters.text(table.header.load))?,
+            _ => write_file(file, matters.table(table.header.load).text())?,
         }
     }
     let mut said = Vec::from_iter(table.header.samples.map(|samples| {
         let anew = if samples.redrawn == 0 { String::new() } else { format!(", {} drawn anew", samples.redrawn) };
         ("Samples", format!("{} of seed {}{anew}; friction's quantiles are in the table", samples.count, samples.seed))
     }));
-    said.extend(widest(&rows, table));
+    said.extend(widest(table));
     said.extend(lines(&matters));
     Ok(said)
 }
 
 /// The band of friction where it is widest over its median.
-fn widest(rows: &[&TableRow], table: &SweepTable) -> Option<LabelledLine> {
-    let band = |row: &&TableRow| {
+fn widest(table: &SweepTable) -> Option<LabelledLine> {
+    let band = |row: &SweepRow| {
         let [low, median, high] = [0.05, 0.5, 0.95].map(|p| row.samples.as_ref()?.quantile(Sampled::Friction, p));
         let (low, median, high) = (low?, median?, high?);
         Some(((high - low) / median.max(f64::MIN_POSITIVE), [low, median, high], row.point))
     };
     let (_, [low, median, high], point) =
-        rows.iter().filter_map(band).max_by(|one, other| one.0.total_cmp(&other.0))?;
+        table.rows.iter().filter_map(band).max_by(|one, other| one.0.total_cmp(&other.0))?;
     let [low, median, high] = [low, median, high].map(|friction| rounded(friction, 3));
     let at = point.describe(table.header.load);
     Some(("Widest", format!("{low} to {high} in 90 % of the samples, median {median}, at {at}")))
@@ -105,7 +100,7 @@ fn picture(table: &SweepTable, matters: &Matters) -> Bars {
     };
     let rest = matters.mean.iter().map(|mean| Bar { name: matters.rest.to_owned(), value: mean.rest, error: 0.0 });
     Bars {
-        title: format!("{}: part of the variance of mean friction", table.header.scene),
+        title: format!("{}: part of the variance of mean friction", table.header.scene()),
         bars: matters.largest().into_iter().map(of_key).chain(rest).collect(),
     }
 }

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use asperity::element::{OperatingPoint, Quantity, TableRow};
+use asperity::element::{OperatingPoint, Quantity};
 use asperity::scene::Scene;
+use asperity::table::{Cell, Column, Header, Table};
+use asperity_study::Error;
 use asperity_study::progress::Stop;
-use asperity_study::sweep::{SlidingOptions, SweepOptions, SweepPlan, SweepTable};
+use asperity_study::sweep::{SlidingOptions, SweepOptions, SweepPlan, SweepRow, SweepTable};
 
-use super::SweepCommandError;
 use crate::figure::{Curve, Figure as _, Panel, PanelRow, SideBySide, Stroke};
 use crate::files::write;
 use crate::flags::with_flags;
@@ -19,7 +20,7 @@ pub(super) fn sweep(
     options: &SweepOptions,
     ways: &[f64],
     (output, picture): (&Path, Option<&Path>),
-) -> Result<[usize; 2], SweepCommandError> {
+) -> Result<[usize; 2], Error> {
     let plan = |&way: &f64| {
         let sliding = SlidingOptions { way: Some(way), ..options.sliding };
         SweepPlan::new(scene.clone(), &SweepOptions { sliding, ..options.clone() }, None)
@@ -30,24 +31,24 @@ pub(super) fn sweep(
     let tables: Vec<SweepTable> = plans.iter().map(|plan| plan.table(&Stop::default(), || bar.inc(1))).collect();
     bar.finish_and_clear();
     for (plan, table) in plans.iter().zip(&tables) {
-        let found = plan.warnings(table.rows.iter().map(|stored| &stored.row));
-        found.iter().for_each(|warning| warn(&with_flags(warning)));
+        plan.warnings(&table.rows).iter().for_each(|warning| warn(&with_flags(warning)));
     }
-    write(output, text(ways, &tables))?;
+    write(output, whole(ways, &tables).text())?;
     if let Some(picture) = picture {
         self::picture(ways, &tables).write(picture)?;
     }
     let rows = || tables.iter().flat_map(|table| &table.rows);
-    Ok([rows().count(), rows().filter(|stored| !stored.row.is_result()).count()])
+    Ok([rows().count(), rows().filter(|row| !row.is_result()).count()])
 }
 
-/// The rows of all ways below one line of names.
-fn text(ways: &[f64], tables: &[SweepTable]) -> String {
-    let names = tables.first().map(|table| table.header.text()).unwrap_or_default();
-    let names = names.lines().last().unwrap_or_default();
-    let rows = ways.iter().zip(tables).flat_map(|(way, table)| table.rows.iter().map(move |row| (way, row)));
-    let lines: String = rows.map(|(way, stored)| format!("{way:?},{}", stored.line())).collect();
-    format!("way [m],{names}\n{lines}")
+/// The rows of all ways as one table.
+fn whole(ways: &[f64], tables: &[SweepTable]) -> Table {
+    let own = tables.first().map(|table| table.header.table().columns().to_vec()).unwrap_or_default();
+    let mut whole = Table::new(Header::default(), [Column::numbers("way", "m")].into_iter().chain(own));
+    for (way, table) in ways.iter().zip(tables) {
+        table.rows.iter().for_each(|row| whole.push([Cell::from(*way)].into_iter().chain(row.cells())));
+    }
+    whole
 }
 
 /// Friction over the way: a panel for each load and temperature, a colour for each speed.
@@ -58,9 +59,8 @@ fn picture(ways: &[f64], tables: &[SweepTable]) -> SideBySide {
     let grid = &first.header.grid;
     let panel = |at: OperatingPoint| {
         let curve = |(look, &speed): (usize, &f64)| {
-            let of = |row: &&TableRow| row.point == OperatingPoint { speed, ..at } && row.is_result();
-            let friction =
-                |table: &SweepTable| table.rows.iter().map(|stored| &stored.row).find(of)?.value(Quantity::Friction);
+            let of = |row: &&SweepRow| row.point == OperatingPoint { speed, ..at } && row.is_result();
+            let friction = |table: &SweepTable| table.rows.iter().find(of)?.value(Quantity::Friction);
             let points = ways.iter().zip(tables).filter_map(|(&way, table)| Some((way, friction(table)?)));
             Curve { name: format!("{speed} m/s"), look, stroke: Stroke::Marked, points: points.collect() }
         };
@@ -70,5 +70,5 @@ fn picture(ways: &[f64], tables: &[SweepTable]) -> SideBySide {
     };
     let panels = grid.points().step_by(grid.speeds.len()).map(panel).collect();
     let row = PanelRow { y_title: "friction coefficient".into(), panels };
-    SideBySide { title: first.header.scene.clone(), x_title: "way in m".into(), rows: vec![row] }
+    SideBySide { title: first.header.scene().to_owned(), x_title: "way in m".into(), rows: vec![row] }
 }

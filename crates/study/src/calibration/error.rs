@@ -8,7 +8,6 @@ use asperity::tables::ContentError;
 use rmpfit::MPError;
 
 use crate::error::Error;
-use crate::sweep::{MethodError, NeverSteady};
 
 /// Why there is no steady sliding at a point, as tables of points have it.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -49,7 +48,7 @@ pub enum ModelError {
     Layer(String),
     /// Steady sliding of the scene cannot be solved for.
     #[error(transparent)]
-    Method(#[from] MethodError),
+    Method(#[from] Error),
     /// The method of Levenberg and Marquardt has met what it cannot go on with.
     #[error("the fit cannot go on: {0}")]
     LeastSquares(MPError),
@@ -108,7 +107,16 @@ pub enum MeasuredFrictionError {
     #[error("{}:{line}: {problem}", .path.display())]
     Temperature { path: PathBuf, line: usize, problem: ParameterError },
     #[error("{}:{line}: {problem}", .path.display())]
-    Way { path: PathBuf, line: usize, problem: MethodError },
+    Way { path: PathBuf, line: usize, problem: Error },
+}
+
+impl From<MeasuredFrictionError> for Error {
+    fn from(error: MeasuredFrictionError) -> Self {
+        match error {
+            MeasuredFrictionError::Read(error) => error,
+            error => Self::value(error),
+        }
+    }
 }
 
 /// A calibration refuses the scene, the data or the parameters, or cannot go on.
@@ -121,10 +129,6 @@ pub enum CalibrationError {
     NoArea,
     #[error("the scene has [carrier.x]; expected none, since the speed is prescribed")]
     BodyAlongX,
-    #[error(transparent)]
-    Method(#[from] MethodError),
-    #[error(transparent)]
-    NeverSteady(#[from] NeverSteady),
     #[error(transparent)]
     Free(#[from] FreeParameterError),
     #[error(transparent)]

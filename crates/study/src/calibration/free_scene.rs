@@ -8,6 +8,7 @@ use super::error::{CalibrationError, FreeParameterError, MeasuredFrictionError, 
 use super::measurements::Measurements;
 use super::options::CalibrationOptions;
 use super::parameter::FreeParameter;
+use crate::error::Error;
 use crate::settings::edited;
 use crate::sweep::{Method, fingerprint, relevant};
 
@@ -151,8 +152,7 @@ impl<'a> FreeScene<'a> {
     ///
     /// # Errors
     /// Where the scene cannot be written as JSON.
-    pub fn fingerprint(&self) -> Result<String, serde_json::Error> {
-        let settings = self.method.settings(&self.options.sliding, || format!("{:?}", self.options.sliding.bounds()));
-        fingerprint(&relevant(self.scene.clone()), &format!("calibrate {settings}"))
+    pub fn fingerprint(&self) -> Result<String, Error> {
+        fingerprint(&relevant(self.scene.clone()), self.options.sliding, self.method.surface(), "calibrate")
     }
 }

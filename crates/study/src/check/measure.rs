@@ -1,7 +1,7 @@
 //! What elements and patches are compared with: the scene that a table was swept of, how points are chosen, how well they
 //! are known, and how large their errors are.
 
-use asperity::element::{Load, Node, Quantity, Table};
+use asperity::element::{FrictionTable, Load, Node, Quantity};
 use asperity::scene::{CarrierBodies, Scene};
 
 use crate::error::Error;
@@ -11,11 +11,11 @@ use crate::sweep::separation_at_rest;
 const ROUNDING: f64 = 1e-6;
 
 /// The layer of a `scene`, which must be the one that `table` was swept of.
-pub(super) fn swept_scene(table: &Table, scene: Scene) -> Result<Scene, Error> {
+pub(super) fn swept_scene(table: &FrictionTable, scene: Scene) -> Result<Scene, Error> {
     // The element's w is given: what the table was swept on is held by its displacement here.
     let scene = Scene { carrier: CarrierBodies::default(), ..scene };
-    if scene.name != table.scene {
-        let (swept, found) = (&table.scene, scene.name);
+    if scene.name != table.scene() {
+        let (swept, found) = (table.scene(), scene.name);
         return Err(Error::scene(format!(
             "`check`: the table was swept of {swept:?}, the scene is {found:?}: expected the scene that was swept"
         )));

@@ -1,6 +1,6 @@
 //! The face of a patch, tilted until its elements stand at the separations of all the pressures of the table.
 
-use asperity::element::{Node, Quantity, Table};
+use asperity::element::{FrictionTable, Node, Quantity};
 use asperity::patch::{Patch, PatchElement, Pose};
 
 use super::measure::selected;
@@ -64,7 +64,7 @@ impl TiltedFace {
 
 /// The separations (m) of the largest and of the least pressure at a speed, at the temperature of the table next to
 /// `kelvin`.
-fn separations(table: &Table, speed: usize, kelvin: f64) -> [f64; 2] {
+fn separations(table: &FrictionTable, speed: usize, kelvin: f64) -> [f64; 2] {
     let off = |&i: &usize| (table.grid.temperatures[i] - kelvin).abs();
     let all = 0..table.grid.temperatures.len();
     let temperature = all.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0);

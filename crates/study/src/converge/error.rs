@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use crate::error::Error;
-use crate::sweep::{MethodError, NeverSteady};
 
 /// The scene does not go with what is asked of the study.
 #[derive(Debug, thiserror::Error)]
@@ -25,14 +24,10 @@ pub enum ConvergeError {
         .path.display()
     )]
     HeightsAtMasses { path: PathBuf },
-    #[error(transparent)]
-    NeverSteady(#[from] NeverSteady),
     #[error("{}: layer.masses and layer.spacing: expected plain numbers in the file, which the study varies, no texts with units", .path.display())]
     Unclear { path: PathBuf },
     #[error("`seeds`: neither the scene's surface nor its roughness is self_affine, so nothing depends on a seed")]
     NoSeed,
-    #[error(transparent)]
-    Method(#[from] MethodError),
     #[error(
         "`most_{parts}`: expected at least {least}: the scene has {own} {parts}, and its spacing is halved at least once"
     )]

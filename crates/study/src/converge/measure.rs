@@ -5,8 +5,9 @@ use asperity::scene::Scene;
 
 use super::table::Measured;
 use super::verdict::Pair;
+use crate::Error;
 use crate::steady::{SlidingRubber, SteadySolver};
-use crate::sweep::{Method, MethodError, NotSteady, SlidingOptions, StopBounds, SweepMethod, steady_sliding};
+use crate::sweep::{Method, NotSteady, SlidingOptions, StopBounds, SweepMethod, steady_sliding};
 
 /// Why a run has no friction and area.
 #[derive(Debug, thiserror::Error)]
@@ -14,7 +15,7 @@ pub(super) enum RunError {
     #[error(transparent)]
     NotSteady(#[from] NotSteady),
     #[error(transparent)]
-    Method(#[from] MethodError),
+    Method(#[from] Error),
     #[error("{0} points are too many")]
     TooManyPoints(u64),
     #[error("not to be solved for")]

@@ -45,7 +45,13 @@ pub struct ConvergenceOptions {
 impl ConvergenceOptions {
     /// How steady sliding is found.
     pub fn sliding(&self) -> SlidingOptions {
-        SlidingOptions { method: self.method, way: self.way, points: self.points, error: None, distance: self.distance }
+        SlidingOptions {
+            method: self.method,
+            way: self.way,
+            points: self.points,
+            friction_error: None,
+            distance: self.distance,
+        }
     }
 
     fn state(&self) -> State {
@@ -120,11 +126,10 @@ impl ConvergenceStudy {
         let warning = scene.hard_pressure("`pressure`", options.pressure).filter(|_| matches!(method, Method::Layer));
         method.check(scene)?;
         let ConvergenceOptions { pressure, speed, way, error, distance, .. } = options;
-        let of_method_alone = method.settings(&options.sliding(), || format!("{distance:?}"));
-        let settings = format!("converge {pressure:?} {speed:?} {error:?} {of_method_alone}");
+        let asked = format!("converge {pressure:?} {speed:?} {error:?} {distance:?}");
         let header = StudyHeader {
             scene: scene.name.clone(),
-            fingerprint: fingerprint(&relevant(scene.clone()), &settings)?,
+            fingerprint: fingerprint(&relevant(scene.clone()), options.sliding(), method.surface(), &asked)?,
             method: of_method,
             parts: template.parts(),
             pressure,

@@ -1,6 +1,6 @@
 //! What the runs leave open, and the coarsest spacing that will do.
 
-use asperity::element::CONVERGED;
+use crate::sweep::CONVERGED;
 
 use crate::decimals::{decimal, rounded};
 use crate::sweep::SMALL_FRICTION;

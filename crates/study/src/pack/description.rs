@@ -305,7 +305,7 @@ fn table<const N: usize>(head: [&str; N], rows: &[[String; N]]) -> io::Result<St
 mod tests_of_description {
     use std::path::Path;
 
-    use asperity::element::{PointContact, Table};
+    use asperity::element::{FrictionTable, PointContact};
     use asperity::patch::Patch;
     use asperity::scene::Scene;
     use asperity_fmi::{Definition, Sources, guid};
@@ -349,7 +349,7 @@ mod tests_of_description {
     #[test]
     fn elements_and_patches_have_a_default_step() {
         let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("tests/reference/patch");
-        let table = Table::load(&folder.join("block.table.csv")).unwrap();
+        let table = FrictionTable::load(&folder.join("block.table.csv")).unwrap();
         assert!(description_of(&PointContact::new(table).into()).contains("<DefaultExperiment stepSize=\""));
         let text = "name = 'pad'\ntable = { path = 'block.table.csv' }\n[patch]\nshape = 'flat'\nlength = 0.01\n\
                     width = 0.01\nnx = 1\nny = 1";

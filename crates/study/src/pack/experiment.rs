@@ -1,6 +1,6 @@
 //! The experiment of an FMU as tables: its inputs at times, and what the program itself gets along them.
 
-use asperity::element::{Node, PointContact, Quantity, Table};
+use asperity::element::{FrictionTable, Node, PointContact, Quantity};
 use asperity::patch::Patch;
 use asperity::scene::{Input, OutputGroup, Phase, Scene, Value};
 use asperity_fmi::{CommunicationStep, Definition, Inputs, Role, VariableRef, VariableTable};
@@ -254,7 +254,7 @@ const PRESS: (u32, f64) = (40, 20.0);
 const SLIDE: (u32, f64) = (60, 10.0);
 
 impl Press {
-    fn new(table: &Table) -> Option<Self> {
+    fn new(table: &FrictionTable) -> Option<Self> {
         let grid = &table.grid;
         let middle = |axis: &[f64]| axis.len() / 2;
         let node = Node {

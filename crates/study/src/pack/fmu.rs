@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Component, Path};
 
-use asperity::element::Basis;
+use asperity::table::Header;
 use asperity_fmi::{Definition, Sources, VariableTable, guid};
 
 use super::archive::{ArchiveEntry, zip};
@@ -13,6 +13,7 @@ use super::references;
 use crate::error::Error;
 use crate::files::bytes;
 use crate::summary::{LabelledLine, patch_rows, scene_rows, table_rows};
+use crate::sweep::is_converged;
 
 /// An FMU before it is packed.
 #[derive(Debug)]
@@ -136,8 +137,8 @@ pub fn no_start(definition: &Definition) -> Option<String> {
 
 /// A warning of a table of links that stand for a material, where it does not say that its numbers no longer depend on
 /// the spacing.
-pub fn not_converged(basis: &Basis) -> Option<String> {
-    let foundation = basis.foundation.as_ref().filter(|_| !basis.is_converged())?;
-    let found = basis.convergence.as_deref().unwrap_or("no study of it: see asperity converge");
+pub fn not_converged(header: &Header) -> Option<String> {
+    let foundation = header.text_of("foundation").filter(|_| is_converged(header) != Some(true))?;
+    let found = header.text_of("convergence").unwrap_or("no study of it: see asperity converge");
     Some(format!("the table (foundation {foundation}) is not known to be converged: {found}"))
 }

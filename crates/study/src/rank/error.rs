@@ -7,7 +7,6 @@ use asperity::tables::ContentError;
 use crate::csv::CsvError;
 use crate::error::Error;
 use crate::progress::Stopped;
-use crate::sweep::SweepError;
 use crate::uncertainty::UncertaintyError;
 
 /// The scenes cannot be ranked.
@@ -17,7 +16,7 @@ pub enum RankError {
     #[error(transparent)]
     Read(#[from] Error),
     #[error("{scene}: {error}")]
-    Sweep { scene: String, error: Box<SweepError> },
+    Sweep { scene: String, error: Box<Error> },
     #[error(transparent)]
     Uncertainty(#[from] UncertaintyError),
     #[error(transparent)]

@@ -8,13 +8,14 @@ use asperity::scene::Scene;
 use super::error::RankError;
 use super::ranking::{Frictions, Ranking};
 use super::weights::Weights;
+use crate::Error;
 use crate::files::name_of;
 use crate::progress::{Stop, Stopped};
-use crate::sweep::{SweepError, SweepOptions, SweepPlan, SweepTable};
+use crate::sweep::{SweepOptions, SweepPlan, SweepTable};
 use crate::uncertainty::{Drawn, Refused, SampleOptions, Sampler, UncertainScene, UncertaintyError};
 
 /// Friction of a scene at all points, or why it cannot be swept.
-type Found = Result<Vec<Option<f64>>, SweepError>;
+type Found = Result<Vec<Option<f64>>, Error>;
 
 /// A scene to rank.
 #[derive(Clone, Debug)]
@@ -153,19 +154,14 @@ impl RankPlan {
             let of_one = |(drawn, scene): (Drawn, &&UncertainScene)| {
                 let found = self.sample(scene, drawn.scene, stop);
                 done();
-                match found {
-                    // Drawn anew, as it has not the temperatures of the points.
-                    Err(SweepError::Temperature(error)) => Err(Refused::from(error)),
-                    found => Ok(found),
-                }
+                found
             };
             drawn.into_iter().zip(&uncertain).map(of_one).collect::<Result<Vec<_>, _>>()
         });
         stopped(stop)?;
         let draws = draws?;
         let whole = |(sample, drawn): (usize, Vec<Found>)| {
-            let failed =
-                |error: SweepError| UncertaintyError::Sample { sample: sample + 1, problem: error.to_string() };
+            let failed = |error: Error| UncertaintyError::Sample { sample: sample + 1, problem: error.to_string() };
             let drawn = drawn.into_iter().collect::<Result<Frictions, _>>().map_err(failed)?;
             let mut drawn = drawn.into_iter();
             let of = |(entry, own): (&Entry, &Vec<Option<f64>>)| match entry.uncertain {
@@ -178,16 +174,20 @@ impl RankPlan {
         Ok((samples, draws.redrawn))
     }
 
-    /// Friction of a scene that was `drawn` about another one.
-    fn sample(&self, scene: &UncertainScene, drawn: Scene, stop: &Stop) -> Result<Vec<Option<f64>>, SweepError> {
+    /// Friction of a scene that was `drawn` about another one; refused where it has not the temperatures of the points.
+    fn sample(&self, scene: &UncertainScene, drawn: Scene, stop: &Stop) -> Result<Found, Refused> {
         let shift = scene.warmer(&drawn);
         // How far off the temperature of the scene may be that of each point may be, too.
-        let temperatures = self.options.temperatures.as_ref();
-        let temperatures = temperatures.map(|all| all.iter().map(|kelvin| kelvin + shift).collect());
-        let options = SweepOptions { temperatures, ..self.options.clone() };
-        let plan = SweepPlan::new(drawn, &options, None)?;
-        // Where it is stopped nobody wants the ranking.
-        Ok(swept(&plan, stop).map(|table| frictions(&table)).unwrap_or_else(|_| vec![None; plan.header().grid.count()]))
+        let mut options = self.options.clone();
+        for kelvin in options.temperatures.iter_mut().flat_map(|values| &mut values.0) {
+            *kelvin += shift;
+            drawn.with_temperature(*kelvin).check()?;
+        }
+        Ok(SweepPlan::new(drawn, &options, None).map(|plan| {
+            // Where it is stopped nobody wants the ranking.
+            let nothing = |_| vec![None; plan.header().grid.count()];
+            swept(&plan, stop).map(|table| frictions(&table)).unwrap_or_else(nothing)
+        }))
     }
 }
 
@@ -203,8 +203,7 @@ fn swept(plan: &SweepPlan, stop: &Stop) -> Result<SweepTable, Stopped> {
 
 /// Friction of a whole table, in the order of the points.
 fn frictions(table: &SweepTable) -> Vec<Option<f64>> {
-    let rows = table.rows.iter().map(|stored| &stored.row);
-    rows.map(|row| row.value(Quantity::Friction).filter(|_| row.is_result())).collect()
+    table.rows.iter().map(|row| row.value(Quantity::Friction).filter(|_| row.is_result())).collect()
 }
 
 /// Names of the scenes, each another one: their own, else those of their files, else these with their folders.

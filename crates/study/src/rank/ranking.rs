@@ -1,6 +1,7 @@
 //! The ranking, from friction of all scenes at all points, their own and that of the samples.
 
-use asperity::element::{Load, OperatingPoint, quantile, some_of};
+use crate::sweep::quantile;
+use asperity::element::{Load, OperatingPoint, some_of};
 
 use super::error::RankError;
 

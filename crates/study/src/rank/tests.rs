@@ -3,8 +3,9 @@ use asperity::tables::Csv;
 use super::*;
 use crate::files::parse_scene;
 use crate::progress::Stop;
-use crate::sweep::{Loads, SlidingOptions, SweepOptions};
+use crate::sweep::SweepOptions;
 use crate::uncertainty::SampleOptions;
+use crate::values::Values;
 
 /// An elastic sine on which all friction is a shear strength over a constant real area, and a coefficient.
 fn scene(name: &str, strength: f64, uncertain: &str) -> RankScene {
@@ -23,10 +24,9 @@ const TEN_PER_CENT: &str = "[uncertainty]\n'friction.shear_strength' = { relativ
 
 fn plan(scenes: Vec<RankScene>, count: usize) -> RankPlan {
     let options = SweepOptions {
-        speeds: vec![0.1, 1.0],
-        loads: Loads::Pressures(vec![2e4, 4e4]),
-        temperatures: None,
-        sliding: SlidingOptions::default(),
+        speeds: Some(Values(vec![0.1, 1.0])),
+        pressures: Some(Values(vec![2e4, 4e4])),
+        ..SweepOptions::default()
     };
     RankPlan::new(scenes, options, SampleOptions { count, seed: 1 }).unwrap()
 }
@@ -121,10 +121,10 @@ fn measured_friction_is_ranked_beside() {
 #[test]
 fn what_cannot_be_ranked_is_refused() {
     let options = SweepOptions {
-        speeds: vec![0.1],
-        loads: Loads::Pressures(vec![2e4]),
-        temperatures: Some(vec![293.15]),
-        sliding: SlidingOptions::default(),
+        speeds: Some(Values(vec![0.1])),
+        pressures: Some(Values(vec![2e4])),
+        temperatures: Some(Values(vec![293.15])),
+        ..SweepOptions::default()
     };
     let new = |scenes: Vec<RankScene>| {
         RankPlan::new(scenes, options.clone(), SampleOptions { count: 64, seed: 1 }).unwrap_err().to_string()

@@ -1,6 +1,6 @@
 //! The summary of a contact patch, and of an element's table.
 
-use asperity::element::{LeftOut, Load, OperatingPoint, Table, left_out};
+use asperity::element::{FrictionTable, LeftOut, Load, OperatingPoint, left_out};
 use asperity::patch::{MotionError, Patch, PatchRun, PatchStart, Pose};
 use asperity::scene::{Backing, FaceHeat, Parameter, TableExtrapolation, Value};
 
@@ -20,7 +20,7 @@ pub fn patch_rows(patch: &Patch) -> Vec<LabelledLine> {
     let variables = patch.variables().len();
     let mut rows = vec![("Patch", patch.description())];
     rows.push(("Tread", if patch.has_tread() { "runs through the contact" } else { "none" }.to_owned()));
-    rows.push(("Table", format!("{}, {} points", patch.table().scene, patch.table().grid.count())));
+    rows.push(("Table", format!("{}, {} points", patch.table().scene(), patch.table().grid.count())));
     if patch.has_temperatures() {
         rows.push(("Temperature", format!("an input, {} K at the start", patch.temperature())));
     }
@@ -95,9 +95,9 @@ fn at_rest(patch: &Patch, z: f64) -> Result<PatchRun, MotionError> {
 }
 
 /// The summary of an element: its table, and the errors where points of it are left out and interpolated.
-pub fn table_rows(table: &Table) -> Vec<LabelledLine> {
+pub fn table_rows(table: &FrictionTable) -> Vec<LabelledLine> {
     let mut rows = vec![
-        ("Swept", table.scene.clone()),
+        ("Swept", table.scene().to_owned()),
         ("Speeds", range(&table.grid.speeds, "m/s")),
         ("Loads", range(&table.grid.loads, table.load.unit())),
     ];
@@ -107,14 +107,9 @@ pub fn table_rows(table: &Table) -> Vec<LabelledLine> {
     if let Load::Pressure { area } = table.load {
         rows.push(("Area", format!("{area:e} m²")));
     }
-    let basis = &table.basis;
-    let stated = [
-        ("Foundation", &basis.foundation),
-        ("Fine waves", &basis.fine),
-        ("Sample", &basis.sample),
-        ("Converged", &basis.convergence),
-    ];
-    rows.extend(stated.into_iter().filter_map(|(label, text)| Some((label, text.clone()?))));
+    let stated =
+        [("Foundation", "foundation"), ("Fine waves", "fine"), ("Sample", "sample"), ("Converged", "convergence")];
+    rows.extend(stated.into_iter().filter_map(|(label, key)| Some((label, table.header.text_of(key)?.to_owned()))));
     rows.push(("w = 0", format!("a separation of {:e} m", table.rest_separation)));
     let mut errors: Vec<_> = left_out(table).iter().filter_map(|axis| errors(axis, table.load)).collect();
     if errors.is_empty() {

@@ -3,26 +3,30 @@
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
-use asperity::element::{OperatingPoint, Sampled, TableHeader, TableRow};
+use asperity::element::{Load, OperatingPoint};
 use asperity::scene::Scene;
 use asperity::simulation::Interrupt;
+use asperity::table::{Cell, Column, Header, Table};
 use rayon::prelude::*;
 
-use super::error::SweepError;
-use super::matters::{Matter, Matters};
-use super::ranking::{means, number_at};
-use super::samples::{Sample, Samples};
-use super::scene_plan::{ScenePlan, SweepOptions};
-use super::table::{self, SweepTable};
-use crate::csv;
+use super::options::{SlidingOptions, SweepOptions, fingerprint_of};
+use super::sampled::{SampleHeader, Sampled, means, number_at};
+use super::samples::{Matter, Matters, Samples};
+use super::scene_plan::ScenePlan;
+use super::table::{SweepHeader, SweepRow, SweepTable};
+use crate::Error;
 use crate::progress::Stop;
 use crate::uncertainty::{Group, SampleOptions, UncertainScene, indices};
+use crate::values::Values;
+
+/// The key of what tells a sweep from others.
+const FINGERPRINT: &str = "fingerprint";
 
 /// A sweep of a scene, its points not found yet.
 #[derive(Debug)]
 pub struct SweepPlan {
     own: ScenePlan,
-    header: TableHeader,
+    header: SweepHeader,
     samples: Option<Samples>,
 }
 
@@ -31,9 +35,11 @@ impl SweepPlan {
     ///
     /// # Errors
     /// Where the scene does not go with the options, or could never slide steadily.
-    pub fn new(scene: Scene, options: &SweepOptions, convergence: Option<String>) -> Result<Self, SweepError> {
+    pub fn new(scene: Scene, options: &SweepOptions, convergence: Option<String>) -> Result<Self, Error> {
         let own = ScenePlan::new(scene, options, convergence)?;
-        Ok(Self { header: own.header.clone(), own, samples: None })
+        let mut header = own.header.clone();
+        header.keys.set(FINGERPRINT, &own.fingerprint(options.sliding)?);
+        Ok(Self { header, own, samples: None })
     }
 
     /// As [`new`](Self::new), with samples of what is not known of the scene at each point.
@@ -45,18 +51,18 @@ impl SweepPlan {
         options: &SweepOptions,
         convergence: Option<String>,
         samples: SampleOptions,
-    ) -> Result<Self, SweepError> {
+    ) -> Result<Self, Error> {
         let scene = uncertain.scene();
         let Self { own, mut header, .. } = Self::new(scene.clone(), options, convergence)?;
-        let settings = format!("{} {samples:?} {:?}", header.fingerprint, scene.uncertainty);
+        let settings = format!("{} {samples:?} {:?}", header.fingerprint(), scene.uncertainty);
         let samples = Samples::new(uncertain, &own, options, samples)?;
-        header.fingerprint = table::fingerprint_of(&settings);
-        header.samples = Some(samples.header());
+        header.keys.set(FINGERPRINT, &fingerprint_of(&settings));
+        samples.header().set_in(&mut header);
         Ok(Self { own, header, samples: Some(samples) })
     }
 
     /// The header of the table, with all points in its grid.
-    pub fn header(&self) -> &TableHeader {
+    pub fn header(&self) -> &SweepHeader {
         &self.header
     }
 
@@ -67,7 +73,7 @@ impl SweepPlan {
     }
 
     /// The row of a point; `interrupt` may stop it.
-    fn row(&self, point: &OperatingPoint, interrupt: &Interrupt) -> TableRow {
+    fn row(&self, point: &OperatingPoint, interrupt: &Interrupt) -> SweepRow {
         let samples = self.samples.as_ref().map(|samples| samples.values(point, interrupt));
         let mut row = self.own.row(point, interrupt);
         row.samples = samples;
@@ -80,7 +86,7 @@ impl SweepPlan {
         &self,
         points: &[OperatingPoint],
         stop: &Stop,
-        found: impl Fn(TableRow) -> ControlFlow<B> + Sync,
+        found: impl Fn(SweepRow) -> ControlFlow<B> + Sync,
     ) -> ControlFlow<B> {
         find(points, stop, |point, interrupt| self.row(point, interrupt), found)
     }
@@ -92,23 +98,24 @@ impl SweepPlan {
 
     /// What to look at in the rows: few points of the surface in contact, friction that no rubber has, samples without a
     /// result.
-    pub fn warnings<'a>(&self, rows: impl Iterator<Item = &'a TableRow> + Clone) -> Vec<String> {
-        let mut warnings = self.own.warnings(rows.clone());
+    pub fn warnings(&self, rows: &[SweepRow]) -> Vec<String> {
+        let mut warnings = self.own.warnings(rows);
         warnings.extend(self.without_result(rows));
         warnings
     }
 
     /// The warning where many samples have no result at some of the rows.
-    fn without_result<'a>(&self, rows: impl Iterator<Item = &'a TableRow>) -> Option<String> {
+    fn without_result(&self, rows: &[SweepRow]) -> Option<String> {
         /// A smaller part of the samples hardly moves a quantile.
         const MANY: f64 = 0.05;
-        let missing = |row: &'a TableRow| {
+        let missing = |row| {
+            let row: &SweepRow = row;
             let samples = row.samples.as_ref()?;
             let count = self.header.samples?.count;
             let missing = count - samples.results();
             (missing as f64 > MANY * count as f64).then_some((row, missing))
         };
-        let found: Vec<_> = rows.filter_map(missing).collect();
+        let found: Vec<_> = rows.iter().filter_map(missing).collect();
         let (row, missing) = found.iter().max_by_key(|(_, missing)| *missing)?;
         Some(format!(
             "more than 5 % of the samples have no result at {} of the points of the table and are left out there, {missing} at {}",
@@ -119,12 +126,12 @@ impl SweepPlan {
 
     /// What explains friction's variance over the samples of these rows, at each and in the mean over all; `None` without
     /// samples.
-    pub fn matters(&self, rows: &[&TableRow]) -> Option<Matters> {
+    pub fn matters(&self, rows: &[SweepRow]) -> Option<Matters> {
         let Samples { groups, all, .. } = self.samples.as_ref()?;
         let normals: Vec<&[f64]> = all.iter().map(|sample| sample.normals.as_slice()).collect();
         let (groups, seeds): (Vec<Group>, Vec<Group>) =
             groups.iter().cloned().partition(|group| !group.axes.is_empty());
-        let at = |row: &&TableRow| {
+        let at = |row: &SweepRow| {
             let friction = row.samples.as_ref()?.of(Sampled::Friction);
             Some(Matter { point: row.point, indices: indices(&groups, &normals, friction)? })
         };
@@ -142,24 +149,23 @@ impl SweepPlan {
         names.enumerate().map(|(at, name)| (name, values(at))).collect()
     }
 
-    /// All samples of these rows as a table of text, with what was drawn for each; empty without samples.
-    pub fn samples_text(&self, rows: &[&TableRow]) -> String {
-        let Some(Samples { all, .. }) = &self.samples else { return String::new() };
-        let load = self.header.load;
-        let mut head: Vec<String> = ["sample", "speed [m/s]"].map(str::to_owned).to_vec();
-        head.extend([format!("{} [{}]", load.name(), load.unit()), "temperature [K]".into()]);
-        head.extend(Sampled::ALL.map(|sampled| format!("{} [1]", sampled.name())));
-        head.extend(all.first().iter().flat_map(|sample| &sample.values).map(|(name, _)| name.clone()));
-        let text = |value: Option<f64>| value.map(|value| format!("{value:?}")).unwrap_or_default();
-        let line = |(index, sample): (usize, &Sample), row: &TableRow| {
-            let point = [Some(row.point.speed), Some(row.point.load), row.point.temperature].map(text);
-            let of = |sampled| text(row.samples.as_ref().and_then(|samples| *samples.of(sampled).get(index)?));
-            let found = Sampled::ALL.map(of);
-            let drawn = sample.values.iter().map(|(_, value)| text(Some(*value)));
-            std::iter::once((index + 1).to_string()).chain(point).chain(found).chain(drawn).collect()
-        };
-        let lines = all.iter().enumerate().flat_map(|sample| rows.iter().map(move |row| (sample, *row)));
-        csv::text(head.iter().map(String::as_str), lines.map(|(sample, row)| line(sample, row)))
+    /// All samples of these rows as a table, with what was drawn for each; empty without samples.
+    pub fn samples_table(&self, rows: &[SweepRow]) -> Table {
+        let all = self.samples.as_ref().map_or(&[][..], |samples| &samples.all);
+        let own = Sampled::ALL.map(|sampled| Column::numbers(sampled.name(), "1"));
+        let drawn = all.first().into_iter().flat_map(|sample| &sample.values);
+        let columns = [Column::numbers("sample", "")].into_iter().chain(OperatingPoint::columns(self.header.load));
+        let columns = columns.chain(own).chain(drawn.map(|(name, _)| Column::numbers(name, "")));
+        let mut table = Table::new(Header::default(), columns);
+        for (index, sample) in all.iter().enumerate() {
+            for row in rows {
+                let of = |sampled| row.samples.as_ref().and_then(|samples| *samples.of(sampled).get(index)?);
+                let cells = [Cell::from((index + 1) as f64)].into_iter().chain(row.point.cells());
+                let cells = cells.chain(Sampled::ALL.map(|sampled| of(sampled).into()));
+                table.push(cells.chain(sample.values.iter().map(|(_, value)| (*value).into())));
+            }
+        }
+        table
     }
 
     /// The table of the sample that is the quantile of a probability by its mean friction over a `table` of this sweep. Ends
@@ -167,29 +173,27 @@ impl SweepPlan {
     ///
     /// # Errors
     /// Where the table is of another sweep, or not whole.
-    pub fn quantile(&self, table: &SweepTable, probability: f64, stop: &Stop) -> Result<SweepTable, SweepError> {
-        if table.header.fingerprint != self.header.fingerprint {
-            let (found, expected) = (table.header.fingerprint.clone(), self.header.fingerprint.clone());
-            return Err(SweepError::OtherTable { found, expected });
+    pub fn quantile(&self, table: &SweepTable, probability: f64, stop: &Stop) -> Result<SweepTable, Error> {
+        let (found, expected) = (table.header.fingerprint(), self.header.fingerprint());
+        if found != expected {
+            return Err(Error::scene(format!(
+                "the table is of another sweep: its fingerprint is {found}, that of this scene with its samples and speeds \
+                 {expected}"
+            )));
         }
         let ranking = table.ranking();
-        let place = number_at(ranking.len(), probability).ok_or(SweepError::NoRanking)?;
-        let Some((samples, number)) = self.samples.as_ref().zip(ranking.get(place)) else {
-            return Err(SweepError::NoRanking);
-        };
-        let sample = samples.all.get(number - 1).ok_or(SweepError::NoRanking)?;
-        let mut header = TableHeader {
-            samples: None,
-            load: sample.load(),
-            rest_separation: sample.rest_separation(),
-            ..self.header.clone()
-        };
-        let seed = samples.header().seed;
-        header.fingerprint = table::fingerprint_of(&format!("{} sample {number}", header.fingerprint));
-        header.basis.sample = Some(format!(
-            "{number} of {}, seed {seed}: quantile {probability} of the mean friction over the table",
-            samples.all.len()
-        ));
+        let number = number_at(ranking.len(), probability).and_then(|place| ranking.get(place));
+        let (Samples { all, .. }, number) = self.samples.as_ref().zip(number).ok_or_else(no_ranking)?;
+        let sample = all.get(number - 1).ok_or_else(no_ranking)?;
+        let seed = self.header.samples.map_or(0, |samples| samples.seed);
+        let header = sample.header(
+            &self.header,
+            &fingerprint_of(&format!("{expected} sample {number}")),
+            &format!(
+                "{number} of {}, seed {seed}: quantile {probability} of the mean friction over the table",
+                all.len()
+            ),
+        );
         Ok(table_of(header, stop, |point, interrupt| sample.row(point, interrupt), || ()))
     }
 
@@ -202,9 +206,9 @@ impl SweepPlan {
 
 /// The table of all points of a header, found on all cores by `row`, `done` told after each.
 fn table_of(
-    header: TableHeader,
+    header: SweepHeader,
     stop: &Stop,
-    row: impl Fn(&OperatingPoint, &Interrupt) -> TableRow + Sync,
+    row: impl Fn(&OperatingPoint, &Interrupt) -> SweepRow + Sync,
     done: impl Fn() + Sync,
 ) -> SweepTable {
     let points: Vec<OperatingPoint> = header.grid.points().collect();
@@ -221,8 +225,8 @@ fn table_of(
 fn find<B: Send>(
     points: &[OperatingPoint],
     stop: &Stop,
-    row: impl Fn(&OperatingPoint, &Interrupt) -> TableRow + Sync,
-    found: impl Fn(TableRow) -> ControlFlow<B> + Sync,
+    row: impl Fn(&OperatingPoint, &Interrupt) -> SweepRow + Sync,
+    found: impl Fn(SweepRow) -> ControlFlow<B> + Sync,
 ) -> ControlFlow<B> {
     let interrupt = stop.interrupt();
     let find = |point: &OperatingPoint| {
@@ -236,4 +240,39 @@ fn find<B: Send>(
         Some(row) => stop.heed(found(row)),
         None => ControlFlow::Continue(()),
     })
+}
+
+/// The table of one sample of a `table` with samples that was swept from a scene: of the one whose mean friction over the
+/// table is its quantile of a probability, so that the whole is a curve that can occur. The sample is drawn and swept again.
+/// Ends early, with rows missing, where `stop` says so.
+///
+/// # Errors
+/// Where the table has no samples, is of another sweep or not whole.
+pub fn quantile_table(
+    uncertain: &UncertainScene,
+    table: &SweepTable,
+    probability: f64,
+    stop: &Stop,
+) -> Result<SweepTable, Error> {
+    let SweepHeader { samples, grid, load, keys, .. } = &table.header;
+    let SampleHeader { count, seed, .. } = samples.ok_or_else(no_ranking)?;
+    let loads = Some(Values(grid.loads.clone()));
+    let (pressures, forces) = match load {
+        Load::Pressure { .. } => (loads, None),
+        Load::Force => (None, loads),
+    };
+    let options = SweepOptions {
+        speeds: Some(Values(grid.speeds.clone())),
+        pressures,
+        forces,
+        temperatures: (!grid.temperatures.is_empty()).then(|| Values(grid.temperatures.clone())),
+        sliding: SlidingOptions::of_table(keys)?,
+    };
+    let convergence = keys.text_of("convergence").map(str::to_owned);
+    let plan = SweepPlan::with_samples(uncertain, &options, convergence, SampleOptions { count, seed })?;
+    plan.quantile(table, probability, stop)
+}
+
+fn no_ranking() -> Error {
+    Error::scene("`quantile`: expected the whole table of a sweep with samples, which ranks them")
 }

@@ -16,17 +16,15 @@
 //!
 //! [`Simulation::relax_dashpots`]: asperity::simulation::Simulation::relax_dashpots
 
-use asperity::element::{Load, OperatingPoint, PointStatus, Quantity, TableHeader, TableRow};
+use asperity::element::{Load, OperatingPoint, PointStatus, Quantity};
 use asperity::model::{LinkKind, Model};
 use asperity::scene::{CarrierBodies, CarrierBody, CarrierInitial, Scene};
 use asperity::simulation::{Interrupt, SimulationError};
 
+use super::layer::{Blocks, Layer, relevant, scene_at, tangential_stiffness};
 use super::load_search::LoadSearch;
-use super::not_steady::NotSteady;
-use super::scenes::{relevant, scene_at};
-use super::search::{Held, Search, Slid, StopBounds};
-use super::slide::{Blocks, Layer, tangential_stiffness};
-use super::sliding::SteadySliding;
+use super::search::{Held, NotSteady, Search, Slid, SteadySliding, StopBounds};
+use super::table::{SweepHeader, SweepRow};
 
 /// Steady sliding at one point, known to `bounds`.
 ///
@@ -61,17 +59,17 @@ pub(super) fn steady_sliding_at(
 pub(super) fn row(
     scene: &Scene,
     point: OperatingPoint,
-    header: &TableHeader,
+    header: &SweepHeader,
     bounds: StopBounds,
     interrupt: &Interrupt,
-) -> TableRow {
+) -> SweepRow {
     let force = header.load.force(point.load);
     match slid(scene, point.speed, force, bounds, Some(interrupt)) {
         Ok(slid) => {
             let stiffness = stiffness(scene, point.speed, force, interrupt);
             PointResult::new(slid, stiffness).row(point, header)
         }
-        Err(problem) => TableRow::new(point, PointStatus::new(Some(problem))),
+        Err(problem) => SweepRow::new(point, PointStatus::new(Some(problem))),
     }
 }
 
@@ -134,8 +132,8 @@ impl PointResult {
         Self { slid, tangential_stiffness: stiffness.ok().flatten().filter(|_| is_used) }
     }
 
-    fn row(&self, point: OperatingPoint, header: &TableHeader) -> TableRow {
-        let mut row = TableRow::new(point, PointStatus::new(self.slid.problem.as_ref()));
+    fn row(&self, point: OperatingPoint, header: &SweepHeader) -> SweepRow {
+        let mut row = SweepRow::new(point, PointStatus::new(self.slid.problem.as_ref()));
         row.set(Quantity::Stiffness, self.tangential_stiffness);
         self.slid.sliding.fill(&mut row, header);
         row

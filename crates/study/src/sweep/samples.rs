@@ -1,13 +1,18 @@
-//! The samples of a sweep: its points for scenes drawn from what is not known of one.
+//! The samples of a sweep: its points for scenes drawn from what is not known of one, and what of that matters for
+//! friction, at each point and in the mean over all.
 
-use asperity::element::{OperatingPoint, Quantity, SampleHeader, SampleValues, Sampled, TableRow};
+use asperity::element::{Load, OperatingPoint, Quantity};
 use asperity::math::check_memory;
 use asperity::simulation::Interrupt;
+use asperity::table::{Cell, Column, Header, Table};
 use rayon::prelude::*;
 
-use super::error::SweepError;
-use super::scene_plan::{ScenePlan, SweepOptions};
-use crate::uncertainty::{Drawn, Group, Refused, SampleOptions, Sampler, UncertainScene, UncertaintyError};
+use super::options::SweepOptions;
+use super::sampled::{SampleHeader, SampleValues, Sampled};
+use super::scene_plan::ScenePlan;
+use super::table::{SweepHeader, SweepRow};
+use crate::Error;
+use crate::uncertainty::{Drawn, Group, Index, Indices, Refused, SampleOptions, Sampler, UncertainScene};
 
 /// The samples of a sweep, their points not found yet.
 #[derive(Debug)]
@@ -43,16 +48,16 @@ impl Samples {
         own: &ScenePlan,
         options: &SweepOptions,
         samples: SampleOptions,
-    ) -> Result<Self, SweepError> {
+    ) -> Result<Self, Error> {
         let sampler = Sampler::new(uncertain.axes(), samples)?;
         let bytes = own.surface_memory().saturating_mul(samples.count as u64);
         check_memory(bytes, || format!("`samples`: the surfaces of {} samples", samples.count))?;
         let make = |drawn| Sample::new(drawn, uncertain, own, options);
         let draws = uncertain.draw_all(&sampler, make)?;
-        let failed = |(sample, made): (usize, Result<Sample, SweepError>)| {
-            made.map_err(|error| UncertaintyError::Sample { sample: sample + 1, problem: error.to_string() }.into())
+        let failed = |(sample, made): (usize, Result<Sample, Error>)| {
+            made.map_err(|error| error.context(format!("sample {}", sample + 1)))
         };
-        let all = draws.made.into_iter().enumerate().map(failed).collect::<Result<_, SweepError>>()?;
+        let all = draws.made.into_iter().enumerate().map(failed).collect::<Result<_, Error>>()?;
         Ok(Self { groups: uncertain.groups().to_vec(), all, redrawn: draws.redrawn, options: samples })
     }
 
@@ -82,31 +87,81 @@ impl Sample {
         uncertain: &UncertainScene,
         own: &ScenePlan,
         options: &SweepOptions,
-    ) -> Result<Result<Self, SweepError>, Refused> {
+    ) -> Result<Result<Self, Error>, Refused> {
         let Drawn { scene, values, normals } = drawn;
         let warmer = uncertain.warmer(&scene);
-        match own.drawn(scene, options, warmer) {
-            Ok(plan) => Ok(Ok(Self { plan, warmer, values, normals })),
-            Err(SweepError::Temperature(error)) => Err(error.into()),
-            Err(error) => Ok(Err(error)),
-        }
+        own.check_temperatures(&scene, warmer)?;
+        Ok(own.drawn(scene, options, warmer).map(|plan| Self { plan, warmer, values, normals }))
     }
 
     /// The row of a point.
-    pub(super) fn row(&self, point: &OperatingPoint, interrupt: &Interrupt) -> TableRow {
+    pub(super) fn row(&self, point: &OperatingPoint, interrupt: &Interrupt) -> SweepRow {
         let temperature = point.temperature.map(|kelvin| kelvin + self.warmer);
         let mut row = self.plan.row(&OperatingPoint { temperature, ..*point }, interrupt);
         row.point = *point;
         row
     }
 
-    /// Separation at w = 0, m.
-    pub(super) fn rest_separation(&self) -> f64 {
-        self.plan.header.rest_separation
+    /// The header of a table of its own, `of` being that of the sweep with all samples.
+    pub(super) fn header(&self, of: &SweepHeader, fingerprint: &str, sample: &str) -> SweepHeader {
+        let (own, mut keys) = (&self.plan.header, SampleHeader::removed_from(&of.keys));
+        keys.set("fingerprint", fingerprint);
+        keys.set("sample", sample);
+        SweepHeader::new(keys, own.load, own.rest_separation, of.grid.clone())
+    }
+}
+
+/// What explains the variance of friction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Matters {
+    /// The names of the keys and of the file of the covariance.
+    pub groups: Vec<String>,
+    /// What is left, in words.
+    pub rest: &'static str,
+    /// At the points where there are indices.
+    pub points: Vec<Matter>,
+    /// Of the mean friction over all points; `None` where there are too few samples.
+    pub mean: Option<Indices>,
+}
+
+/// What explains the variance of friction at a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Matter {
+    /// The point.
+    pub point: OperatingPoint,
+    /// What each group explains.
+    pub indices: Indices,
+}
+
+impl Matters {
+    /// What no group explains; a surface's seed has no direction, so that none can be told for it.
+    pub(super) fn rest(has_seed: bool) -> &'static str {
+        if has_seed { "not additive, not monotone or the surface's seed" } else { "not additive or not monotone" }
     }
 
-    /// What the loads are.
-    pub(super) fn load(&self) -> asperity::element::Load {
-        self.plan.header.load
+    /// What explains the variance of the mean over all points, the largest first.
+    pub fn largest(&self) -> Vec<(&str, Index)> {
+        let of_mean = self.mean.iter().flat_map(|indices| self.groups.iter().zip(&indices.groups));
+        let mut all: Vec<(&str, Index)> = of_mean.map(|(name, index)| (name.as_str(), *index)).collect();
+        all.sort_by(|(_, one), (_, other)| other.share.total_cmp(&one.share));
+        all
+    }
+
+    /// As a table: a row for each point and group, those of the mean over all points first, without a point.
+    pub fn table(&self, load: Load) -> Table {
+        let numbers = [("share", "1"), ("standard_error", "1")].map(|(name, unit)| Column::numbers(name, unit));
+        let columns = OperatingPoint::columns(load).into_iter().chain([Column::words("key")]).chain(numbers);
+        let mut table = Table::new(Header::default(), columns);
+        let mean = self.mean.iter().map(|indices| (None, indices));
+        let points = self.points.iter().map(|matter| (Some(matter.point), &matter.indices));
+        for (point, indices) in mean.chain(points) {
+            let place = || point.map_or([(); 3].map(|()| None.into()), |point| point.cells());
+            let own = self.groups.iter().zip(&indices.groups);
+            let own = own.map(|(name, index)| (name.as_str(), index.share, Some(index.error)));
+            for (name, share, error) in own.chain([(self.rest, indices.rest, None)]) {
+                table.push(place().into_iter().chain([name.into(), Cell::from(share), error.into()]));
+            }
+        }
+        table
     }
 }

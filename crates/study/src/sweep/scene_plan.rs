@@ -1,51 +1,30 @@
 //! What a sweep of one scene computes: the points over speed, load and temperature, and the row of each.
 
-use asperity::element::{Basis, Load, OperatingPoint, SweepGrid, TableHeader, TableRow};
+use asperity::element::{Load, OperatingPoint, Quantity, SWEEP, SweepGrid};
 use asperity::math::check_memory;
 use asperity::model::{EvenSliding, Model};
-use asperity::scene::{FineRoughness, Scene, Surface, Wlf};
+use asperity::scene::{FineRoughness, ParameterError, Scene, Surface, Wlf};
 use asperity::simulation::Interrupt;
+use asperity::table::Header;
 
-use super::error::SweepError;
+use super::layer::{relevant, scene_at};
 use super::load_search::separation_at_rest;
-use super::method::{self, Method, SlidingOptions, SweepMethod, in_header};
-use super::not_possible::NotPossible;
+use super::options::{Method, SlidingOptions, SweepMethod, SweepOptions, check_possible, fingerprint};
 use super::point;
-use super::scenes::{relevant, scene_at};
 use super::search::StopBounds;
-use super::solved::SolvedPoints;
-use super::table;
-use crate::implausible::{FoundFriction, implausible};
-use crate::steady::SurfaceGrid;
-
-/// Mean loads to sweep over, rising.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Loads {
-    /// Mean pressures, Pa; of a scene in the material form.
-    Pressures(Vec<f64>),
-    /// Mean normal forces F_z of the whole layer, N.
-    Forces(Vec<f64>),
-}
-
-/// What a sweep goes over, and how its points are found.
-#[derive(Clone, Debug)]
-pub struct SweepOptions {
-    /// Speeds, m/s, rising.
-    pub speeds: Vec<f64>,
-    /// Loads.
-    pub loads: Loads,
-    /// Temperatures, K, rising; `None`: the scene's own.
-    pub temperatures: Option<Vec<f64>>,
-    /// How steady sliding is found.
-    pub sliding: SlidingOptions,
-}
+use super::solved::{SolvedPoints, no_area};
+use super::table::{SweepHeader, SweepRow};
+use crate::Error;
+use crate::error::Context as _;
+use crate::implausible::{FoundFriction, at, implausible};
+use crate::values::Values;
 
 /// A sweep of a scene, its points not found yet.
 #[derive(Debug)]
 pub(super) struct ScenePlan {
     scene: Scene,
     /// The header of its table.
-    pub(super) header: TableHeader,
+    pub(super) header: SweepHeader,
     bounds: StopBounds,
     /// Where steady sliding is solved for; else the layer slides.
     solved: Option<SolvedPoints>,
@@ -59,59 +38,47 @@ impl ScenePlan {
     ///
     /// # Errors
     /// Where the scene does not go with the options, or could never slide steadily.
-    pub(super) fn new(scene: Scene, options: &SweepOptions, convergence: Option<String>) -> Result<Self, SweepError> {
-        let mut plan = Self::without_fingerprint(scene, options, convergence)?;
-        let surface = plan.solved.as_ref().map(SolvedPoints::surface);
-        plan.header.fingerprint = fingerprint(&plan.scene, &options.sliding, plan.header.load, surface)?;
-        Ok(plan)
-    }
-
-    fn without_fingerprint(
-        scene: Scene,
-        options: &SweepOptions,
-        convergence: Option<String>,
-    ) -> Result<Self, SweepError> {
+    pub(super) fn new(scene: Scene, options: &SweepOptions, convergence: Option<String>) -> Result<Self, Error> {
         if scene.carrier.x.is_some() {
-            return Err(SweepError::BodyAlongX);
+            return Err(Error::scene("the scene has [carrier.x]; expected none, since a sweep prescribes the speed"));
         }
-        check(options)?;
-        let (load, loads) = loads(&options.loads, &scene)?;
-        let (method, of_method) = options.sliding.choose(&scene)?;
-        let pressed = if matches!(method, Method::Layer) { hard_pressure(&scene, load, &loads) } else { None };
-        let cold = options.temperatures.as_deref().and_then(Wlf::meant_in_celsius);
+        let (load, grid) = grid(options, &scene)?;
+        let (method, in_words) = options.sliding.choose(&scene)?;
+        let pressed = if matches!(method, Method::Layer) { hard_pressure(&scene, load, &grid.loads) } else { None };
+        let cold = options.temperatures.as_ref().and_then(|values| Wlf::meant_in_celsius(&values.0));
         let warning = pressed.or_else(|| cold.map(|cold| format!("`temperatures`: {cold}")));
-        let temperatures = temperatures(options.temperatures.as_deref(), &scene)?;
-        let grid = SweepGrid { speeds: options.speeds.clone(), loads, temperatures };
         method.check(&scene)?;
-        method.check_threads(&scene, grid.points().count())?;
+        method.check_threads(&scene, grid.count())?;
         let scene = relevant(scene);
-        let bounds = options.sliding.bounds();
-        let header = TableHeader {
-            fingerprint: String::new(),
-            scene: scene.name.clone(),
-            load,
-            rest_separation: separation_at_rest(&scene),
-            basis: Basis {
-                method: Some(of_method),
-                way: options.sliding.way.map(in_header),
-                ..basis(&scene, convergence)
-            },
-            samples: None,
-            grid,
-            low_end: None,
-            ranking: Vec::new(),
-        };
+        // Which sweep it is says who asks for it: of many samples nobody does.
+        let keys = Header::new(SWEEP).with("scene", &scene.name).with("fingerprint", "").with("method", &in_words);
+        let keys = options.sliding.settled(method.surface()).in_header(keys);
+        let keys = rests_on(keys, &scene, convergence);
+        let header = SweepHeader::new(keys, load, separation_at_rest(&scene), grid);
         let solved = match method {
             Method::Steady(surface) => {
                 Some(SolvedPoints::new(&scene, &header.grid.temperatures, surface, options.sliding.way)?)
             }
             Method::Layer => None,
         };
-        Ok(Self { scene, header, bounds, solved, warning })
+        Ok(Self { scene, header, bounds: options.sliding.bounds(), solved, warning })
+    }
+
+    /// Tells this sweep from others.
+    pub(super) fn fingerprint(&self, sliding: SlidingOptions) -> Result<String, Error> {
+        let surface = self.solved.as_ref().map(SolvedPoints::surface);
+        // The same for all temperatures: each point has its own.
+        fingerprint(&self.scene.with_temperature(0.0), sliding, surface, self.header.load.name())
+    }
+
+    /// Checks that a scene that was drawn has the temperatures of the points, which are `warmer` (K) there.
+    pub(super) fn check_temperatures(&self, drawn: &Scene, warmer: f64) -> Result<(), ParameterError> {
+        let temperatures = &self.header.grid.temperatures;
+        temperatures.iter().try_for_each(|kelvin| drawn.with_temperature(kelvin + warmer).check())
     }
 
     /// The row of a point; `interrupt` may stop a layer as it slides.
-    pub(super) fn row(&self, point: &OperatingPoint, interrupt: &Interrupt) -> TableRow {
+    pub(super) fn row(&self, point: &OperatingPoint, interrupt: &Interrupt) -> SweepRow {
         match &self.solved {
             Some(solved) => solved.row(*point, &self.header),
             None => {
@@ -126,16 +93,15 @@ impl ScenePlan {
     ///
     /// # Errors
     /// As for [`new`](Self::new).
-    pub(super) fn drawn(&self, scene: Scene, options: &SweepOptions, warmer: f64) -> Result<Self, SweepError> {
+    pub(super) fn drawn(&self, scene: Scene, options: &SweepOptions, warmer: f64) -> Result<Self, Error> {
         let own = &self.header.grid.temperatures;
-        let temperatures = (!own.is_empty()).then(|| own.iter().map(|kelvin| kelvin + warmer).collect());
+        let temperatures = (!own.is_empty()).then(|| Values(own.iter().map(|kelvin| kelvin + warmer).collect()));
         let mut sliding = SlidingOptions { method: Some(SweepMethod::Layer), ..options.sliding };
         if let Some(solved) = &self.solved {
             let points = u32::try_from(solved.surface().size.nx).ok();
             sliding = SlidingOptions { method: Some(SweepMethod::Steady), points, ..sliding };
         }
-        let mut drawn =
-            Self::without_fingerprint(scene, &SweepOptions { temperatures, sliding, ..options.clone() }, None)?;
+        let mut drawn = Self::new(scene, &SweepOptions { temperatures, sliding, ..options.clone() }, None)?;
         if let (Some(solved), Some(own)) = (&mut drawn.solved, &self.solved) {
             solved.share(own);
             // All of it is on the grid.
@@ -156,20 +122,20 @@ impl ScenePlan {
     }
 
     /// What to look at in the rows: few points of the surface in contact, and friction that no rubber has.
-    pub(super) fn warnings<'a>(&self, rows: impl Iterator<Item = &'a TableRow> + Clone) -> Vec<String> {
-        let few = self.solved.as_ref().and_then(|solved| solved.few_points(rows.clone(), &self.header));
-        let found = rows.clone().filter_map(|row| FoundFriction::of_row(row, self.header.load));
-        let uneven = self.uneven(rows.clone());
+    pub(super) fn warnings(&self, rows: &[SweepRow]) -> Vec<String> {
+        let few = self.solved.as_ref().and_then(|solved| solved.few_points(rows, &self.header));
+        let found = rows.iter().filter_map(|row| found_friction(row, self.header.load));
+        let uneven = self.uneven(rows);
         few.into_iter().chain(implausible(&self.scene, found)).chain(uneven).collect()
     }
 
     /// The warning where a layer does not slide evenly at some of the rows.
-    fn uneven<'a>(&self, rows: impl Iterator<Item = &'a TableRow>) -> Option<String> {
+    fn uneven(&self, rows: &[SweepRow]) -> Option<String> {
         if self.solved.is_some() || !self.scene.friction_depends_on_speed() {
             return None;
         }
         let masses = self.scene.layer.masses as f64;
-        let at = |row: &TableRow| {
+        let at = |row: &SweepRow| {
             let (scene, point) = (scene_at(&self.scene, &row.point), &row.point);
             let whole = match self.header.load {
                 Load::Pressure { area } => point.load * area,
@@ -177,41 +143,49 @@ impl ScenePlan {
             };
             EvenSliding::at(&scene, &Model::new(&scene), point.speed, whole / masses)
         };
-        EvenSliding::warning_among(&self.scene, rows.map(at))
+        EvenSliding::warning_among(&self.scene, rows.iter().map(at))
     }
 }
 
-/// Checks that there are such states of sliding, and no more of them than the memory holds rows.
-fn check(options: &SweepOptions) -> Result<(), SweepError> {
+/// What is in the row of a point that has a result.
+fn found_friction(row: &SweepRow, load: Load) -> Option<FoundFriction> {
+    let friction = row.value(Quantity::Friction).filter(|_| row.is_result())?;
+    let area = row.value(Quantity::RealArea).or(row.value(Quantity::ContactRatio));
+    let rise = row.value(Quantity::FlashMean).map(|flash| flash + row.value(Quantity::SurfaceRise).unwrap_or(0.0));
+    Some(FoundFriction { place: at(&row.point, load), friction, area, rise })
+}
+
+/// The points over which a scene is swept, and what their loads are: states of sliding, and no more of them than the
+/// memory holds rows.
+fn grid(options: &SweepOptions, scene: &Scene) -> Result<(Load, SweepGrid), Error> {
     /// Of a row.
     const BYTES: u64 = 1024;
-    NotPossible::check("speeds", "m/s", &options.speeds)?;
-    let loads = match &options.loads {
-        Loads::Pressures(pressures) => NotPossible::check("pressures", "Pa", pressures).map(|()| pressures.len()),
-        Loads::Forces(forces) => NotPossible::check("forces", "N", forces).map(|()| forces.len()),
-    }?;
-    let temperatures = options.temperatures.as_deref().unwrap_or(&[0.0]).len();
-    let points = [options.speeds.len(), loads, temperatures].map(|count| count as u64);
-    let points = points.into_iter().fold(1, u64::saturating_mul);
-    Ok(check_memory(points.saturating_mul(BYTES), || format!("{points} points of the sweep"))?)
-}
-
-/// What the table rests on, for those who use it.
-fn basis(scene: &Scene, convergence: Option<String>) -> Basis {
-    let foundation = scene.layer.foundation.map(|kind| kind.word().to_owned());
-    let fine = scene.fine.as_ref().map(FineRoughness::describe);
-    let held = scene.carrier.z.map(|body| format!("load, on a carrier of {} kg", body.mass));
-    Basis { foundation, fine, convergence, held, ..Basis::default() }
-}
-
-fn loads(loads: &Loads, scene: &Scene) -> Result<(Load, Vec<f64>), SweepError> {
-    match loads {
-        Loads::Forces(forces) => Ok((Load::Force, forces.clone())),
-        Loads::Pressures(pressures) => {
-            let area = scene.layer.area().ok_or(SweepError::NoArea)?;
-            Ok((Load::Pressure { area }, pressures.clone()))
+    let speeds = options.speeds.as_ref().map_or(&[][..], |values| &values.0);
+    check_possible("speeds", "m/s", speeds)?;
+    let (load, loads) = match (&options.pressures, &options.forces) {
+        (Some(pressures), None) => {
+            check_possible("pressures", "Pa", &pressures.0)?;
+            (Load::Pressure { area: scene.layer.area().ok_or_else(no_area)? }, &pressures.0)
         }
-    }
+        (None, Some(forces)) => {
+            check_possible("forces", "N", &forces.0)?;
+            (Load::Force, &forces.0)
+        }
+        _ => return Err(Error::value("expected `pressures` or `forces`, the loads to sweep over")),
+    };
+    let temperatures = temperatures(options.temperatures.as_ref().map(|values| &values.0[..]), scene)?;
+    let grid = SweepGrid { speeds: speeds.to_vec(), loads: loads.clone(), temperatures };
+    let bytes = (grid.count() as u64).saturating_mul(BYTES);
+    check_memory(bytes, || format!("{} points of the sweep", grid.count()))?;
+    Ok((load, grid))
+}
+
+/// The header with what the table rests on, for those who use it.
+fn rests_on(keys: Header, scene: &Scene, convergence: Option<String>) -> Header {
+    keys.with_some("foundation", scene.layer.foundation.map(|kind| kind.word()))
+        .with_some("fine", scene.fine.as_ref().map(FineRoughness::describe))
+        .with_some("convergence", convergence)
+        .with_some("held", scene.carrier.z.map(|body| format!("load, on a carrier of {} kg", body.mass)))
 }
 
 /// The warning where the largest of `loads` presses the layer harder than its links stand for.
@@ -224,26 +198,18 @@ fn hard_pressure(scene: &Scene, load: Load, loads: &[f64]) -> Option<String> {
 }
 
 /// Those asked for, or the scene's own; none where it has none.
-fn temperatures(asked: Option<&[f64]>, scene: &Scene) -> Result<Vec<f64>, SweepError> {
+fn temperatures(asked: Option<&[f64]>, scene: &Scene) -> Result<Vec<f64>, Error> {
     let Some(own) = scene.temperature() else {
-        return if asked.is_some() { Err(SweepError::NoWlf) } else { Ok(Vec::new()) };
+        return match asked {
+            Some(_) => Err(Error::scene(
+                "`temperatures`: the scene has no material.wlf, so nothing in it depends on the temperature",
+            )),
+            None => Ok(Vec::new()),
+        };
     };
     let values = asked.map_or_else(|| vec![own], <[f64]>::to_vec);
     for &temperature in &values {
-        scene.with_temperature(temperature).check().map_err(SweepError::Temperature)?;
+        scene.with_temperature(temperature).check().context("`temperatures`")?;
     }
     Ok(values)
-}
-
-fn fingerprint(
-    scene: &Scene,
-    sliding: &SlidingOptions,
-    load: Load,
-    surface: Option<&SurfaceGrid>,
-) -> Result<String, serde_json::Error> {
-    // The same for all temperatures: each point has its own.
-    let scene = scene.with_temperature(0.0);
-    let StopBounds { error, distance } = sliding.bounds();
-    let settings = method::settings(surface, sliding, || format!("{error:?} {distance:?}"));
-    table::fingerprint(&scene, &format!("{} {settings}", load.name()))
 }

@@ -1,13 +1,18 @@
-//! Points of a sweep by the solver of steady sliding.
+//! Points of a sweep by the solver of steady sliding, and new points of one that is there as a table, by the method that
+//! it was swept with.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use asperity::element::{Load, OperatingPoint, PointStatus, Quantity, TableHeader, TableRow};
+use asperity::element::{FrictionTable, Load, OperatingPoint, PointStatus, Quantity};
 use asperity::scene::Scene;
 
-use super::error::SweepError;
-use super::not_steady::NotSteady;
+use super::layer::relevant;
+use super::options::{Method, SlidingOptions, SweepMethod};
+use super::point::{steady_sliding, steady_sliding_at};
+use super::search::{NotSteady, SteadySliding, StopBounds};
+use super::table::{SweepHeader, SweepRow};
+use crate::Error;
 use crate::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 
 /// The solver of the points of a sweep, on all threads.
@@ -62,22 +67,22 @@ impl SolvedPoints {
         temperatures: &[f64],
         surface: SurfaceGrid,
         way: Option<f64>,
-    ) -> Result<Self, SweepError> {
+    ) -> Result<Self, Error> {
         let temperatures: Vec<Option<f64>> =
             if temperatures.is_empty() { vec![None] } else { temperatures.iter().copied().map(Some).collect() };
         let rubber =
             |temperature: Option<f64>| Some((temperature, SlidingRubber::new(&scene.with_temperature(temperature))?));
-        let rubbers = temperatures.into_iter().map(rubber).collect::<Option<Vec<_>>>().ok_or(SweepError::NoArea)?;
-        let area = scene.layer.area().ok_or(SweepError::NoArea)?;
+        let rubbers = temperatures.into_iter().map(rubber).collect::<Option<Vec<_>>>().ok_or_else(no_area)?;
+        let area = scene.layer.area().ok_or_else(no_area)?;
         Ok(Self { solvers: Arc::new(Solvers::new(surface)), way, rubbers, area })
     }
 
     /// The row of a point.
-    pub(super) fn row(&self, point: OperatingPoint, header: &TableHeader) -> TableRow {
+    pub(super) fn row(&self, point: OperatingPoint, header: &SweepHeader) -> SweepRow {
         let pressure = self.pressure(&point, header.load);
         match self.slide(&point, pressure) {
             Ok(slide) => self.written(point, pressure, &slide),
-            Err(problem) => TableRow::new(point, PointStatus::new(Some(problem))),
+            Err(problem) => SweepRow::new(point, PointStatus::new(Some(problem))),
         }
     }
 
@@ -130,8 +135,8 @@ impl SolvedPoints {
         slide.problem().map_or(Ok(slide), |problem| Err(problem.into()))
     }
 
-    fn written(&self, point: OperatingPoint, pressure: f64, slide: &SteadySlide) -> TableRow {
-        let mut row = TableRow::new(point, PointStatus::new(slide.problem()));
+    fn written(&self, point: OperatingPoint, pressure: f64, slide: &SteadySlide) -> SweepRow {
+        let mut row = SweepRow::new(point, PointStatus::new(slide.problem()));
         if !slide.is_found() {
             return row;
         }
@@ -159,15 +164,11 @@ impl SolvedPoints {
     }
 
     /// The warning where some of the rows have few points in contact.
-    pub(super) fn few_points<'a>(
-        &self,
-        rows: impl Iterator<Item = &'a TableRow>,
-        header: &TableHeader,
-    ) -> Option<String> {
+    pub(super) fn few_points(&self, rows: &[SweepRow], header: &SweepHeader) -> Option<String> {
         let points = self.surface().size.points() as f64;
-        let in_contact = |row: &TableRow| row.value(Quantity::ContactRatio).map(|ratio| (ratio * points).round());
-        let few: Vec<(&TableRow, f64)> =
-            rows.filter_map(|row| Some((row, in_contact(row)?))).filter(|(_, count)| *count < FEW).collect();
+        let in_contact = |row: &SweepRow| row.value(Quantity::ContactRatio).map(|ratio| (ratio * points).round());
+        let few: Vec<(&SweepRow, f64)> =
+            rows.iter().filter_map(|row| Some((row, in_contact(row)?))).filter(|(_, count)| *count < FEW).collect();
         let (first, count) = few.first()?;
         Some(format!(
             "fewer than {FEW} points of the surface are in contact at {} of the points of the table, {count} at {}: give more \
@@ -175,5 +176,130 @@ impl SolvedPoints {
             few.len(),
             first.point.describe(header.load)
         ))
+    }
+}
+
+/// Why a scene has no pressures.
+pub(super) fn no_area() -> Error {
+    Error::scene(
+        "`pressures`: the scene is in the direct form, which has no width and so no area: give `forces`, F_z of the whole \
+         layer in N",
+    )
+}
+
+/// What a table was swept with.
+#[derive(Debug)]
+pub enum Swept {
+    /// The layer slid.
+    Layer,
+    /// Steady sliding was solved for.
+    Solved {
+        /// The solver of points.
+        points: Box<SolvedPoints>,
+        /// The separation at w = 0, m.
+        rest_separation: f64,
+    },
+}
+
+/// Steady sliding at a point.
+#[derive(Clone, Copy, Debug)]
+pub struct SweptPoint {
+    /// Displacement of the carrier, m.
+    pub w: f64,
+    /// Mean F_z, N.
+    pub force_z: f64,
+    /// Mean force against the motion, N.
+    pub drag: f64,
+    /// Power lost, W.
+    pub power: f64,
+}
+
+/// The pressure is found to where the separation is known to this part of the rms height, ...
+const ACCURACY: f64 = 1e-6;
+/// ... by no more solutions than this, each under a pressure at most so many times another.
+const MOST_SOLUTIONS: usize = 20;
+const LARGEST_CHANGE: f64 = 4.0;
+
+impl Swept {
+    /// That of the `table` of a `scene`, for points at `temperatures` (K).
+    ///
+    /// # Errors
+    /// Where the scene does not go with the method of the table.
+    pub fn of_table(scene: &Scene, table: &FrictionTable, temperatures: &[f64]) -> Result<Self, Error> {
+        let asked = SlidingOptions::of_table(&table.header)?;
+        if asked.method == Some(SweepMethod::Layer) {
+            return Ok(Self::Layer);
+        }
+        let (Method::Steady(surface), _) = asked.choose(scene)? else { return Ok(Self::Layer) };
+        let points = Box::new(SolvedPoints::new(&relevant(scene.clone()), temperatures, surface, asked.way)?);
+        Ok(Self::Solved { points, rest_separation: table.rest_separation })
+    }
+
+    /// What is compared with, in a word.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Layer => "layer",
+            Self::Solved { .. } => "solution",
+        }
+    }
+
+    /// Steady sliding at a point, a layer known to `bounds`.
+    ///
+    /// # Errors
+    /// Where there is none.
+    pub fn sliding(
+        &self,
+        scene: &Scene,
+        point: &OperatingPoint,
+        load: Load,
+        bounds: StopBounds,
+    ) -> Result<SweptPoint, NotSteady> {
+        let Self::Solved { points, rest_separation } = self else {
+            return steady_sliding(scene, point, load, bounds).map(SweptPoint::of_layer);
+        };
+        let pressure = points.pressure(point, load);
+        let slide = points.steady(point, pressure)?;
+        Ok(SweptPoint::solved(&slide, pressure * points.area(), point.speed, *rest_separation))
+    }
+
+    /// Steady sliding with the carrier held at `w` (m), where the load is near that of the point.
+    ///
+    /// # Errors
+    /// As for [`sliding`](Self::sliding).
+    pub fn sliding_at(
+        &self,
+        scene: &Scene,
+        point: &OperatingPoint,
+        w: f64,
+        load: Load,
+        bounds: StopBounds,
+    ) -> Result<SweptPoint, NotSteady> {
+        let Self::Solved { points, rest_separation } = self else {
+            return steady_sliding_at(scene, point, w, load, bounds).map(SweptPoint::of_layer);
+        };
+        let (separation, mut pressure) = (w + rest_separation, points.pressure(point, load));
+        let accuracy = ACCURACY * points.rms_height();
+        for _ in 0..MOST_SOLUTIONS {
+            let slide = points.steady(point, pressure)?;
+            let off = slide.contact.separation - separation;
+            if off.abs() <= accuracy {
+                return Ok(SweptPoint::solved(&slide, pressure * points.area(), point.speed, *rest_separation));
+            }
+            // Newton's step of ln p: the pressure falls about exponentially with the separation.
+            let step = slide.normal_stiffness.unwrap_or_default() * off / pressure;
+            pressure *= step.exp().clamp(1.0 / LARGEST_CHANGE, LARGEST_CHANGE);
+        }
+        Err(NotSteady::NoPressure(separation))
+    }
+}
+
+impl SweptPoint {
+    fn of_layer(layer: SteadySliding) -> Self {
+        Self { w: layer.w, force_z: layer.force_z, drag: layer.drag(), power: layer.power() }
+    }
+
+    fn solved(slide: &SteadySlide, force_z: f64, speed: f64, rest_separation: f64) -> Self {
+        let drag = slide.friction().unwrap_or_default().max(0.0) * force_z;
+        Self { w: slide.contact.separation - rest_separation, force_z, drag, power: drag * speed }
     }
 }

@@ -1,57 +1,191 @@
-//! The table of a sweep: read from a file, made of rows that were found.
+//! The table of a sweep: what its header says, the row of each point, and both as files have them.
 
 use std::path::Path;
 
-use asperity::element::{FORMAT, Table, TableError, TableHeader, TableRow, TableText};
-use asperity::scene::Scene;
+use asperity::element::{
+    FrictionTable, Load, LowEnd, OperatingPoint, PointStatus, Quantity, SWEEP, SweepGrid, rest_separation,
+};
+use asperity::scene::is_possible;
+use asperity::table::{Cell, Header, Table, TableError};
 
-use super::low_end::low_end;
-use super::ranking::ranking;
-use crate::error::Error;
+use super::sampled::{SampleHeader, SampleValues, columns_of_samples, ranking};
+use crate::Error;
+use crate::decimals::rounded;
 use crate::files;
 
-/// A table cannot be read.
-#[derive(Debug, thiserror::Error)]
-pub enum SweepTableError {
-    /// The file.
-    #[error(transparent)]
-    File(#[from] Error),
-    /// What is in it.
-    #[error(transparent)]
-    Table(#[from] TableError),
+/// What [`Verdict`](crate::converge::Verdict) begins with where all is within the error of the study.
+pub const CONVERGED: &str = "converged";
+
+/// Whether a study of convergence found a table's numbers to depend on the spacing; `None` without a study.
+pub fn is_converged(header: &Header) -> Option<bool> {
+    header.text_of("convergence").map(|found| found.starts_with(CONVERGED))
 }
 
-/// A row as it stands in a file: a table that is continued or merged keeps it to the letter.
+/// What follows from all rows, and is not read.
+const LOW_END: &str = "low_end";
+const RANKING: &str = "ranking";
+
+/// What a table says before its rows.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StoredRow {
-    /// The row.
-    pub row: TableRow,
-    text: String,
+pub struct SweepHeader {
+    /// All of it, as files have it.
+    pub keys: Header,
+    /// What the loads are.
+    pub load: Load,
+    /// Separation at w = 0, m.
+    pub rest_separation: f64,
+    /// The points that the table is to have.
+    pub grid: SweepGrid,
+    /// The samples; `None` without.
+    pub samples: Option<SampleHeader>,
 }
 
-impl StoredRow {
-    /// The line of the row, its end included.
-    pub fn line(&self) -> &str {
-        &self.text
+impl SweepHeader {
+    /// That of a table which rests on what `keys` say.
+    pub(super) fn new(keys: Header, load: Load, rest_separation: f64, grid: SweepGrid) -> Self {
+        let area = match load {
+            Load::Pressure { area } => keys.with_number("nominal_area", area, "m2"),
+            Load::Force => keys,
+        };
+        let keys = area
+            .with_number("rest_separation", rest_separation, "m")
+            .with_numbers("speeds", &grid.speeds, "m/s")
+            .with_numbers(&format!("{}s", load.name()), &grid.loads, load.unit());
+        let has_temperatures = !grid.temperatures.is_empty();
+        let keys = if has_temperatures { keys.with_numbers("temperatures", &grid.temperatures, "K") } else { keys };
+        Self { keys, load, rest_separation, grid, samples: None }
+    }
+
+    /// That of a table.
+    ///
+    /// # Errors
+    /// [`TableError`] where it is not the table of a sweep, or lacks a key.
+    pub fn of_table(table: &Table) -> Result<Self, TableError> {
+        let mut keys = table.header.clone();
+        keys.check_kind(SWEEP)?;
+        keys.needed("fingerprint")?;
+        let load = Load::of_table(table)?;
+        let grid = SweepGrid {
+            speeds: keys.numbers("speeds", "m/s")?,
+            loads: keys.numbers(&format!("{}s", load.name()), load.unit())?,
+            temperatures: keys.optional("temperatures", |keys, key| keys.numbers(key, "K"))?.unwrap_or_default(),
+        };
+        let (rest_separation, samples) = (rest_separation(&keys)?, SampleHeader::of_table(&keys)?);
+        [LOW_END, RANKING].iter().for_each(|key| keys.remove(key));
+        Ok(Self { keys, load, rest_separation, grid, samples })
+    }
+
+    /// The name of the scene that was swept.
+    pub fn scene(&self) -> &str {
+        self.keys.text_of("scene").unwrap_or_default()
+    }
+
+    /// What tells this sweep from others.
+    pub fn fingerprint(&self) -> &str {
+        self.keys.text_of("fingerprint").unwrap_or_default()
+    }
+
+    /// The table, without rows.
+    pub fn table(&self) -> Table {
+        let quantities = Quantity::ALL.iter().map(|quantity| quantity.column(self.load));
+        let own = OperatingPoint::columns(self.load).into_iter().chain([PointStatus::column()]).chain(quantities);
+        Table::new(self.keys.clone(), own.chain(self.samples.iter().flat_map(|_| columns_of_samples())))
     }
 }
 
-/// A table read from a file.
+/// The row of a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepRow {
+    /// The point.
+    pub point: OperatingPoint,
+    /// Whether its values can be relied on.
+    pub status: PointStatus,
+    values: [Option<f64>; Quantity::ALL.len()],
+    /// The samples, in a table that has them.
+    pub samples: Option<SampleValues>,
+}
+
+impl SweepRow {
+    /// A row without values.
+    pub fn new(point: OperatingPoint, status: PointStatus) -> Self {
+        Self { point, status, values: [None; Quantity::ALL.len()], samples: None }
+    }
+
+    /// A value; `None` where the point has none.
+    pub fn value(&self, quantity: Quantity) -> Option<f64> {
+        self.values[quantity as usize]
+    }
+
+    /// Sets a value.
+    pub fn set(&mut self, quantity: Quantity, value: Option<f64>) {
+        self.values[quantity as usize] = value;
+    }
+
+    /// Whether friction and area are a result.
+    pub fn is_result(&self) -> bool {
+        self.status.is_result()
+    }
+
+    /// Whether all values can be relied on.
+    pub fn is_steady(&self) -> bool {
+        self.status == PointStatus::Steady
+    }
+
+    /// Its cells in the columns of [`SweepHeader::table`].
+    pub fn cells(&self) -> Vec<Cell> {
+        let values = self.values.iter().map(|value| Cell::from(*value));
+        let own = self.point.cells().into_iter().chain([self.status.text().into()]).chain(values);
+        own.chain(self.samples.iter().flat_map(SampleValues::cells)).collect()
+    }
+
+    /// A row of a table with this header.
+    ///
+    /// # Errors
+    /// [`TableError`] where no sweep has written it so: of a point that the header does not have, without friction, or
+    /// with another number of samples.
+    pub fn of_table(table: &Table, row: usize, header: &SweepHeader) -> Result<Self, TableError> {
+        let load = header.load;
+        let point = OperatingPoint::of_row(table, row, load)?;
+        if header.grid.index(&point).is_none() {
+            return Err(table.error_in(row, "a point that the header does not have"));
+        }
+        let mut found = Self::new(point, PointStatus::of_row(table, row)?);
+        for quantity in Quantity::ALL {
+            let (name, unit) = (quantity.name(load), quantity.unit(load));
+            let is_needed = found.is_result() && quantity == Quantity::Friction;
+            // Tables of before lack what is known since.
+            if table.column(&name, unit).is_ok() || is_needed {
+                let value = table.number(row, &name, unit)?;
+                if value.map_or(is_needed, |value| !is_possible(value)) {
+                    return Err(table.cell_error(row, &name, unit, "a number"));
+                }
+                found.set(quantity, value);
+            }
+        }
+        found.samples = header.samples.map(|samples| SampleValues::of_row(table, row, samples.count)).transpose()?;
+        Ok(found)
+    }
+}
+
+/// A table of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepTable {
     /// What stands before the rows.
-    pub header: TableHeader,
+    pub header: SweepHeader,
     /// The rows, those of points not yet found missing.
-    pub rows: Vec<StoredRow>,
+    pub rows: Vec<SweepRow>,
 }
 
 impl SweepTable {
-    /// The table of rows that were found, in the order of the points.
-    pub fn new(header: TableHeader, rows: Vec<TableRow>) -> Self {
-        let rows = rows.into_iter().map(|row| StoredRow { text: row.line(), row });
-        let mut table = Self { header, rows: rows.collect() };
-        table.sort();
-        table.conclude(Path::new("table"));
+    /// The table of rows that were found, in the order of the points, with what follows from all of them.
+    pub fn new(header: SweepHeader, rows: Vec<SweepRow>) -> Self {
+        let mut table = Self { header, rows };
+        let grid = &table.header.grid;
+        table.rows.sort_by_key(|row| grid.index(&row.point));
+        let ranking: Vec<String> = table.ranking().iter().map(usize::to_string).collect();
+        let low_end = FrictionTable::new(&table.table()).ok().map(|table| low_end(&table));
+        let keys = std::mem::take(&mut table.header.keys).with_some(LOW_END, low_end);
+        table.header.keys = keys.with_some(RANKING, (!ranking.is_empty()).then(|| ranking.join(",")));
         table
     }
 
@@ -59,62 +193,144 @@ impl SweepTable {
     ///
     /// # Errors
     /// Where the file cannot be read, or is no such table.
-    pub fn read(path: &Path) -> Result<Self, SweepTableError> {
-        let text = files::text(path)?;
-        let (table, corrupt) = Self::parse(&text, path)?;
-        corrupt.into_iter().next().map_or(Ok(table), |error| Err(error.into()))
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        Ok(Self::parse(&files::text(path)?, path)?)
     }
 
-    /// The table of a `text`, which is that of the file at `path`, without its corrupt rows, and what is wrong with those.
+    /// The table of a `text`, which is that of the file at `path`.
     ///
     /// # Errors
-    /// Where the text is no such table.
-    pub fn parse(text: &str, path: &Path) -> Result<(Self, Vec<TableError>), TableError> {
+    /// [`TableError`] where the text is no such table, or a row is not as a sweep writes it.
+    pub fn parse(text: &str, path: &Path) -> Result<Self, TableError> {
         // A last line without an end was cut off as its writer was stopped.
         let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
-        let (text, corrupt) = TableText::parse_sound(whole, path)?;
-        let header = text.header()?;
-        let rows = text.rows(header.load)?.into_iter().zip(&text.lines);
-        let rows = rows.map(|(row, line)| StoredRow { row, text: format!("{}\n", line.text) }).collect();
-        Ok((Self { header, rows }, corrupt))
-    }
-
-    /// Sorts the rows in the order of the points.
-    pub fn sort(&mut self) {
-        let grid = &self.header.grid;
-        self.rows.sort_by_key(|stored| grid.index(&stored.row.point));
-    }
-
-    /// Says in the header what follows from all rows: what lies at the low end, where every point is there and steady and
-    /// there are several loads; how samples rank.
-    pub fn conclude(&mut self, path: &Path) {
-        self.header.ranking = self.ranking();
-        self.header.low_end = Table::parse(&self.text(), path).ok().map(|table| low_end(&table));
+        let table = Table::parse(whole, path)?;
+        let header = SweepHeader::of_table(&table)?;
+        let rows = (0..table.len()).map(|row| SweepRow::of_table(&table, row, &header));
+        Ok(Self { rows: rows.collect::<Result<_, _>>()?, header })
     }
 
     /// The samples, from 1, by their mean friction over the table, the lowest first; a sample without a result at a point
     /// counts there with the median. Empty while points are missing, and without samples.
     pub fn ranking(&self) -> Vec<usize> {
-        let rows: Vec<&TableRow> = self.rows.iter().map(|stored| &stored.row).collect();
-        if rows.len() == self.header.grid.count() { ranking(&rows) } else { Vec::new() }
+        if self.rows.len() == self.header.grid.count() { ranking(&self.rows) } else { Vec::new() }
+    }
+
+    /// The table as all tables are.
+    pub fn table(&self) -> Table {
+        let mut table = self.header.table();
+        self.rows.iter().for_each(|row| table.push(row.cells()));
+        table
     }
 
     /// The table as files have it.
     pub fn text(&self) -> String {
-        self.header.text() + &self.rows.iter().map(|stored| stored.text.as_str()).collect::<String>()
+        self.table().text()
     }
 }
 
-/// Tells one sweep from another: depends on everything in the scene that its points depend on, and on the settings.
-///
-/// # Errors
-/// Where the scene cannot be written as JSON.
-pub fn fingerprint(scene: &Scene, settings: &str) -> Result<String, serde_json::Error> {
-    let text = format!("{FORMAT}\n{}\n{settings}\n{}", env!("CARGO_PKG_VERSION"), serde_json::to_string(scene)?);
-    Ok(fingerprint_of(&text))
+/// What lies at the low end of a table, for a contact patch lives at low pressures: how far the law reaches below the
+/// least load at the least and at the largest speed, the farthest of all temperatures, and how much of a load may lie
+/// there.
+fn low_end(table: &FrictionTable) -> String {
+    let (grid, unit) = (&table.grid, table.load.unit());
+    let (slow, fast) = (grid.speeds[0], grid.speeds[grid.speeds.len() - 1]);
+    let mut speeds = vec![slow, fast];
+    speeds.dedup();
+    let ends: Vec<LowEnd> = speeds.iter().map(|&speed| farthest(table, speed)).collect();
+    let reach = |(speed, end): (&f64, &LowEnd)| format!("{} µm farther at {speed} m/s", rounded(1e6 * end.reach, 2));
+    let reaches: Vec<String> = speeds.iter().zip(&ends).map(reach).collect();
+    let share = ends.iter().map(|end| end.share).fold(0.0, f64::max);
+    format!(
+        "below {} {unit} the law is a parabola that reaches {}; of an oblique face that presses up to the table's largest {} \
+         it bears {} % of the load",
+        grid.loads[0],
+        reaches.join(" and "),
+        table.load.name(),
+        rounded(100.0 * share, 2)
+    )
 }
 
-/// Tells one text from another.
-pub(super) fn fingerprint_of(text: &str) -> String {
-    uuid::Uuid::new_v5(&uuid::Uuid::NAMESPACE_OID, text.as_bytes()).simple().to_string()
+/// The larger reach and share of all temperatures.
+fn farthest(table: &FrictionTable, speed: f64) -> LowEnd {
+    let temperatures = if table.grid.temperatures.is_empty() { &[0.0][..] } else { &table.grid.temperatures };
+    let ends = temperatures.iter().map(|&temperature| table.low_end(speed, temperature));
+    ends.fold(LowEnd { reach: 0.0, share: 0.0 }, |far, end| LowEnd {
+        reach: far.reach.max(end.reach),
+        share: far.share.max(end.share),
+    })
+}
+
+/// The verdict of a study of convergence on `scene` and the point that it was found at, from the text of the study's table,
+/// which is that of the file at `path`.
+///
+/// # Errors
+/// What is wrong with the text.
+pub fn verdict(text: &str, path: &Path, scene: &str) -> Result<String, Error> {
+    let not_a_study =
+        |problem: String| Error::in_file(path, None, format!("not a study of this scene's convergence: {problem}"));
+    let header = Table::parse(text, path).map_err(|error| not_a_study(error.problem))?.header;
+    let value = |key| header.text_of(key).ok_or_else(|| not_a_study(format!("expected a line `# {key} = ...`")));
+    value("asperity converge")?;
+    let studied = value("scene")?;
+    if studied != scene {
+        return Err(not_a_study(format!("it is of the scene {studied}, the sweep of {scene}")));
+    }
+    let verdict = header
+        .text_of("verdict")
+        .ok_or_else(|| not_a_study("expected a line `# verdict = ...`: the study is not finished".to_owned()))?;
+    // The studies of a layer and of the surface solved for are of different errors.
+    let by = header.text_of("method").map_or_else(String::new, |method| format!(", by {method}"));
+    Ok(format!("{verdict} (at {}, {}{by})", value("pressure")?, value("speed")?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STUDY: &str = "# asperity converge = 3\n# scene = block\n# pressure = 100000 Pa\n# speed = 0.1 m/s\n\
+                         # verdict = converged: spacing leaves most open\nmasses\n";
+
+    fn verdict_of(text: &str, scene: &str) -> Result<String, String> {
+        verdict(text, "study.csv".as_ref(), scene).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_verdict_says_where_it_was_found() {
+        let found = verdict_of(STUDY, "block");
+        assert_eq!(found, Ok("converged: spacing leaves most open (at 100000 Pa, 0.1 m/s)".to_owned()));
+        let found = verdict_of(&STUDY.replace("# speed", "# method = layer: as asked for\n# speed"), "block");
+        assert!(found.is_ok_and(|verdict| verdict.ends_with("0.1 m/s, by layer: as asked for)")));
+        assert!(verdict_of(STUDY, "seal").is_err_and(|problem| problem.contains("of the scene block")));
+        let unfinished = STUDY.replace("# verdict", "# other");
+        assert!(verdict_of(&unfinished, "block").is_err_and(|problem| problem.contains("not finished")));
+        assert!(verdict_of("speed,friction\n", "block").is_err());
+    }
+
+    /// What is written is read back as the same, whatever the loads are; one of before, without a column, too.
+    #[test]
+    fn tables_are_read_as_they_were_written() {
+        for (load, temperatures) in [(Load::Force, vec![]), (Load::Pressure { area: 2e-5 }, vec![273.15, 293.15])] {
+            let grid = SweepGrid { speeds: vec![1e-5, 0.1 + 0.2], loads: vec![2e5, 1e30], temperatures };
+            let keys = Header::new(SWEEP).with("scene", "a = b, c").with("fingerprint", "00ff");
+            let mut header = SweepHeader::new(keys, load, -1.5e-5, grid);
+            let samples = SampleHeader { count: 2, seed: 1, redrawn: 0 };
+            if load != Load::Force {
+                samples.set_in(&mut header);
+            }
+            let row = |(i, point): (usize, OperatingPoint)| {
+                let mut row = SweepRow::new(point, PointStatus::new((i > 0).then_some("not steady, \"by far\"")));
+                let values = Quantity::ALL.iter().zip(1..).filter(|(_, number)| number % 3 != 0);
+                values.for_each(|(&quantity, number)| row.set(quantity, Some(f64::from(number) / 7.0)));
+                row.samples = header.samples.map(|_| SampleValues::new(&[[Some(0.3), None, Some(0.1)], [None; 3]]));
+                row
+            };
+            let table = SweepTable { rows: header.grid.points().enumerate().map(row).collect(), header };
+            let read = SweepTable::parse(&table.text(), "t.csv".as_ref()).unwrap();
+            assert_eq!(read, table);
+            let concluded = SweepTable::new(table.header.clone(), table.rows.clone());
+            assert_eq!(concluded.header.keys.has(RANKING), load != Load::Force);
+            assert_eq!(SweepTable::parse(&concluded.text(), "t.csv".as_ref()).unwrap(), table);
+        }
+    }
 }

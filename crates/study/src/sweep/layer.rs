@@ -1,7 +1,9 @@
-//! A layer that slides at constant speed, block by block, and its tangential stiffness as it is set in motion.
+//! A layer that slides at constant speed, block by block, and its tangential stiffness as it is set in motion; and the
+//! scenes of it.
 
+use asperity::element::OperatingPoint;
 use asperity::outputs::{Output, Variable, variables};
-use asperity::scene::{Path, Scene};
+use asperity::scene::{Initial, LARGEST, OutputGroup, Path, Phase, Scene};
 use asperity::simulation::{Interrupt, Motion, Simulation, SimulationError, Start};
 
 use super::load_search::{LoadSearch, ends};
@@ -32,6 +34,31 @@ const TRIES: usize = 12;
 const REST: f64 = 100.0;
 /// How often that and a relaxation of the dashpots are repeated.
 const RELAXATIONS: usize = 3;
+
+/// The scene without what a sweep does not depend on, and with the outputs that it reads.
+pub fn relevant(scene: Scene) -> Scene {
+    use OutputGroup::{Contact, Dissipation, Energy, Forces, Friction};
+    let outputs = vec![Forces, Dissipation, Friction, Contact, Energy];
+    let mut scene = Scene { outputs, excitation: Vec::new(), description: None, ..scene };
+    scene.layer.initial = Initial::Relaxed;
+    scene
+}
+
+/// The scene of one point. `solver.reduce` depends on the speed and on the duration of its excitation: as steady motion
+/// has no end, no Maxwell element becomes a spring.
+pub(super) fn scene_at(scene: &Scene, point: &OperatingPoint) -> Scene {
+    let mut scene = scene.with_temperature(point.temperature);
+    let u = Path { rate: point.speed, ..Path::default() };
+    scene.excitation = vec![Phase {
+        duration: LARGEST,
+        u,
+        w: Path::default(),
+        until_force: None,
+        until_pressure: None,
+        ..Phase::default()
+    }];
+    scene
+}
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct BlockMeans {

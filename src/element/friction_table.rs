@@ -1,26 +1,25 @@
-//! The table of a sweep as an element needs it: every point of the grid is there and steady.
+//! The law's points from the table of a sweep: every point of the grid is there and steady.
 
 use std::path::Path;
 
-use super::basis::Basis;
 use super::grid::{Load, OperatingPoint, SweepGrid};
 use super::point_status::PointStatus;
-use super::quantity::Quantity;
-use super::table_error::TableError;
-use super::table_format::{TableRow, TableText};
-use crate::scene::read_text;
+use super::quantity::{Need, Quantity};
+use crate::scene::{is_possible, read_text};
+use crate::table::{Header, Table, TableError};
 
-/// A table, checked: every point of the grid has a row and was steady.
+/// What the header of a sweep's table begins with; the number grows when readers have to know of a change.
+pub const SWEEP: (&str, u64) = ("asperity sweep", 1);
+
+/// The points of a table, checked: every point of the grid has a row and was steady.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Table {
-    /// The name of the scene that was swept.
-    pub scene: String,
+pub struct FrictionTable {
+    /// What stands before the rows: what the numbers rest on.
+    pub header: Header,
     /// What the loads are.
     pub load: Load,
     /// Separation at w = 0, m.
     pub rest_separation: f64,
-    /// What the numbers rest on.
-    pub basis: Basis,
     /// The points, at least two loads.
     pub grid: SweepGrid,
     /// By quantity, where the table has it, and point.
@@ -61,13 +60,14 @@ impl TableAxis {
     }
 }
 
-impl Table {
+impl FrictionTable {
     /// Reads the table at `path`.
     ///
     /// # Errors
     /// [`TableError`] where the file is not the table of a sweep or its grid is not full.
     pub fn load(path: &Path) -> Result<Self, TableError> {
-        let unreadable = |error: std::io::Error| TableError::new(path, None, format!("cannot be read: {error}"));
+        let unreadable =
+            |error| TableError { file: path.to_owned(), line: None, problem: format!("cannot be read: {error}") };
         Self::parse(&read_text(path).map_err(unreadable)?, path)
     }
 
@@ -76,31 +76,44 @@ impl Table {
     /// # Errors
     /// As for [`load`](Self::load).
     pub fn parse(text: &str, path: &Path) -> Result<Self, TableError> {
-        let text = TableText::parse(text, path)?;
-        let load = text.load()?;
-        let rest_separation = text.rest_separation()?;
-        let rows = text.rows(load)?;
+        Self::new(&Table::parse(text, path)?)
+    }
+
+    /// From the table of a sweep.
+    ///
+    /// # Errors
+    /// As for [`load`](Self::load).
+    pub fn new(table: &Table) -> Result<Self, TableError> {
+        table.header.check_kind(SWEEP)?;
+        let load = Load::of_table(table)?;
+        let points = points(table, load)?;
         let grid = SweepGrid {
-            speeds: axis(rows.iter().map(|row| row.point.speed)),
-            loads: axis(rows.iter().map(|row| row.point.load)),
-            temperatures: axis(rows.iter().filter_map(|row| row.point.temperature)),
+            speeds: axis(points.iter().map(|point| point.speed)),
+            loads: axis(points.iter().map(|point| point.load)),
+            temperatures: axis(points.iter().filter_map(|point| point.temperature)),
         };
         if grid.loads.len() < 2 {
-            return Err(text.error(format!(
+            return Err(table.error(format!(
                 "{} values of the {}, expected at least two: the normal stiffness is the slope between them",
                 grid.loads.len(),
                 load.name()
             )));
         }
-        let order = rows_of_points(&text, &grid, load, &rows)?;
-        check_steady(&text, load, &rows, &order)?;
+        let order = rows_of_points(table, &grid, load, &points)?;
+        check_steady(table, load, &points, &order)?;
         let mut values = [const { None }; Quantity::ALL.len()];
         for quantity in Quantity::ALL {
-            values[quantity as usize] = text.values(load, quantity, &order)?;
+            values[quantity as usize] = values_of(table, load, quantity, &order)?;
         }
-        let table = Self { scene: text.scene(), load, rest_separation, basis: text.basis(), grid, values };
-        table.check_separations().map_err(|crossing| text.error(crossing.to_string()))?;
-        Ok(table)
+        let rest_separation = rest_separation(&table.header)?;
+        let found = Self { header: table.header.clone(), load, rest_separation, grid, values };
+        found.check_separations().map_err(|crossing| table.error(crossing.to_string()))?;
+        Ok(found)
+    }
+
+    /// The name of the scene that was swept.
+    pub fn scene(&self) -> &str {
+        self.header.text_of("scene").unwrap_or("contact")
     }
 
     /// Whether it has `quantity`.
@@ -193,12 +206,37 @@ fn axis(values: impl Iterator<Item = f64>) -> Vec<f64> {
     axis
 }
 
+/// Separation at w = 0 by the header of a sweep's table, m.
+///
+/// # Errors
+/// [`TableError`] where it has none.
+pub fn rest_separation(header: &Header) -> Result<f64, TableError> {
+    let found = header.number("rest_separation", "m")?;
+    if is_possible(found) { Ok(found) } else { Err(header.error(format!("rest_separation = {found}"))) }
+}
+
+/// The points of the rows, all with a temperature or none.
+fn points(table: &Table, load: Load) -> Result<Vec<OperatingPoint>, TableError> {
+    let points = (0..table.len()).map(|row| OperatingPoint::of_row(table, row, load)).collect::<Result<Vec<_>, _>>()?;
+    match points.iter().position(|point| point.temperature.is_none()) {
+        Some(row) if points.iter().any(|point| point.temperature.is_some()) => {
+            Err(table.cell_error(row, "temperature", "K", "a number, as in other rows"))
+        }
+        _ => Ok(points),
+    }
+}
+
 /// For each point of the grid the index of its row.
-fn rows_of_points(text: &TableText, grid: &SweepGrid, load: Load, rows: &[TableRow]) -> Result<Vec<usize>, TableError> {
+fn rows_of_points(
+    table: &Table,
+    grid: &SweepGrid,
+    load: Load,
+    points: &[OperatingPoint],
+) -> Result<Vec<usize>, TableError> {
     let mut found: Vec<Option<usize>> = vec![None; grid.count()];
-    for (row, TableRow { point, .. }) in rows.iter().enumerate() {
+    for (row, point) in points.iter().enumerate() {
         if grid.index(point).is_some_and(|index| found[index].replace(row).is_some()) {
-            return Err(text.error_in(row, format!("a second row of {}", point.describe(load))));
+            return Err(table.error_in(row, format!("a second row of {}", point.describe(load))));
         }
     }
     let missing = |(point, row): (OperatingPoint, &Option<usize>)| row.is_none().then(|| point.describe(load));
@@ -206,24 +244,47 @@ fn rows_of_points(text: &TableText, grid: &SweepGrid, load: Load, rows: &[TableR
     if missing.is_empty() {
         Ok(found.into_iter().flatten().collect())
     } else {
-        Err(text.error(format!("no row of {}; an element needs every point of the table", some_of(&missing))))
+        Err(table.error(format!("no row of {}; an element needs every point of the table", some_of(&missing))))
     }
 }
 
-fn check_steady(text: &TableText, load: Load, rows: &[TableRow], order: &[usize]) -> Result<(), TableError> {
-    let failed = order.iter().map(|&row| &rows[row]).filter(|row| !row.is_steady());
-    let failed = failed.map(|row| match &row.status {
-        PointStatus::FullContact => format!("{} is in full contact, which has no stiffness", row.point.describe(load)),
-        status => format!("{} is not steady: {}", row.point.describe(load), status.text()),
-    });
-    let failed: Vec<String> = failed.collect();
+fn check_steady(table: &Table, load: Load, points: &[OperatingPoint], order: &[usize]) -> Result<(), TableError> {
+    let mut failed = Vec::new();
+    for &row in order {
+        let point = points[row].describe(load);
+        match PointStatus::of_row(table, row)? {
+            PointStatus::Steady => (),
+            PointStatus::FullContact => failed.push(format!("{point} is in full contact, which has no stiffness")),
+            status => failed.push(format!("{point} is not steady: {}", status.text())),
+        }
+    }
     if failed.is_empty() {
         return Ok(());
     }
-    Err(text.error(format!(
+    Err(table.error(format!(
         "{}; an element needs every point of the table: sweep them again, or leave a speed, a pressure or a temperature out",
         some_of(&failed)
     )))
+}
+
+/// The values of a quantity, in the order of `rows`; `None` where an element ignores it, or it is missing or empty and
+/// need not be there.
+fn values_of(table: &Table, load: Load, quantity: Quantity, rows: &[usize]) -> Result<Option<Vec<f64>>, TableError> {
+    let (need, name, unit) = (quantity.need(), quantity.name(load), quantity.unit(load));
+    let column = table.column(&name, unit);
+    if need == Need::Ignored || (need == Need::Optional && column.is_err()) {
+        return Ok(None);
+    }
+    column?;
+    let cells: Vec<_> = rows.iter().map(|&row| (row, table.number(row, &name, unit))).collect();
+    if need == Need::Optional && cells.iter().all(|(_, cell)| *cell == Ok(None)) {
+        return Ok(None);
+    }
+    let value = |(row, cell): (usize, Result<Option<f64>, TableError>)| {
+        let number = cell.ok().flatten().filter(|&number| quantity.allows(number));
+        number.ok_or_else(|| table.cell_error(row, &name, unit, quantity.expected()))
+    };
+    cells.into_iter().map(value).collect::<Result<_, _>>().map(Some)
 }
 
 /// The first of `texts`, and how many more there are.
