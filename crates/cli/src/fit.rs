@@ -12,8 +12,7 @@ use asperity_study::fit::{
 use super::cli::{Fit, FitVertical, FitWeight};
 use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
 use super::files::{self, FileError, check_outputs, name_of, named, picture_beside, print_beside};
-use super::flags::with_flags;
-use super::terminal::{LabelledLine, lines, note, warn};
+use super::terminal::{LabelledLine, lines, note, warn, with_flags};
 use super::{NOT_REACHED, SUCCESS};
 
 /// `asperity fit` failed.
@@ -73,9 +72,9 @@ pub(crate) fn fit(command: &Fit) -> Result<u8, FitError> {
     let read: Vec<PathBuf> = std::iter::once(&command.data).chain(&command.shifts).cloned().collect();
     check_outputs([&command.output].into_iter().chain(&picture), read)?;
     let fitted = fit_moduli(&command.into())?;
-    fitted.notes().iter().for_each(|text| note(&with_flags(text)));
-    fitted.warnings().iter().for_each(|text| warn(&with_flags(text)));
-    files::write(&command.output, with_flags(fitted.file()))?;
+    fitted.notes().iter().for_each(|text| note(text));
+    fitted.warnings().iter().for_each(|text| warn(text));
+    files::write(&command.output, with_flags(&fitted.file()))?;
     if let Some(picture) = &picture {
         drawn(&fitted, &command.data).write(picture)?;
     }

@@ -8,7 +8,6 @@
 //! | module | uses | contents |
 //! |---|---|---|
 //! | `terminal` | | text for the terminal: aligned lines, warnings, the progress bar |
-//! | `flags` | | options of the study's messages as flags of the command line |
 //! | `npz` | | archives of arrays for numpy |
 //! | `output` | | outputs by their names, and errors of files |
 //! | `interrupt` | output, terminal | what is left to do where the program is stopped |
@@ -26,10 +25,10 @@
 //! | `patch` | cli, figure, files, result_file, simulate, terminal | `simulate` of a patch |
 //! | `describe` | cli, figure, files, simulate, terminal | `describe` |
 //! | `contact` | cli, figure, files, npz, terminal | `contact` |
-//! | `sweep` | cli, figure, files, flags, interrupt, output, table_file, terminal | `sweep` |
-//! | `rank` | cli, figure, files, flags, terminal | `rank` |
-//! | `converge` | cli, draft, figure, files, flags, interrupt, output, resumable_table, terminal | `converge` |
-//! | `fit` | cli, figure, files, flags, terminal | `fit` |
+//! | `sweep` | cli, figure, files, interrupt, output, table_file, terminal | `sweep` |
+//! | `rank` | cli, figure, files, terminal | `rank` |
+//! | `converge` | cli, draft, figure, files, interrupt, output, resumable_table, terminal | `converge` |
+//! | `fit` | cli, figure, files, terminal | `fit` |
 //! | `calibrate` | cli, figure, files, interrupt, measured_friction, output, resumable_table, terminal | `calibrate` |
 //! | `compare` | cli, figure, files, measured_friction, terminal | `compare` |
 //! | `material` | cli, figure, files, terminal | `material` |
@@ -49,7 +48,6 @@ mod elements;
 mod figure;
 mod files;
 mod fit;
-mod flags;
 mod interrupt;
 mod lock;
 mod material;
@@ -95,7 +93,7 @@ pub fn execute(words: impl IntoIterator<Item = OsString>) -> u8 {
             if output::is_broken_pipe(&*error) {
                 return BROKEN_PIPE;
             }
-            terminal::say(&flags::with_flags(error));
+            terminal::say(&error.to_string());
             FAILURE
         }
     }

@@ -41,9 +41,26 @@ const SCREEN: usize = 100;
 /// What is before the continuation of a line.
 const CONTINUED: &str = "              ";
 
-/// Prints a line to standard error, where somebody reads that; nobody is left to be told where nobody does.
+/// Prints a line to standard error, where somebody reads that; nobody is left to be told where nobody does. Options that
+/// the study names in backquotes are named as the command line has them.
 pub(crate) fn say(message: &str) {
-    drop(writeln!(io::stderr(), "asperity: {message}"));
+    drop(writeln!(io::stderr(), "asperity: {}", with_flags(message)));
+}
+
+/// The text with `--pressures` for each `` `pressures` ``; what else stands in backquotes stays.
+pub(crate) fn with_flags(text: &str) -> String {
+    let is_option = |part: &str| part.starts_with(|c: char| c.is_ascii_lowercase()) && part.bytes().all(is_of_option);
+    let quoted = |(i, part): (usize, &str)| match i % 2 {
+        0 => part.to_owned(),
+        _ if is_option(part) => format!("--{}", part.replace('_', "-")),
+        _ => format!("`{part}`"),
+    };
+    // A backquote without another is none.
+    if text.matches('`').count() % 2 == 1 { text.to_owned() } else { text.split('`').enumerate().map(quoted).collect() }
+}
+
+fn is_of_option(byte: u8) -> bool {
+    byte.is_ascii_lowercase() || byte == b'_'
 }
 
 /// Prints a warning to standard error.
@@ -264,5 +281,12 @@ mod tests {
     #[test]
     fn lines_are_aligned() {
         assert_eq!(lines(&labelled("Scene", ["a".into(), "b".into()])), "Scene       a\n            b\n");
+    }
+
+    #[test]
+    fn options_alone_have_dashes() {
+        let text = "`most_points`: as `asperity surface --mirror` does, or `points`";
+        assert_eq!(with_flags(text), "--most-points: as `asperity surface --mirror` does, or --points");
+        assert_eq!(with_flags("a`b: expected `free`"), "a`b: expected `free`");
     }
 }

@@ -8,8 +8,7 @@ use std::{fs, io};
 
 use uuid::Uuid;
 
-use super::error::Error;
-use super::memory;
+use super::error::{Error, check_memory};
 use super::model::FmuModel;
 use super::resources::{self, PATCH_FILE, Resource, SCENE_FILE, TABLE_FILE};
 use super::variables::VariableTable;
@@ -75,7 +74,7 @@ impl Definition {
         // The table of a patch may have any name.
         let found = resources::find(location, library, &[SCENE_FILE, PATCH_FILE, TABLE_FILE])?;
         let path = &found.path;
-        memory::check("reading the resources", READING.saturating_mul(size_of_files_beside(path)))?;
+        check_memory("reading the resources", READING.saturating_mul(size_of_files_beside(path)))?;
         let definition = if path.ends_with(TABLE_FILE) {
             PointContact::new(FrictionTable::load(path)?).into()
         } else if path.ends_with(PATCH_FILE) {

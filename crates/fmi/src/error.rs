@@ -1,4 +1,5 @@
-//! Errors of the FMU and the status that each returns; panics, which become errors, too.
+//! Errors of the FMU and the status that each returns; panics and memory that the system would refuse, which become errors,
+//! too.
 
 use std::any::Any;
 use std::cell::Cell;
@@ -9,6 +10,7 @@ use std::sync::OnceLock;
 use serde::{Deserialize, Serialize};
 
 use asperity::element::{self, ElementError};
+use asperity::math::can_allocate;
 use asperity::patch::{self, MotionError, PatchError};
 use asperity::scene::{LARGEST, ParameterError, SMALLEST, SceneError};
 use asperity::simulation::{self, SimulationError};
@@ -198,6 +200,21 @@ fn list(paths: &[PathBuf]) -> String {
     quoted.join(", ")
 }
 
+/// What stays free for all that is not reckoned, such as messages.
+const SPARE: usize = 1 << 18;
+
+/// Whether the system has so many bytes for `what` at once: what a call needs is reckoned and asked for before it is used,
+/// since Rust ends the process where an allocation fails.
+///
+/// # Errors
+/// [`Error::Memory`].
+pub(super) fn check_memory(what: &'static str, bytes: usize) -> Result<(), Error> {
+    if can_allocate(bytes.saturating_add(SPARE)) {
+        return Ok(());
+    }
+    Err(Error::Memory { what, mebibytes: bytes.div_ceil(1 << 20) })
+}
+
 type Hook = Box<dyn Fn(&PanicHookInfo<'_>) + Send + Sync>;
 
 thread_local! {
@@ -251,5 +268,13 @@ mod tests {
         assert_eq!(catch_panic(|| 1), Ok(1));
         assert_eq!(catch_panic(|| panic!("plain")), Err::<(), _>("plain".into()));
         assert_eq!(catch_panic(|| panic!("number {}", 7)), Err::<(), _>("number 7".into()));
+    }
+
+    #[test]
+    fn what_no_system_has_is_refused() {
+        assert!(check_memory("a run", 1 << 20).is_ok());
+        let error = check_memory("a run", 1 << 60).unwrap_err().to_string();
+        assert_eq!(error, "a run needs 1099511627776 MiB of memory, more than the system has for it");
+        assert!(check_memory("a run", usize::MAX).is_err());
     }
 }

@@ -5,6 +5,7 @@
 //! only where it can continue bit for bit. The checksum detects truncation and accidental changes. A forged string can
 //! at most forge a run: lengths, modes, numbers and the profile are checked against the scene.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -67,42 +68,37 @@ const FORMAT: u32 = 12;
 
 const CHECKSUM: usize = 16;
 
-/// An [`FmuState`] as it is serialised: with the parameters set instead of the definition.
-#[derive(Deserialize)]
-struct WrittenState {
+/// An [`FmuState`] as it is serialised: with the parameters set instead of the definition. What is written is borrowed: a
+/// state of a patch may be large.
+#[derive(Serialize, Deserialize)]
+struct WrittenState<'a> {
     lifecycle: LifecycleState,
-    parameters: BTreeMap<String, Value>,
+    parameters: Cow<'a, BTreeMap<String, Value>>,
     inputs: Inputs,
     clock: Clock,
     last_step: Status,
-    run: Option<RunState>,
-    last: Option<LastStep>,
+    run: Cow<'a, Option<RunState>>,
+    last: Cow<'a, Option<LastStep>>,
 }
 
-/// A state as it is written, borrowed: that of a patch may be large.
-#[derive(Serialize)]
-struct BorrowedState<'a> {
-    lifecycle: LifecycleState,
-    parameters: &'a BTreeMap<String, Value>,
-    inputs: Inputs,
-    clock: Clock,
-    last_step: Status,
-    run: &'a Option<RunState>,
-    last: &'a Option<LastStep>,
-}
-
-impl<'a> BorrowedState<'a> {
+impl<'a> WrittenState<'a> {
     fn new(state: &'a FmuState) -> Self {
         let FmuState { lifecycle, parameters, inputs, clock, last_step, run, last } = state;
-        let parameters = parameters.values_set();
-        let (lifecycle, inputs, clock, last_step) = (*lifecycle, *inputs, *clock, *last_step);
-        Self { lifecycle, parameters, inputs, clock, last_step, run, last }
+        Self {
+            lifecycle: *lifecycle,
+            parameters: Cow::Borrowed(parameters.values_set()),
+            inputs: *inputs,
+            clock: *clock,
+            last_step: *last_step,
+            run: Cow::Borrowed(run),
+            last: Cow::Borrowed(last),
+        }
     }
 }
 
 /// The number of bytes of `state` of the FMU with this GUID.
 pub(super) fn size(state: &FmuState, guid: &str) -> Result<usize, RestoreError> {
-    let own = postcard::experimental::serialized_size(&BorrowedState::new(state))?;
+    let own = postcard::experimental::serialized_size(&WrittenState::new(state))?;
     Ok(head(guid).len() + own + CHECKSUM)
 }
 
@@ -110,7 +106,7 @@ pub(super) fn size(state: &FmuState, guid: &str) -> Result<usize, RestoreError> 
 pub(super) fn write(state: &FmuState, guid: &str) -> Result<Vec<u8>, RestoreError> {
     let mut bytes = Vec::with_capacity(size(state, guid)?);
     bytes.extend(head(guid));
-    bytes = postcard::to_extend(&BorrowedState::new(state), bytes)?;
+    bytes = postcard::to_extend(&WrittenState::new(state), bytes)?;
     bytes.extend(checksum(&bytes));
     Ok(bytes)
 }
@@ -123,13 +119,14 @@ pub(super) fn read(
     original: &Arc<Parameters>,
     variables: &VariableTable,
 ) -> Result<FmuState, RestoreError> {
-    let (written, rest) = postcard::take_from_bytes::<WrittenState>(body(bytes, guid)?)?;
+    let (written, rest) = postcard::take_from_bytes::<WrittenState<'_>>(body(bytes, guid)?)?;
     if !rest.is_empty() {
         return Err(RestoreError::Invalid("something follows its end"));
     }
     written.check()?;
     let WrittenState { lifecycle, parameters: set, inputs, clock, last_step, run, last } = written;
-    let parameters = parameters(original, set)?;
+    let parameters = parameters(original, set.into_owned())?;
+    let (run, last) = (run.into_owned(), last.into_owned());
     for state in run.iter().chain(last.as_ref().map(|last| &last.run)) {
         check_outputs(parameters.definition().restore(state)?.as_mut(), variables)?;
     }
@@ -146,7 +143,7 @@ fn check_outputs(run: &mut dyn FmuRun, variables: &VariableTable) -> Result<(), 
     if finite { Ok(()) } else { Err(RestoreError::Invalid("its outputs are no finite numbers")) }
 }
 
-impl WrittenState {
+impl WrittenState<'_> {
     fn check(&self) -> Result<(), RestoreError> {
         let has_run = match self.lifecycle {
             LifecycleState::Instantiated | LifecycleState::InitializationMode => self.run.is_none(),
@@ -166,7 +163,7 @@ impl WrittenState {
 
     fn check_last_step(&self) -> Result<(), RestoreError> {
         let fits = |last: &LastStep| self.run.is_some() && last.step.is_valid(&self.inputs, self.clock.time);
-        match &self.last {
+        match &*self.last {
             Some(last) if !fits(last) => Err(RestoreError::Invalid("its last step does not lead to it")),
             _ => Ok(()),
         }

@@ -7,11 +7,10 @@ use std::sync::Arc;
 use asperity::scene::{LOOSEST_TOLERANCE, Parameter, Value};
 
 use super::definition::{Definition, Parameters, Sources, guid};
-use super::error::{Error, Status, catch_panic};
+use super::error::{Error, Status, catch_panic, check_memory};
 use super::fmu_states::{self, FmuStates};
 use super::lifecycle::{Function, LifecycleState};
 use super::log::{Category, Log, Message};
-use super::memory;
 use super::state::{Clock, InstanceState, OutputCache};
 use super::variables::VariableTable;
 
@@ -41,7 +40,7 @@ impl Instance {
     /// passes.
     pub(super) fn new(given_guid: &str, location: &str, library: Option<&Path>, logging: bool) -> Result<Self, Error> {
         let (definition, found) = Definition::find(location, library)?;
-        memory::check("an instance", definition.memory())?;
+        check_memory("an instance", definition.memory())?;
         let variables = definition.variables();
         let own = guid(&Sources::read_from(&found.path, &*definition)?, &variables);
         if bare(given_guid) != bare(&own) {
@@ -191,7 +190,7 @@ impl Instance {
 
     /// fmi2GetFMUstate: takes and returns the state's handle, 0 for a new one.
     pub(super) fn get_state(&mut self, handle: usize) -> Result<usize, Error> {
-        memory::check("an FMU state", self.state_memory)?;
+        check_memory("an FMU state", self.state_memory)?;
         if handle == 0 {
             return Ok(self.fmu_states.keep_new(self.state.save()));
         }
@@ -219,7 +218,7 @@ impl Instance {
 
     /// fmi2SerializeFMUstate: the state `handle` as a byte string.
     pub(super) fn serialise_state(&self, handle: usize) -> Result<Vec<u8>, Error> {
-        memory::check("an FMU state", self.serialised_size(handle)?)?;
+        check_memory("an FMU state", self.serialised_size(handle)?)?;
         Ok(fmu_states::write(self.fmu_states.recall(handle)?, &self.guid)?)
     }
 
@@ -227,7 +226,7 @@ impl Instance {
     pub(super) fn deserialise_state(&mut self, bytes: &[u8]) -> Result<usize, Error> {
         let definition = self.state.parameters.definition();
         // A run tells whether the state is one.
-        memory::check("an FMU state", definition.memory().saturating_add(self.state_memory))?;
+        check_memory("an FMU state", definition.memory().saturating_add(self.state_memory))?;
         let state = fmu_states::read(bytes, &self.guid, &self.original, &self.variables)?;
         Ok(self.fmu_states.keep_new(state))
     }

@@ -8,8 +8,7 @@
 //! |------|---------------|
 //! | `bindings` | C types, generated from the standard's headers |
 //! | `lifecycle` | states of an instance and the functions allowed in each |
-//! | `error` | errors with the status that each returns; panics |
-//! | `memory` | memory that the system would refuse |
+//! | `error` | errors with the status that each returns; panics; memory that the system would refuse |
 //! | `resources` | the file of the scene, table or patch in the FMU's resources |
 //! | `inputs` | inputs as a master sets them, and where they go in a communication step |
 //! | `variables` | the table of variables by value reference |
@@ -36,7 +35,6 @@ mod instance;
 mod layer;
 mod lifecycle;
 mod log;
-mod memory;
 mod model;
 mod patch;
 mod provisional;

@@ -5,10 +5,9 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::definition::{Definition, Parameters};
-use super::error::{Error, Status};
+use super::error::{Error, Status, check_memory};
 use super::inputs::{CommunicationStep, InputScales, Inputs};
 use super::lifecycle::LifecycleState;
-use super::memory;
 use super::model::{FmuRun, RunState};
 use super::provisional::{LastStep, Stepper};
 use super::variables::VariableTable;
@@ -74,7 +73,7 @@ impl InstanceState {
     pub(super) fn run(&mut self) -> Result<&mut dyn FmuRun, Error> {
         if self.run.is_none() && self.lifecycle.before_run() {
             let definition = self.parameters.definition();
-            memory::check("a run", memory_of_run(definition))?;
+            check_memory("a run", memory_of_run(definition))?;
             self.run = Some(definition.start(&self.inputs, self.clock.time)?);
         }
         Ok(self.run.as_mut().ok_or(Error::NoRun)?.as_mut())
@@ -157,7 +156,7 @@ impl InstanceState {
             (Some(state), Some(run)) if same => run.set_state(state)?,
             (Some(saved), run) => {
                 let definition = state.parameters.definition();
-                memory::check("a run", memory_of_run(definition))?;
+                check_memory("a run", memory_of_run(definition))?;
                 let mut restored = definition.restore(saved)?;
                 if let Some(before) = run {
                     restored.set_history(before.history());

@@ -234,7 +234,7 @@ fn fill_evenly(heights: &mut [f64]) -> bool {
 /// Says which line was taken.
 pub fn line_note(kind: &str, line: usize, lines: usize, is_chosen: bool) -> ReadingNote {
     let assumed = lines > 1 && !is_chosen;
-    let which = if assumed { ", the middle one: `line` takes another" } else { "" };
+    let which = if assumed { ", the middle one: line takes another" } else { "" };
     ReadingNote { text: format!("{kind}: line {line} of {lines} along x{which}"), assumed }
 }
 

@@ -16,7 +16,6 @@ use super::cli::Converge;
 use super::draft::TablePlace;
 use super::figure::Figure as _;
 use super::files::{FileError, check_outputs, default_output, load_without_run, picture_beside, print_beside};
-use super::flags::with_flags;
 use super::interrupt::Farewell;
 use super::output::of_set;
 use super::terminal::{self, warn};
@@ -54,7 +53,7 @@ pub(crate) fn converge(command: &Converge) -> Result<u8, ConvergeCommandError> {
     let options = options(command);
     let scene = load_without_run(&command.scene, &command.set, |scene| !options.sliding().solves(scene))?;
     let study = ConvergenceStudy::new(&scene, &command.scene, options)?;
-    study.warning().iter().for_each(|warning| warn(&with_flags(warning)));
+    study.warning().iter().for_each(|warning| warn(warning));
     let output = command.output.clone().unwrap_or_else(|| default_output(&command.scene, "converge.csv"));
     let picture = picture_beside(&output, command.plot.as_ref());
     check_outputs([&output].into_iter().chain(&picture), scene.sources(&command.scene))?;

@@ -11,7 +11,6 @@ use asperity_study::uncertainty::SampleOptions;
 
 use super::cli::Rank;
 use super::files::{FileError, check_outputs, load_without_run, picture_beside, print_beside, write};
-use super::flags::with_flags;
 use super::terminal::{self, note, warn};
 use super::{NOT_REACHED, SUCCESS};
 
@@ -32,7 +31,7 @@ pub(crate) fn rank(command: &Rank) -> Result<u8, RankCommandError> {
     let taken = sources.chain(command.weights.iter().chain(&command.data).cloned()).collect();
     check_outputs([&command.output].into_iter().chain(&picture), taken)?;
     let plan = RankPlan::new(scenes, command.options.clone(), samples(command))?;
-    plan.warnings().iter().for_each(|warning| warn(&with_flags(warning)));
+    plan.warnings().iter().for_each(|warning| warn(warning));
     let weights = command.weights.as_deref().map(Weights::read).transpose()?.unwrap_or_default();
     let found = found(&plan, &weights)?;
     let measured = command.data.as_deref().map(|data| measured_ranking(&plan, &found, data)).transpose()?;

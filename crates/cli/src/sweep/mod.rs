@@ -20,7 +20,6 @@ use asperity_study::sweep::{SweepHeader, SweepPlan, SweepRow, SweepTable, verdic
 use super::cli::Sweep;
 use super::figure::Figure as _;
 use super::files::{check_outputs, default_output, load_without_run, named, picture_beside, print_beside, read};
-use super::flags::with_flags;
 use super::interrupt::Farewell;
 use super::table_file::TableFile;
 use super::terminal::{self, LabelledLine, lines, warn};
@@ -138,12 +137,12 @@ fn compute(command: &Sweep, path: &Path) -> Result<(), Error> {
     }
     let convergence = study_verdict(study.as_deref(), &scene.name)?;
     let plan = samples::plan(command, scene, convergence)?;
-    plan.warning().iter().for_each(|warning| warn(&with_flags(warning)));
+    plan.warning().iter().for_each(|warning| warn(warning));
     let maps = maps(command, plan.header(), &output)?;
     let header = plan.header();
     let (file, done) = TableFile::open(&output, &header.table(), command.force, |table| rows(table, header))?;
     let table = SweepTable::new(header.clone(), run(command, &plan, (&file, done), &output)?);
-    plan.warnings(&table.rows).iter().for_each(|warning| warn(&with_flags(warning)));
+    plan.warnings(&table.rows).iter().for_each(|warning| warn(warning));
     file.finish(&table.table())?;
     let said = samples::write(command, &plan, &table, &beside)?;
     finish(&output, &table, &Pictures { friction: picture.as_deref(), maps, master }, (&said, &beside))

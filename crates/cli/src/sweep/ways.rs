@@ -11,7 +11,6 @@ use asperity_study::sweep::{SlidingOptions, SweepOptions, SweepPlan, SweepRow, S
 
 use crate::figure::{Curve, Figure as _, Panel, PanelRow, SideBySide, Stroke};
 use crate::files::write;
-use crate::flags::with_flags;
 use crate::terminal::{self, warn};
 
 /// Sweeps a scene over `ways` (m), writes table and picture, and returns how many points there are, and have no result.
@@ -26,12 +25,12 @@ pub(super) fn sweep(
         SweepPlan::new(scene.clone(), &SweepOptions { sliding, ..options.clone() }, None)
     };
     let plans = ways.iter().map(plan).collect::<Result<Vec<_>, _>>()?;
-    plans.iter().take(1).filter_map(SweepPlan::warning).for_each(|warning| warn(&with_flags(warning)));
+    plans.iter().take(1).filter_map(SweepPlan::warning).for_each(|warning| warn(warning));
     let bar = terminal::bar((plans.len() * plans.first().map_or(0, |plan| plan.header().grid.count())) as u64);
     let tables: Vec<SweepTable> = plans.iter().map(|plan| plan.table(&Stop::default(), || bar.inc(1))).collect();
     bar.finish_and_clear();
     for (plan, table) in plans.iter().zip(&tables) {
-        plan.warnings(&table.rows).iter().for_each(|warning| warn(&with_flags(warning)));
+        plan.warnings(&table.rows).iter().for_each(|warning| warn(warning));
     }
     write(output, whole(ways, &tables).text())?;
     if let Some(picture) = picture {
