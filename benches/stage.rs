@@ -11,7 +11,9 @@ mod floor;
 
 use std::time::Duration;
 
-use asperity::integrator::{ContactModes, Integrator, LayerState, MAX_STAGES, Scheme, TimeSpan, Tolerance, Tracked};
+use asperity::internals::integrator::{
+    ContactModes, Integrator, LayerState, MAX_STAGES, Scheme, TimeSpan, Tolerance, Tracked,
+};
 use asperity::model::{ByAxis, Carrier, Forces, Mode, Model, State};
 use common::{layer, parse, prints_tables, side_by_side};
 use criterion::{BenchmarkId, Criterion, Throughput};

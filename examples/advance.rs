@@ -7,8 +7,9 @@
 use std::error::Error;
 use std::path::Path;
 
-use asperity::scene::{Path as Displacement, Scene};
-use asperity::simulation::{Motion, Simulation, Start};
+use asperity::scene::Path as Displacement;
+use asperity::simulation::Start;
+use asperity::{Motion, Scene, Simulation};
 use cpu_time::ThreadTime;
 
 const CALLS: u32 = 10_000;

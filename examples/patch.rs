@@ -7,7 +7,8 @@
 use std::error::Error;
 use std::path::Path;
 
-use asperity::patch::{Patch, PatchMotion, PatchRun, PatchStart, Pose};
+use asperity::patch::{PatchMotion, PatchStart, Pose};
+use asperity::{Patch, PatchRun};
 
 /// m/s
 const SPEED: f64 = 10.0;

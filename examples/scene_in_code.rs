@@ -7,8 +7,9 @@
 use std::error::Error;
 
 use asperity::outputs::variables;
-use asperity::scene::{Link, LinkKind, MaxwellElement, Path, Scene, Surface};
-use asperity::simulation::{Motion, Simulation, Start};
+use asperity::scene::{Link, LinkKind, MaxwellElement, Path, Surface};
+use asperity::simulation::Start;
+use asperity::{Motion, Scene, Simulation};
 
 const BASE: &str = "
     name = 'in-code'

@@ -9,8 +9,9 @@
 use std::error::Error;
 
 use asperity::outputs::variables;
-use asperity::scene::{Path, Scene};
-use asperity::simulation::{Motion, Simulation, Start};
+use asperity::scene::Path;
+use asperity::simulation::Start;
+use asperity::{Motion, Scene, Simulation};
 
 /// The carrier is a body of 1 g that a load of 0.6 N presses: it finds its own height, as on a friction tester.
 const SCENE: &str = "

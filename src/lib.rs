@@ -16,17 +16,24 @@
 //! | [`table`] | | tables as the project writes them: a header of keys and values, columns with units, rows |
 //! | [`scene`] | math, tables | a scene as data: reading TOML, profiles and materials; parameters; checks and warnings |
 //! | [`model`] | math, scene | the mechanical model: links and their forces, contact laws, state, energies, stiffness scales, reduction |
-//! | [`integrator`] | math, model | implicit Runge-Kutta steps, with modes held or set-valued friction: stages, dense output, error, sensitivities |
-//! | [`contact`] | math, scene, model, integrator | the rules of mode changes and the impact, event location, the end-of-step correction |
+//! | `integrator` | math, model | implicit Runge-Kutta steps, with modes held or set-valued friction: stages, dense output, error, sensitivities |
+//! | `contact` | math, scene, model, integrator | the rules of mode changes and the impact, event location, the end-of-step correction |
 //! | [`outputs`] | math, scene, model, integrator | the table of the outputs: names, units, values, derivatives, dependencies |
 //! | [`simulation`] | math, scene, model, integrator, contact, outputs | a run: its state, the steps of both methods and their lengths, local regions, the reference run |
 //! | [`element`] | math, table, scene, model, outputs, simulation | a point-contact element: the forces of a layer, looked up in a table of a sweep |
-//! | [`patch`] | math, scene, model, outputs, element | a contact patch: many point-contact elements on a rigid face, in three dimensions |
+//! | [`patch`] | math, table, scene, model, outputs, element | a contact patch: many point-contact elements on a rigid face, in three dimensions |
+//!
+//! # Use
+//!
+//! The names that a program needs most stand at the root: a [`Scene`] is read or made, and [`run`] along its own motion or
+//! stepped as a [`Simulation`] by a [`Motion`] at a time, seen through a [`Snapshot`]; a table of its sweep makes an
+//! [`Element`], or a [`Patch`] of them, stepped as a [`PatchRun`].
 //!
 //! ```
 //! use asperity::outputs::variables;
-//! use asperity::scene::{Path, Scene};
-//! use asperity::simulation::{Motion, Simulation, Start};
+//! use asperity::scene::Path;
+//! use asperity::simulation::Start;
+//! use asperity::{Motion, Scene, Simulation};
 //!
 //! let text = "
 //!     name = 'one mass'
@@ -102,11 +109,13 @@
 //! | E_impact | `Energies::impact` | J | energy lost in impacts |
 //! | T, V | `kinetic_energy()`, `elastic_energy()` | J | energy balance E_in = Δ(T + V + T_c + V_c) + E_damper + E_maxwell + E_friction + E_impact + E_c |
 
-pub mod contact;
+mod contact;
 pub mod element;
 #[cfg(test)]
 mod in_tests;
-pub mod integrator;
+mod integrator;
+#[doc(hidden)]
+pub mod internals;
 pub mod math;
 pub mod model;
 pub mod outputs;
@@ -115,3 +124,9 @@ pub mod scene;
 pub mod simulation;
 pub mod table;
 pub mod tables;
+
+pub use element::Element;
+pub use outputs::Snapshot;
+pub use patch::{Patch, PatchRun};
+pub use scene::Scene;
+pub use simulation::{Motion, Simulation, run};

@@ -116,7 +116,7 @@ fn the_table_has_every_module_after_those_that_it_uses() {
         }
         let of_sources: BTreeSet<String> =
             sources(package).iter().map(|source| module_of(&source.path).to_owned()).collect();
-        let own = ["lib", "main", "verify"].map(str::to_owned);
+        let own = ["lib", "main", "verify", "internals"].map(str::to_owned);
         let of_table: BTreeSet<String> = modules.into_iter().map(|(module, _)| module).collect();
         let of_sources: BTreeSet<String> = of_sources.into_iter().filter(|module| !own.contains(module)).collect();
         assert_eq!(of_sources, of_table, "{package}");
@@ -143,30 +143,170 @@ fn each_module_uses_only_those_named_beside_it() {
     }
 }
 
-#[test]
-fn the_files_of_a_module_use_each_other_in_no_circle() {
-    for package in with_modules() {
-        let sources = sources(package);
-        for (folder, _) in modules(package) {
-            let mut uses: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-            for Source { path, code } in &sources {
-                let Some(inner) = path.strip_prefix(&format!("{folder}/")) else { continue };
-                let (module, file) = inner.split_once('/').unwrap_or((inner, "mod.rs"));
-                let used = uses.entry(module.trim_end_matches(".rs").to_owned()).or_default();
-                used.extend(words_after(code, &format!("crate::{folder}::")).map(str::to_owned));
-                if file == "mod.rs" {
-                    used.extend(words_after(code, "super::").map(str::to_owned));
+/// The files of a package by their modules, as paths of names.
+struct Files(BTreeMap<Vec<String>, File>);
+
+/// What a file defines, and takes from others.
+struct File {
+    defined: BTreeSet<String>,
+    /// By its `use` lines: whether for others too, and the path.
+    imported: Vec<(bool, Vec<String>)>,
+    /// The words of all other lines; paths are one.
+    words: BTreeSet<String>,
+}
+
+fn names(path: &str) -> Vec<String> {
+    path.split("::").filter(|name| !name.is_empty() && *name != "self").map(str::to_owned).collect()
+}
+
+/// The paths of the tree of a `use`.
+fn paths_of(tree: &str) -> Vec<String> {
+    let Some((before, inner)) = tree.split_once('{') else {
+        return vec![tree.split(" as ").next().unwrap().trim().to_owned()];
+    };
+    let inner = inner.trim_end().strip_suffix('}').unwrap();
+    let mut depth = 0;
+    let branches = inner.split(|letter: char| {
+        depth += i32::from(letter == '{') - i32::from(letter == '}');
+        letter == ',' && depth == 0
+    });
+    let branches = branches.filter(|branch| !branch.trim().is_empty());
+    branches.flat_map(|branch| paths_of(&format!("{}{}", before.trim(), branch.trim()))).collect()
+}
+
+impl File {
+    fn new(code: &str) -> Self {
+        const ITEMS: [&str; 7] = ["struct", "enum", "trait", "type", "fn", "const", "static"];
+        let is_of_name = |letter: char| letter.is_alphanumeric() || letter == '_';
+        let mut file = Self { defined: BTreeSet::new(), imported: Vec::new(), words: BTreeSet::new() };
+        let mut lines = code.lines();
+        while let Some(line) = lines.next() {
+            // How far something can be seen is no use of it.
+            let line = line.replace("(in crate::", "(");
+            if let Some((before, tree)) = line
+                .split_once("use ")
+                .filter(|(before, _)| before.trim().is_empty() || before.trim().starts_with("pub"))
+            {
+                let mut tree = tree.to_owned();
+                while !tree.contains(';') {
+                    tree.push_str(lines.next().unwrap());
+                }
+                let paths = paths_of(tree.trim_end_matches(';'));
+                file.imported.extend(paths.iter().map(|path| (before.contains("pub"), names(path))));
+                continue;
+            }
+            if line.starts_with(is_of_name) {
+                let mut words = line.split(|letter| !is_of_name(letter));
+                if words.any(|word| ITEMS.contains(&word)) {
+                    file.defined.extend(words.next().map(str::to_owned));
                 }
             }
-            uses.remove("mod");
-            let is_free = |uses: &BTreeMap<String, BTreeSet<String>>, module: &str| {
-                uses[module].iter().all(|used| used == module || !uses.contains_key(used))
-            };
-            while let Some(module) = uses.keys().find(|module| is_free(&uses, module)).cloned() {
-                uses.remove(&module);
-            }
-            assert!(uses.is_empty(), "{package}: {folder}: a circle of {:?}", uses.keys());
+            file.words.extend(line.split(|letter| !is_of_name(letter) && letter != ':').map(str::to_owned));
         }
+        file
+    }
+}
+
+impl Files {
+    fn new(package: &str) -> Self {
+        let of_source = |Source { path, code }: &Source| {
+            let mut module = names(&path.trim_end_matches(".rs").replace('/', "::"));
+            if ["mod", "lib", "main"].contains(&module.last().unwrap().as_str()) {
+                module.pop();
+            }
+            (module, File::new(code))
+        };
+        Self(sources(package).iter().map(of_source).collect())
+    }
+
+    /// The path from the root of the package of one that `module` writes; `None` where it leads out of it.
+    fn absolute(&self, module: &[String], path: &[String]) -> Option<Vec<String>> {
+        let supers = path.iter().take_while(|name| *name == "super").count();
+        let below = [module, path].concat();
+        match path.first()?.as_str() {
+            "crate" => Some(path[1..].to_vec()),
+            "super" => Some([&module[..module.len().checked_sub(supers)?], &path[supers..]].concat()),
+            _ if self.0.contains_key(&below[..=module.len()]) => Some(below),
+            first => {
+                let is_it = |imported: &&Vec<String>| imported.len() > 1 && imported.last().unwrap() == first;
+                let imported = self.0[module].imported.iter().map(|(_, path)| path).find(is_it)?;
+                Some([&self.absolute(module, imported)?[..], &path[1..]].concat())
+            }
+        }
+    }
+
+    /// The module whose file defines what a path from the root of the package names: re-exports are followed.
+    fn defining(&self, path: &[String]) -> Option<Vec<String>> {
+        let end = (0..=path.len()).rev().find(|&end| self.0.contains_key(&path[..end]))?;
+        let (module, rest) = path.split_at(end);
+        let exported = rest.first().filter(|name| !self.0[module].defined.contains(*name)).and_then(|name| {
+            let exports = self.0[module].imported.iter().filter(|(is_public, _)| *is_public);
+            exports.map(|(_, path)| path).find(|path| path.last() == Some(name))
+        });
+        match exported {
+            Some(path) => self.defining(&[&self.absolute(module, path)?[..], &rest[1..]].concat()),
+            None => Some(module.to_vec()),
+        }
+    }
+
+    /// The modules whose files that of `module` uses. What it re-exports counts where it uses the type itself.
+    fn used_by(&self, module: &Vec<String>) -> BTreeSet<Vec<String>> {
+        let File { imported, words, .. } = &self.0[module];
+        let is_used = |name: &String| name.starts_with(char::is_uppercase) && words.contains(name);
+        let imported = imported.iter().filter(|(is_public, path)| !is_public || path.last().is_some_and(is_used));
+        let inline = words.iter().filter(|word| word.contains("::")).map(|word| names(word));
+        let paths = imported.map(|(_, path)| path.clone()).chain(inline);
+        paths.filter_map(|path| self.defining(&self.absolute(module, &path)?)).filter(|used| used != module).collect()
+    }
+}
+
+/// All that a file uses, and what these use in turn.
+fn reached(uses: &BTreeMap<Vec<String>, BTreeSet<Vec<String>>>, from: &Vec<String>) -> BTreeSet<Vec<String>> {
+    let (mut found, mut open) = (BTreeSet::new(), vec![from]);
+    while let Some(module) = open.pop() {
+        open.extend(uses[module].iter().filter(|used| found.insert((*used).clone())));
+    }
+    found
+}
+
+/// Files with a circle that is still to be undone.
+const STILL_IN_CIRCLES: [&str; 25] = [
+    ".: scene::profile",
+    ".: scene::profile::areal",
+    ".: scene::profile::text",
+    ".: scene::prony_file",
+    ".: scene::prony_file::cards",
+    ".: scene::prony_file::table",
+    ".: table",
+    ".: table::header",
+    "crates/fmi: exports",
+    "crates/fmi: instance",
+    "crates/formats: instruments",
+    "crates/formats: instruments::crg",
+    "crates/formats: instruments::gwyddion",
+    "crates/formats: instruments::sdf",
+    "crates/formats: instruments::sur",
+    "crates/study: sweep::sampled",
+    "crates/study: sweep::table",
+    "crates/cli: calibrate",
+    "crates/cli: calibrate::kept",
+    "crates/cli: converge",
+    "crates/cli: converge::table",
+    "crates/cli: figure",
+    "crates/cli: figure::raster",
+    "crates/cli: report",
+    "crates/cli: report::scene_report",
+];
+
+#[test]
+fn files_use_each_other_in_no_circle() {
+    for (package, _) in PACKAGES {
+        let files = Files::new(package);
+        let uses: BTreeMap<_, _> = files.0.keys().map(|module| (module.clone(), files.used_by(module))).collect();
+        let in_circles = uses.keys().filter(|module| reached(&uses, module).contains(*module));
+        let named = in_circles.map(|module| format!("{package}: {}", module.join("::")));
+        let found: Vec<_> = named.filter(|name| !STILL_IN_CIRCLES.contains(&name.as_str())).collect();
+        assert!(found.is_empty(), "in circles: {found:#?}");
     }
 }
 

@@ -5,7 +5,7 @@
 //! Nothing of a stage's other work: no history of places and velocities, no assembly, no contact, no error estimate.
 //! Stage i sums i earlier ones, as the method's does.
 
-use asperity::integrator::{ESDIRK5 as METHOD, MAX_STAGES as STAGES};
+use asperity::internals::integrator::{ESDIRK5 as METHOD, MAX_STAGES as STAGES};
 use asperity::model::{LinkKind, Model};
 
 /// Masses whose Maxwell elements are worked on at a time, so that sums stay in the nearest cache.

@@ -9,6 +9,7 @@
 //!   `controller` chooses their lengths.
 //! - `local_regions` take the mode changes of an event-driven step in steps of the masses near them alone.
 //! - `reference_run` estimates the run's error.
+//! - `rows` are those of a run along a scene's own excitation.
 
 mod context;
 mod controller;
@@ -18,6 +19,7 @@ mod event_driven;
 mod local_regions;
 mod motion;
 mod reference_run;
+mod rows;
 mod run;
 mod sampler;
 mod settings;
@@ -38,6 +40,7 @@ use controller::WorkLimit;
 pub use motion::Interrupt;
 pub use motion::{Inaccuracy, MethodSwitch, ModeChange, Motion, OutOfRange, SimulationError, Start};
 use reference_run::ReferenceRun;
+pub use rows::{ResultRow, ResultRows, run};
 use run::Run;
 use sampler::Sampler;
 use settings::Settings;

@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::math::NotEnoughMemory;
-use crate::scene::{Force, LARGEST, ParameterError, Path, is_possible};
+use crate::scene::{Force, LARGEST, ParameterError, Path, Phase, Scene, is_possible};
 
 pub use crate::scene::Motion;
 
@@ -76,7 +76,7 @@ pub enum SimulationError {
     /// The carrier's motion is out of range.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// Parameters that do not go together, as [`Scene::check`](crate::scene::Scene::check) finds.
+    /// Parameters that do not go together, as [`Scene::check`](Scene::check) finds.
     #[error(transparent)]
     Scene(#[from] ParameterError),
     /// The machine does not have the memory for it.
@@ -166,6 +166,20 @@ impl fmt::Display for Inaccuracy {
 }
 
 impl Start {
+    /// The start of a run along the excitation of `scene`, moving as its first phase begins.
+    pub fn of(scene: &Scene) -> Self {
+        let first = scene.excitation.first();
+        let speed = |path: fn(&Phase) -> Path| first.map_or(0.0, |phase| path(phase).at(0.0).speed);
+        Self {
+            u_rate: speed(|phase| phase.u),
+            w_rate: speed(|phase| phase.w),
+            load: scene.first_load(),
+            pull: scene.first_pull(),
+            temperature: first.and_then(|phase| phase.temperature),
+            ..Self::default()
+        }
+    }
+
     /// Refuses a start that is not finite, or too large.
     pub(crate) fn check(&self) -> Result<(), OutOfRange> {
         check_size(&[

@@ -109,16 +109,7 @@ impl Rows {
 
 /// The start with the carrier at `u` (m), moving as the first phase of the excitation begins.
 pub fn start(scene: &Scene, u: f64) -> Start {
-    let first = scene.excitation.first();
-    Start {
-        u_rate: first.map_or(0.0, |phase| phase.u.at(0.0).speed),
-        w_rate: first.map_or(0.0, |phase| phase.w.at(0.0).speed),
-        u,
-        load: scene.first_load(),
-        pull: scene.first_pull(),
-        temperature: first.and_then(|phase| phase.temperature),
-        ..Start::default()
-    }
+    Start { u, ..Start::of(scene) }
 }
 
 /// A simulation that follows phases of motion.

@@ -1,6 +1,7 @@
 //! The temperatures at which a law is kept where elements have temperatures of their own.
 
-use super::{FrictionTable, Law};
+use crate::element::friction_table::FrictionTable;
+use crate::element::law::Law;
 
 /// Distance of planes, K, at most; closer where the table bends with the temperature so that p and μp would err by more
 /// than their tolerance at the table's points; and how many there are at most.

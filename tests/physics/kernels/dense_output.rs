@@ -1,6 +1,6 @@
 //! The dense output of the method of seven stages, against exact solutions.
 
-use asperity::integrator::{DenseWorkspace, LayerStep, LayerSums, Polynomials, TimeSpan};
+use asperity::internals::integrator::{DenseWorkspace, LayerStep, LayerSums, Polynomials, TimeSpan};
 use asperity::model::{ByAxis, Forces, State};
 use nalgebra::Vector2;
 

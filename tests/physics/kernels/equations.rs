@@ -1,6 +1,6 @@
 //! The structured code against the dense equations of motion, and a solved stage against the explicit rates.
 
-use asperity::integrator::{MAX_STAGES, NO_LIMIT, StageValues};
+use asperity::internals::integrator::{MAX_STAGES, NO_LIMIT, StageValues};
 use asperity::math::Jet;
 use asperity::model::{CarrierPoint, Forces, LinkKind, Mode, Model, State};
 use asperity::scene::{Path, RateShear};

@@ -1,6 +1,6 @@
 //! Shared by the tests: layers given in a few words, fixed steps, random numbers.
 
-use asperity::integrator::{
+use asperity::internals::integrator::{
     ContactModes, DenseOutput, DenseWorkspace, ErrorEstimate, Integrator, LayerState, Scheme, TimeSpan, Tolerance,
     Tracked,
 };

@@ -1,6 +1,6 @@
 //! The coefficients of the Runge-Kutta methods.
 
-use asperity::integrator::{ContinuousWeights, ESDIRK3, ESDIRK5, MAX_STAGES, Tableau, Weights};
+use asperity::internals::integrator::{ContinuousWeights, ESDIRK3, ESDIRK5, MAX_STAGES, Tableau, Weights};
 use nalgebra::Complex;
 
 /// A rooted tree: the trees that hang on its root.

@@ -1,6 +1,6 @@
 //! The method of two stages: its coefficients, order, error estimate and dense output, and stiff problems.
 
-use asperity::integrator::SDIRK2;
+use asperity::internals::integrator::SDIRK2;
 use asperity::model::State;
 
 use crate::physics::kernels::convergence::{Exact, PATHS, chain, differences, displaced, slipping_errors};
