@@ -271,11 +271,9 @@ fn check_steady(table: &Table, load: Load, points: &[OperatingPoint], order: &[u
 /// need not be there.
 fn values_of(table: &Table, load: Load, quantity: Quantity, rows: &[usize]) -> Result<Option<Vec<f64>>, TableError> {
     let (need, name, unit) = (quantity.need(), quantity.name(load), quantity.unit(load));
-    let column = table.column(&name, unit);
-    if need == Need::Ignored || (need == Need::Optional && column.is_err()) {
+    if need == Need::Ignored || (need == Need::Optional && !table.has(&name, unit)) {
         return Ok(None);
     }
-    column?;
     let cells: Vec<_> = rows.iter().map(|&row| (row, table.number(row, &name, unit))).collect();
     if need == Need::Optional && cells.iter().all(|(_, cell)| *cell == Ok(None)) {
         return Ok(None);

@@ -45,7 +45,7 @@ impl Load {
     /// # Errors
     /// [`TableError`] where they are pressures, and it has none.
     pub fn of_table(table: &Table) -> Result<Self, TableError> {
-        if table.column(Self::Force.name(), Self::Force.unit()).is_ok() {
+        if table.has(Self::Force.name(), Self::Force.unit()) {
             return Ok(Self::Force);
         }
         match table.header.number("nominal_area", "m2")? {
@@ -96,9 +96,8 @@ impl OperatingPoint {
     /// [`TableError`] where it is not given by positive numbers.
     pub fn of_row(table: &Table, row: usize, load: Load) -> Result<Self, TableError> {
         let positive = |name: &str, unit: &str| {
-            let number = table.number(row, name, unit);
-            let found = table.column(name, unit).and(Ok(number.ok().flatten()))?;
-            let number = found.filter(|&number| number >= SMALLEST && is_possible(number));
+            let number = table.number(row, name, unit).ok().flatten();
+            let number = number.filter(|&number| number >= SMALLEST && is_possible(number));
             number.ok_or_else(|| table.cell_error(row, name, unit, "a number above 0"))
         };
         let has_temperature = table.number(row, "temperature", "K")? != None;

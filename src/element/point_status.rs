@@ -42,7 +42,7 @@ impl PointStatus {
 
     /// Its column.
     pub fn column() -> Column {
-        Column::words("status")
+        Column::words("status", "")
     }
 
     /// That of a row.
@@ -50,7 +50,7 @@ impl PointStatus {
     /// # Errors
     /// [`TableError`] where the table has no such column.
     pub fn of_row(table: &Table, row: usize) -> Result<Self, TableError> {
-        table.word(row, "status").map(|text| Self::read(&text))
+        table.word(row, "status", "").map(|text| Self::read(&text))
     }
 
     /// Whether friction and area are a result.

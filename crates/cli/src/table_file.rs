@@ -45,7 +45,7 @@ impl TableFile {
     }
 
     /// Adds a row; it is in the file when this returns.
-    pub(crate) fn add(&self, row: impl IntoIterator<Item = Cell>) -> Result<(), Error> {
+    pub(crate) fn add(&self, row: &[Cell]) -> Result<(), Error> {
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         let written = file.write_all(Table::line(row).as_bytes()).and_then(|()| file.sync_data());
         written.map_err(unwritten(&self.place.path))
@@ -80,8 +80,7 @@ fn rows_of<R>(
     };
     let (found, mut corrupt) = table.begun(&text, path).map_err(refused)?;
     let read = if found.is_empty() { Vec::new() } else { read(&found).map_err(refused)? };
-    let mut kept = found.filtered(|row| read[row].is_ok());
-    kept.header = table.header.clone();
+    let kept = found.filtered(table.header.clone(), |row| read[row].is_ok());
     let mut rows = Vec::new();
     for row in read {
         match row {
@@ -123,7 +122,7 @@ mod tests {
         let path = folder.path().join("table.csv");
         let (file, rows) = open(&path, false).unwrap();
         assert!(rows.is_empty());
-        [10.0, 200.0, 3000.0].iter().for_each(|number| file.add([Cell::from(*number)]).unwrap());
+        [10.0, 200.0, 3000.0].iter().for_each(|number| file.add(&[Cell::from(*number)]).unwrap());
         drop(file);
         let (whole, head) = (fs::read_to_string(&path).unwrap(), table().head());
         assert_eq!(whole, format!("{head}10\n200\n3000\n"));

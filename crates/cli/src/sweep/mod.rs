@@ -214,7 +214,7 @@ fn run(
     });
     let rows = Mutex::new(done);
     let work = plan.find(&left, &Stop::default(), |row| {
-        if let Err(error) = file.add(row.cells()) {
+        if let Err(error) = file.add(&row.cells()) {
             return ControlFlow::Break(error);
         }
         rows.lock().unwrap_or_else(PoisonError::into_inner).push(row);

@@ -5,7 +5,7 @@
 //! Hyndman and Y. Fan, The American Statistician 50 (1996) 361: nearly without bias for the median whatever the
 //! distribution.
 
-use asperity::table::{Cell, Column, Header, Table, TableError, Values, number};
+use asperity::table::{Cell, Column, Header, Table, TableError, number};
 
 use super::table::{SweepHeader, SweepRow};
 
@@ -83,7 +83,7 @@ impl Sampled {
 
     /// The column of all samples.
     fn column(self) -> Column {
-        Column { unit: "1".to_owned(), ..Column::words(format!("{}_samples", self.name())) }
+        Column::words(format!("{}_samples", self.name()), "1")
     }
 }
 
@@ -154,10 +154,8 @@ impl SampleValues {
         };
         let list = |sampled: Sampled| {
             let column = sampled.column();
-            let found = match &table.column(&column.name, &column.unit)?.values {
-                Values::Words(words) => words[row].split(';').map(number).collect::<Option<Vec<_>>>(),
-                Values::Numbers(_) => None,
-            };
+            let text = table.word(row, &column.name, &column.unit)?;
+            let found: Option<Vec<_>> = text.split(';').map(number).collect();
             let expected = format!("{count} numbers in each column of all samples");
             let refused = || table.cell_error(row, &column.name, &column.unit, &expected);
             found.filter(|found| found.len() == count).ok_or_else(refused)

@@ -150,7 +150,7 @@ impl Matters {
     /// As a table: a row for each point and group, those of the mean over all points first, without a point.
     pub fn table(&self, load: Load) -> Table {
         let numbers = [("share", "1"), ("standard_error", "1")].map(|(name, unit)| Column::numbers(name, unit));
-        let columns = OperatingPoint::columns(load).into_iter().chain([Column::words("key")]).chain(numbers);
+        let columns = OperatingPoint::columns(load).into_iter().chain([Column::words("key", "")]).chain(numbers);
         let mut table = Table::new(Header::default(), columns);
         let mean = self.mean.iter().map(|indices| (None, indices));
         let points = self.points.iter().map(|matter| (Some(matter.point), &matter.indices));

@@ -154,7 +154,7 @@ impl SweepRow {
             let (name, unit) = (quantity.name(load), quantity.unit(load));
             let is_needed = found.is_result() && quantity == Quantity::Friction;
             // Tables of before lack what is known since.
-            if table.column(&name, unit).is_ok() || is_needed {
+            if table.has(&name, unit) || is_needed {
                 let value = table.number(row, &name, unit)?;
                 if value.map_or(is_needed, |value| !is_possible(value)) {
                     return Err(table.cell_error(row, &name, unit, "a number"));
