@@ -18,69 +18,30 @@ impl From<Vec<f64>> for Values {
     }
 }
 
-/// The spacing of the values of `a..b/n`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Spacing {
-    Logarithmic,
-    Linear,
-}
-
 /// Most values between two ends.
 const MOST: usize = 10_000;
 /// Significant digits of the values between two ends.
 const DIGITS: usize = 6;
 
 impl Values {
-    /// Speeds, in m/s or with their unit: `1e-4..10/20` is 20 values evenly spaced in the logarithm, ends included;
-    /// also a list, or both separated by commas.
+    /// Reads values of a dimension, in SI units or with their unit: `1e-4..10/20` is 20 values, ends included, evenly spaced
+    /// in the logarithm, temperatures as such; also a list, or both separated by commas.
     ///
     /// # Errors
     /// What was expected of the text.
-    pub fn speeds(text: &str) -> Result<Self, String> {
-        Self::parse(text, Spacing::Logarithmic, Dimension::Speed)
-    }
-
-    /// Pressures, in Pa or with their unit, as [`speeds`](Self::speeds).
-    ///
-    /// # Errors
-    /// What was expected of the text.
-    pub fn pressures(text: &str) -> Result<Self, String> {
-        Self::parse(text, Spacing::Logarithmic, Dimension::Pressure)
-    }
-
-    /// Ways, in m or with their unit, as [`speeds`](Self::speeds).
-    ///
-    /// # Errors
-    /// What was expected of the text.
-    pub fn ways(text: &str) -> Result<Self, String> {
-        Self::parse(text, Spacing::Logarithmic, Dimension::Length)
-    }
-
-    /// Forces, in N or with their unit, as [`speeds`](Self::speeds).
-    ///
-    /// # Errors
-    /// What was expected of the text.
-    pub fn forces(text: &str) -> Result<Self, String> {
-        Self::parse(text, Spacing::Logarithmic, Dimension::Force)
-    }
-
-    /// Temperatures, in K or with their unit: `273..313/3` is 3 evenly spaced values.
-    ///
-    /// # Errors
-    /// What was expected of the text.
-    pub fn temperatures(text: &str) -> Result<Self, String> {
-        Self::parse(text, Spacing::Linear, Dimension::Temperature)
-    }
-
-    fn parse(text: &str, spacing: Spacing, dimension: Dimension) -> Result<Self, String> {
+    pub fn parse(text: &str, dimension: Dimension) -> Result<Self, String> {
         let mut numbers = Numbers { dimension, with_unit: None };
-        let parts: Result<Vec<Vec<f64>>, String> =
-            text.split(',').map(|part| values(part.trim(), spacing, &mut numbers)).collect();
-        Ok(parts?.concat().into())
+        let parts = text.split(',').map(|part| values(part.trim(), &mut numbers));
+        Ok(parts.collect::<Result<Vec<_>, _>>()?.concat().into())
+    }
+
+    /// What reads values of a dimension.
+    pub fn of(dimension: Dimension) -> impl Fn(&str) -> Result<Self, String> + Clone {
+        move |text| Self::parse(text, dimension)
     }
 }
 
-fn values(part: &str, spacing: Spacing, numbers: &mut Numbers) -> Result<Vec<f64>, String> {
+fn values(part: &str, numbers: &mut Numbers) -> Result<Vec<f64>, String> {
     let Some((low, rest)) = part.split_once("..") else { return Ok(vec![numbers.read(part)?]) };
     let (high, count) = rest.rsplit_once('/').ok_or_else(|| wrong(part, "a..b/n, such as 1e-4..10/20"))?;
     let (low, high) = (numbers.read(low)?, numbers.read(high)?);
@@ -89,11 +50,11 @@ fn values(part: &str, spacing: Spacing, numbers: &mut Numbers) -> Result<Vec<f64
         return Err(wrong(part, &format!("a..b/n with a < b and 2 to {MOST} values")));
     }
     let last = count - 1;
-    let at = |i: usize| match (i, spacing) {
+    let at = |i: usize| match (i, numbers.dimension) {
         (0, _) => low,
         (i, _) if i == last => high,
-        (i, Spacing::Logarithmic) => rounded(low * (high / low).powf(i as f64 / last as f64), DIGITS),
-        (i, Spacing::Linear) => rounded(low + (high - low) * (i as f64 / last as f64), DIGITS),
+        (i, Dimension::Temperature) => rounded(low + (high - low) * (i as f64 / last as f64), DIGITS),
+        (i, _) => rounded(low * (high / low).powf(i as f64 / last as f64), DIGITS),
     };
     Ok((0..count).map(at).collect())
 }
@@ -192,12 +153,12 @@ mod tests {
 
     #[test]
     fn values_are_lists_ranges_or_both() {
-        let logarithm = |text| Values::speeds(text).unwrap().0;
+        let logarithm = |text| Values::parse(text, Dimension::Speed).unwrap().0;
         assert_eq!(logarithm("1e-4..10/6"), [1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0]);
         assert_eq!(logarithm("2, 1,1..100/3,0.5"), [0.5, 1.0, 2.0, 10.0, 100.0]);
-        assert_eq!(Values::temperatures("273.15..313.15/3").unwrap().0, [273.15, 293.15, 313.15]);
-        assert_eq!(Values::temperatures("0 °C, 20°C").unwrap().0, [273.15, 293.15]);
-        assert_eq!(Values::pressures("1bar..4bar/3, 8 bar").unwrap().0, [1e5, 2e5, 4e5, 8e5]);
+        assert_eq!(Values::parse("273.15..313.15/3", Dimension::Temperature).unwrap().0, [273.15, 293.15, 313.15]);
+        assert_eq!(Values::parse("0 °C, 20°C", Dimension::Temperature).unwrap().0, [273.15, 293.15]);
+        assert_eq!(Values::parse("1bar..4bar/3, 8 bar", Dimension::Pressure).unwrap().0, [1e5, 2e5, 4e5, 8e5]);
         assert_eq!(logarithm("1mm/s..1m/s/4"), [1e-3, 1e-2, 0.1, 1.0]);
         let even = logarithm("1e-2..10/20");
         // Rounded to six digits.
@@ -222,7 +183,7 @@ mod tests {
             ("1..2 mm/s/3", "behind each number or behind none"),
             ("1 bar", "one of m/s, mm/s, km/h"),
         ] {
-            let message = Values::speeds(text).unwrap_err();
+            let message = Values::parse(text, Dimension::Speed).unwrap_err();
             assert!(message.contains(part), "{text}: {message}");
         }
     }

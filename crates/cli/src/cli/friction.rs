@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use asperity::tables::Dimension;
 use asperity_study::calibration::FreeParameter;
 use asperity_study::sweep::SlidingOptions;
 use asperity_study::values::Values;
@@ -40,13 +41,13 @@ pub(crate) struct Calibrate {
     #[arg(long)]
     pub(crate) plan: bool,
     /// Speeds of that grid in m/s, in the format of asperity sweep. Default: a decade beyond the data's.
-    #[arg(long, value_name = "VALUES", value_parser = Values::speeds, requires = "plan")]
+    #[arg(long, value_name = "VALUES", value_parser = Values::of(Dimension::Speed), requires = "plan")]
     pub(crate) speeds: Option<Values>,
     /// Pressures of that grid in Pa. Default: a factor of two beyond the data's.
-    #[arg(long, value_name = "VALUES", value_parser = Values::pressures, requires = "plan")]
+    #[arg(long, value_name = "VALUES", value_parser = Values::of(Dimension::Pressure), requires = "plan")]
     pub(crate) pressures: Option<Values>,
     /// Temperatures of that grid in K. Default: 20 K beyond the data's.
-    #[arg(long, value_name = "VALUES", value_parser = Values::temperatures, requires = "plan")]
+    #[arg(long, value_name = "VALUES", value_parser = Values::of(Dimension::Temperature), requires = "plan")]
     pub(crate) temperatures: Option<Values>,
     /// Replaces an existing table of points instead of going on from it.
     #[arg(long)]

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use asperity::tables::Dimension;
 use asperity_study::contact::SteadyState;
 use asperity_study::sweep::{SlidingOptions, SweepOptions};
 use asperity_study::values::Values;
@@ -62,7 +63,7 @@ pub(crate) struct Sweep {
     pub(crate) master: Option<PathBuf>,
     /// Several ways in m, in the format of --speeds: the table has a column way [m], and friction is plotted over the way. It
     /// is not to be packed or continued.
-    #[arg(long, value_name = "VALUES", value_parser = Values::ways)]
+    #[arg(long, value_name = "VALUES", value_parser = Values::of(Dimension::Length))]
     #[arg(conflicts_with_all = ["way", "shard", "merge", "master", "converged"])]
     pub(crate) ways: Option<Values>,
     /// Also computes each point for N scenes drawn from what the scene's section [uncertainty] says is not known: quantiles

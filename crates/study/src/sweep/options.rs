@@ -5,7 +5,7 @@ use asperity::math::{NotEnoughMemory, check_memory};
 use asperity::scene::{FoundationKind, HeightMap, Scene};
 use asperity::simulation::Simulation;
 use asperity::table::{Header, TableError};
-use asperity::tables::POSITIVE;
+use asperity::tables::{Dimension, POSITIVE};
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
@@ -68,16 +68,16 @@ pub struct SlidingOptions {
 #[serde(default)]
 pub struct SweepOptions {
     /// Speeds in m/s: a..b/n for n values evenly spaced in the logarithm, a list, or both, separated by commas.
-    #[arg(long, value_name = "VALUES", value_parser = Values::speeds)]
+    #[arg(long, value_name = "VALUES", value_parser = Values::of(Dimension::Speed))]
     pub speeds: Option<Values>,
     /// Mean pressures in Pa, in the format of --speeds. Requires a scene in the material form.
-    #[arg(long, value_name = "VALUES", value_parser = Values::pressures, conflicts_with = "forces")]
+    #[arg(long, value_name = "VALUES", value_parser = Values::of(Dimension::Pressure), conflicts_with = "forces")]
     pub pressures: Option<Values>,
     /// Mean normal forces F_z of the whole layer in N, in place of pressures. Works with either form of scene.
-    #[arg(long, value_name = "VALUES", value_parser = Values::forces)]
+    #[arg(long, value_name = "VALUES", value_parser = Values::of(Dimension::Force))]
     pub forces: Option<Values>,
     /// Temperatures in K: a..b/n for n evenly spaced values. Default: the scene's temperature.
-    #[arg(long, value_name = "VALUES", value_parser = Values::temperatures)]
+    #[arg(long, value_name = "VALUES", value_parser = Values::of(Dimension::Temperature))]
     pub temperatures: Option<Values>,
     #[command(flatten)]
     #[serde(flatten)]

@@ -65,11 +65,33 @@ pub(super) fn row(
 ) -> SweepRow {
     let force = header.load.force(point.load);
     match slid(scene, point.speed, force, bounds, Some(interrupt)) {
-        Ok(slid) => {
-            let stiffness = stiffness(scene, point.speed, force, interrupt);
-            PointResult::new(slid, stiffness).row(point, header)
+        Ok(Slid { sliding, problem }) => {
+            let (stiffness, falls) =
+                start_of_motion(stiffness(scene, point.speed, force, interrupt), problem.is_some());
+            let mut row = SweepRow::new(point, PointStatus::new(problem.or(falls)));
+            row.set(Quantity::Stiffness, stiffness);
+            sliding.fill(&mut row, header);
+            row
         }
         Err(problem) => SweepRow::new(point, PointStatus::new(Some(problem))),
+    }
+}
+
+/// The tangential stiffness that counts, and what is wrong with it. A force that falls as motion starts is none: the masses
+/// at rest do not hold what the load asks of them, and an element could not use the point, unless that `is_marked` already.
+fn start_of_motion(
+    stiffness: Result<Option<f64>, SimulationError>,
+    is_marked: bool,
+) -> (Option<f64>, Option<NotSteady>) {
+    match stiffness {
+        Ok(Some(falling)) if falling <= 0.0 => {
+            let problem = NotSteady(format!(
+                "tangential stiffness: {falling:.4e} N/m, expected a number above 0: refine the layer"
+            ));
+            (is_marked.then_some(falling), Some(problem))
+        }
+        Ok(stiffness) => (stiffness, None),
+        Err(error) => (None, Some(NotSteady(format!("tangential stiffness: {error}")))),
     }
 }
 
@@ -110,47 +132,15 @@ fn stiffness(scene: &Scene, speed: f64, load: f64, interrupt: &Interrupt) -> Res
     tangential_stiffness(layer, LoadSearch::estimated(load, scene, &model), frequency)
 }
 
-/// What was found at a point.
-#[derive(Clone, Debug, PartialEq)]
-struct PointResult {
-    slid: Slid,
-    /// Stiffness of all springs along x, N/m.
-    tangential_stiffness: Option<f64>,
-}
-
-impl PointResult {
-    /// A force that falls as motion starts is no stiffness: the masses at rest do not hold what the load asks of them, and
-    /// an element could not use the point.
-    fn new(mut slid: Slid, stiffness: Result<Option<f64>, SimulationError>) -> Self {
-        let problem = match &stiffness {
-            Ok(Some(falling)) if *falling <= 0.0 => Some(NotSteady::Falling(*falling)),
-            Ok(_) => None,
-            Err(error) => Some(NotSteady::Stiffness(error.clone())),
-        };
-        let is_used = slid.problem.is_some() || problem.is_none();
-        slid.problem = slid.problem.or(problem);
-        Self { slid, tangential_stiffness: stiffness.ok().flatten().filter(|_| is_used) }
-    }
-
-    fn row(&self, point: OperatingPoint, header: &SweepHeader) -> SweepRow {
-        let mut row = SweepRow::new(point, PointStatus::new(self.slid.problem.as_ref()));
-        row.set(Quantity::Stiffness, self.tangential_stiffness);
-        self.slid.sliding.fill(&mut row, header);
-        row
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn a_force_that_falls_as_motion_starts_is_no_stiffness() {
-        let steady = || Slid { sliding: SteadySliding::default(), problem: None };
-        assert_eq!(PointResult::new(steady(), Ok(Some(2e4))).tangential_stiffness, Some(2e4));
-        let marked = PointResult::new(steady(), Ok(Some(-2.8e4)));
-        assert_eq!(marked.tangential_stiffness, None);
-        let problem = marked.slid.problem.map(|problem| problem.to_string()).unwrap_or_default();
-        assert!(problem.starts_with("tangential stiffness: -2.8000e4 N/m"), "{problem}");
+        assert_eq!(start_of_motion(Ok(Some(2e4)), false), (Some(2e4), None));
+        let (stiffness, problem) = start_of_motion(Ok(Some(-2.8e4)), false);
+        let problem = problem.map(|problem| problem.to_string()).unwrap_or_default();
+        assert!(stiffness.is_none() && problem.starts_with("tangential stiffness: -2.8000e4 N/m"), "{problem}");
     }
 }

@@ -39,50 +39,20 @@ pub struct StopBounds {
 }
 
 /// Why there is no steady sliding at a point, or its values cannot be relied on.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum NotSteady {
-    /// A run of the layer failed.
-    #[error(transparent)]
-    Run(#[from] SimulationError),
-    /// What the solver found cannot be relied on.
-    #[error(transparent)]
-    Solved(#[from] SlideProblem),
-    /// The layer may not slide far enough for means to be judged.
-    #[error("not steady: no room for {MIN_WINDOW} blocks of {length} m within {distance} m")]
-    NoRoom {
-        /// Length of a block, m.
-        length: f64,
-        /// Longest distance, m.
-        distance: f64,
-    },
-    /// The means of the layer are not known well enough.
-    #[error("not steady after {distance:.4} m: standard error of the friction coefficient {:.2} % of it", 100.0 * .error)]
-    Scatter {
-        /// Distance that the layer slid, m.
-        distance: f64,
-        /// Standard error of the friction coefficient over it, 1.
-        error: f64,
-    },
-    /// The layer does not bear its load.
-    #[error("not pressed after {distance:.4} m: mean F_z is off by {:.2} %", 100.0 * .deviation)]
-    NotPressed {
-        /// Distance that the layer slid, m.
-        distance: f64,
-        /// How far F_z is from the load, as a share of it.
-        deviation: f64,
-    },
-    /// The force falls by so much, N/m, as motion starts: the masses at rest do not hold what the load asks of them.
-    #[error("tangential stiffness: {0:.4e} N/m, expected a number above 0: refine the layer")]
-    Falling(f64),
-    /// The run that the tangential stiffness is found by failed.
-    #[error("tangential stiffness: {0}")]
-    Stiffness(SimulationError),
-    /// The table that was swept has no such temperature.
-    #[error("no such temperature")]
-    NoTemperature,
-    /// No pressure was found at this separation, m.
-    #[error("no pressure found at the separation {0:.4e} m")]
-    NoPressure(f64),
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct NotSteady(pub(super) String);
+
+impl From<SimulationError> for NotSteady {
+    fn from(error: SimulationError) -> Self {
+        Self(error.to_string())
+    }
+}
+
+impl From<SlideProblem> for NotSteady {
+    fn from(problem: SlideProblem) -> Self {
+        Self(problem.to_string())
+    }
 }
 
 /// The relative error of a friction coefficient smaller than this is taken relative to this.
@@ -276,7 +246,10 @@ impl<'a> Search<'a> {
         let mut first = self.press()?;
         loop {
             let Some(average) = self.average(first.take())? else {
-                return Err(NotSteady::NoRoom { length: self.layer.blocks.length, distance: self.distance });
+                let (length, distance) = (self.layer.blocks.length, self.distance);
+                return Err(NotSteady(format!(
+                    "not steady: no room for {MIN_WINDOW} blocks of {length} m within {distance} m"
+                )));
             };
             let pressed = average.steady && self.deviation(&average.means).abs() <= LOAD;
             if pressed || !self.has_room(MIN_BLOCKS) {
@@ -398,10 +371,15 @@ impl<'a> Search<'a> {
         let deviation = self.deviation(&average.means);
         let distance = self.distance_before + self.slide.distance();
         if !average.steady {
-            let error = average.friction.error / average.friction.mean.abs().max(SMALL_FRICTION);
-            return Some(NotSteady::Scatter { distance, error });
+            let error = 100.0 * average.friction.error / average.friction.mean.abs().max(SMALL_FRICTION);
+            return Some(NotSteady(format!(
+                "not steady after {distance:.4} m: standard error of the friction coefficient {error:.2} % of it"
+            )));
         }
-        (deviation.abs() > LOAD).then_some(NotSteady::NotPressed { distance, deviation })
+        (deviation.abs() > LOAD).then(|| {
+            let off = 100.0 * deviation;
+            NotSteady(format!("not pressed after {distance:.4} m: mean F_z is off by {off:.2} %"))
+        })
     }
 }
 

@@ -125,7 +125,7 @@ impl SolvedPoints {
     /// Steady sliding at the speed and the temperature of a point under a pressure (Pa); its values may not be relied on.
     fn slide(&self, point: &OperatingPoint, pressure: f64) -> Result<SteadySlide, NotSteady> {
         let rubber = self.rubbers.iter().find(|(temperature, _)| *temperature == point.temperature);
-        let (_, rubber) = rubber.ok_or(NotSteady::NoTemperature)?;
+        let (_, rubber) = rubber.ok_or_else(|| NotSteady("no such temperature".to_owned()))?;
         Ok(self.solvers.solve(|solver| solver.slide_over(rubber, point.speed, pressure, self.way)))
     }
 
@@ -289,7 +289,7 @@ impl Swept {
             let step = slide.normal_stiffness.unwrap_or_default() * off / pressure;
             pressure *= step.exp().clamp(1.0 / LARGEST_CHANGE, LARGEST_CHANGE);
         }
-        Err(NotSteady::NoPressure(separation))
+        Err(NotSteady(format!("no pressure found at the separation {separation:.4e} m")))
     }
 }
 
