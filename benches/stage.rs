@@ -36,7 +36,7 @@ fn main() {
 }
 
 /// A layer and an integrator that attempts steps of it.
-struct Stages {
+struct SteppedLayer {
     model: Model,
     start: LayerState,
     carrier: Carrier,
@@ -44,7 +44,7 @@ struct Stages {
     tolerance: Tolerance,
 }
 
-impl Stages {
+impl SteppedLayer {
     /// A free layer, or one that slips.
     fn new(masses: usize, elements: usize, mode: Mode) -> Self {
         Self::of(&layer(masses, elements, 1e-2), mode, 0.0)
@@ -90,7 +90,7 @@ fn against_masses(criterion: &mut Criterion) {
     for masses in [100, 1000, 10_000, 100_000] {
         group.throughput(Throughput::Elements((masses * IMPLICIT) as u64));
         for (name, mode) in [("free", Mode::Free), ("slipping", Mode::Forward)] {
-            let mut stages = Stages::new(masses, 3, mode);
+            let mut stages = SteppedLayer::new(masses, 3, mode);
             group.bench_function(BenchmarkId::new(name, masses), |bencher| bencher.iter(|| stages.run()));
         }
     }
@@ -101,7 +101,7 @@ fn against_elements(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("stage against n, k = 1000");
     group.throughput(Throughput::Elements((1000 * IMPLICIT) as u64));
     for elements in [0, 1, 3, 7, 15] {
-        let mut stages = Stages::new(1000, elements, Mode::Free);
+        let mut stages = SteppedLayer::new(1000, elements, Mode::Free);
         group.bench_function(BenchmarkId::new("free", elements), |bencher| bencher.iter(|| stages.run()));
     }
     group.finish();
@@ -113,7 +113,7 @@ fn print_ratios() {
     println!("{:>8} {:>4} {:>8} {:>8} {:>6}", "k", "n", "stage", "floor", "ratio");
     for masses in [100, 1000, 10_000, 100_000] {
         for elements in [0, 3, 15] {
-            let mut stages = Stages::new(masses, elements, Mode::Free);
+            let mut stages = SteppedLayer::new(masses, elements, Mode::Free);
             let mut floor = Floor::new(&stages.model, STEP);
             floor.stages();
             assert!(floor.residual() < 1e-12, "the floor solves its equations: {}", floor.residual());
@@ -151,8 +151,8 @@ fn print_fine() {
     for masses in [100, 1000] {
         for (name, keys) in [("bands", ""), ("bands and heat", HEAT)] {
             for (shear_name, shear) in SHEARS {
-                let mut with = Stages::of(&compound(masses, keys, FINE, shear), Mode::Forward, W);
-                let mut without = Stages::of(&compound(masses, "", "", shear), Mode::Forward, W);
+                let mut with = SteppedLayer::of(&compound(masses, keys, FINE, shear), Mode::Forward, W);
+                let mut without = SteppedLayer::of(&compound(masses, "", "", shear), Mode::Forward, W);
                 let times = side_by_side([&mut || with.run(), &mut || without.run()], Duration::from_secs(2));
                 let [with, without] = times.shortest.map(|time| 1e9 * time / (masses * IMPLICIT) as f64);
                 println!("{masses:>8} {name:<16} {shear_name:<16} {with:>8.1} {without:>8.1} {:>6.2}", times.ratio);

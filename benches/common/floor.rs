@@ -13,19 +13,19 @@ const CHUNK: usize = 512;
 
 /// The blocks of one mass.
 #[derive(Clone, Copy)]
-struct Blocks {
-    lower: Block,
-    diagonal: Block,
-    upper: Block,
+struct MassBlocks {
+    lower: MassBlock,
+    diagonal: MassBlock,
+    upper: MassBlock,
 }
 
 /// A 2×2 block, row by row.
-type Block = [f64; 4];
-type Pair = [f64; 2];
+type MassBlock = [f64; 4];
+type MassPair = [f64; 2];
 
 /// One row of Maxwell elements: its link, g = τ/(τ + β), c g, 1/τ.
 #[derive(Clone, Copy)]
-struct Row {
+struct ElementRow {
     kind: usize,
     g: f64,
     weight: f64,
@@ -36,7 +36,7 @@ pub struct Floor {
     masses: usize,
     /// Step, s.
     h: f64,
-    rows: Vec<Row>,
+    rows: Vec<ElementRow>,
     /// a at the start of the step, at its end, a* of the stage: row by row, one row after another.
     start: Vec<f64>,
     end: Vec<f64>,
@@ -45,11 +45,11 @@ pub struct Floor {
     rates: Vec<Vec<f64>>,
     /// H by kind of link.
     history_force: [Vec<f64>; 4],
-    blocks: Vec<Blocks>,
+    blocks: Vec<MassBlocks>,
     /// What the right sides hold beside H.
-    known: Vec<Pair>,
+    known: Vec<MassPair>,
     /// The block that an unknown's neighbour is multiplied with on the way back, and its right side.
-    reduced: Vec<(Block, Pair)>,
+    reduced: Vec<(MassBlock, MassPair)>,
     velocity_x: Vec<f64>,
     velocity_z: Vec<f64>,
 }
@@ -60,7 +60,7 @@ impl Floor {
         let beta = METHOD.gamma() * h;
         let row = |row: &asperity::model::MaxwellRow| {
             let g = row.relaxation_time / (row.relaxation_time + beta);
-            Row { kind: row.kind as usize, g, weight: row.stiffness * g, per_tau: 1.0 / row.relaxation_time }
+            ElementRow { kind: row.kind as usize, g, weight: row.stiffness * g, per_tau: 1.0 / row.relaxation_time }
         };
         let rows: Vec<_> = model.rows.iter().map(row).collect();
         let noise = |i: usize| ((i * 7919) % 1000) as f64 * 1e-9;
@@ -126,7 +126,7 @@ impl Floor {
                 right = self.reduce(last - step, &right, |blocks| (&blocks.upper, &blocks.lower));
             }
         }
-        let Blocks { lower, diagonal, upper } = &self.blocks[middle];
+        let MassBlocks { lower, diagonal, upper } = &self.blocks[middle];
         let inverse = inverse(&minus(&minus(diagonal, &times(lower, &left.0)), &times(upper, &right.0)));
         let side = self.right_side(middle);
         let (from_left, from_right) = (apply(lower, &left.1), apply(upper, &right.1));
@@ -146,9 +146,9 @@ impl Floor {
     fn reduce(
         &mut self,
         i: usize,
-        before: &(Block, Pair),
-        parts: impl Fn(&Blocks) -> (&Block, &Block),
-    ) -> (Block, Pair) {
+        before: &(MassBlock, MassPair),
+        parts: impl Fn(&MassBlocks) -> (&MassBlock, &MassBlock),
+    ) -> (MassBlock, MassPair) {
         let (behind, ahead) = parts(&self.blocks[i]);
         let inverse = inverse(&minus(&self.blocks[i].diagonal, &times(behind, &before.0)));
         let (side, carried) = (self.right_side(i), apply(behind, &before.1));
@@ -158,7 +158,7 @@ impl Floor {
     }
 
     #[inline(always)]
-    fn right_side(&self, i: usize) -> Pair {
+    fn right_side(&self, i: usize) -> MassPair {
         let [vertical, horizontal, lateral_x, lateral_z] = &self.history_force;
         let before = i.wrapping_sub(1);
         let lateral = |force: &[f64]| force[i] - force.get(before).copied().unwrap_or(0.0);
@@ -166,7 +166,7 @@ impl Floor {
     }
 
     #[inline(always)]
-    fn substitute(&mut self, i: usize, neighbour: &Pair) -> Pair {
+    fn substitute(&mut self, i: usize, neighbour: &MassPair) -> MassPair {
         let (block, side) = &self.reduced[i];
         let carried = apply(block, neighbour);
         let found = [side[0] - carried[0], side[1] - carried[1]];
@@ -175,7 +175,7 @@ impl Floor {
     }
 
     #[inline(always)]
-    fn set(&mut self, i: usize, [x, z]: Pair) {
+    fn set(&mut self, i: usize, [x, z]: MassPair) {
         (self.velocity_x[i], self.velocity_z[i]) = (x, z);
     }
 
@@ -222,7 +222,7 @@ impl Floor {
         let velocity = |i: usize| [self.velocity_x[i], self.velocity_z[i]];
         let (mut missed, mut largest) = (0.0_f64, 0.0_f64);
         for i in 0..self.masses {
-            let Blocks { lower, diagonal, upper } = &self.blocks[i];
+            let MassBlocks { lower, diagonal, upper } = &self.blocks[i];
             let mut terms = vec![apply(diagonal, &velocity(i))];
             if i > 0 {
                 terms.push(apply(lower, &velocity(i - 1)));
@@ -241,7 +241,7 @@ impl Floor {
 }
 
 /// m/β and the links' weights βc + D; the coupling to the neighbours is full, as it is in contact.
-fn blocks(model: &Model, rows: &[Row], beta: f64) -> Vec<Blocks> {
+fn blocks(model: &Model, rows: &[ElementRow], beta: f64) -> Vec<MassBlocks> {
     let weight = |kind: LinkKind| {
         let law = &model.links[kind];
         let maxwell: f64 = rows.iter().filter(|row| row.kind == kind as usize).map(|row| beta * row.weight).sum();
@@ -252,7 +252,7 @@ fn blocks(model: &Model, rows: &[Row], beta: f64) -> Vec<Blocks> {
     let beside = [-lateral_x, -0.1 * lateral_x, -0.1 * lateral_z, -lateral_z];
     let along = |to_carrier: f64, lateral: f64| inertia + to_carrier + 2.0 * lateral;
     let diagonal = [along(horizontal, lateral_x), 0.0, 0.0, along(vertical, lateral_z)];
-    vec![Blocks { lower: beside, diagonal, upper: beside }; model.masses()]
+    vec![MassBlocks { lower: beside, diagonal, upper: beside }; model.masses()]
 }
 
 /// a* = a + Σ w_j ȧ_j and H += c g a*.
@@ -280,29 +280,29 @@ fn sum_history<const EARLIER: usize>(
 
 /// ȧ = g (ė - a*/τ).
 #[inline(never)]
-fn update_rates(star: &[f64], elongation_rates: &[f64], rates: &mut [f64], row: &Row) {
+fn update_rates(star: &[f64], elongation_rates: &[f64], rates: &mut [f64], row: &ElementRow) {
     for ((rate, star), elongation_rate) in rates.iter_mut().zip(star).zip(elongation_rates) {
         *rate = row.g * (elongation_rate - star * row.per_tau);
     }
 }
 
 #[inline(always)]
-fn times(a: &Block, b: &Block) -> Block {
+fn times(a: &MassBlock, b: &MassBlock) -> MassBlock {
     [a[0] * b[0] + a[1] * b[2], a[0] * b[1] + a[1] * b[3], a[2] * b[0] + a[3] * b[2], a[2] * b[1] + a[3] * b[3]]
 }
 
 #[inline(always)]
-fn minus(a: &Block, b: &Block) -> Block {
+fn minus(a: &MassBlock, b: &MassBlock) -> MassBlock {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]]
 }
 
 #[inline(always)]
-fn apply(a: &Block, v: &Pair) -> Pair {
+fn apply(a: &MassBlock, v: &MassPair) -> MassPair {
     [a[0] * v[0] + a[1] * v[1], a[2] * v[0] + a[3] * v[1]]
 }
 
 #[inline(always)]
-fn inverse(a: &Block) -> Block {
+fn inverse(a: &MassBlock) -> MassBlock {
     let factor = 1.0 / (a[0] * a[3] - a[1] * a[2]);
     [a[3] * factor, -a[1] * factor, -a[2] * factor, a[0] * factor]
 }

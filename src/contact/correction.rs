@@ -23,7 +23,7 @@
 
 use super::touch_correction::{CorrectionEnergies, FixedModeStep, TouchCorrection, forces_of_touch};
 use crate::integrator::{OpenEnd, Parabolas, Tolerance};
-use crate::math::Bounds;
+use crate::math::SplineBounds;
 use crate::model::{LinkKind, Mode, Model};
 use crate::scene::ByAxis;
 
@@ -61,7 +61,7 @@ pub struct EndCorrection {
     pressed: f64,
     /// By mass: whether a correction changes its forces.
     concerned: Vec<bool>,
-    profile: Bounds,
+    profile: SplineBounds,
 }
 
 impl EndCorrection {

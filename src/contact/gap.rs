@@ -1,6 +1,6 @@
 //! The first touch of a free mass within a step.
 
-use crate::math::{Bounds, Quintic, Spline};
+use crate::math::{Quintic, Spline, SplineBounds};
 
 /// A part over which the gap bends by less than this share of the tolerance is decided by its ends: a deeper dip
 /// between them does not matter. So the search ends even where a mass moves along the limit.
@@ -31,7 +31,7 @@ pub fn first_touch(
     latest: f64,
 ) -> Option<f64> {
     let mut search = GapSearch { profile, tolerance, latest, parts: 0 };
-    let whole = Part { position, height, start: 0.0, length: 1.0 };
+    let whole = StepPart { position, height, start: 0.0, length: 1.0 };
     search.first_touch(&whole, 0)
 }
 
@@ -43,7 +43,7 @@ struct GapSearch<'a> {
 }
 
 /// The motion through a part of the step.
-struct Part {
+struct StepPart {
     position: Quintic,
     height: Quintic,
     start: f64,
@@ -59,7 +59,7 @@ struct GapAtEnds {
 }
 
 impl GapSearch<'_> {
-    fn first_touch(&mut self, part: &Part, halvings: u32) -> Option<f64> {
+    fn first_touch(&mut self, part: &StepPart, halvings: u32) -> Option<f64> {
         if part.start >= self.latest {
             return None;
         }
@@ -87,7 +87,7 @@ impl GapSearch<'_> {
     }
 
     /// The gap at the ends of a part, and its largest bend between them with the bounds `profile`.
-    fn ends(&self, part: &Part, profile: &Bounds) -> GapAtEnds {
+    fn ends(&self, part: &StepPart, profile: &SplineBounds) -> GapAtEnds {
         // |g''| over the part: g = z - z_r(x), g'' = z̈ - s ẍ - κ ẋ².
         let (speed_x, bend_x) = part.position.derivative_bounds();
         let bend = part.height.derivative_bounds().1
@@ -99,7 +99,7 @@ impl GapSearch<'_> {
     }
 
     /// The part of the bend that rounding of the position can make, m; 0 as long as the search is short.
-    fn rounding(&self, part: &Part, profile: &Bounds) -> f64 {
+    fn rounding(&self, part: &StepPart, profile: &SplineBounds) -> f64 {
         if self.parts <= FEW_PARTS {
             return 0.0;
         }
@@ -108,7 +108,7 @@ impl GapSearch<'_> {
     }
 
     /// Whether the gap of a part, which closes through it, is still open at the latest fraction that matters.
-    fn is_late(&self, part: &Part) -> bool {
+    fn is_late(&self, part: &StepPart) -> bool {
         let latest = (self.latest - part.start) / part.length;
         latest < 1.0 && self.gap(part, latest) > -0.5 * self.tolerance
     }
@@ -117,7 +117,7 @@ impl GapSearch<'_> {
         start.min(end) - bend / 8.0 > -self.tolerance
     }
 
-    fn locate(&self, part: &Part) -> f64 {
+    fn locate(&self, part: &StepPart) -> f64 {
         let aim = 0.5 * self.tolerance;
         if self.gap(part, 0.0) <= -aim {
             return part.start;
@@ -125,17 +125,17 @@ impl GapSearch<'_> {
         part.start + part.length * crate::math::bracketed_root(|theta| self.gap(part, theta) + aim, (0.0, 1.0), 1e-15)
     }
 
-    fn gap(&self, part: &Part, theta: f64) -> f64 {
+    fn gap(&self, part: &StepPart, theta: f64) -> f64 {
         part.height.evaluate(theta).position - self.profile.evaluate(part.position.evaluate(theta).position).0
     }
 
-    fn gap_rate(&self, part: &Part, theta: f64) -> f64 {
+    fn gap_rate(&self, part: &StepPart, theta: f64) -> f64 {
         let position = part.position.evaluate(theta);
         part.height.evaluate(theta).speed - self.profile.evaluate(position.position).1 * position.speed
     }
 }
 
-impl Part {
+impl StepPart {
     fn halves(&self) -> (Self, Self) {
         let (position_first, position_second) = self.position.halves();
         let (height_first, height_second) = self.height.halves();
@@ -228,7 +228,7 @@ mod tests {
             let position = Quintic::hermite(at(x, dx), at(x + dx, dx), 1.0);
             let height = Quintic::hermite(at(z - 1e-14, slope * dx), at(end - 1e-14, end_slope * dx), 1.0);
             let mut search = GapSearch { profile: &wave, tolerance: 3e-16, latest: 1.0, parts: 0 };
-            search.first_touch(&Part { position, height, start: 0.0, length: 1.0 }, 0);
+            search.first_touch(&StepPart { position, height, start: 0.0, length: 1.0 }, 0);
             assert!(search.parts < 2 * FEW_PARTS, "{} parts at {x}", search.parts);
         }
     }

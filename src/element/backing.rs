@@ -5,7 +5,7 @@
 //! That is solved for x, for many elements at once. Below the least pressure of the law p is a parabola and above the
 //! largest a straight line: closed forms.
 
-use super::law_points::Intervals;
+use super::law_points::{Intervals, LOG_PRESSURE, START};
 use crate::math::Number;
 use crate::scene::Backing;
 
@@ -74,7 +74,7 @@ impl<'a, T: Number, const N: usize> SeriesIntervals<'a, T, N> {
     #[inline(always)]
     pub(super) fn set(&mut self, i: usize, backing: &SeriesBacking, (interval, next): (usize, usize), end: f64) {
         self.indentation[i] = backing.indentations[interval];
-        self.width[i] = end - self.laws.coefficients[0][i].value();
+        self.width[i] = end - self.laws.coefficients[START][i].value();
         self.rise[i] = backing.indentations[next] - backing.indentations[interval];
         self.is_first[i] = if interval == 0 { 1.0 } else { 0.0 };
     }
@@ -167,7 +167,7 @@ impl<'a, T: Number, const N: usize> SeriesIntervals<'a, T, N> {
     /// with its derivatives; `x` is the solution within the interval but for a step of Newton's method.
     #[inline(always)]
     fn contact_beyond_start(&self, i: usize, x: f64, approach: T) -> T {
-        let (cubic, indentation) = ([1, 2, 3].map(|k| self.laws.coefficients[k][i]), self.indentation[i]);
+        let (cubic, indentation) = (LOG_PRESSURE.map(|k| self.laws.coefficients[k][i]), self.indentation[i]);
         let (one, slope) = (T::constant(1.0), cubic[0]);
         let from = approach - T::constant(indentation);
         // Within the interval.
@@ -187,7 +187,7 @@ impl<'a, T: Number, const N: usize> SeriesIntervals<'a, T, N> {
 
     #[inline(always)]
     fn values(&self, i: usize) -> [f64; 3] {
-        [1, 2, 3].map(|k| self.laws.coefficients[k][i].value())
+        LOG_PRESSURE.map(|k| self.laws.coefficients[k][i].value())
     }
 }
 
@@ -209,6 +209,7 @@ fn expansion<T: Number>([a, b, c]: [T; 3], x: T, indentation: f64) -> [T; 3] {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use crate::element::law_points::COEFFICIENTS;
     use crate::math::Dual;
 
     /// Cubics of ln p over an interval of 1 µm, ln p's growth over it, and p_i/k_n (m): of slopes at both ends from almost
@@ -233,7 +234,7 @@ mod tests {
         let width = 1e-6;
         let mut laws = Intervals::new(N);
         for (i, ([a, b, c], ..)) in cases.iter().enumerate() {
-            let mut coefficients = [T::constant(0.0); 12];
+            let mut coefficients = [T::constant(0.0); COEFFICIENTS];
             (coefficients[1], coefficients[2], coefficients[3]) = (T::constant(*a), T::constant(*b), T::constant(*c));
             laws.set(i, coefficients, 0.0, false);
         }

@@ -14,7 +14,7 @@
 //! roots, integrals are by Gauss's formula of six points over segments in which the integrand is a polynomial of degree
 //! 11 at most (stick) or close to one (slip).
 
-use super::law::{Contact, LawAtSpeed};
+use super::law::{ElementContact, LawAtSpeed};
 use super::spring::{Advanced, Segment, SpringLaw, advance, apply_jump};
 use crate::math::bracketed_root;
 use crate::model::Mode;
@@ -36,7 +36,7 @@ pub(super) struct MotionRates {
 }
 
 /// Records losses and changes between stick and slip.
-pub(super) trait Recorder {
+pub(super) trait MotionRecorder {
     /// An energy (J) was lost near an approach (m).
     fn record_loss(&mut self, approach: f64, energy: f64);
     /// The mode from `elapsed` s after the start of the motion on.
@@ -60,21 +60,21 @@ struct SpringPhase<'a> {
     /// The approach where it begins, m.
     from: f64,
     /// The contact there.
-    here: Contact,
+    here: ElementContact,
     /// The spring there.
     start: Jenkins,
     /// Whether the stiffness grows.
     rising: bool,
 }
 
-impl Contact {
+impl ElementContact {
     fn law(&self) -> SpringLaw<f64> {
         SpringLaw { stiffness: self.stiffness.value, limit: self.limit.value }
     }
 }
 
 impl Jenkins {
-    pub(super) fn new(contact: &Contact) -> Self {
+    pub(super) fn new(contact: &ElementContact) -> Self {
         let stiffness = contact.stiffness.value;
         Self { force: 0.0, stiffness, mode: if stiffness > 0.0 { Mode::Stick } else { Mode::Free } }
     }
@@ -85,7 +85,7 @@ impl Jenkins {
     }
 
     /// The speed has changed, and with it the law, at the same position.
-    pub(super) fn set_law(&mut self, contact: &Contact, approach: f64, recorder: &mut impl Recorder) {
+    pub(super) fn set_law(&mut self, contact: &ElementContact, approach: f64, recorder: &mut impl MotionRecorder) {
         let ([force, _], lost) = apply_jump([self.force, 0.0], self.stiffness, &contact.law());
         (self.force, self.stiffness) = (force, contact.stiffness.value);
         recorder.record_loss(approach, lost);
@@ -94,11 +94,11 @@ impl Jenkins {
     /// The carrier moves along x alone, over `time` (s).
     pub(super) fn slide(
         &mut self,
-        contact: &Contact,
+        contact: &ElementContact,
         approach: f64,
         u_rate: f64,
         time: f64,
-        recorder: &mut impl Recorder,
+        recorder: &mut impl MotionRecorder,
     ) {
         if self.stiffness <= 0.0 {
             return;
@@ -115,7 +115,7 @@ impl Jenkins {
         }
     }
 
-    fn set_mode(&mut self, mode: Mode, elapsed: f64, recorder: &mut impl Recorder) {
+    fn set_mode(&mut self, mode: Mode, elapsed: f64, recorder: &mut impl MotionRecorder) {
         if mode != self.mode {
             self.mode = mode;
             recorder.record_mode(elapsed, mode);
@@ -131,7 +131,7 @@ impl Jenkins {
         to: f64,
         rates: MotionRates,
         elapsed: f64,
-        recorder: &mut impl Recorder,
+        recorder: &mut impl MotionRecorder,
     ) {
         // No contact at either end, and the stiffness only grows or only falls: none between.
         let end = curve.at(to);
@@ -185,7 +185,7 @@ impl SpringPhase<'_> {
     }
 
     /// By how much the force of a sticking spring at its limit would grow faster than the limit, N/s.
-    fn excess_rate(&self, contact: &Contact) -> f64 {
+    fn excess_rate(&self, contact: &ElementContact) -> f64 {
         let (k, l) = (contact.stiffness, contact.limit);
         let lost = if self.rising || k.value <= 0.0 { 0.0 } else { k.slope * self.rates.approach * l.value / k.value };
         self.sign() * k.value * self.rates.u + lost - l.slope * self.rates.approach
@@ -218,7 +218,7 @@ impl SpringPhase<'_> {
     }
 
     /// G of a sticking spring, N.
-    fn stick_force(&self, at: f64, contact: &Contact) -> f64 {
+    fn stick_force(&self, at: f64, contact: &ElementContact) -> f64 {
         if self.rising {
             self.start.force + self.rates.u / self.rates.approach * self.integral(at, |_, here| here.stiffness.value)
         } else {
@@ -232,7 +232,7 @@ impl SpringPhase<'_> {
     }
 
     /// From the start to `at`, over the approach.
-    fn integral(&self, at: f64, f: impl Fn(f64, &Contact) -> f64) -> f64 {
+    fn integral(&self, at: f64, f: impl Fn(f64, &ElementContact) -> f64) -> f64 {
         if self.rates.u == 0.0 {
             return 0.0;
         }
@@ -245,7 +245,7 @@ impl SpringPhase<'_> {
     }
 
     /// Moves on to the approach `to`, m.
-    fn advance(&self, spring: &mut Jenkins, to: f64, mode: Mode, recorder: &mut impl Recorder) {
+    fn advance(&self, spring: &mut Jenkins, to: f64, mode: Mode, recorder: &mut impl MotionRecorder) {
         let end = self.curve.at(to);
         // How far the carrier goes along x per approach.
         let per = self.rates.u / self.rates.approach;

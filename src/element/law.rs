@@ -330,10 +330,10 @@ impl LawAtSpeed {
     }
 
     /// The contact at an approach, m.
-    pub(super) fn at(&self, approach: f64) -> Contact {
+    pub(super) fn at(&self, approach: f64) -> ElementContact {
         let last = self.approaches.len() - 1;
         if approach <= self.touch {
-            return Contact { y: Expansion::constant(self.log_pressures[0]), ..Contact::default() };
+            return ElementContact { y: Expansion::constant(self.log_pressures[0]), ..ElementContact::default() };
         }
         if approach < self.approaches[0] {
             self.below(approach)
@@ -344,12 +344,12 @@ impl LawAtSpeed {
         }
     }
 
-    fn inside(&self, approach: f64) -> Contact {
+    fn inside(&self, approach: f64) -> ElementContact {
         let i = interval_of(&self.approaches, approach);
         let y = cubic(&self.approaches, &self.log_pressures, &self.slopes, i, approach);
         let friction = self.along_pressure(Quantity::Friction, i, y.value).compose(y);
         let normal = y.exp().times(Expansion::constant(self.nominal_area));
-        Contact {
+        ElementContact {
             y,
             normal,
             limit: friction.times(normal),
@@ -357,13 +357,13 @@ impl LawAtSpeed {
         }
     }
 
-    fn below(&self, approach: f64) -> Contact {
+    fn below(&self, approach: f64) -> ElementContact {
         let width = self.approaches[0] - self.touch;
         let share = (approach - self.touch) / width;
         let parabola = Expansion { value: share * share, slope: 2.0 * share / width, curvature: 2.0 / (width * width) };
         let of = |value| parabola.times(Expansion::constant(value));
         let force = self.nominal_area * self.log_pressures[0].exp();
-        Contact {
+        ElementContact {
             y: Expansion::constant(self.log_pressures[0]),
             normal: of(force),
             limit: of(self.end(Quantity::Friction, 0) * force),
@@ -371,13 +371,13 @@ impl LawAtSpeed {
         }
     }
 
-    fn above(&self, approach: f64) -> Contact {
+    fn above(&self, approach: f64) -> ElementContact {
         let last = self.approaches.len() - 1;
         let force = self.nominal_area * self.log_pressures[last].exp();
         let slope = self.slopes[last] * force;
         let value = force + slope * (approach - self.approaches[last]);
         let normal = Expansion { value, slope, curvature: 0.0 };
-        Contact {
+        ElementContact {
             y: Expansion::constant(self.log_pressures[last]),
             normal,
             limit: normal.times(Expansion::constant(self.end(Quantity::Friction, last))),
@@ -405,7 +405,7 @@ impl LawAtSpeed {
     }
 
     /// The pressure over the least of the table, at most 1.
-    pub(super) fn share_of_least(&self, contact: &Contact) -> Expansion {
+    pub(super) fn share_of_least(&self, contact: &ElementContact) -> Expansion {
         let force = self.nominal_area * self.log_pressures[0].exp();
         if contact.normal.value >= force {
             return Expansion::constant(1.0);
@@ -414,7 +414,7 @@ impl LawAtSpeed {
     }
 
     /// A quantity at `contact`, along the approach; 0 where the table does not have it.
-    pub(super) fn other(&self, quantity: Quantity, contact: &Contact) -> Expansion {
+    pub(super) fn other(&self, quantity: Quantity, contact: &ElementContact) -> Expansion {
         let i = interval_of(&self.log_pressures, contact.y.value);
         self.along_pressure(quantity, i, contact.y.value).compose(contact.y)
     }
@@ -430,7 +430,7 @@ fn segment_count(from: f64, to: f64) -> usize {
 
 /// The contact at one approach and speed, and its derivatives with respect to the approach.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Contact {
+pub(super) struct ElementContact {
     /// y = ln p, limited to the pressures of the table.
     y: Expansion,
     /// F_z = A p, N.

@@ -45,15 +45,24 @@ pub struct LawPoints<T, const N: usize> {
     pub stiffness: [T; N],
 }
 
+/// How many coefficients the law has in an interval of the pressure.
+pub(super) const COEFFICIENTS: usize = 12;
+/// The place among them of the approach where the interval begins, m.
+pub(super) const START: usize = 0;
+/// Those of ln p over the approach from there: of x, x² and x³. Above the last pressure: the slope, and zeros.
+pub(super) const LOG_PRESSURE: [usize; 3] = [1, 2, 3];
+/// The first of four of μ over t, which ln p has grown by from there: of 1, t, t² and t³. Above the last pressure a constant.
+pub(super) const FRICTION: usize = 4;
+/// The first of four of κ, likewise.
+pub(super) const STIFFNESS: usize = 8;
+
 /// The intervals of the pressure in which elements are, and the law there at the elements' speeds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Intervals<T, const N: usize> {
     /// How many of the N there are.
     pub(super) count: usize,
-    /// The law in the interval: the approach (m) where it begins; the slope of ln p over the approach from there and the
-    /// next two coefficients of its cubic; four of μ and of κ over ln p from there. Above the last pressure: the slope
-    /// of ln p, and constants.
-    pub(super) coefficients: [[T; N]; 12],
+    /// The law in the interval: [`START`], [`LOG_PRESSURE`], [`FRICTION`] and [`STIFFNESS`].
+    pub(super) coefficients: [[T; N]; COEFFICIENTS],
     /// ln p where it begins.
     log_pressure: [f64; N],
     /// 1 above the last pressure, else 0: vectors hold no flags.
@@ -63,14 +72,14 @@ pub(super) struct Intervals<T, const N: usize> {
 impl<T: Number, const N: usize> Intervals<T, N> {
     #[inline(always)]
     pub(super) fn new(count: usize) -> Self {
-        let coefficients = [[T::constant(0.0); N]; 12];
+        let coefficients = [[T::constant(0.0); N]; COEFFICIENTS];
         Self { count: count.min(N), coefficients, log_pressure: [0.0; N], is_last: [0.0; N] }
     }
 
     /// Puts element `i` into an interval.
     #[inline(always)]
-    pub(super) fn set(&mut self, i: usize, coefficients: [T; 12], log_pressure: f64, is_last: bool) {
-        for k in 0..12 {
+    pub(super) fn set(&mut self, i: usize, coefficients: [T; COEFFICIENTS], log_pressure: f64, is_last: bool) {
+        for k in 0..COEFFICIENTS {
             self.coefficients[k][i] = coefficients[k];
         }
         (self.log_pressure[i], self.is_last[i]) = (log_pressure, if is_last { 1.0 } else { 0.0 });
@@ -81,7 +90,7 @@ impl<T: Number, const N: usize> Intervals<T, N> {
     pub(super) fn beyond_start(&self, approaches: &[T; N]) -> [T; N] {
         let mut beyond = *approaches;
         for i in 0..self.count {
-            beyond[i] = approaches[i] - self.coefficients[0][i];
+            beyond[i] = approaches[i] - self.coefficients[START][i];
         }
         beyond
     }
@@ -90,6 +99,7 @@ impl<T: Number, const N: usize> Intervals<T, N> {
     #[inline(always)]
     pub(super) fn points(&self, beyond: &[T; N]) -> LawPoints<T, N> {
         let c = &self.coefficients;
+        let [slope, square, cube] = LOG_PRESSURE;
         let (zero, one) = (T::constant(0.0), T::constant(1.0));
         let mut points =
             LawPoints { log_pressure: [zero; N], factor: [zero; N], friction: [zero; N], stiffness: [zero; N] };
@@ -98,14 +108,15 @@ impl<T: Number, const N: usize> Intervals<T, N> {
             let (is_above, is_below) = (self.is_last[i] > 0.0, x.value() < 0.0);
             // Below the least pressure p_0 of the table p is root² p_0; likewise over the little by which rounding may
             // lead below the start of an interval.
-            let root = (one + (x * c[1][i]).times(0.5)).larger(zero);
+            let root = (one + (x * c[slope][i]).times(0.5)).larger(zero);
             let parabola = root * root;
-            let t = (x * (c[1][i] + x * (c[2][i] + x * c[3][i]))).or(!is_above & !is_below, zero);
+            let t = (x * (c[slope][i] + x * (c[square][i] + x * c[cube][i]))).or(!is_above & !is_below, zero);
+            // The cubic whose coefficients begin at place k.
             let along = |k: usize| c[k][i] + t * (c[k + 1][i] + t * (c[k + 2][i] + t * c[k + 3][i]));
             points.log_pressure[i] = T::constant(self.log_pressure[i]) + t;
-            points.factor[i] = (one + x * c[1][i]).or(is_above, parabola.or(is_below, one));
-            points.friction[i] = along(4);
-            points.stiffness[i] = along(8) * parabola.or(is_below & !is_above, one);
+            points.factor[i] = (one + x * c[slope][i]).or(is_above, parabola.or(is_below, one));
+            points.friction[i] = along(FRICTION);
+            points.stiffness[i] = along(STIFFNESS) * parabola.or(is_below & !is_above, one);
         }
         points
     }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::grid::Load;
-use super::jenkins::{Jenkins, MotionRates, Recorder};
-use super::law::{Contact, Law, LawAtSpeed};
+use super::jenkins::{Jenkins, MotionRates, MotionRecorder};
+use super::law::{ElementContact, Law, LawAtSpeed};
 use super::limits::ROUNDING;
 use super::point_contact::{OutputTerms, PointContact, element_output};
 use super::quantity::Quantity;
@@ -145,7 +145,7 @@ impl Element {
     fn at(contact: &PointContact, state: ElementState) -> Result<Self, ElementError> {
         let law = Arc::new(Law::new(contact.table(), contact.temperature()));
         let curve = LawAtSpeed::new(&law, state.u_rate);
-        let spring = Jenkins::new(&Contact::default());
+        let spring = Jenkins::new(&ElementContact::default());
         let table_extrapolation = contact.table_extrapolation();
         let curve_before = curve.clone();
         let element = Self { law, curve, curve_before, table_extrapolation, state, spring, mode_changes: None };
@@ -222,7 +222,7 @@ impl Element {
     }
 
     /// The contact at the present approach.
-    pub(super) fn contact(&self) -> Contact {
+    pub(super) fn contact(&self) -> ElementContact {
         self.curve.at(-(self.law.rest_separation + self.state.w))
     }
 
@@ -267,7 +267,7 @@ impl Element {
         }
     }
 
-    fn terms(&self, contact: &Contact) -> OutputTerms {
+    fn terms(&self, contact: &ElementContact) -> OutputTerms {
         OutputTerms {
             force: self.spring.force,
             normal: contact.normal.value,
@@ -300,7 +300,7 @@ impl Element {
     }
 
     /// How the terms change as the carrier moves by du and dw (m).
-    fn change(&self, contact: &Contact, du: f64, dw: f64) -> OutputTerms {
+    fn change(&self, contact: &ElementContact, du: f64, dw: f64) -> OutputTerms {
         let da = -dw;
         let force = self.force_change(contact, du, da);
         OutputTerms {
@@ -313,7 +313,7 @@ impl Element {
         }
     }
 
-    fn force_change(&self, contact: &Contact, du: f64, da: f64) -> f64 {
+    fn force_change(&self, contact: &ElementContact, du: f64, da: f64) -> f64 {
         let k = contact.stiffness;
         if k.value <= 0.0 {
             0.0
@@ -325,7 +325,7 @@ impl Element {
     }
 
     /// Power lost, W: G u̇ - V̇ with V = G²/(2K), so ½ (G/K)² |K̇| while the spring sticks.
-    fn power(&self, contact: &Contact) -> f64 {
+    fn power(&self, contact: &ElementContact) -> f64 {
         let (k, l, rates, force) = (contact.stiffness, contact.limit, self.rates(), self.spring.force);
         if k.value <= 0.0 {
             0.0
@@ -337,7 +337,7 @@ impl Element {
         }
     }
 
-    fn power_change(&self, contact: &Contact, force_change: f64, da: f64) -> f64 {
+    fn power_change(&self, contact: &ElementContact, force_change: f64, da: f64) -> f64 {
         let (k, l, rates, force) = (contact.stiffness, contact.limit, self.rates(), self.spring.force);
         if k.value <= 0.0 {
             0.0
@@ -356,7 +356,7 @@ impl Element {
     }
 
     /// Hysteresis over friction coefficient; 0 where there is no friction.
-    fn hysteresis_share(&self, contact: &Contact) -> Expansion {
+    fn hysteresis_share(&self, contact: &ElementContact) -> Expansion {
         let [part, whole] =
             [Quantity::Hysteresis, Quantity::Friction].map(|quantity| self.curve.other(quantity, contact));
         if whole.value <= 0.0 {
@@ -366,7 +366,7 @@ impl Element {
         Expansion { value, slope: (part.slope - value * whole.slope) / whole.value, curvature: 0.0 }
     }
 
-    fn contact_ratio(&self, contact: &Contact) -> Expansion {
+    fn contact_ratio(&self, contact: &ElementContact) -> Expansion {
         let at_table = self.curve.other(Quantity::ContactRatio, contact);
         at_table.times(self.curve.share_of_least(contact))
     }
@@ -443,7 +443,7 @@ struct Ledger<'a> {
     mode: Mode,
 }
 
-impl Recorder for Ledger<'_> {
+impl MotionRecorder for Ledger<'_> {
     /// The channels share the loss as in steady sliding at that approach.
     fn record_loss(&mut self, approach: f64, energy: f64) {
         if energy == 0.0 {

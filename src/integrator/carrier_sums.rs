@@ -9,7 +9,7 @@ use std::ops::Range;
 use super::maxwell::ElementWeights;
 use super::scheme::ContactHeights;
 use super::stage_values::StageValues;
-use super::tableau::Weights;
+use super::tableau::StageWeights;
 use crate::math::{BLOCK, dot, sum};
 use crate::model::{ByAxis, Carrier, CarrierPoint, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
 
@@ -103,9 +103,9 @@ pub(super) struct AxisSums {
     /// Σ e of the masses that are summed up at the start and at the end, m.
     pub elongation: [f64; 2],
     /// Σ v of these masses at the stages, m/s.
-    pub velocity: Weights,
+    pub velocity: StageWeights,
     /// Σ ė of all links at the stages, m/s; 0 without Maxwell elements.
-    rate: Weights,
+    rate: StageWeights,
     /// Σ a of all links at the start and at the end, m, by row of elements of this kind.
     elements: Vec<[f64; 2]>,
 }
@@ -185,7 +185,7 @@ fn one_if(condition: bool) -> f64 {
 
 impl AxisSums {
     fn new(model: &Model, kind: LinkKind) -> Self {
-        let none = Weights::default();
+        let none = StageWeights::default();
         let elements = vec![[0.0; 2]; model.rows_of(kind).count()];
         Self { kind, elongation: [0.0; 2], velocity: none, rate: none, elements }
     }

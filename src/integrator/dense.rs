@@ -16,7 +16,7 @@ use super::memory;
 use super::method::{RungeKutta, Stages, TimeSpan};
 use super::parabolas::Parabolas;
 use super::stage_values::StageValues;
-use super::tableau::{GAMMA, Weights};
+use super::tableau::{GAMMA, StageWeights};
 use super::tolerance::Tolerance;
 use crate::math::{BLOCK, dot, weighted_sum, with_widest_vectors};
 use crate::model::{
@@ -163,7 +163,7 @@ impl<'a> DenseOutput<'a> {
     fn combine(
         &self,
         out: &mut [f64],
-        weights: &Weights,
+        weights: &StageWeights,
         from: Option<&[f64]>,
         value: fn(&StageValues) -> &[f64],
         shift: f64,
@@ -242,7 +242,7 @@ impl<'a> DenseOutput<'a> {
     /// The carrier at the fraction `theta`, for which the weights of `workspace` are set.
     fn carrier_at(&self, theta: f64, workspace: &DenseWorkspace) -> CarrierMotion {
         let now = self.carrier.at(self.span.at(theta));
-        let sum = |weights: &Weights, rate: fn(&CarrierPoint) -> f64| -> f64 {
+        let sum = |weights: &StageWeights, rate: fn(&CarrierPoint) -> f64| -> f64 {
             weights.iter().zip(self.carriers()).map(|(weight, at)| weight * rate(at)).sum()
         };
         let both = |weights| ByAxis { x: sum(weights, |at| at.x.speed), z: sum(weights, |at| at.z.speed) };
@@ -257,7 +257,7 @@ impl<'a> DenseOutput<'a> {
     /// Mass `i` at the fraction of the step for which the weights of `workspace` are set.
     fn mass_at(&self, i: usize, carrier: &CarrierMotion, workspace: &DenseWorkspace) -> MassPoint {
         let start = self.start;
-        let sum = |weights: &Weights, value: fn(&StageValues) -> &[f64]| -> f64 {
+        let sum = |weights: &StageWeights, value: fn(&StageValues) -> &[f64]| -> f64 {
             weights.iter().zip(self.stages()).map(|(weight, stage)| weight * value(stage)[i]).sum()
         };
         let along_x = |weights| sum(weights, |stage| &stage.velocity_x);

@@ -4,7 +4,7 @@ use super::interpolation::Velocities;
 use super::maxwell::ElementWeights;
 use super::method::RungeKutta;
 use super::scheme::Scheme;
-use super::tableau::Weights;
+use super::tableau::StageWeights;
 use crate::math::Relaxation;
 use crate::model::{ByLink, MaxwellRow, Model};
 
@@ -14,15 +14,15 @@ pub struct DenseWorkspace {
     /// The scheme and the length of the step and its fraction for which the weights are set; `None` where they are not.
     pub(super) at: Option<(Scheme, f64, f64)>,
     /// Of the stages' values in a value.
-    pub(super) values: Weights,
+    pub(super) values: StageWeights,
     /// Of the stages' rates in a value's change since the start, s.
-    pub(super) integral: Weights,
+    pub(super) integral: StageWeights,
     /// By relaxation time.
     pub(super) elements: Vec<ElementWeights>,
     /// By relaxation time: the exact solution over the whole step.
     pub(super) whole: Vec<Relaxation>,
     /// By kind of link: of the stages' elongation rates in the force of all Maxwell elements, N s/m.
-    pub(super) of_rate: ByLink<Weights>,
+    pub(super) of_rate: ByLink<StageWeights>,
     /// Of the masses that are meant: their accelerations in the defect, x and v_x in sums.
     pub(super) of_masses: [Vec<f64>; 2],
 }
@@ -32,8 +32,8 @@ impl DenseWorkspace {
     pub fn new(model: &Model) -> Self {
         Self {
             at: None,
-            values: Weights::default(),
-            integral: Weights::default(),
+            values: StageWeights::default(),
+            integral: StageWeights::default(),
             elements: vec![ElementWeights::default(); model.relaxation_times.len()],
             whole: vec![Relaxation::default(); model.relaxation_times.len()],
             of_rate: ByLink::default(),

@@ -7,7 +7,7 @@
 
 use super::dense::DenseOutput;
 use super::maxwell::ElementCoefficients;
-use super::tableau::{MAX_STAGES, Weights};
+use super::tableau::{MAX_STAGES, StageWeights};
 use crate::math::{dot, dots, square_and_dots, sum_of_pairs};
 use crate::model::{BoundaryPowers, ByLink, ChannelEnergies, LinkKind, MaxwellRow, Model};
 
@@ -21,9 +21,9 @@ pub(super) struct EnergySums {
     /// Whether they are those of the last attempted step.
     known: bool,
     /// The power lost in dampers, W.
-    dampers: Weights,
+    dampers: StageWeights,
     /// The power lost in Maxwell elements, W.
-    elements: Weights,
+    elements: StageWeights,
     /// What the stages do not resolve of it, by relaxation time.
     relaxing: Vec<RelaxingPower>,
 }
@@ -52,7 +52,7 @@ impl EnergySums {
     /// Workspace for the elements of `model`.
     pub(super) fn new(model: &Model) -> Self {
         let relaxing = vec![RelaxingPower::default(); model.relaxation_times.len()];
-        Self { known: false, dampers: Weights::default(), elements: Weights::default(), relaxing }
+        Self { known: false, dampers: StageWeights::default(), elements: StageWeights::default(), relaxing }
     }
 
     /// A new step is attempted.
@@ -66,7 +66,7 @@ impl EnergySums {
         &mut self,
         step: &DenseOutput<'_>,
         exchange: &[BoundaryPowers],
-        weights: &Weights,
+        weights: &StageWeights,
         measure: Measure,
     ) -> ChannelEnergies {
         self.collect(step);
@@ -82,7 +82,7 @@ impl EnergySums {
     }
 
     /// Energies lost in the dampers and Maxwell elements, J.
-    fn lost(&self, step: &DenseOutput<'_>, weights: &Weights, measure: Measure) -> ChannelEnergies {
+    fn lost(&self, step: &DenseOutput<'_>, weights: &StageWeights, measure: Measure) -> ChannelEnergies {
         let (h, weights) = (step.span.length, &weights[..step.stages().len()]);
         let mut missed = 0.0;
         let times = step.method.maxwell.coefficients().iter().zip(&step.model.relaxation_times).zip(&self.relaxing);
@@ -102,7 +102,7 @@ impl EnergySums {
             return;
         }
         self.known = true;
-        (self.dampers, self.elements) = (Weights::default(), Weights::default());
+        (self.dampers, self.elements) = (StageWeights::default(), StageWeights::default());
         match step.stages().len() {
             3 => self.collect_stages::<3>(step),
             4 => self.collect_stages::<4>(step),
@@ -311,7 +311,7 @@ mod tests {
         }
         let mut method = RungeKutta::new(Scheme::Esdirk5, &model, true);
         method.maxwell.begin(&model, &start.maxwell, h);
-        let weights: Weights = std::array::from_fn(|_| number());
+        let weights: StageWeights = std::array::from_fn(|_| number());
         let mut sums = EnergySums::new(&model);
         let (masses, carrier, span) = (
             0..5,

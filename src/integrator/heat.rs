@@ -11,7 +11,7 @@
 use super::interpolation::{Interpolation, Velocities};
 use super::scheme::Coefficients;
 use super::stage_values::StageValues;
-use super::tableau::{MAX_STAGES, Tableau, Weights};
+use super::tableau::{MAX_STAGES, StageWeights, Tableau};
 use crate::math::{Relaxation, weighted_sum};
 use crate::model::{Flash, FlashTerm, Model};
 
@@ -29,9 +29,9 @@ pub(super) struct StageHeat {
     /// By term: ϑ_j at the end of the step.
     ends: Vec<TermWeights>,
     /// W_il, K m²/W.
-    sums: [Weights; MAX_STAGES],
+    sums: [StageWeights; MAX_STAGES],
     /// The weights of the embedded error estimate of ϑ at the end, K m²/W.
-    error: Weights,
+    error: StageWeights,
     /// By mass, the part of ϑ at the implicit stages that the start has left, one after another, K.
     left: Vec<f64>,
     /// The rise of the temperature over the step under a flux of 1 W/m², K m²/W.
@@ -44,7 +44,7 @@ struct TermWeights {
     /// Of ϑ_j at the start.
     decay: f64,
     /// Of the flux at the stages, K m²/W.
-    flux: Weights,
+    flux: StageWeights,
 }
 
 /// The flash temperatures of the masses at a stage, as far as they are known before it is solved.
@@ -78,8 +78,8 @@ impl StageHeat {
             nodes: (0..tableau.stages).map(|i| nodes(tableau, interpolation, i)).collect(),
             h: 0.0,
             ends: vec![TermWeights::default(); terms.len()],
-            sums: [Weights::default(); MAX_STAGES],
-            error: Weights::default(),
+            sums: [StageWeights::default(); MAX_STAGES],
+            error: StageWeights::default(),
             left: vec![0.0; tableau.last() * masses],
             rise: 0.0,
             terms,
@@ -98,7 +98,7 @@ impl StageHeat {
             decayed(&self.terms, c[i] * h, flash, left);
         }
         // What the fluxes at the stages add.
-        (self.sums, self.error) = ([Weights::default(); MAX_STAGES], Weights::default());
+        (self.sums, self.error) = ([StageWeights::default(); MAX_STAGES], StageWeights::default());
         for n in 0..self.terms.len() {
             let term = self.terms[n];
             for i in 1..=last {
@@ -117,7 +117,7 @@ impl StageHeat {
     fn at(&self, term: &FlashTerm, theta: f64) -> TermWeights {
         let (h, z, c) = (self.h, self.h / term.time, &self.tableau.c);
         let Relaxation { decay, driven } = Relaxation::new(z, theta);
-        let mut flux = Weights::default();
+        let mut flux = StageWeights::default();
         match self.interpolation.velocities() {
             Velocities::Polynomial => flux = self.interpolation.combined(&driven),
             Velocities::BrokenLine => {
@@ -242,8 +242,8 @@ pub(super) fn heat_flux(stage: &StageValues) -> &[f64] {
 
 /// The weights of the values at two or three `stages` in ∫ e^(-z(θ-s)) p(s) ds, where p is the polynomial through them in
 /// time after `from`, and the integrals of its powers are `driven`.
-fn through(stages: &[usize], c: &Weights, from: f64, driven: &[f64]) -> Weights {
-    let mut weights = Weights::default();
+fn through(stages: &[usize], c: &StageWeights, from: f64, driven: &[f64]) -> StageWeights {
+    let mut weights = StageWeights::default();
     for &stage in stages {
         // The coefficients of Lagrange's polynomial by the powers of time.
         let others = stages.iter().filter(|&&other| other != stage).map(|&other| c[other] - from);
@@ -259,7 +259,7 @@ fn through(stages: &[usize], c: &Weights, from: f64, driven: &[f64]) -> Weights 
 }
 
 /// sums += factor · terms.
-fn add(sums: &mut Weights, factor: f64, terms: &Weights) {
+fn add(sums: &mut StageWeights, factor: f64, terms: &StageWeights) {
     sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += factor * term);
 }
 

@@ -20,7 +20,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::tableau::{GAMMA, MAX_STAGES, SDIRK2, Tableau, Weights, sdirk2_weights};
+use super::tableau::{GAMMA, MAX_STAGES, SDIRK2, StageWeights, Tableau, sdirk2_weights};
 use crate::math::Jet;
 use crate::model::BodyInterpolant;
 
@@ -32,7 +32,7 @@ const POWERS: usize = 5;
 pub struct Interpolation {
     velocities: Velocities,
     /// c.
-    nodes: Weights,
+    nodes: StageWeights,
     /// The indices of the stages in the order of time.
     in_time: [usize; MAX_STAGES],
     /// Number of stages.
@@ -40,7 +40,7 @@ pub struct Interpolation {
     /// See [`overshoot`](Self::overshoot).
     overshoot: f64,
     /// The coefficients of 1, θ, … θ⁴ in the polynomial whose integrals are the positions.
-    by_power: [Weights; POWERS],
+    by_power: [StageWeights; POWERS],
     /// By stage: the integrals in Bernstein's basis of degree 5.
     bernstein_integral: [[f64; POWERS + 1]; MAX_STAGES],
 }
@@ -62,13 +62,13 @@ impl Interpolation {
 
     /// Those of [`SDIRK2`](super::SDIRK2).
     pub(super) fn sdirk2() -> Self {
-        let (mut by_power, slope) = ([Weights::default(); POWERS], 1.0 / (1.0 - GAMMA));
+        let (mut by_power, slope) = ([StageWeights::default(); POWERS], 1.0 / (1.0 - GAMMA));
         (by_power[0][1], by_power[0][2]) = (slope, -GAMMA * slope);
         (by_power[1][1], by_power[1][2]) = (-slope, slope);
         Self::with_weights(&SDIRK2, by_power, Velocities::BrokenLine)
     }
 
-    fn with_weights(tableau: &Tableau, by_power: [Weights; POWERS], velocities: Velocities) -> Self {
+    fn with_weights(tableau: &Tableau, by_power: [StageWeights; POWERS], velocities: Velocities) -> Self {
         let (stages, nodes) = (tableau.stages, tableau.c);
         let mut in_time = std::array::from_fn(|stage| stage);
         in_time[..stages].sort_by(|&a, &b| f64::total_cmp(&nodes[a], &nodes[b]));
@@ -99,7 +99,7 @@ impl Interpolation {
     }
 
     /// w(θ).
-    pub fn values(&self, theta: f64) -> Weights {
+    pub fn values(&self, theta: f64) -> StageWeights {
         match self.velocities {
             Velocities::Polynomial => self.horner(|_| 1.0, theta),
             Velocities::BrokenLine => broken_line(theta),
@@ -107,25 +107,25 @@ impl Interpolation {
     }
 
     /// ∫_0^θ w: of the rates in the position, over the length of the step.
-    pub fn integral(&self, theta: f64) -> Weights {
+    pub fn integral(&self, theta: f64) -> StageWeights {
         self.horner(|power| 1.0 / (power + 1) as f64, theta).map(|weight| theta * weight)
     }
 
     /// The slope of the polynomial at θ.
-    pub fn slope(&self, theta: f64) -> Weights {
+    pub fn slope(&self, theta: f64) -> StageWeights {
         let derivative =
             |j: usize| (1..POWERS).rev().fold(0.0, |sum, power| sum * theta + power as f64 * self.by_power[power][j]);
         std::array::from_fn(derivative)
     }
 
     /// Σ_power `factors[power]` w_power, by stage.
-    pub fn combined(&self, factors: &[f64; POWERS]) -> Weights {
+    pub fn combined(&self, factors: &[f64; POWERS]) -> StageWeights {
         std::array::from_fn(|j| factors.iter().zip(&self.by_power).map(|(factor, weights)| factor * weights[j]).sum())
     }
 
     /// The coefficients of 1, θ, … θ⁴ of a value by those at the stages.
     pub fn polynomial(&self, values: impl Fn(usize) -> f64) -> [f64; POWERS] {
-        let values: Weights = std::array::from_fn(|stage| if stage < self.stages { values(stage) } else { 0.0 });
+        let values: StageWeights = std::array::from_fn(|stage| if stage < self.stages { values(stage) } else { 0.0 });
         self.by_power.map(|weights| weights.iter().zip(values).map(|(weight, value)| weight * value).sum())
     }
 
@@ -151,7 +151,7 @@ impl Interpolation {
         }
     }
 
-    fn horner(&self, factor: impl Fn(usize) -> f64, theta: f64) -> Weights {
+    fn horner(&self, factor: impl Fn(usize) -> f64, theta: f64) -> StageWeights {
         std::array::from_fn(|j| {
             (0..POWERS).rev().fold(0.0, |sum, power| sum * theta + factor(power) * self.by_power[power][j])
         })
@@ -161,8 +161,8 @@ impl Interpolation {
 /// Weights of the values at the start, at the first implicit stage of [`SDIRK2`](super::SDIRK2) and at the end in the
 /// broken line through them.
 #[inline]
-fn broken_line(theta: f64) -> Weights {
-    let mut weights = Weights::default();
+fn broken_line(theta: f64) -> StageWeights {
+    let mut weights = StageWeights::default();
     if theta < GAMMA {
         (weights[0], weights[1]) = (1.0 - theta / GAMMA, theta / GAMMA);
     } else {
@@ -200,7 +200,7 @@ fn conditions(tableau: &Tableau) -> usize {
 }
 
 /// The weights by power of θ.
-fn weights(tableau: &Tableau) -> [Weights; POWERS] {
+fn weights(tableau: &Tableau) -> [StageWeights; POWERS] {
     let stages = tableau.stages;
     let a = DMatrix::from_fn(stages, stages, |i, j| tableau.a[i][j]);
     let c = DVector::from_column_slice(&tableau.c[..stages]);
@@ -265,7 +265,7 @@ fn parabola_between(start: f64, end: f64, integral: f64) -> [f64; 3] {
 }
 
 /// The integrals of the weights from 0 on, by stage.
-fn integral_in_bernstein_basis(by_power: &[Weights; POWERS]) -> [[f64; POWERS + 1]; MAX_STAGES] {
+fn integral_in_bernstein_basis(by_power: &[StageWeights; POWERS]) -> [[f64; POWERS + 1]; MAX_STAGES] {
     // binomial(k, m)/binomial(4, m).
     const SHARE: [[f64; POWERS]; POWERS] = [
         [1.0, 0.0, 0.0, 0.0, 0.0],
@@ -293,7 +293,7 @@ mod tests {
     const ROUNDING: f64 = 1e-11;
 
     fn meets_its_conditions(tableau: &Tableau) {
-        let times = |x: &Weights| tableau.a.map(|row| row.iter().zip(x).map(|(a, x)| a * x).sum());
+        let times = |x: &StageWeights| tableau.a.map(|row| row.iter().zip(x).map(|(a, x)| a * x).sum());
         let c = tableau.c;
         let (square, cube) = (c.map(|c| c * c), c.map(|c| c * c * c));
         let elementary = [[1.0; MAX_STAGES], c, square, times(&square), cube, times(&cube), times(&times(&square))];
@@ -317,7 +317,7 @@ mod tests {
     fn has_the_ends_of(tableau: &Tableau) {
         let interpolation = Interpolation::new(tableau);
         let unit = |at: usize| std::array::from_fn(|j| f64::from(u8::from(j == at)));
-        let ends: [(Weights, Weights); 3] = [
+        let ends: [(StageWeights, StageWeights); 3] = [
             (interpolation.values(0.0), unit(0)),
             (interpolation.values(1.0), unit(tableau.last())),
             (interpolation.integral(1.0), *tableau.weights()),

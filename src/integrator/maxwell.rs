@@ -13,7 +13,7 @@
 //! number.
 
 use super::stage_values::StageValues;
-use super::tableau::{MAX_STAGES, Tableau, Weights};
+use super::tableau::{MAX_STAGES, StageWeights, Tableau};
 use crate::math::weighted_sum;
 use crate::model::{ByLink, LinkKind, MaxwellRow, Model};
 
@@ -30,12 +30,12 @@ pub(super) struct Maxwell {
 #[derive(Clone, Debug, Default)]
 pub(super) struct ElementCoefficients {
     /// p_i.
-    pub start: Weights,
+    pub start: StageWeights,
     /// h q_ij, s.
-    pub rate: [Weights; MAX_STAGES],
+    pub rate: [StageWeights; MAX_STAGES],
     /// The embedded error estimate of a: the weights of a_0 and of ė_j, the latter in s.
     error_start: f64,
-    error_rate: Weights,
+    error_rate: StageWeights,
 }
 
 /// The weights of an element's elongation at the start and at the end of a step, and of its link's rates at the stages
@@ -43,15 +43,15 @@ pub(super) struct ElementCoefficients {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ElementWeights {
     pub ends: [f64; 2],
-    pub rates: Weights,
+    pub rates: StageWeights,
 }
 
 /// The elements of one kind of link, summed.
 #[derive(Clone, Debug)]
 struct KindSums {
     /// h Q_ij, N s/m.
-    rate: [Weights; MAX_STAGES],
-    error_rate: Weights,
+    rate: [StageWeights; MAX_STAGES],
+    error_rate: StageWeights,
     /// P_i of the implicit stages one after another, by link, N; empty where the links have no elements.
     start: Vec<f64>,
     /// The part of the embedded error estimate that a_0 makes, by link, N.
@@ -237,7 +237,7 @@ mod tests {
     const METHOD: Tableau = ESDIRK5;
 
     /// Stage by stage, as the method is defined: a_i and the embedded estimate, in units where h = 1.
-    fn stage_by_stage(z: f64, a: f64, rates: &Weights) -> (Weights, f64) {
+    fn stage_by_stage(z: f64, a: f64, rates: &StageWeights) -> (StageWeights, f64) {
         let (mut found, mut changes) = ([a; MAX_STAGES], [0.0; MAX_STAGES]);
         changes[0] = rates[0] - z * a;
         for i in 1..MAX_STAGES {

@@ -5,7 +5,7 @@
 //! solves at any v_t ([`SpeedMemory`]). What sticks ages by the exact solution.
 
 use super::stage_values::StageValues;
-use super::tableau::Weights;
+use super::tableau::StageWeights;
 use crate::math::weighted_sum;
 use crate::model::{Mode, Model, SpeedMemory, State, aged, memory_rate};
 
@@ -74,7 +74,7 @@ pub(super) fn within(
     model: &Model,
     (start, h, theta): (&State, f64, f64),
     stages: &[StageValues],
-    integral: &Weights,
+    integral: &StageWeights,
     memory: &mut [f64],
 ) {
     if model.friction.memory.is_none() {
@@ -92,7 +92,7 @@ pub(super) fn of_mass_within(
     model: &Model,
     (start, h, theta): (&State, f64, f64),
     stages: &[StageValues],
-    integral: &Weights,
+    integral: &StageWeights,
     i: usize,
 ) -> Option<f64> {
     let remembered = start.memory.get(i)?;

@@ -55,7 +55,7 @@ pub(super) struct Stages {
 
 /// What a step is attempted with.
 #[derive(Clone, Copy)]
-pub(super) struct Attempt<'a> {
+pub(super) struct StepAttempt<'a> {
     pub model: &'a Model,
     pub start: &'a LayerState,
     pub carrier: &'a Carrier,
@@ -84,10 +84,10 @@ impl RungeKutta {
     pub(super) fn attempt(
         &mut self,
         stages: &mut Stages,
-        step: &Attempt<'_>,
+        step: &StepAttempt<'_>,
         convergence: ConvergenceTest,
     ) -> Result<(), NoConvergence> {
-        let (Attempt { model, start, carrier, span, beta }, tableau) = (*step, self.coefficients.tableau);
+        let (StepAttempt { model, start, carrier, span, beta }, tableau) = (*step, self.coefficients.tableau);
         let state = &start.state;
         // The first stage is the start of the step.
         stages.rates[0].copy_from(&start.rates);
@@ -123,7 +123,7 @@ impl RungeKutta {
     pub(super) fn test(
         &self,
         stages: &Stages,
-        step: &Attempt<'_>,
+        step: &StepAttempt<'_>,
         tolerance: &Tolerance,
         workspace: &mut ErrorWorkspace,
     ) -> ErrorEstimate {
@@ -162,7 +162,7 @@ impl Stages {
     /// Prepares stage `i`, at `s` seconds after the start of the carrier's segment, which has moved by `moved` (m)
     /// along x since the start of the step: the history of the masses' motion with the `weights` of the stages, and its
     /// point.
-    fn prepare(&mut self, step: &Attempt<'_>, i: usize, s: f64, moved: f64, weights: &[f64]) -> StagePoint {
+    fn prepare(&mut self, step: &StepAttempt<'_>, i: usize, s: f64, moved: f64, weights: &[f64]) -> StagePoint {
         let (carrier, h) = (step.carrier, step.span.length);
         let mut at = carrier.at(s);
         if carrier.has_bodies() {
@@ -180,7 +180,7 @@ impl Stages {
     }
 
     /// Sets what stage `i` knows of the bodies, and guesses that they move as at the stage before: `at` is the carrier.
-    fn prepare_bodies(&mut self, step: &Attempt<'_>, i: usize, s: f64, weights: &[f64], at: &mut CarrierPoint) {
+    fn prepare_bodies(&mut self, step: &StepAttempt<'_>, i: usize, s: f64, weights: &[f64], at: &mut CarrierPoint) {
         let (carrier, h) = (step.carrier, step.span.length);
         for axis in Axis::ALL.into_iter().filter(|&axis| carrier.is_body(axis)) {
             let Jet { position: start, speed: start_rate, .. } = self.carrier[0][axis];
@@ -234,14 +234,14 @@ impl Stages {
     }
 
     /// Sets the velocities from which Newton's iterations of stage `i` start.
-    fn guess(&mut self, step: &Attempt<'_>, i: usize, guess: &InitialGuess) {
+    fn guess(&mut self, step: &StepAttempt<'_>, i: usize, guess: &InitialGuess) {
         match guess {
             InitialGuess::Extrapolated(weights) => self.guess_extrapolated(step, &weights[i][..i]),
             InitialGuess::Limited => self.guess_limited(step, i),
         }
     }
 
-    fn guess_extrapolated(&mut self, step: &Attempt<'_>, weights: &[f64]) {
+    fn guess_extrapolated(&mut self, step: &StepAttempt<'_>, weights: &[f64]) {
         let (solver, state) = (&mut self.solver, &step.start.state);
         let earlier = self.rates.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
         solver.guess(state, earlier.map(|(stage, weight)| (step.beta * weight, stage)));
@@ -250,7 +250,7 @@ impl Stages {
         }
     }
 
-    fn guess_limited(&mut self, step: &Attempt<'_>, i: usize) {
+    fn guess_limited(&mut self, step: &StepAttempt<'_>, i: usize) {
         with_widest_vectors(
             #[inline(always)]
             || self.set_limited_guess(step, i),
@@ -258,7 +258,7 @@ impl Stages {
     }
 
     #[inline(always)]
-    fn set_limited_guess(&mut self, step: &Attempt<'_>, i: usize) {
+    fn set_limited_guess(&mut self, step: &StepAttempt<'_>, i: usize) {
         let (known, guess, history) = (&self.rates[i - 1], &mut self.solver.state, &self.solver.history);
         let carrier = self.carrier[i].x.speed.abs() + self.carrier[i].z.speed.abs();
         // Slices of one length, so that an index into one of them is one into all.
@@ -280,13 +280,13 @@ impl Stages {
     /// powers at it.
     fn solve(
         &mut self,
-        step: &Attempt<'_>,
+        step: &StepAttempt<'_>,
         point: &mut StagePoint,
         i: usize,
         s: f64,
         convergence: ConvergenceTest,
     ) -> Result<(), NoConvergence> {
-        let Attempt { model, carrier, .. } = *step;
+        let StepAttempt { model, carrier, .. } = *step;
         self.solver.solve(model, point, convergence, &mut self.rates[i])?;
         self.carrier[i] = point.carrier;
         if self.tracks_energy {
@@ -310,7 +310,15 @@ impl Stages {
 
     /// Computes the tangents at stage `i`, just solved, at `s` seconds after the start of the carrier's motion; the
     /// stages have `weights`.
-    fn vary(&mut self, step: &Attempt<'_>, heat: &StageHeat, point: &StagePoint, i: usize, s: f64, weights: &[f64]) {
+    fn vary(
+        &mut self,
+        step: &StepAttempt<'_>,
+        heat: &StageHeat,
+        point: &StagePoint,
+        i: usize,
+        s: f64,
+        weights: &[f64],
+    ) {
         if self.tangents.is_empty() {
             return;
         }

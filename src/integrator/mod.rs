@@ -39,7 +39,7 @@ pub use scheme::{ContactModes, Scheme};
 pub use stage::NoConvergence;
 pub use stage_values::{LayerState, NO_LIMIT, StageValues};
 pub use sums::LayerSums;
-pub use tableau::{ContinuousWeights, ESDIRK3, ESDIRK5, MAX_STAGES, SDIRK2, Tableau, Weights};
+pub use tableau::{ContinuousWeights, ESDIRK3, ESDIRK5, MAX_STAGES, SDIRK2, StageWeights, Tableau};
 pub use tolerance::RunningMaxima;
 pub use tolerance::Tolerance;
 
@@ -48,7 +48,7 @@ use crate::model::{
     BodyInterpolant, BoundaryPowers, ByAxis, Carrier, CarrierPoint, ChannelEnergies, Forces, Model, State,
 };
 use error::ErrorWorkspace;
-use method::{Attempt, RungeKutta, Stages};
+use method::{RungeKutta, Stages, StepAttempt};
 use stage::{ConvergenceTest, StageSolver};
 use tableau::{GAMMA, SDIRK2_ESTIMATE};
 
@@ -149,7 +149,7 @@ impl Integrator {
         self.last = modes;
         let Self { methods, stages, sums, error_workspace, .. } = self;
         let method = &mut methods[modes as usize];
-        let step = Attempt { model, start, carrier, span, beta: method.coefficients.tableau.gamma() * span.length };
+        let step = StepAttempt { model, start, carrier, span, beta: method.coefficients.tableau.gamma() * span.length };
         let slack = match modes {
             ContactModes::Held => 1.0,
             ContactModes::SetValued if model.friction.depends_on_speed() => STEEP_SLACK,

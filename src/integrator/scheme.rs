@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use super::interpolation::Interpolation;
-use super::tableau::{ContinuousWeights, ESDIRK3, ESDIRK5, MAX_STAGES, SDIRK2, Tableau, Weights};
+use super::tableau::{ContinuousWeights, ESDIRK3, ESDIRK5, MAX_STAGES, SDIRK2, StageWeights, Tableau};
 use crate::model::Model;
 
 /// The schemes.
@@ -42,7 +42,7 @@ pub(super) enum ContactHeights {
 pub(super) enum InitialGuess {
     /// The accelerations of slipping masses are extrapolated from the earlier stages with these weights, by stage. Free
     /// masses, whose equations are linear, start from the step's start: a guess far off costs digits.
-    Extrapolated([Weights; MAX_STAGES]),
+    Extrapolated([StageWeights; MAX_STAGES]),
     /// The accelerations are those of the stage before. Just after a jump those of a stiff layer are no guide, so no
     /// velocity is guessed to change by more than the velocities in play.
     Limited,

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 pub const MAX_STAGES: usize = 7;
 
 /// One number for each stage of a method; 0 beyond its last.
-pub type Weights = [f64; MAX_STAGES];
+pub type StageWeights = [f64; MAX_STAGES];
 
 /// A diagonally implicit Runge-Kutta method with an explicit first stage, the same γ in every other stage, and the end
 /// of the step as its last stage (stiffly accurate: b is the last row of A).
@@ -17,11 +17,11 @@ pub struct Tableau {
     /// Number of stages, the explicit one included.
     pub stages: usize,
     /// a_ij; the diagonal is γ but for the first stage, where it is 0.
-    pub a: [Weights; MAX_STAGES],
+    pub a: [StageWeights; MAX_STAGES],
     /// c_i: stage i lies at the fraction c_i of the step.
-    pub c: Weights,
+    pub c: StageWeights,
     /// b_i - b̂_i: the weights of the error estimate.
-    pub error: Weights,
+    pub error: StageWeights,
     /// Order of the embedded method. That of the method itself is one higher.
     pub embedded_order: i32,
     /// Weight of the error of F_z in the error test; that of F_x is a multiple of it. It makes the errors of whole runs
@@ -71,7 +71,7 @@ impl Tableau {
     }
 
     /// The weights b.
-    pub fn weights(&self) -> &Weights {
+    pub fn weights(&self) -> &StageWeights {
         &self.a[self.last()]
     }
 
@@ -86,7 +86,7 @@ impl Tableau {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContinuousWeights {
     /// The coefficients of θ, θ², … θ⁵.
-    by_power: [Weights; 5],
+    by_power: [StageWeights; 5],
 }
 
 impl ContinuousWeights {
@@ -133,7 +133,7 @@ impl ContinuousWeights {
     }
 
     /// The weights up to the fraction `theta`.
-    pub fn at(&self, theta: f64) -> Weights {
+    pub fn at(&self, theta: f64) -> StageWeights {
         from_fn(|stage| self.by_power.iter().rev().fold(0.0, |sum, weights| (sum + weights[stage]) * theta))
     }
 }
@@ -234,7 +234,7 @@ const fn complete<const N: usize>(mut weights: [f64; N]) -> [f64; N] {
 }
 
 /// Values at the first stages, padded with 0 for the others.
-const fn pad<const N: usize>(values: [f64; N]) -> Weights {
+const fn pad<const N: usize>(values: [f64; N]) -> StageWeights {
     let mut padded = [0.0; MAX_STAGES];
     let mut i = 0;
     while i < N {

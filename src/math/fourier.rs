@@ -7,7 +7,7 @@ use nalgebra::Complex;
 
 /// The direction of a transform.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Direction {
+pub enum FourierDirection {
     /// e^(-2πi nm/N)
     Forward,
     /// e^(+2πi nm/N)
@@ -26,12 +26,12 @@ pub enum Direction {
 /// let sums = fourier(&[1.0, 2.0, 6.0].map(Complex::from), Direction::Forward);
 /// assert!((sums[0] - Complex::from(9.0)).norm() < 1e-14);
 /// ```
-pub fn fourier(values: &[Complex<f64>], direction: Direction) -> Vec<Complex<f64>> {
+pub fn fourier(values: &[Complex<f64>], direction: FourierDirection) -> Vec<Complex<f64>> {
     Transform::new(values.len(), direction).of(values.iter().copied())
 }
 
 /// As [`fourier`] along both axes of values that stand line by line, `nx` in each, in place.
-pub fn fourier_2d(values: &mut [Complex<f64>], nx: usize, direction: Direction) {
+pub fn fourier_2d(values: &mut [Complex<f64>], nx: usize, direction: FourierDirection) {
     let along_x = Transform::new(nx, direction);
     for line in values.chunks_exact_mut(nx) {
         let sums = along_x.of(line.iter().copied());
@@ -53,7 +53,7 @@ struct Transform {
 }
 
 impl Transform {
-    fn new(count: usize, direction: Direction) -> Self {
+    fn new(count: usize, direction: FourierDirection) -> Self {
         let chirp = chirp(count, direction);
         let twiddles = Twiddles::new((2 * count).next_power_of_two());
         let mut filter = twiddles.zeros();
@@ -79,8 +79,8 @@ impl Transform {
 }
 
 /// e^(∓πi n²/N); n² is taken modulo 2N, so that no digits of the angle are lost.
-fn chirp(count: usize, direction: Direction) -> Vec<Complex<f64>> {
-    let sign = if direction == Direction::Forward { -1.0 } else { 1.0 };
+fn chirp(count: usize, direction: FourierDirection) -> Vec<Complex<f64>> {
+    let sign = if direction == FourierDirection::Forward { -1.0 } else { 1.0 };
     let period = 2 * count as u64;
     (0..count as u64).map(|n| unit(sign * PI * (n * n % period) as f64 / count as f64)).collect()
 }
@@ -162,7 +162,7 @@ mod tests {
     fn any_number_of_values_is_transformed_as_the_sum_says() {
         for n in [1, 2, 3, 4, 5, 8, 12, 17, 30, 64, 97, 100] {
             let values = random(n);
-            for (direction, sign) in [(Direction::Forward, -1.0), (Direction::Backward, 1.0)] {
+            for (direction, sign) in [(FourierDirection::Forward, -1.0), (FourierDirection::Backward, 1.0)] {
                 let term = |i: usize, m: usize| values[i] * unit(sign * 2.0 * PI * (i * m % n) as f64 / n as f64);
                 let sums: Vec<_> = (0..n).map(|m| (0..n).map(|i| term(i, m)).sum()).collect();
                 // Roundings of sums of up to 100 terms of size 1.
@@ -178,7 +178,7 @@ mod tests {
         let wave =
             |at: usize| unit(2.0 * PI * (2.0 * (at % nx) as f64 / nx as f64 + 3.0 * (at / nx) as f64 / ny as f64));
         let mut values: Vec<_> = (0..nx * ny).map(wave).collect();
-        fourier_2d(&mut values, nx, Direction::Forward);
+        fourier_2d(&mut values, nx, FourierDirection::Forward);
         for (at, value) in values.iter().enumerate() {
             let expected = if at == 3 * nx + 2 { 30.0 } else { 0.0 };
             assert!((value - Complex::from(expected)).norm() < 1e-12, "{at}: {value}");
@@ -189,7 +189,7 @@ mod tests {
     fn there_and_back_is_the_same() {
         for n in [1000, 4096, 7919] {
             let values = random(n);
-            let back = fourier(&fourier(&values, Direction::Forward), Direction::Backward);
+            let back = fourier(&fourier(&values, FourierDirection::Forward), FourierDirection::Backward);
             let scaled: Vec<_> = back.iter().map(|value| value / n as f64).collect();
             assert!(difference(&scaled, &values) < 1e-14, "{n}");
         }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::face::{Face, Points, Section, Tread};
+use super::face::{Face, FixedPoints, Section, Tread};
 use crate::element::{Clearance, FrictionTable, Load, Node, Quantity, ResampledLaw};
 use crate::scene::{
     Backing, Extrapolation, FaceHeat, FaceShape, FmuOptions, Grid, NotDoubled, Parameter, ParameterError, PatchFile,
@@ -444,15 +444,15 @@ fn face(file: &PatchFile) -> Face {
     if file.transport { Face::Tread(tread) } else { Face::Points(standing(tread)) }
 }
 
-fn single_points(points: &[[f64; 4]], offset: [f64; 3]) -> Points {
+fn single_points(points: &[[f64; 4]], offset: [f64; 3]) -> FixedPoints {
     let axis = |i: usize| points.iter().map(|point| point[i] + offset[i]).collect();
     let area = points.iter().map(|point| point[3]).collect();
-    Points { x: axis(0), y: axis(1), z: axis(2), area, grid: None }
+    FixedPoints { x: axis(0), y: axis(1), z: axis(2), area, grid: None }
 }
 
 /// The cells of a tread that does not run.
-fn standing(tread: Tread) -> Points {
-    let mut points = Points::default();
+fn standing(tread: Tread) -> FixedPoints {
+    let mut points = FixedPoints::default();
     for column in (1..=tread.columns).map(|i| tread.column(i as f64, 0.0)) {
         for &y in &tread.rows {
             points.x.push(column.place[0]);
@@ -461,5 +461,5 @@ fn standing(tread: Tread) -> Points {
             points.area.push(tread.area);
         }
     }
-    Points { grid: Some(tread), ..points }
+    FixedPoints { grid: Some(tread), ..points }
 }

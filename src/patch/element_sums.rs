@@ -1,7 +1,7 @@
 //! The elements of a run at its present instant: the contact of each, and sums over all.
 
 use super::definition::{ElementSite, Patch};
-use super::face::{Face, Points, Tread};
+use super::face::{Face, FixedPoints, Tread};
 use super::motion::{BodyKinematics, PoseMotion};
 use super::run::PatchRun;
 use super::segments::size;
@@ -201,7 +201,7 @@ impl Patch {
     pub fn layout(&self) -> FaceLayout {
         match &*self.face {
             Face::Tread(tread) => grid_layout(tread, tread.columns + 1, 0.0),
-            Face::Points(Points { grid: Some(grid), .. }) => grid_layout(grid, grid.columns, 1.0),
+            Face::Points(FixedPoints { grid: Some(grid), .. }) => grid_layout(grid, grid.columns, 1.0),
             Face::Points(points) => points_layout(points),
         }
     }
@@ -229,7 +229,7 @@ fn grid_layout(grid: &Tread, columns: usize, first: f64) -> FaceLayout {
     }
 }
 
-fn points_layout(points: &Points) -> FaceLayout {
+fn points_layout(points: &FixedPoints) -> FaceLayout {
     let all = [&points.x, &points.y, &points.z];
     let reach = |axis: usize| {
         // A square of the element's area is seen whole.
@@ -389,7 +389,7 @@ mod tests {
     fn points_are_seen_along_the_axes_of_their_largest_extents() {
         let points = |places: [[f64; 3]; 2]| {
             let axis = |i: usize| places.iter().map(|place| place[i]).collect();
-            points_layout(&Points { x: axis(0), y: axis(1), z: axis(2), area: vec![1e-6; 2], grid: None })
+            points_layout(&FixedPoints { x: axis(0), y: axis(1), z: axis(2), area: vec![1e-6; 2], grid: None })
         };
         assert_eq!(points([[0.0; 3], [0.3, 0.2, 0.1]]).axes, ["x", "y"]);
         let standing = points([[0.0; 3], [0.0, 0.2, 0.4]]);

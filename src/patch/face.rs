@@ -20,13 +20,13 @@ pub(super) fn lanes_of(count: usize) -> usize {
 /// The elements of a patch.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Face {
-    Points(Points),
+    Points(FixedPoints),
     Tread(Tread),
 }
 
 /// Elements that stay where they are.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Points {
+pub(super) struct FixedPoints {
     /// Positions in the body's axes, axis by axis, m.
     pub(super) x: Vec<f64>,
     pub(super) y: Vec<f64>,

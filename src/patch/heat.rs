@@ -54,12 +54,12 @@ pub(super) struct BlockHeat<T> {
     pub(super) parts: Rises<T>,
     /// Whether some may be warm.
     is_warm: bool,
-    response: Response,
+    response: HeatResponse,
 }
 
 /// How the terms of a kernel go on over a duration.
 #[derive(Clone, Copy, Debug, Default)]
-struct Response {
+struct HeatResponse {
     /// s.
     duration: f64,
     /// What is left of a part.
@@ -68,7 +68,7 @@ struct Response {
     gain: [f64; SURFACE_TERMS],
 }
 
-impl Response {
+impl HeatResponse {
     fn new(kernel: &[FlashTerm; SURFACE_TERMS], duration: f64) -> Self {
         let per = if duration > 0.0 { 1.0 / duration } else { 0.0 };
         Self {
@@ -82,7 +82,7 @@ impl Response {
 impl<T: Number> BlockHeat<T> {
     pub(super) fn new() -> Self {
         let zero = [T::constant(0.0); BLOCK];
-        Self { of_law: zero, parts: [zero; SURFACE_TERMS], is_warm: false, response: Response::default() }
+        Self { of_law: zero, parts: [zero; SURFACE_TERMS], is_warm: false, response: HeatResponse::default() }
     }
 
     /// All at the temperature of the ground.
@@ -112,7 +112,7 @@ impl<T: Number> BlockHeat<T> {
     pub(super) fn after(&mut self, heat: &StepHeat, duration: f64, loss: &Lanes<T>, area: &Lanes<f64>) -> Rises<T> {
         self.is_warm = true;
         if duration != self.response.duration {
-            self.response = Response::new(&heat.kernel, duration);
+            self.response = HeatResponse::new(&heat.kernel, duration);
         }
         let mut parts = self.parts;
         let mut per_area = *loss;

@@ -6,7 +6,7 @@ use nalgebra::Complex;
 use serde::Serialize;
 
 use super::values::{LARGEST, SMALLEST};
-use crate::math::{Direction, fourier_2d};
+use crate::math::{FourierDirection, fourier_2d};
 use crate::tables::ContentError;
 
 /// The largest slope of a profile: a step of a metre from one atom to the next has less, and its square times that of
@@ -210,7 +210,7 @@ impl HeightMap {
         let window = |at: usize| if periodic { 1.0 } else { hann(at % nx, nx) * hann(at / nx, ny) };
         let heights = level.heights.iter().enumerate().map(|(at, z)| Complex::from(window(at) * (z - mean)));
         let mut sums: Vec<_> = heights.collect();
-        fourier_2d(&mut sums, nx, Direction::Forward);
+        fourier_2d(&mut sums, nx, FourierDirection::Forward);
         let count = (nx * ny) as f64;
         let cell = TAU.powi(2) / (self.spacing[0] * self.spacing[1] * count);
         let kept = if periodic { 1.0 } else { 0.375 * 0.375 };

@@ -67,7 +67,7 @@ pub use profile::{
 pub use regular_file::{read_file, read_text};
 pub use self_affine::SelfAffine;
 pub use settings::{DependencyList, Extrapolation, FmuOptions, IntegerType, Method, OutputGroup, Solver};
-pub use spectrum::{Band, PowerLaw, Spectrum};
+pub use spectrum::{PowerLaw, Spectrum, SpectrumBand};
 pub use surface::{MeanLine, Surface};
 pub use uncertainty::{Covariance, Distribution, FittedNumber, Scale, Spread, UncertainKey, Uncertainty};
 pub use values::{LOOSEST_TOLERANCE, Unit, Value, is_possible};

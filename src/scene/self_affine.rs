@@ -5,7 +5,7 @@ use std::f64::consts::{SQRT_2, TAU};
 use nalgebra::Complex;
 
 use super::HeightMap;
-use crate::math::{Direction, SplitMix64, fourier, fourier_2d};
+use crate::math::{FourierDirection, SplitMix64, fourier, fourier_2d};
 
 /// A number of modes that is whole but for rounding is that number.
 const WHOLE: f64 = 1.0e-9;
@@ -52,7 +52,7 @@ pub struct SelfAffine {
 impl SelfAffine {
     /// The heights at the points of one period, m.
     pub(super) fn heights(&self) -> Vec<f64> {
-        let sums = fourier(&self.coefficients(), Direction::Backward);
+        let sums = fourier(&self.coefficients(), FourierDirection::Backward);
         self.scaled(sums.iter().map(|sum| sum.re).collect())
     }
 
@@ -71,7 +71,7 @@ impl SelfAffine {
             sums[at(m, n)] = value;
             sums[at(-m, -n)] = value.conj();
         }
-        fourier_2d(&mut sums, nx, Direction::Backward);
+        fourier_2d(&mut sums, nx, FourierDirection::Backward);
         let heights = self.scaled(sums.iter().map(|sum| sum.re).collect());
         HeightMap::new(nx, [self.length / nx as f64, size_y / ny as f64], heights)
     }
@@ -177,7 +177,7 @@ mod tests {
     fn powers(profile: &SelfAffine) -> Vec<f64> {
         let heights: Vec<_> = profile.heights().into_iter().map(Complex::from).collect();
         let n = profile.points as f64;
-        let sums = fourier(&heights, Direction::Forward);
+        let sums = fourier(&heights, FourierDirection::Forward);
         let power = |m: usize| if 2 * m == profile.points { 1.0 } else { 2.0 } * (sums[m] / n).norm_sqr();
         (0..=profile.points / 2).map(power).collect()
     }

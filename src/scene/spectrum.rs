@@ -7,7 +7,7 @@ use nalgebra::Complex;
 use serde::Serialize;
 
 use super::{HeightMap, MeanLine, Surface};
-use crate::math::{Direction, fourier};
+use crate::math::{FourierDirection, fourier};
 
 /// The one-sided power spectrum C(q), whose integral over q is the mean square height.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +22,7 @@ pub struct Spectrum {
 
 /// The mean of a spectrum over a range of wave numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Band {
+pub struct SpectrumBand {
     /// Geometric mean of the wave numbers, rad/m.
     pub wave_number: f64,
     /// Mean of C, m³.
@@ -64,7 +64,7 @@ impl Spectrum {
         let n = heights.len();
         let window = |i: usize| if periodic { 1.0 } else { (PI * i as f64 / n as f64).sin().powi(2) };
         let windowed: Vec<_> = (0..n).map(|i| Complex::from(window(i) * heights[i])).collect();
-        let sums = fourier(&windowed, Direction::Forward);
+        let sums = fourier(&windowed, FourierDirection::Forward);
         let step = TAU / length;
         let scale = 2.0 / (n as f64).powi(2) / step / if periodic { 1.0 } else { 0.375 };
         let density = sums[..n / 2].iter().map(|sum| scale * sum.norm_sqr()).collect();
@@ -114,7 +114,7 @@ impl Spectrum {
     }
 
     /// The means over bands that are even in the logarithm; a band without a wave number is omitted.
-    pub fn bands(&self) -> Vec<Band> {
+    pub fn bands(&self) -> Vec<SpectrumBand> {
         let mut bands = Vec::new();
         let mut start = self.first;
         for i in 1.. {
@@ -131,11 +131,11 @@ impl Spectrum {
         bands
     }
 
-    fn band(&self, start: usize, end: usize) -> Band {
+    fn band(&self, start: usize, end: usize) -> SpectrumBand {
         let modes = end - start;
         let logarithm = (start..end).map(|m| (m as f64).ln()).sum::<f64>() / modes as f64;
         let density = self.density[start..end].iter().sum::<f64>() / modes as f64;
-        Band { wave_number: self.step * logarithm.exp(), density, modes }
+        SpectrumBand { wave_number: self.step * logarithm.exp(), density, modes }
     }
 }
 
@@ -194,8 +194,8 @@ struct LawFit {
 impl PowerLaw {
     /// The law that fits the bands best, over as many of them as possible; where `wavelengths` (m) are given, over
     /// exactly these and without a roll-off. `None` where no part follows a power law.
-    pub fn fit(bands: &[Band], wavelengths: Option<&RangeInclusive<f64>>) -> Option<Self> {
-        let inside = |band: &&Band| wavelengths.is_none_or(|range| range.contains(&(TAU / band.wave_number)));
+    pub fn fit(bands: &[SpectrumBand], wavelengths: Option<&RangeInclusive<f64>>) -> Option<Self> {
+        let inside = |band: &&SpectrumBand| wavelengths.is_none_or(|range| range.contains(&(TAU / band.wave_number)));
         let seen = bands.iter().filter(inside).filter(|band| band.density > 0.0);
         let bands: Vec<Point> = seen.map(Point::new).collect();
         let mut best: Option<(f64, Self)> = None;
@@ -221,7 +221,7 @@ impl PowerLaw {
 }
 
 impl Point {
-    fn new(band: &Band) -> Self {
+    fn new(band: &SpectrumBand) -> Self {
         let weight = 1.0 / (1.0 / band.modes as f64 + VARIANCE);
         Self { x: band.wave_number.ln(), y: band.density.ln(), weight }
     }
@@ -310,7 +310,7 @@ mod tests {
     }
 
     /// 12 bands per decade from 10 rad/m: constant up to `q_r`, falling with H up to `q_c`, negligible beyond.
-    fn bands(hurst: f64, q_r: f64, q_c: f64, noise: f64) -> Vec<Band> {
+    fn bands(hurst: f64, q_r: f64, q_c: f64, noise: f64) -> Vec<SpectrumBand> {
         let mut random = SplitMix64::new(1);
         let band = |i: u32| {
             let wave_number = 10_f64.powf(1.0 + f64::from(i) / 12.0);
@@ -318,7 +318,7 @@ mod tests {
             let scatter = noise * (random.unit() - 0.5) / (modes as f64).sqrt();
             let law = (wave_number / q_r).max(1.0).powf(-1.0 - 2.0 * hurst);
             let density = 1e-12 * law * scatter.exp() * if wave_number > q_c { 1e-9 } else { 1.0 };
-            Band { wave_number, density, modes }
+            SpectrumBand { wave_number, density, modes }
         };
         (0..48).map(band).collect()
     }

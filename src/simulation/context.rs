@@ -20,7 +20,7 @@ const OF_PERIOD: f64 = 0.25;
 /// What the steps of a run work on, of the whole layer or of a local region: the model, the settings, the state, and
 /// the workspace that both methods share. Everything but `state` can be made anew from the model and the settings.
 #[derive(Clone, Debug)]
-pub(super) struct Context {
+pub(super) struct RunContext {
     pub model: Arc<Model>,
     pub settings: Settings,
     pub state: RunState,
@@ -38,7 +38,7 @@ pub(super) struct Context {
     pub mode_changes: Option<Vec<ModeChange>>,
 }
 
-impl Context {
+impl RunContext {
     /// The context of a run with the layer placed under the carrier at `start`; on the heap, since threads of hosts may have
     /// small stacks.
     pub(super) fn new(

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::context::Context;
+use super::context::RunContext;
 use super::tests::{WAVE, scene, scene_with_heat, scene_with_memory, scene_with_rate_shear, scene_with_real_area};
 use crate::model::{ByAxis, Mode};
 use crate::outputs::{Output, dependencies, variables};
@@ -34,7 +34,7 @@ fn runs(scene: &Scene) -> Vec<Simulation> {
 /// The same run with the carrier moved and every state held.
 fn moved(simulation: &Simulation, (du, dw): (f64, f64)) -> Simulation {
     let mut simulation = simulation.clone();
-    let Context { model, state, .. } = &mut *simulation.run.context;
+    let RunContext { model, state, .. } = &mut *simulation.run.context;
     (state.carrier.start.x, state.carrier.start.z) = (state.carrier.start.x + du, state.carrier.start.z + dw);
     let layer = &mut state.layer.state;
     layer.elongation_x.iter_mut().for_each(|e| *e -= du);

@@ -1,10 +1,10 @@
 //! The event-driven method: the modes are held through a step, and its mode changes are located on the dense output.
 //! Where local regions take them the step goes on; where not it ends at the first.
 
-use super::context::Context;
+use super::context::RunContext;
 use super::controller::{ChatterGuard, GROWTH, TrialStep, WorkLimit};
 use super::motion::SimulationError;
-use super::stepper::{StepTest, Stepper};
+use super::stepper::{StepMethod, StepTest};
 use crate::contact::{first_event, is_due, longest_unstable, mode_changes};
 use crate::integrator::{ContactModes, Integrator, Overlay, Polynomials};
 use crate::model::{ByAxis, Model};
@@ -96,10 +96,10 @@ impl EventDriven {
     }
 
     /// Tries a step of length `h`; `None` where it is rejected: the controller's step size is then a better length.
-    fn try_step(&mut self, context: &mut Context, h: f64, test: StepTest) -> Option<GoodAttempt> {
+    fn try_step(&mut self, context: &mut RunContext, h: f64, test: StepTest) -> Option<GoodAttempt> {
         self.clear_changes();
         context.interpolated_at = None;
-        let Context { model, settings, state, integrator, .. } = context;
+        let RunContext { model, settings, state, integrator, .. } = context;
         let attempt = integrator
             .attempt(ContactModes::Held, (&**model, &state.layer, &state.carrier), state.span(h), &settings.tolerance)
             .ok();
@@ -136,18 +136,18 @@ impl EventDriven {
     }
 
     /// The largest error over the tolerance with which a step is accepted.
-    fn allowed_error(&self, context: &Context) -> f64 {
+    fn allowed_error(&self, context: &RunContext) -> f64 {
         if self.may_plan || context.settings.is_local { MAX_ERROR_IN_WIDE_LAYERS } else { 1.0 }
     }
 
     /// Finds the mode changes, if any, of the step of length `h` tried last, for local regions to take. `false` where
     /// these cannot, since the first comes before the fraction `least` of the step or there are no regions.
-    fn plan(&mut self, context: &mut Context, h: f64, least: f64) -> bool {
+    fn plan(&mut self, context: &mut RunContext, h: f64, least: f64) -> bool {
         if !self.may_plan {
             return false;
         }
         let events = context.event_tolerance();
-        let Context { model, state, integrator, dense, .. } = context;
+        let RunContext { model, state, integrator, dense, .. } = context;
         let step = integrator.dense(model, &state.carrier, &state.layer.state, state.span(h));
         mode_changes(&step, &events, dense, &mut self.changes);
         self.changes.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -156,16 +156,16 @@ impl EventDriven {
     }
 
     /// Accepts a step without local regions, which ends at the time `end` of the motion.
-    pub(super) fn accept(&mut self, context: &mut Context, step: &TrialStep, end: f64) {
+    pub(super) fn accept(&mut self, context: &mut RunContext, step: &TrialStep, end: f64) {
         context.state.energies = self.energies(context, step.h, step.fraction);
         accept_motion(context, step, end, None);
     }
 }
 
-impl Stepper for EventDriven {
+impl StepMethod for EventDriven {
     fn next_step(
         &mut self,
-        context: &mut Context,
+        context: &mut RunContext,
         duration: f64,
         work: &mut WorkLimit,
     ) -> Result<TrialStep, SimulationError> {
@@ -218,7 +218,7 @@ impl Stepper for EventDriven {
         }
     }
 
-    fn try_shorter(&mut self, context: &mut Context, h: f64, test: StepTest) -> bool {
+    fn try_shorter(&mut self, context: &mut RunContext, h: f64, test: StepTest) -> bool {
         let is_good = self.try_step(context, h, test).is_some();
         if is_good {
             self.plan(context, h, 0.0);
@@ -226,11 +226,11 @@ impl Stepper for EventDriven {
         is_good
     }
 
-    fn on_carrier(&mut self, context: &mut Context, h: f64, theta: f64) -> ByAxis<f64> {
+    fn on_carrier(&mut self, context: &mut RunContext, h: f64, theta: f64) -> ByAxis<f64> {
         context.on_carrier_within(h, theta)
     }
 
-    fn dissipated_power(&mut self, context: &mut Context, h: f64, theta: f64) -> Option<f64> {
+    fn dissipated_power(&mut self, context: &mut RunContext, h: f64, theta: f64) -> Option<f64> {
         let settings = &context.settings;
         let is_known = settings.accounts.energy && settings.tolerance.relative >= POWERS_OF_STAGES_FROM;
         is_known.then(|| context.dissipated_power_within(h, theta))
@@ -239,7 +239,7 @@ impl Stepper for EventDriven {
 
 /// Whether a free mass may have reached the profile in the step of length `h` tried last, which did not see all of
 /// the carrier's motion.
-fn may_touch(context: &Context, h: f64) -> bool {
+fn may_touch(context: &RunContext, h: f64) -> bool {
     let dense = context.dense_output(h);
     let reach = context.model.profile.bounds().z_max + UNSEEN * context.state.carrier.amplitude_w();
     let (motions, modes) = (Polynomials::new(&dense), &context.state.layer.state.mode);
@@ -248,31 +248,31 @@ fn may_touch(context: &Context, h: f64) -> bool {
 
 /// The fraction of the step of length `h` tried last that lies before its first event, 1 where there is none. A cut
 /// leaves `shortest_cut` (s) or more of it.
-fn fraction_before_event(context: &mut Context, h: f64, shortest_cut: f64) -> f64 {
+fn fraction_before_event(context: &mut RunContext, h: f64, shortest_cut: f64) -> f64 {
     if h <= shortest_cut {
         return 1.0;
     }
     let events = context.event_tolerance();
-    let Context { model, state, integrator, dense, .. } = context;
+    let RunContext { model, state, integrator, dense, .. } = context;
     let step = integrator.dense(model, &state.carrier, &state.layer.state, state.span(h));
     first_event(&step, &events, dense).map_or(1.0, |theta| theta.max(shortest_cut / h))
 }
 
 /// Whether the run can go on from the fraction `theta` of the step of length `h` tried last, without local regions:
 /// whether the residual of the equations of motion in the dense output there is small in the tolerance's norm.
-pub(super) fn can_resume(context: &mut Context, h: f64, theta: f64) -> bool {
+pub(super) fn can_resume(context: &mut RunContext, h: f64, theta: f64) -> bool {
     if context.integrator.has_tangents() {
         return false;
     }
     context.within((h, theta), None).0.evaluate();
-    let Context { model, settings, state, integrator, dense, interpolated, forces, .. } = context;
+    let RunContext { model, settings, state, integrator, dense, interpolated, forces, .. } = context;
     let step = integrator.dense(model, &state.carrier, &state.layer.state, state.span(h));
     step.defect(theta, interpolated, forces, dense, &settings.tolerance) <= MAX_DEFECT
 }
 
 /// Accepts the motion of a step, which ends at the time `end` of the carrier's segment, with that of its open local
 /// `regions` in place of its own, and changes the modes if that is due.
-pub(super) fn accept_motion(context: &mut Context, step: &TrialStep, end: f64, regions: Option<&mut dyn Overlay>) {
+pub(super) fn accept_motion(context: &mut RunContext, step: &TrialStep, end: f64, regions: Option<&mut dyn Overlay>) {
     context.state.counters.steps += 1;
     let (state, kept) = (&mut context.state, step.fraction * step.h);
     if step.fraction < 1.0 {
@@ -286,7 +286,7 @@ pub(super) fn accept_motion(context: &mut Context, step: &TrialStep, end: f64, r
 }
 
 /// Accepts a step up to its first event, or to where its local `regions` could not go on.
-fn accept_part(context: &mut Context, step: &TrialStep, end: f64, regions: Option<&mut dyn Overlay>) {
+fn accept_part(context: &mut RunContext, step: &TrialStep, end: f64, regions: Option<&mut dyn Overlay>) {
     let TrialStep { h, fraction } = *step;
     let has_regions = regions.is_some();
     // The regions have moved on since a row was shown there.
@@ -307,8 +307,8 @@ fn accept_part(context: &mut Context, step: &TrialStep, end: f64, regions: Optio
 }
 
 /// Accepts a whole step, and the masses of its local `regions` in place of those in it.
-fn accept_whole(context: &mut Context, end: f64, regions: Option<&mut dyn Overlay>) {
-    let Context { model, state, integrator, .. } = context;
+fn accept_whole(context: &mut RunContext, end: f64, regions: Option<&mut dyn Overlay>) {
+    let RunContext { model, state, integrator, .. } = context;
     let largest = state.layer.largest;
     state.carrier.take_step(end, &integrator.end_carrier());
     integrator.accept(&mut state.layer);

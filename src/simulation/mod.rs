@@ -35,14 +35,14 @@ use std::sync::Arc;
 use crate::model::Model;
 use crate::outputs::{Output, Snapshot, Variable};
 use crate::scene::{Axis, ByAxis, ParameterError, Scene};
-use context::Context;
+use context::RunContext;
 use controller::WorkLimit;
 pub use motion::Interrupt;
 pub use motion::{Inaccuracy, MethodSwitch, ModeChange, Motion, OutOfRange, SimulationError, Start};
 use reference_run::ReferenceRun;
 pub use rows::{ResultRow, ResultRows, run};
 use run::Run;
-use sampler::Sampler;
+use sampler::RowSampler;
 use settings::Settings;
 use start::body_starts;
 use state::check_length;
@@ -165,7 +165,7 @@ impl Simulation {
             self.set_temperature(state.run.temperature)?;
         }
         for (run, state) in self.runs_mut().zip(state.states()) {
-            let Context { model, settings, state: present, .. } = &mut *run.context;
+            let RunContext { model, settings, state: present, .. } = &mut *run.context;
             present.restore(state, model, settings.method);
         }
         Ok(())
@@ -271,7 +271,7 @@ impl Simulation {
     ) -> Result<Option<f64>, SimulationError> {
         motion.check()?;
         self.runs_mut().for_each(Run::keep_checkpoint);
-        let mut sampler = Sampler::new(times, (self.run_time, self.reference_run.is_some()), observe);
+        let mut sampler = RowSampler::new(times, (self.run_time, self.reference_run.is_some()), observe);
         let result = self.follow(motion, until_force, &mut sampler);
         if result.is_ok() {
             self.run_time = sampler.run_time();
@@ -298,7 +298,7 @@ impl Simulation {
         &mut self,
         motion: &Motion,
         until_force: Option<f64>,
-        sampler: &mut Sampler<'_, impl FnMut(f64, &Snapshot<'_>)>,
+        sampler: &mut RowSampler<'_, impl FnMut(f64, &Snapshot<'_>)>,
     ) -> Result<Option<f64>, SimulationError> {
         sampler.show(&mut self.run, &mut self.reference_run, 0.0);
         if self.run.has_reached(until_force) {

@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use super::context::Context;
+use super::context::RunContext;
 use super::controller::{TrialStep, WorkLimit};
 use super::event_driven::EventDriven;
 use super::local_regions::LocalRegions;
 use super::motion::{Inaccuracy, MethodSwitch, Motion, SimulationError, Start};
 use super::settings::Settings;
 use super::state::RunState;
-use super::stepper::Stepper;
+use super::stepper::StepMethod;
 use super::time_stepping::TimeStepping;
 use crate::math::bracketed_root;
 use crate::model::{BodyStart, ByAxis, Model};
@@ -52,7 +52,7 @@ const MEMORY: f64 = 8.0;
 /// costs two and takes any number of changes. So time-stepping is cheaper from a third of a change per step on.
 #[derive(Clone, Debug)]
 pub(super) struct Run {
-    pub(super) context: Box<Context>,
+    pub(super) context: Box<RunContext>,
     event_driven: EventDriven,
     time_stepping: TimeStepping,
     /// Of event-driven steps.
@@ -76,7 +76,7 @@ impl Run {
         let local_regions = LocalRegions::new(&model, &settings);
         let event_driven = EventDriven::new(&model, !local_regions.is_empty());
         let time_stepping = TimeStepping::new(&model, settings.method != Method::Event);
-        let context = Context::new(model, settings, start, bodies);
+        let context = RunContext::new(model, settings, start, bodies);
         let checkpoint = Box::new(context.state.clone());
         let (recorded, method_switches) = ([0; 2], None);
         let mut run =
@@ -139,19 +139,19 @@ impl Run {
     }
 
     /// The steps of the method that has the run now.
-    fn stepper(&mut self) -> (&mut dyn Stepper, &mut Context) {
+    fn stepper(&mut self) -> (&mut dyn StepMethod, &mut RunContext) {
         let Self { context, event_driven, time_stepping, .. } = self;
-        let stepper: &mut dyn Stepper = if context.state.time_stepping { time_stepping } else { event_driven };
+        let stepper: &mut dyn StepMethod = if context.state.time_stepping { time_stepping } else { event_driven };
         (stepper, context)
     }
 
-    /// See [`Stepper::next_step`].
+    /// See [`StepMethod::next_step`].
     pub(super) fn next_step(&mut self, duration: f64, work: &mut WorkLimit) -> Result<TrialStep, SimulationError> {
         let (stepper, context) = self.stepper();
         stepper.next_step(context, duration, work)
     }
 
-    /// See [`Stepper::cut_step_at`].
+    /// See [`StepMethod::cut_step_at`].
     pub(super) fn cut_step_at(
         &mut self,
         s: f64,
@@ -245,7 +245,7 @@ impl Run {
     /// The run as it stands.
     pub(super) fn snapshot(&mut self) -> Snapshot<'_> {
         self.context.evaluate_forces();
-        let Context { model, state, forces, .. } = &*self.context;
+        let RunContext { model, state, forces, .. } = &*self.context;
         let on_carrier = ByAxis::from_fn(|axis| forces.on_carrier(axis));
         snapshot_of((model, state), state.s, LayerView::at(&state.layer.state, forces), on_carrier)
     }

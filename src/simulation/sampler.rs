@@ -9,7 +9,7 @@ use super::run::Run;
 use crate::outputs::{Counters, Snapshot};
 
 /// The rows of a motion that are still to be shown, and the processor time.
-pub(super) struct Sampler<'a, F> {
+pub(super) struct RowSampler<'a, F> {
     times: &'a [f64],
     /// Runs where the processor time is asked for.
     clock: Option<ThreadTime>,
@@ -18,7 +18,7 @@ pub(super) struct Sampler<'a, F> {
     observe: F,
 }
 
-impl<'a, F: FnMut(f64, &Snapshot<'_>)> Sampler<'a, F> {
+impl<'a, F: FnMut(f64, &Snapshot<'_>)> RowSampler<'a, F> {
     /// The rows at `times`, shown by `observe`; `run_time` is the processor time before, counted on where it is
     /// `measured`.
     pub(super) fn new(times: &'a [f64], (run_time, measured): (f64, bool), observe: F) -> Self {

@@ -1,10 +1,10 @@
 //! The time-stepping method: steps of two stages, in which contacts stop and break loose; any number of touches and
 //! lifts is corrected at the end of each.
 
-use super::context::Context;
+use super::context::RunContext;
 use super::controller::{GROWTH, TrialStep, WorkLimit};
 use super::motion::SimulationError;
-use super::stepper::{StepTest, Stepper};
+use super::stepper::{StepMethod, StepTest};
 use crate::contact::{EndCorrection, FixedModeStep, longest_weakening};
 use crate::integrator::{ContactModes, ErrorEstimate, Parabolas};
 use crate::model::{ByAxis, ChannelEnergies, Model};
@@ -31,10 +31,10 @@ impl TimeStepping {
     }
 
     /// Accepts a step, which ends at the time `end` of the motion, with its mode changes corrected.
-    pub(super) fn accept(&mut self, context: &mut Context, step: &TrialStep, end: f64) {
+    pub(super) fn accept(&mut self, context: &mut RunContext, step: &TrialStep, end: f64) {
         // The energies of the step without its mode changes.
         let h = step.h;
-        let Context { model, settings, state, integrator, .. } = context;
+        let RunContext { model, settings, state, integrator, .. } = context;
         let start = &state.layer.state;
         let gain = settings.accounts.energy.then(|| {
             let missed = integrator.friction_between_stages(model, start, h);
@@ -72,9 +72,9 @@ impl TimeStepping {
     }
 
     /// Tries a step of length `h`; `None` where it is rejected: the controller's step size is then a better length.
-    fn try_step(&mut self, context: &mut Context, h: f64, test: StepTest) -> Option<ErrorEstimate> {
+    fn try_step(&mut self, context: &mut RunContext, h: f64, test: StepTest) -> Option<ErrorEstimate> {
         context.interpolated_at = None;
-        let Context { model, settings, state, integrator, .. } = context;
+        let RunContext { model, settings, state, integrator, .. } = context;
         let (start, span) = ((&**model, &state.layer, &state.carrier), state.span(h));
         let attempt = integrator.attempt(ContactModes::SetValued, start, span, &settings.tolerance).ok();
         context.trace_bodies(h);
@@ -90,17 +90,17 @@ impl TimeStepping {
     }
 
     /// The attempt of length `h` with the error that the late instants of its mode changes add.
-    fn with_event_time_error(&mut self, context: &Context, h: f64, attempt: ErrorEstimate) -> ErrorEstimate {
+    fn with_event_time_error(&mut self, context: &RunContext, h: f64, attempt: ErrorEstimate) -> ErrorEstimate {
         let late = self.end_correction.detect(&parabolas(context, h), &context.settings.tolerance);
         ErrorEstimate { error: attempt.error.hypot(late), ..attempt }
     }
 }
 
-impl Stepper for TimeStepping {
+impl StepMethod for TimeStepping {
     /// The shortest step is accepted whatever its error: its mode changes are corrected as those of any other.
     fn next_step(
         &mut self,
-        context: &mut Context,
+        context: &mut RunContext,
         duration: f64,
         work: &mut WorkLimit,
     ) -> Result<TrialStep, SimulationError> {
@@ -110,7 +110,7 @@ impl Stepper for TimeStepping {
             work.count(context.state.time(), context.model.work_of_step())?;
             let test = if h <= bounds.shortest { StepTest::Solved } else { StepTest::Full };
             if let Some(attempt) = self.try_step(context, h, test) {
-                let Context { model, state: run, integrator, .. } = context;
+                let RunContext { model, state: run, integrator, .. } = context;
                 // The next one resolves the instability of contacts whose friction falls with the speed that they have
                 // now.
                 let longest = longest_weakening(model, integrator.end(), integrator.end_forces());
@@ -125,22 +125,22 @@ impl Stepper for TimeStepping {
         }
     }
 
-    fn try_shorter(&mut self, context: &mut Context, h: f64, test: StepTest) -> bool {
+    fn try_shorter(&mut self, context: &mut RunContext, h: f64, test: StepTest) -> bool {
         self.try_step(context, h, test).is_some()
     }
 
-    fn on_carrier(&mut self, context: &mut Context, h: f64, theta: f64) -> ByAxis<f64> {
+    fn on_carrier(&mut self, context: &mut RunContext, h: f64, theta: f64) -> ByAxis<f64> {
         let without_touches = context.on_carrier_within(h, theta);
         without_touches + self.end_correction.forces_of_touches(&parabolas(context, h), theta)
     }
 
-    fn dissipated_power(&mut self, context: &mut Context, h: f64, theta: f64) -> Option<f64> {
+    fn dissipated_power(&mut self, context: &mut RunContext, h: f64, theta: f64) -> Option<f64> {
         context.settings.accounts.energy.then(|| context.dissipated_power_within(h, theta))
     }
 
     /// Touches and lifts are corrected at the end of a step, and its dense output is not: it is shown before them, and
     /// where they change F_z little.
-    fn can_show(&self, context: &Context, h: f64, theta: f64) -> bool {
+    fn can_show(&self, context: &RunContext, h: f64, theta: f64) -> bool {
         let (correction, relative) = (&self.end_correction, context.settings.tolerance.relative);
         let allowed = MAX_UNCORRECTED * relative * context.integrator.end_forces().on_carrier(Axis::Z).abs();
         correction.uncorrected_force() < allowed || correction.comes_after(&parabolas(context, h), theta)
@@ -148,7 +148,7 @@ impl Stepper for TimeStepping {
 }
 
 /// The motions of the masses through the step of length `h` (s) tried last.
-fn parabolas(context: &Context, h: f64) -> Parabolas<'_> {
+fn parabolas(context: &RunContext, h: f64) -> Parabolas<'_> {
     context.dense_output(h).parabolas()
 }
 

@@ -9,7 +9,7 @@ use asperity::simulation::{Motion, Simulation, Start};
 
 /// How far a run may be from the reference, over the largest value.
 #[derive(Clone, Copy, Debug)]
-struct Bounds {
+struct SplineBounds {
     forces: f64,
     losses: f64,
     energies: f64,
@@ -18,10 +18,10 @@ struct Bounds {
 const FINE: &str = "solver.relative_tolerance=1e-9";
 const DEFAULT: &str = "solver.relative_tolerance=1e-6";
 
-const AT_FINE: Bounds = Bounds { forces: 1e-6, losses: 1e-6, energies: 1e-6 };
+const AT_FINE: SplineBounds = SplineBounds { forces: 1e-6, losses: 1e-6, energies: 1e-6 };
 /// The reference of this case itself is only that good: thirty-three impacts follow from one another.
-const AT_FINE_RATTLE: Bounds = Bounds { forces: 2e-5, losses: 1e-5, energies: 1e-5 };
-const AT_DEFAULT: Bounds = Bounds { forces: 1e-3, losses: 1e-3, energies: 1e-3 };
+const AT_FINE_RATTLE: SplineBounds = SplineBounds { forces: 2e-5, losses: 1e-5, energies: 1e-5 };
+const AT_DEFAULT: SplineBounds = SplineBounds { forces: 1e-3, losses: 1e-3, energies: 1e-3 };
 
 const FORCES: [&str; 2] = ["F_x", "F_z"];
 const LOSSES: [&str; 5] =
@@ -49,7 +49,7 @@ impl Case {
     }
 
     /// Holds a run against the reference.
-    fn compare(&self, found: &Table, tolerance: &str, bounds: Bounds) {
+    fn compare(&self, found: &Table, tolerance: &str, bounds: SplineBounds) {
         let wanted = |column: &str| self.reference.column(column);
         let loss = largest(&wanted("E_diss"));
         for column in FORCES {
@@ -115,7 +115,7 @@ impl Case {
     }
 }
 
-fn program(name: &'static str, fine: Bounds) {
+fn program(name: &'static str, fine: SplineBounds) {
     let case = Case::new(name, "program");
     let runs = [(FINE, fine), (DEFAULT, AT_DEFAULT)].map(|(tolerance, bounds)| {
         let found = simulate(&case.scene, &case.folder, &["--set", tolerance]);
@@ -134,7 +134,7 @@ fn residual(found: &Table) -> f64 {
     largest(&found.column("energy.residual")) / scale
 }
 
-fn fmu(name: &'static str, fine: Bounds) {
+fn fmu(name: &'static str, fine: SplineBounds) {
     let case = Case::new(name, "fmu");
     let fmu = pack(&case.scene, &case.folder);
     for (tolerance, bounds) in [(FINE, fine), (DEFAULT, AT_DEFAULT)] {

@@ -18,7 +18,7 @@ pub use speed_grid::{SpeedCell, SpeedRange};
 use super::backing::{SeriesBacking, SeriesIntervals};
 use super::friction_table::FrictionTable;
 use super::law::{Law, LawAtSpeed};
-use super::law_points::{ElementLaw, Intervals, LawPoints};
+use super::law_points::{COEFFICIENTS, ElementLaw, FRICTION, Intervals, LOG_PRESSURE, LawPoints, START, STIFFNESS};
 use super::limits::TableLimits;
 use super::quantity::Quantity;
 use crate::math::Number;
@@ -61,10 +61,17 @@ impl LawPlace<f64> {
 
 /// The coefficients of [`Intervals`] in an interval between two pressures of the table, by power of the fraction of the
 /// speed's cell.
-type LawCoefficients = [[f64; 12]; SAMPLES];
+type LawCoefficients = [[f64; COEFFICIENTS]; SAMPLES];
 
-/// The coefficients of hysteresis and contact ratio over ln p, in such an interval.
-type ShareCoefficients = [[f64; 8]; SAMPLES];
+/// How many coefficients hysteresis and contact ratio have over ln p in such an interval: four each.
+const SHARE_COEFFICIENTS: usize = 8;
+/// The place among them of the first of hysteresis.
+const HYSTERESIS: usize = 0;
+/// That of the first of the contact ratio.
+const CONTACT_RATIO: usize = 4;
+
+/// The coefficients of hysteresis and contact ratio.
+type ShareCoefficients = [[f64; SHARE_COEFFICIENTS]; SAMPLES];
 
 /// Approaches (m) at which intervals of the pressure begin, as straight functions of the fraction of a cell: where it
 /// begins, and by how much they grow. Those without an interval are never reached.
@@ -147,8 +154,8 @@ impl ResampledLaw {
             log_pressures,
             speeds,
             interval_starts: vec![IntervalStarts::NONE; cells * starts_of(pressures)],
-            coefficients: vec![[[0.0; 12]; SAMPLES]; cells * pressures],
-            shares: vec![[[0.0; 8]; SAMPLES]; cells * pressures],
+            coefficients: vec![[[0.0; COEFFICIENTS]; SAMPLES]; cells * pressures],
+            shares: vec![[[0.0; SHARE_COEFFICIENTS]; SAMPLES]; cells * pressures],
             computed: vec![0; cells],
             temperature_number: 1,
             earliest_touch,
@@ -275,8 +282,8 @@ impl ResampledLaw {
         let width = if cell.density > 0.0 { 1.0 / cell.density } else { 0.0 };
         let pressures = self.log_pressures.len();
         let rows = cell.index * pressures..(cell.index + 1) * pressures;
-        self.coefficients[rows.clone()].fill([[0.0; 12]; SAMPLES]);
-        self.shares[rows].fill([[0.0; 8]; SAMPLES]);
+        self.coefficients[rows.clone()].fill([[0.0; COEFFICIENTS]; SAMPLES]);
+        self.shares[rows].fill([[0.0; SHARE_COEFFICIENTS]; SAMPLES]);
         for (sample, weights) in LAGRANGE.iter().enumerate() {
             self.curve.set_speed(&self.law, (cell.start + width * sample as f64 / (SAMPLES - 1) as f64).exp());
             (0..pressures).for_each(|i| self.add_sample(cell.index * pressures + i, i, weights));
@@ -288,14 +295,15 @@ impl ResampledLaw {
     /// Adds a sample of the law at a speed of a cell to the coefficients `row`, those of the interval from pressure `i`
     /// on.
     fn add_sample(&mut self, row: usize, i: usize, weights: &[f64; SAMPLES]) {
+        // ln p over the approach, then μ and κ over ln p.
         let [_, approaches, slopes] = self.curve.points();
         let along = |quantity| cubic_over(&self.log_pressures, self.curve.series(quantity), i);
-        let mut now = [0.0; 12];
-        now[..4].copy_from_slice(&cubic_over(approaches, Some([&self.log_pressures, slopes]), i));
+        let mut now = [0.0; COEFFICIENTS];
+        now[..FRICTION].copy_from_slice(&cubic_over(approaches, Some([&self.log_pressures, slopes]), i));
         // Where an interval begins ln p is that of the table.
-        now[0] = approaches[i];
-        now[4..8].copy_from_slice(&along(Quantity::Friction));
-        now[8..].copy_from_slice(&along(Quantity::Stiffness).map(|k| k / self.area));
+        now[START] = approaches[i];
+        now[FRICTION..STIFFNESS].copy_from_slice(&along(Quantity::Friction));
+        now[STIFFNESS..].copy_from_slice(&along(Quantity::Stiffness).map(|k| k / self.area));
         let shares = [along(Quantity::Hysteresis), along(Quantity::ContactRatio)];
         for (power, weight) in weights.iter().enumerate() {
             let kept = &mut self.coefficients[row][power];
@@ -344,10 +352,10 @@ impl ResampledLaw {
 
     /// The coefficients of an interval of the pressure at a fraction of a cell.
     #[inline(always)]
-    fn coefficients_at<T: Number>(&self, cell: usize, fraction: T, interval: usize) -> [T; 12] {
+    fn coefficients_at<T: Number>(&self, cell: usize, fraction: T, interval: usize) -> [T; COEFFICIENTS] {
         let [a, b, c] = &self.coefficients[cell * self.log_pressures.len() + interval];
-        let mut coefficients = [T::constant(0.0); 12];
-        for k in 0..12 {
+        let mut coefficients = [T::constant(0.0); COEFFICIENTS];
+        for k in 0..COEFFICIENTS {
             coefficients[k] = T::constant(a[k]) + fraction * (T::constant(b[k]) + fraction.times(c[k]));
         }
         coefficients
@@ -420,14 +428,14 @@ impl ResampledLaw {
     fn start(&self, cell: &SpeedCell, i: usize, log_speed: f64) -> f64 {
         let (fraction, powers) =
             (cell.fraction(log_speed), &self.coefficients[cell.index * self.log_pressures.len() + i]);
-        powers[0][0] + fraction * (powers[1][0] + fraction * powers[2][0])
+        powers[0][START] + fraction * (powers[1][START] + fraction * powers[2][START])
     }
 
     /// The approaches (m) at a place where the contact begins and where it reaches the least pressure of the table.
     pub fn beginning<T: Number>(&self, place: &LawPlace<T>) -> (T, T) {
         let at = |cell: &SpeedCell| {
             let c = self.coefficients_at(cell.index, cell.fraction(place.log_speed), 0);
-            (c[0] - T::constant(2.0) / c[1], c[0] + T::constant(self.indentation(0)))
+            (c[START] - T::constant(2.0) / c[LOG_PRESSURE[0]], c[START] + T::constant(self.indentation(0)))
         };
         let here = at(&place.cell);
         let Some((next, fraction)) = place.next else { return here };
@@ -450,7 +458,7 @@ impl ResampledLaw {
         let powers = &self.shares[cell.index * self.log_pressures.len() + i];
         let at = |k: usize| (0..SAMPLES).rev().fold(0.0, |sum, power| sum * fraction + powers[power][k]);
         let along = |first: usize| (0..4).rev().fold(0.0, |sum, k| sum * t + at(first + k));
-        let (hysteresis, ratio) = (along(0), along(4) * points.factor[0].min(1.0));
+        let (hysteresis, ratio) = (along(HYSTERESIS), along(CONTACT_RATIO) * points.factor[0].min(1.0));
         (if points.friction[0] > 0.0 { hysteresis / points.friction[0] } else { 0.0 }, ratio)
     }
 }

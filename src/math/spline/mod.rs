@@ -21,7 +21,7 @@ pub struct Spline {
     grid: IntervalGrid,
     ends: Ends,
     /// The bounds between the data points.
-    inside: Bounds,
+    inside: SplineBounds,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -79,7 +79,7 @@ impl Spline {
 
     fn assemble(pieces: Vec<Piece>, ends: Ends) -> Self {
         let grid = IntervalGrid::new(&pieces);
-        let inside = Bounds::over(&pieces);
+        let inside = SplineBounds::over(&pieces);
         Self { pieces, grid, ends, inside }
     }
 
@@ -171,7 +171,7 @@ fn floor(x: f64) -> f64 {
 impl Piece {
     fn new(start: f64, end: f64, cubic: Cubic) -> Self {
         let piece = Self { start, end, cubic, z_max: f64::NAN, slope_max_abs: f64::NAN };
-        let Bounds { z_max, slope_max_abs, .. } = piece.extent(start, end);
+        let SplineBounds { z_max, slope_max_abs, .. } = piece.extent(start, end);
         Self { z_max, slope_max_abs, ..piece }
     }
 
@@ -456,7 +456,7 @@ const INTERVALS_SCANNED: usize = 16;
 
 /// Bounds of a spline over a range.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
+pub struct SplineBounds {
     /// The highest z, m. Infinite where a natural spline rises outwards without end.
     pub z_max: f64,
     /// The largest |z'|, 1.
@@ -465,7 +465,7 @@ pub struct Bounds {
     pub curvature_max_abs: f64,
 }
 
-impl Bounds {
+impl SplineBounds {
     const EMPTY: Self = Self { z_max: f64::NEG_INFINITY, slope_max_abs: 0.0, curvature_max_abs: 0.0 };
 
     /// The bounds over all these intervals together.
@@ -485,11 +485,11 @@ impl Bounds {
 
 impl Spline {
     /// The bounds over all x.
-    pub fn bounds(&self) -> Bounds {
+    pub fn bounds(&self) -> SplineBounds {
         match &self.ends {
             Ends::Periodic { .. } => self.inside,
             Ends::Tangents { left, right } if left.cubic.slope < 0.0 || right.cubic.slope > 0.0 => {
-                Bounds { z_max: f64::INFINITY, ..self.inside }
+                SplineBounds { z_max: f64::INFINITY, ..self.inside }
             }
             Ends::Tangents { .. } => self.inside,
         }
@@ -515,14 +515,14 @@ impl Spline {
 
     /// Bounds over the range from `x_low` to `x_high`, m: the true extremes over a few intervals, those of all
     /// intervals where the range spans many. `x_low` ≤ `x_high`.
-    pub fn local_bounds(&self, x_low: f64, x_high: f64) -> Bounds {
+    pub fn local_bounds(&self, x_low: f64, x_high: f64) -> SplineBounds {
         match &self.ends {
             Ends::Periodic { period } => self.periodic_bounds(x_low, x_high - x_low, *period),
             Ends::Tangents { left, right } => self.natural_bounds(x_low, x_high, left, right),
         }
     }
 
-    fn periodic_bounds(&self, x_low: f64, width: f64, period: f64) -> Bounds {
+    fn periodic_bounds(&self, x_low: f64, width: f64, period: f64) -> SplineBounds {
         if width.is_nan() || width >= period {
             return self.inside;
         }
@@ -535,9 +535,9 @@ impl Spline {
         }
     }
 
-    fn natural_bounds(&self, x_low: f64, x_high: f64, left: &Piece, right: &Piece) -> Bounds {
+    fn natural_bounds(&self, x_low: f64, x_high: f64, left: &Piece, right: &Piece) -> SplineBounds {
         let (first, last) = (self.first(), self.last());
-        let mut bounds = Bounds::EMPTY;
+        let mut bounds = SplineBounds::EMPTY;
         if x_low < first {
             bounds = bounds.and(left.extent(x_low, x_high.min(first)));
         }
@@ -551,27 +551,27 @@ impl Spline {
     }
 
     /// Bounds over a range within the data points.
-    fn bounds_inside(&self, low: f64, high: f64) -> Bounds {
+    fn bounds_inside(&self, low: f64, high: f64) -> SplineBounds {
         let (from, to) = (self.grid.interval(&self.pieces, low), self.grid.interval(&self.pieces, high));
         if to.saturating_sub(from) >= INTERVALS_SCANNED {
             return self.inside;
         }
         let within = |piece: &Piece| piece.extent(low.max(piece.start), high.min(piece.end));
         let ends = within(&self.pieces[from]).and(within(&self.pieces[to.max(from)]));
-        ends.and(Bounds::over(self.pieces.get(from + 1..to).unwrap_or_default()))
+        ends.and(SplineBounds::over(self.pieces.get(from + 1..to).unwrap_or_default()))
     }
 }
 
 impl Piece {
     /// The bounds over the interval.
-    fn bounds(&self) -> Bounds {
+    fn bounds(&self) -> SplineBounds {
         let Self { start, end, cubic, z_max, slope_max_abs } = *self;
         let curvature_max_abs = cubic.curvature.abs().max((cubic.curvature + (end - start) * cubic.third).abs());
-        Bounds { z_max, slope_max_abs, curvature_max_abs }
+        SplineBounds { z_max, slope_max_abs, curvature_max_abs }
     }
 
     /// The extremes of this polynomial from `low` to `high`.
-    fn extent(&self, low: f64, high: f64) -> Bounds {
+    fn extent(&self, low: f64, high: f64) -> SplineBounds {
         let ((z_low, slope_low, curvature_low, _), (z_high, slope_high, curvature_high, _)) =
             (self.evaluate(low), self.evaluate(high));
         let steepest = self.steepest(low, high);
@@ -579,7 +579,7 @@ impl Piece {
         for x in self.level(low, high, [slope_low, slope_high, steepest]) {
             z_max = z_max.max(self.evaluate(x).0);
         }
-        Bounds {
+        SplineBounds {
             z_max,
             slope_max_abs: slope_low.abs().max(slope_high.abs()).max(steepest.abs()),
             curvature_max_abs: curvature_low.abs().max(curvature_high.abs()),

@@ -237,7 +237,7 @@ fn sampled(spline: &Spline, low: f64, high: f64) -> [f64; 3] {
     })
 }
 
-fn assert_bounds(spline: &Spline, bounds: super::Bounds, low: f64, high: f64) {
+fn assert_bounds(spline: &Spline, bounds: super::SplineBounds, low: f64, high: f64) {
     let scale = spline.bounds();
     let [z, slope, curvature] = sampled(spline, low, high);
     assert_within(bounds.z_max, z, 1e-5);

@@ -4,7 +4,7 @@ use std::f64::consts::{LN_10, PI, TAU};
 
 use serde::Serialize;
 
-use crate::scene::{Band, HeightMap, Spectrum};
+use crate::scene::{HeightMap, Spectrum, SpectrumBand};
 
 /// C at some wave numbers; ln C is linear in ln q between them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -119,7 +119,7 @@ impl Spectrum {
     /// two.
     pub(super) fn isotropic(&self) -> Option<RoughnessSpectrum> {
         // Where there are no waves the spectrum is that of rounding, or 0, which has no logarithm.
-        let point = |band: &Band| [band.wave_number, band.density.max(f64::MIN_POSITIVE)];
+        let point = |band: &SpectrumBand| [band.wave_number, band.density.max(f64::MIN_POSITIVE)];
         let lines: Vec<[f64; 2]> = self.bands().iter().map(point).collect();
         (lines.len() > 1).then(|| RoughnessSpectrum::of_lines(&lines))
     }

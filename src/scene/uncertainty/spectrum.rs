@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use nalgebra::Complex;
 
 use super::Uncertainty;
-use crate::math::{Direction, fourier, fourier_2d};
+use crate::math::{FourierDirection, fourier, fourier_2d};
 use crate::scene::error::{ParameterError, Problem};
 use crate::scene::{FineWaves, HeightMap, Scene, Spectrum, SpectrumFactors, Surface, decade_of};
 
@@ -71,12 +71,12 @@ fn scaled(surface: &Surface, factors: &SpectrumFactors) -> Surface {
 fn scaled_map(map: &HeightMap, factors: &SpectrumFactors) -> HeightMap {
     let (nx, count) = (map.nx(), map.heights().len());
     let mut sums: Vec<Complex<f64>> = map.heights().iter().map(|z| Complex::from(*z)).collect();
-    fourier_2d(&mut sums, nx, Direction::Forward);
+    fourier_2d(&mut sums, nx, FourierDirection::Forward);
     for (at, sum) in sums.iter_mut().enumerate() {
         let [along_x, along_y] = map.wave_numbers(at);
         *sum *= if at == 0 { 0.0 } else { factors.of_height(TAU / along_x.hypot(along_y)) / count as f64 };
     }
-    fourier_2d(&mut sums, nx, Direction::Backward);
+    fourier_2d(&mut sums, nx, FourierDirection::Backward);
     let heights = map.heights().iter().zip(&sums).map(|(z, change)| z + change.re).collect();
     HeightMap::new(nx, map.spacing(), heights)
 }
@@ -130,12 +130,12 @@ fn even_steps(x: &[f64]) -> usize {
 fn changes(heights: &[f64], period: f64, factors: &SpectrumFactors) -> Vec<f64> {
     let count = heights.len();
     let values: Vec<Complex<f64>> = heights.iter().map(|z| Complex::from(*z)).collect();
-    let mut sums = fourier(&values, Direction::Forward);
+    let mut sums = fourier(&values, FourierDirection::Forward);
     for (m, sum) in sums.iter_mut().enumerate() {
         let mode = m.min(count - m);
         *sum *= if mode == 0 { 0.0 } else { factors.of_height(period / mode as f64) / count as f64 };
     }
-    fourier(&sums, Direction::Backward).iter().map(|sum| sum.re).collect()
+    fourier(&sums, FourierDirection::Backward).iter().map(|sum| sum.re).collect()
 }
 
 #[cfg(test)]

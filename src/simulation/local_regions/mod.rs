@@ -17,12 +17,12 @@ mod tests;
 
 use std::ops::Range;
 
-use super::context::Context;
+use super::context::RunContext;
 use super::controller::{TrialStep, WorkLimit};
 use super::event_driven::{EventDriven, MAX_CUTS, MAX_DEFECT, accept_motion, can_resume};
 use super::motion::{ModeChange, SimulationError};
 use super::settings::Settings;
-use super::stepper::Stepper;
+use super::stepper::StepMethod;
 use crate::integrator::{DenseWorkspace, LayerStep, Overlay, Scheme, TimeSpan};
 use crate::model::{ByAxis, LinkKind, Model, State};
 use crate::outputs::Energies;
@@ -146,7 +146,7 @@ impl LocalRegions {
     /// The open regions, and the step that they follow: that of `context` tried last.
     fn open_in_step<'a>(
         &'a mut self,
-        context: &'a Context,
+        context: &'a RunContext,
     ) -> (impl Iterator<Item = &'a mut LocalRegion>, LayerStep<'a>) {
         let Self { regions, span, workspace, .. } = self;
         (regions.iter_mut().filter(|region| region.open), whole_layer(context, *span, workspace))
@@ -159,7 +159,7 @@ impl LocalRegions {
     }
 
     /// Closes the regions of a step of `context` that is tried again: their mode changes are taken back.
-    pub(super) fn discard(&mut self, context: &mut Context) {
+    pub(super) fn discard(&mut self, context: &mut RunContext) {
         context.state.counters.events -= self.counted;
         if let Some(record) = &mut context.mode_changes {
             record.truncate(record.len() - self.counted as usize);
@@ -171,7 +171,7 @@ impl LocalRegions {
     /// both s after the start of the carrier's segment. Where they cannot, it is cut short. Returns its end.
     pub(super) fn advance(
         &mut self,
-        (context, stepper): (&mut Context, &mut EventDriven),
+        (context, stepper): (&mut RunContext, &mut EventDriven),
         step: &mut TrialStep,
         (s, mut end): (f64, f64),
         work: &mut WorkLimit,
@@ -208,7 +208,7 @@ impl LocalRegions {
     /// Returns where it has to be cut, if it has.
     fn follow(
         &mut self,
-        (context, stepper): (&mut Context, &mut EventDriven),
+        (context, stepper): (&mut RunContext, &mut EventDriven),
         (s, end): (f64, f64),
         work: &mut WorkLimit,
     ) -> Result<Option<Cut>, SimulationError> {
@@ -249,7 +249,7 @@ impl LocalRegions {
     fn open_over(
         &mut self,
         masses: Range<usize>,
-        context: &Context,
+        context: &RunContext,
         (s, end): (f64, f64),
         work: &mut WorkLimit,
     ) -> Result<Option<Cut>, SimulationError> {
@@ -304,7 +304,7 @@ impl LocalRegions {
     fn accept_in(
         &mut self,
         index: usize,
-        context: &mut Context,
+        context: &mut RunContext,
         end: f64,
         work: &mut WorkLimit,
     ) -> Result<Option<Cut>, SimulationError> {
@@ -324,7 +324,7 @@ impl LocalRegions {
     }
 
     /// Counts and records in `context` the mode changes in regions since the last call.
-    fn record_mode_changes(&mut self, context: &mut Context) {
+    fn record_mode_changes(&mut self, context: &mut RunContext) {
         for region in &mut self.regions {
             let first = region.masses().start;
             let events = std::mem::take(&mut region.context.state.counters.events);
@@ -338,7 +338,12 @@ impl LocalRegions {
     }
 
     /// Accepts `step`, which ends at the time `end`, with the masses of the regions in place of those in it.
-    pub(super) fn accept(&mut self, (context, stepper): (&mut Context, &mut EventDriven), step: &TrialStep, end: f64) {
+    pub(super) fn accept(
+        &mut self,
+        (context, stepper): (&mut RunContext, &mut EventDriven),
+        step: &TrialStep,
+        end: f64,
+    ) {
         let mut energies = stepper.energies(context, step.h, step.fraction);
         energies.gain(&self.energies(context, end));
         context.state.energies = energies;
@@ -349,7 +354,7 @@ impl LocalRegions {
     }
 
     /// The energies in regions up to the time `s` beyond those of the whole layer's step, J.
-    pub(super) fn energies(&mut self, context: &Context, s: f64) -> Energies {
+    pub(super) fn energies(&mut self, context: &RunContext, s: f64) -> Energies {
         let mut sum = self.gained;
         let (open, step) = self.open_in_step(context);
         open.for_each(|region| sum.gain(&region.energies(&step.dense, s)));
@@ -357,7 +362,7 @@ impl LocalRegions {
     }
 
     /// F_x and F_z of the regions at the time `s` beyond those in the whole layer's step, N.
-    pub(super) fn forces(&mut self, context: &Context, s: f64) -> ByAxis<f64> {
+    pub(super) fn forces(&mut self, context: &RunContext, s: f64) -> ByAxis<f64> {
         let (open, mut step) = self.open_in_step(context);
         let forces = open.map(|region| region.forces(&mut step, s));
         forces.fold(ByAxis::default(), |sum, force| sum + force)
@@ -365,7 +370,7 @@ impl LocalRegions {
 
     /// P_diss of the regions at the time `s` beyond that in the whole layer's step, W, where the powers at the stages
     /// say it.
-    pub(super) fn dissipated_power(&mut self, context: &Context, s: f64) -> f64 {
+    pub(super) fn dissipated_power(&mut self, context: &RunContext, s: f64) -> f64 {
         let (open, step) = self.open_in_step(context);
         open.fold(0.0, |sum, region| sum + region.dissipated_power(&step.dense, s))
     }
@@ -383,8 +388,8 @@ fn workspace(model: &Model, is_empty: bool) -> DenseWorkspace {
 }
 
 /// The step of `context` over `span` that was tried last.
-fn whole_layer<'a>(context: &'a Context, span: TimeSpan, workspace: &'a mut DenseWorkspace) -> LayerStep<'a> {
-    let Context { model, state, integrator, .. } = context;
+fn whole_layer<'a>(context: &'a RunContext, span: TimeSpan, workspace: &'a mut DenseWorkspace) -> LayerStep<'a> {
+    let RunContext { model, state, integrator, .. } = context;
     LayerStep { dense: integrator.dense(model, &state.carrier, &state.layer.state, span), workspace }
 }
 

@@ -6,19 +6,19 @@ use std::sync::Arc;
 use crate::integrator::{DenseOutput, DenseWorkspace, LayerStep, LayerSums, MAX_STAGES};
 use crate::model::{ByAxis, ChannelEnergies, EndForces, LinkKind, Model, State};
 use crate::outputs::{Counters, Energies};
-use crate::simulation::context::Context;
+use crate::simulation::context::RunContext;
 use crate::simulation::controller::{Controller, TrialStep, WorkLimit};
 use crate::simulation::event_driven::EventDriven;
 use crate::simulation::motion::{SimulationError, Start};
 use crate::simulation::settings::Settings;
-use crate::simulation::stepper::Stepper;
+use crate::simulation::stepper::StepMethod;
 
 /// Some masses in a row within a step of the whole layer, twice: in event-driven steps of their own from a mode change
 /// on, and as that step, which knows nothing of the change, has them.
 #[derive(Clone, Debug)]
 pub(super) struct LocalRegion {
     /// These masses alone, under the forces that the whole layer's step has in the links to the others.
-    pub(super) context: Box<Context>,
+    pub(super) context: Box<RunContext>,
     stepper: EventDriven,
     /// Whether it takes steps within the step under way.
     pub(super) open: bool,
@@ -40,7 +40,12 @@ impl LocalRegion {
         Self {
             whole: LayerSums::new(&part, 0),
             stepper: EventDriven::new(&part, false),
-            context: Context::new(Arc::new(part), settings.for_local_region(), &Start::default(), &ByAxis::default()),
+            context: RunContext::new(
+                Arc::new(part),
+                settings.for_local_region(),
+                &Start::default(),
+                &ByAxis::default(),
+            ),
             open: false,
             trial: TrialStep { h: 0.0, fraction: 1.0 },
             trial_end: 0.0,
@@ -78,7 +83,7 @@ impl LocalRegion {
     /// they are there. `nodes` has a workspace for each stage of the step.
     pub(super) fn open_at(
         &mut self,
-        context: &Context,
+        context: &RunContext,
         (step, s): (&mut LayerStep<'_>, f64),
         first: usize,
         nodes: &mut [DenseWorkspace],
@@ -132,7 +137,7 @@ impl LocalRegion {
     /// the dense output there is at most `largest` in the tolerance's norm.
     pub(super) fn is_resolved(&mut self, step: &mut LayerStep<'_>, largest: f64) -> bool {
         self.context.evaluate_forces();
-        let Context { state, forces, settings, .. } = &*self.context;
+        let RunContext { state, forces, settings, .. } = &*self.context;
         let theta = step.dense.theta(state.s);
         let (dense, weights) = step.restricted_to(&self.whole.masses);
         dense.defect(theta, &state.layer.state, forces, weights, &settings.tolerance) <= largest
@@ -141,7 +146,7 @@ impl LocalRegion {
     /// Takes over the masses of `other`, all of which it has, at the time `s` of the whole layer's `step`, and closes
     /// it. Returns the energies in it beyond those of that step, J.
     pub(super) fn absorb(&mut self, other: &mut Self, (step, s): (&DenseOutput<'_>, f64)) -> Energies {
-        let Context { model, state, .. } = &mut *self.context;
+        let RunContext { model, state, .. } = &mut *self.context;
         other.write_state((model, self.whole.masses.start), &mut state.layer.state, s);
         other.open = false;
         other.energies(step, s)
@@ -199,7 +204,7 @@ impl LocalRegion {
     /// whole layer's `step`.
     pub(super) fn mismatch(&self, step: &mut LayerStep<'_>) -> f64 {
         let (theta, ends) = (step.dense.theta(self.reached()), self.ends(step.dense.model.masses()));
-        let Context { model, state, .. } = &*self.context;
+        let RunContext { model, state, .. } = &*self.context;
         let masses = self.masses();
         let (dense, weights) = step.restricted_to(&masses);
         let layer = &state.layer.state;
@@ -249,7 +254,7 @@ impl LocalRegion {
         if let Some(theta) = theta {
             self.context.within((self.trial.h, theta), None).0.interpolate();
         }
-        let Context { model: own, state: at_start, interpolated, .. } = &*self.context;
+        let RunContext { model: own, state: at_start, interpolated, .. } = &*self.context;
         let mine = if theta.is_some() { interpolated } else { &at_start.layer.state };
         mine.write_part((own, model), state, self.whole.masses.start - first);
     }

@@ -1,6 +1,6 @@
 //! The coefficients of the Runge-Kutta methods.
 
-use asperity::internals::integrator::{ContinuousWeights, ESDIRK3, ESDIRK5, MAX_STAGES, Tableau, Weights};
+use asperity::internals::integrator::{ContinuousWeights, ESDIRK3, ESDIRK5, MAX_STAGES, StageWeights, Tableau};
 use nalgebra::Complex;
 
 /// A rooted tree: the trees that hang on its root.
@@ -18,7 +18,7 @@ impl Tree {
     }
 
     /// φ_i(t) = Π over the trees on the root of Σ_j a_ij φ_j: Σ b_i φ_i = 1/γ(t) is the order condition of the tree.
-    fn weights(&self, a: &[Weights; MAX_STAGES]) -> Weights {
+    fn weights(&self, a: &[StageWeights; MAX_STAGES]) -> StageWeights {
         let mut product = [1.0; MAX_STAGES];
         for branch in &self.0 {
             let inner = branch.weights(a);
@@ -51,17 +51,17 @@ fn forests(order: usize, from: &[Tree]) -> Vec<Vec<Tree>> {
     found
 }
 
-fn dot(a: &Weights, b: &Weights) -> f64 {
+fn dot(a: &StageWeights, b: &StageWeights) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The largest |Σ b_i φ_i - 1/γ| over all trees of an order.
-fn miss(method: &Tableau, weights: &Weights, order: usize) -> f64 {
+fn miss(method: &Tableau, weights: &StageWeights, order: usize) -> f64 {
     let one = |tree: &Tree| (dot(weights, &tree.weights(&method.a)) - 1.0 / tree.density()).abs();
     trees(order).iter().map(one).fold(0.0, f64::max)
 }
 
-fn embedded(method: &Tableau) -> Weights {
+fn embedded(method: &Tableau) -> StageWeights {
     std::array::from_fn(|i| method.weights()[i] - method.error[i])
 }
 

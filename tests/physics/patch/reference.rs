@@ -91,12 +91,12 @@ fn errors(name: &str, refine: i32) -> Vec<(String, f64)> {
 }
 
 /// How far columns may be from the reference: the wrench and E_diss, and moment.z of its own.
-struct Bounds {
+struct SplineBounds {
     all: f64,
     moment_z: f64,
 }
 
-fn check(name: &str, refine: i32, bounds: &Bounds) {
+fn check(name: &str, refine: i32, bounds: &SplineBounds) {
     for (column, error) in errors(name, refine) {
         let bound = match column.as_str() {
             "moment.z" => bounds.moment_z,
@@ -114,17 +114,17 @@ fn check(name: &str, refine: i32, bounds: &Bounds) {
 #[test]
 fn given_cases_are_met_with_parts_as_recommended() {
     for name in ["block", "ring"] {
-        check(name, 1, &Bounds { all: 2e-3, moment_z: 2e-3 });
+        check(name, 1, &SplineBounds { all: 2e-3, moment_z: 2e-3 });
     }
-    check("wheel", 1, &Bounds { all: 5e-3, moment_z: 2e-2 });
+    check("wheel", 1, &SplineBounds { all: 5e-3, moment_z: 2e-2 });
 }
 
 #[test]
 fn given_cases_are_met_more_closely_with_finer_parts() {
     for name in ["block", "ring"] {
-        check(name, 16, &Bounds { all: 2e-4, moment_z: 2e-4 });
+        check(name, 16, &SplineBounds { all: 2e-4, moment_z: 2e-4 });
     }
-    check("wheel", 16, &Bounds { all: 2e-4, moment_z: 3e-3 });
+    check("wheel", 16, &SplineBounds { all: 2e-4, moment_z: 3e-3 });
 }
 
 #[test]

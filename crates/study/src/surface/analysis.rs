@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
-use asperity::scene::{Band, PowerLaw, RoughnessSpectrum, Spectrum, Surface};
+use asperity::scene::{PowerLaw, RoughnessSpectrum, Spectrum, SpectrumBand, Surface};
 use serde::Serialize;
 
 use super::map::MapAnalysis;
@@ -69,7 +69,7 @@ pub struct SurfaceAnalysis {
     /// How the spectrum was computed.
     pub taken: String,
     /// The spectrum, by bands.
-    pub spectrum: Vec<Band>,
+    pub spectrum: Vec<SpectrumBand>,
 }
 
 impl SurfaceAnalysis {
