@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use asperity::scene::Scene as SceneData;
-use asperity_study::elements::{ElementField, ElementHistory, Instant, Span, animation};
+use asperity_study::masses::{ElementField, ElementHistory, Instant, Span, animation};
 use numpy::{IntoPyArray as _, PyReadonlyArray1, ToPyArray as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -63,7 +63,7 @@ pub(crate) fn moment<'py>(
     for (name, value) in [("time", instant.time), ("u", instant.u), ("w", instant.w), ("slides", history.slides(row))] {
         found.set_item(name, value)?;
     }
-    let of_masses = |value: fn(&asperity_study::elements::Element) -> f64| {
+    let of_masses = |value: fn(&asperity_study::masses::Element) -> f64| {
         elements.iter().map(value).collect::<Vec<_>>().into_pyarray(py)
     };
     found.set_item("x", of_masses(|mass| mass.x))?;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use asperity::outputs::{OutputType, Variable, variables};
 use asperity::scene::{Scene as SceneData, Unit};
 use asperity::simulation::SimulationError;
-use asperity_study::elements::{ElementField, ElementHistory};
+use asperity_study::masses::{ElementField, ElementHistory};
 use asperity_study::run_figures::{RunFigures, implausible_run};
 use asperity_study::runner::{InputSample, Rows, Runner};
 use numpy::{IntoPyArray as _, PyArray1};

@@ -3,15 +3,16 @@
 use std::path::Path;
 
 use asperity_study::Error;
-use asperity_study::calibration::{Measured, chi_square_per_degree};
+use asperity_study::calibration::{self, Measured, ModelCurves, chi_square_per_degree};
 use asperity_study::comparison::Comparison;
 use asperity_study::decimals::rounded;
+use asperity_study::picture::Stroke;
 use asperity_study::sweep::SweepTable;
 
 use super::cli::Compare;
-use super::figure::{Figure as _, Stroke};
 use super::files::{check_outputs, name_of, named, print_beside};
-use super::measured_friction::{self, ModelCurves, off};
+use super::measured_friction::off;
+use super::picture;
 use super::terminal::{labelled, lines, note, warn};
 
 /// Measurements that are off the most are named up to this many.
@@ -19,17 +20,17 @@ const WORST: usize = 5;
 
 /// Draws the curves and the points, and says how far these are off.
 pub(crate) fn compare(command: &Compare) -> Result<(), Error> {
-    let picture = command.output.clone().unwrap_or_else(|| command.table.with_extension("compare.svg"));
-    check_outputs([&picture], vec![command.table.clone(), command.data.clone()])?;
+    let path = command.output.clone().unwrap_or_else(|| command.table.with_extension("compare.svg"));
+    check_outputs([&path], vec![command.table.clone(), command.data.clone()])?;
     let table = SweepTable::read(&command.table)?;
     let comparison = Comparison::new(&table, &command.table, &command.data)?;
     comparison.notes.iter().for_each(|text| note(text));
     comparison.left_out_in_words().iter().for_each(|text| warn(text));
     comparison.check(&command.data)?;
     let rows: Vec<Measured> = comparison.within.iter().map(|(row, _)| *row).collect();
-    let swept = ModelCurves { name: "swept", stroke: Stroke::Line, points: comparison.swept.clone() };
-    measured_friction::picture(table.header.scene(), &comparison.grid, &rows, &[swept]).write(&picture)?;
-    print_beside([&picture], &summary(command, &comparison, &picture))
+    let swept = ModelCurves { name: "swept", stroke: Stroke::Solid, points: comparison.swept.clone() };
+    picture::write(&calibration::picture(table.header.scene(), &comparison.grid, &rows, &[swept]), &path)?;
+    print_beside([&path], &summary(command, &comparison, &path))
 }
 
 fn summary(command: &Compare, comparison: &Comparison, picture: &Path) -> String {

@@ -6,7 +6,7 @@ use std::path::Path;
 use asperity::outputs::OutputType;
 
 use asperity_study::Error;
-use asperity_study::elements::{ElementField, ElementHistory, Instant};
+use asperity_study::masses::{ElementField, ElementHistory, Instant};
 
 use crate::files;
 use crate::npz::{Array, Values, npz};

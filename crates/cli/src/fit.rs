@@ -1,17 +1,17 @@
 //! `asperity fit`: fits Prony terms to measured moduli.
 
-use std::f64::consts::{LN_10, TAU};
+use std::f64::consts::LN_10;
 use std::path::{Path, PathBuf};
 
-use asperity_study::decimals::{percent, plain, rounded, short};
+use asperity_study::decimals::{percent, plain, short};
 use asperity_study::fit::{
-    Consistency, DecadeConsistency, FitOptions, FittedModuli, RelativeError, Sample, ShiftedCurve, Test, Vertical,
-    Weight, fit_moduli,
+    Consistency, DecadeConsistency, FitOptions, FittedModuli, RelativeError, ShiftedCurve, Test, Vertical, Weight,
+    fit_moduli,
 };
 
 use super::cli::{Fit, FitVertical, FitWeight};
-use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
 use super::files::{self, FileError, check_outputs, name_of, named, picture_beside, print_beside};
+use super::picture;
 use super::terminal::{LabelledLine, lines, note, warn, with_flags};
 use super::{NOT_REACHED, SUCCESS};
 
@@ -28,8 +28,6 @@ pub(crate) enum FitError {
 
 /// Of the volume of natural rubber, 1/K.
 const EXPANSION: f64 = 6.6e-4;
-/// Points per decade of a plotted curve.
-const POINTS_PER_DECADE: f64 = 20.0;
 
 impl From<&Fit> for FitOptions {
     fn from(command: &Fit) -> Self {
@@ -75,8 +73,10 @@ pub(crate) fn fit(command: &Fit) -> Result<u8, FitError> {
     fitted.notes().iter().for_each(|text| note(text));
     fitted.warnings().iter().for_each(|text| warn(text));
     files::write(&command.output, with_flags(&fitted.file()))?;
-    if let Some(picture) = &picture {
-        drawn(&fitted, &command.data).write(picture)?;
+    if let Some(path) = &picture {
+        let terms = fitted.terms().len();
+        let title = format!("{}: {terms} terms, {} rms", name_of(&command.data), percent(fitted.error(), 3));
+        picture::write(&fitted.picture().titled(title), path)?;
     }
     print_beside([&command.output], &summary(&fitted, command, picture.as_deref()))?;
     if fitted.error() <= command.fit_error {
@@ -231,64 +231,4 @@ fn scene(fitted: &FittedModuli, name: &str) -> String {
         ));
     }
     lines.iter().map(|line| format!("{line}\n")).collect()
-}
-
-/// The plot: data as rings, the fit as lines; of several temperatures the master curve.
-fn drawn(fitted: &FittedModuli, data: &Path) -> Stacked {
-    let unit = if fitted.counts_cycles() { TAU } else { 1.0 };
-    let places = between(fitted.samples());
-    let curves = |name: &str, look: usize, measured: fn(&Sample) -> f64, of_fit: fn((f64, f64)) -> f64| {
-        let points = fitted.samples().iter().map(|sample| (sample.at / unit, measured(sample))).collect();
-        let line = places.iter().map(|&at| (at / unit, of_fit(fitted.response(at)))).collect();
-        [
-            Curve { name: format!("{name} measured"), look, stroke: Stroke::Rings, points },
-            Curve { name: format!("{name} fitted"), look, stroke: Stroke::Line, points: line },
-        ]
-    };
-    let panel = |title: &str, curves: Vec<Curve>| Panel { title: title.into(), curves };
-    let mut panels = if fitted.test() == Test::Oscillation {
-        let storage = curves("E'", 0, |sample| sample.storage, |(storage, _)| storage);
-        let loss = curves("E''", 1, |sample| sample.loss, |(_, loss)| loss);
-        let tangent = curves("tan δ", 2, |sample| sample.loss / sample.storage, |(storage, loss)| loss / storage);
-        vec![panel("modulus in Pa", [storage, loss].concat()), panel("tan δ", tangent.to_vec())]
-    } else {
-        let relaxed = curves("E(t)", 0, |sample| sample.storage, |(storage, _)| storage);
-        vec![panel("modulus in Pa", relaxed.to_vec())]
-    };
-    panels.push(panel("rms error up to there, %", misfit(fitted, unit)));
-    let title = format!("{}: {} terms, {} rms", name_of(data), fitted.terms().len(), percent(fitted.error(), 3));
-    Stacked { title, x_title: x_title(fitted), panels }
-}
-
-/// How the errors add up to those of the fit, in per cent, over frequencies in `unit`.
-fn misfit(fitted: &FittedModuli, unit: f64) -> Vec<Curve> {
-    /// Of the whole: what is less is not drawn.
-    const LEAST: f64 = 0.01;
-    let sums = fitted.cumulative_errors();
-    let names: &[&str] = if fitted.test() == Test::Oscillation { &["E'", "E''"] } else { &["E(t)"] };
-    let curve = |(look, name): (usize, &&str)| {
-        let whole = sums.last().map_or(0.0, |sums| sums[1 + look]);
-        let seen = sums.iter().filter(|sums| sums[1 + look] > LEAST * whole);
-        let points = seen.map(|sums| (sums[0] / unit, 100.0 * sums[1 + look])).collect();
-        Curve { name: format!("{name} off the fit"), look, stroke: Stroke::Line, points }
-    };
-    names.iter().enumerate().map(curve).collect()
-}
-
-fn x_title(fitted: &FittedModuli) -> String {
-    let quantity = match (fitted.test(), fitted.counts_cycles()) {
-        (Test::Relaxation, _) => "time in s",
-        (Test::Oscillation, true) => "frequency in Hz",
-        (Test::Oscillation, false) => "angular frequency in rad/s",
-    };
-    let shifted = |reference: f64| format!("{quantity}, shifted to {} K", plain(rounded(reference, 6)));
-    fitted.reference().map_or_else(|| quantity.into(), shifted)
-}
-
-/// Angular frequencies or times over the range of `samples`, evenly spaced in the logarithm.
-fn between(samples: &[Sample]) -> Vec<f64> {
-    let places = samples.iter().map(|sample| sample.at.log10());
-    let (low, high) = places.fold((f64::MAX, f64::MIN), |(low, high), place| (low.min(place), high.max(place)));
-    let intervals = ((high - low) * POINTS_PER_DECADE).ceil().max(1.0);
-    (0..=intervals as usize).map(|i| 10.0_f64.powf(low + (high - low) * i as f64 / intervals)).collect()
 }

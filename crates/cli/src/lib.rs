@@ -18,23 +18,24 @@
 //! | `table_file` | draft, files, lock, output, terminal | tables that a stopped command goes on with, which add rows |
 //! | `result_file` | draft, files | results of runs, row by row |
 //! | `cli` | files | the command line: commands and their options |
-//! | `figure` | cli, files, terminal | charts, maps and moments, drawn with plotters |
-//! | `measured_friction` | figure | measured friction beside that of a model |
+//! | `picture` | files | draws pictures, as SVG or PNG |
+//! | `plot` | cli, files, picture, terminal | `plot` |
+//! | `measured_friction` | | how far measured friction is off that of a model |
 //! | `elements` | files, npz | the masses of a run as arrays |
-//! | `simulate` | cli, elements, figure, files, result_file, terminal | `simulate` of a scene |
-//! | `patch` | cli, figure, files, result_file, simulate, terminal | `simulate` of a patch |
-//! | `describe` | cli, figure, files, simulate, terminal | `describe` |
-//! | `contact` | cli, figure, files, npz, terminal | `contact` |
-//! | `sweep` | cli, figure, files, interrupt, output, table_file, terminal | `sweep` |
-//! | `rank` | cli, figure, files, terminal | `rank` |
-//! | `converge` | cli, draft, figure, files, interrupt, output, resumable_table, terminal | `converge` |
-//! | `fit` | cli, figure, files, terminal | `fit` |
-//! | `calibrate` | cli, figure, files, interrupt, measured_friction, output, resumable_table, terminal | `calibrate` |
-//! | `compare` | cli, figure, files, measured_friction, terminal | `compare` |
-//! | `material` | cli, figure, files, terminal | `material` |
-//! | `surface` | cli, figure, files, terminal | `surface` |
-//! | `pack` | cli, figure, files, terminal | `pack` |
-//! | `report` | cli, figure, files, terminal | `report` |
+//! | `simulate` | cli, elements, files, picture, result_file, terminal | `simulate` of a scene |
+//! | `patch` | cli, files, picture, result_file, simulate, terminal | `simulate` of a patch |
+//! | `describe` | cli, files, picture, simulate, terminal | `describe` |
+//! | `contact` | cli, files, npz, picture, terminal | `contact` |
+//! | `sweep` | cli, files, interrupt, output, picture, table_file, terminal | `sweep` |
+//! | `rank` | cli, files, picture, terminal | `rank` |
+//! | `converge` | cli, draft, files, interrupt, output, picture, resumable_table, terminal | `converge` |
+//! | `fit` | cli, files, picture, terminal | `fit` |
+//! | `calibrate` | cli, files, interrupt, measured_friction, output, picture, resumable_table, terminal | `calibrate` |
+//! | `compare` | cli, files, measured_friction, picture, terminal | `compare` |
+//! | `material` | cli, files, picture, terminal | `material` |
+//! | `surface` | cli, files, picture, terminal | `surface` |
+//! | `pack` | cli, files, picture, terminal | `pack` |
+//! | `report` | cli, files, picture, terminal | `report` |
 //! | `reference` | cli, files | the reference page, completions and manual pages |
 
 mod calibrate;
@@ -45,7 +46,6 @@ mod converge;
 mod describe;
 mod draft;
 mod elements;
-mod figure;
 mod files;
 mod fit;
 mod interrupt;
@@ -56,6 +56,8 @@ mod npz;
 mod output;
 mod pack;
 mod patch;
+pub mod picture;
+mod plot;
 mod rank;
 mod reference;
 mod report;
@@ -109,7 +111,7 @@ fn run(arguments: Arguments) -> Result<u8, Box<dyn Error>> {
         Command::Contact(command) => contact::contact(&command)?,
         Command::Converge(command) => return Ok(converge::converge(&command)?),
         Command::Rank(command) => return Ok(rank::rank(&command)?),
-        Command::Plot(command) => figure::plot_files(&command)?,
+        Command::Plot(command) => plot::plot_files(&command)?,
         Command::Describe(command) => run_describe(&command)?,
         Command::Pack(command) => pack::pack(&command)?,
         Command::Fit(command) => return Ok(fit::fit(&command)?),

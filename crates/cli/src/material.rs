@@ -10,8 +10,8 @@ use asperity_study::decimals;
 use asperity_study::material::{POINTS, Response, Responses, at_temperature, evenly};
 
 use super::cli::Material;
-use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
 use super::files::{self, check_outputs, ends_in, is_standard_output, load_without_run, named, print_beside};
+use super::picture;
 use super::terminal::{LabelledLine, lines};
 
 /// Prints a summary and a table; writes the outputs or, if none is given, a plot.
@@ -27,7 +27,10 @@ pub(crate) fn material(command: &Material) -> Result<(), Error> {
         if ends_in(output, "csv") || is_standard_output(output) {
             files::write(output, responses.file())?;
         } else {
-            drawn(&responses, &scene).write(output)?;
+            picture::write(
+                &responses.picture(&evenly(responses.band, POINTS)).titled(title(&responses, &scene)),
+                output,
+            )?;
         }
     }
     let names: Vec<String> = outputs.iter().map(|output| named(output)).collect();
@@ -105,36 +108,11 @@ fn table(responses: &Responses<'_>) -> String {
     std::iter::once(line(names.clone())).chain(rows).collect()
 }
 
-fn drawn(responses: &Responses<'_>, scene: &Scene) -> Stacked {
-    let omegas = evenly(responses.band, POINTS);
-    let curve = |look: usize, name: &str, value: &dyn Fn(f64) -> f64| Curve {
-        name: name.into(),
-        look,
-        stroke: Stroke::Line,
-        points: omegas.iter().map(|&omega| (omega, value(omega))).collect(),
-    };
-    let of_all = |value: fn(&Response, f64) -> f64| -> Vec<Curve> {
-        let all = responses.responses.iter().enumerate();
-        all.map(|(i, response)| curve(i, response.name, &|omega| value(response, omega))).collect()
-    };
-    let panel = |title: &str, curves: Vec<Curve>| Panel { title: title.into(), curves };
-    let panels = if responses.is_material() {
-        let response = &responses.responses[0];
-        let storage = curve(0, "E'", &|omega| response.at(omega).0);
-        let loss = curve(1, "E''", &|omega| response.at(omega).1);
-        let tangent = curve(2, "tan δ", &|omega| response.loss_tangent(omega));
-        vec![panel("modulus in Pa", vec![storage, loss]), panel("tan δ", vec![tangent])]
-    } else {
-        vec![
-            panel("K' in N/m", of_all(|response, omega| response.at(omega).0)),
-            panel("K'' in N/m", of_all(|response, omega| response.at(omega).1)),
-            panel("tan δ", of_all(Response::loss_tangent)),
-        ]
-    };
+/// The title of the picture.
+fn title(responses: &Responses<'_>, scene: &Scene) -> String {
     let wlf = scene.material.as_ref().and_then(|material| material.wlf);
     let temperature = wlf.map_or_else(String::new, |wlf| format!(" at {} K", short(wlf.temperature)));
-    let title = format!("{}: {}{temperature}", scene.name, responses.quantity());
-    Stacked { title, x_title: "angular frequency in rad/s".into(), panels }
+    format!("{}: {}{temperature}", scene.name, responses.quantity())
 }
 
 /// Five digits.

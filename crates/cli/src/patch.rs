@@ -6,14 +6,15 @@ use asperity::outputs::OutputType;
 use asperity::patch::{Patch, PatchRun, PatchVariable};
 
 use crate::cli::Simulate;
-use crate::figure::{Figure as _, PatchHistory};
 use crate::files::{check_outputs, load_patch, named, print_beside};
+use crate::picture;
 use crate::result_file::CsvWriter;
 use crate::simulate::{NOT_STARTED, ended_at};
 use crate::terminal::{lines, warn};
 use asperity_study::csv::Field;
 use asperity_study::decimals::with_prefix;
 use asperity_study::motion::MotionFile;
+use asperity_study::patch_history::PatchHistory;
 use asperity_study::{Context as _, Error};
 
 /// Moves the patch, writes the rows and draws the plot.
@@ -39,7 +40,7 @@ pub(crate) fn simulate(command: &Simulate, patch_file: &Path, motion_file: &Path
     let history = recorder.finish()?;
     result?;
     if let (Some(path), Some(history)) = (&command.plot, history) {
-        history.write(path)?;
+        picture::write(&history.picture(), path)?;
     }
     let steps = format!("{} steps to t = {} s", motion.rows().len() - 1, run.time());
     let files = [output.as_path()].into_iter().chain(command.plot.as_deref()).map(named).collect::<Vec<_>>();

@@ -11,13 +11,14 @@ use indicatif::ProgressBar;
 
 use super::cli::Simulate;
 use super::elements::write_arrays;
-use super::figure::{Figure as _, LayerPicture, TimeHistory, write_row};
 use super::files::{self, check_outputs, ends_in, load, named, print_beside};
+use super::picture;
 use super::result_file::ResultWriter;
 use super::terminal::{LabelledLine, bar, is_verbose, lines, note, warn};
-use asperity_study::elements::{ElementHistory, Span, animation};
+use asperity_study::masses::{ElementHistory, Span, animation};
 use asperity_study::run_figures::{RunFigures, implausible_run};
 use asperity_study::runner::{InputSample, Rows, Runner};
+use asperity_study::time_history::TimeHistory;
 use asperity_study::{Context as _, Error};
 
 /// What is said before why a run cannot start.
@@ -45,7 +46,7 @@ pub(crate) fn simulate(command: &Simulate, path: &Path) -> Result<(), Error> {
     let (history, elements) = recorder.finish()?;
     let mut summary = result?;
     if let (Some(path), Some(history)) = (&command.plot, history) {
-        history.write(path)?;
+        picture::write(&history.picture(), path)?;
     }
     if let Some(elements) = elements {
         write_elements(&elements, command)?;
@@ -99,7 +100,7 @@ fn write_elements(elements: &ElementHistory, command: &Simulate) -> Result<(), E
     check_end(command, elements.rows().last().map_or(0.0, |row| row.time))?;
     for (time, path) in &command.contact {
         if let Some(row) = elements.row_at(*time) {
-            LayerPicture::alone(elements, row).write(path)?;
+            picture::write(&elements.picture(row), path)?;
         }
     }
     Ok(())
@@ -110,7 +111,7 @@ fn write_frames(elements: &ElementHistory, path: &Path) -> Result<(), Error> {
     const MOST: usize = 100;
     let rows = elements.evenly_in_time(MOST);
     let span = Span::over(elements, &rows);
-    write_row(rows.len(), |i| LayerPicture::in_film(elements, rows[i], span), path)
+    picture::write_all(rows.len(), |i| elements.frame(rows[i], span), path)
 }
 
 /// Runs the scene; what the run comes to, or why it ended before its end.

@@ -10,8 +10,8 @@ use asperity_study::surface::{
 };
 
 use super::cli::{Reading, Surface};
-use super::figure::{Figure as _, ProfileCurves, ProfilePicture};
 use super::files::{self, FileError, check_outputs, ends_in, load_without_run, name_of, named, print_beside};
+use super::picture;
 use super::terminal::{LabelledLine, lines, note, warn};
 
 /// `asperity surface` failed.
@@ -67,7 +67,10 @@ pub(crate) fn surface(command: &Surface) -> Result<(), SurfaceError> {
     }
     print_beside(&command.write, &text)?;
     if let Some(path) = &command.output {
-        drawn(&treated, command).write(path)?;
+        let hurst = analysis.law.map(|law| format!(", Hurst exponent {:.2}", law.hurst)).unwrap_or_default();
+        let height = analysis.statistics.rms_height;
+        let title = format!("{}: rms height {height:.3e} m{hurst}", name_of(&command.file));
+        picture::write(&treated.picture(command.wavelengths.as_ref()).titled(title), path)?;
     }
     write_surface(surface, command)?;
     write_spectrum(finer.as_ref(), analysis.map.as_ref(), command)
@@ -200,24 +203,4 @@ fn map_rows(map: &MapAnalysis) -> Vec<LabelledLine> {
         format!("Hurst exponent along x {along_x}, along y {along_y}"),
     ];
     rows.into_iter().enumerate().map(|(i, row)| (if i == 0 { "Map" } else { "" }, row)).collect()
-}
-
-fn curves(surface: &scene::Surface, analysis: &SurfaceAnalysis) -> ProfileCurves {
-    ProfileCurves {
-        heights: surface.x().iter().copied().zip(surface.z().iter().copied()).collect(),
-        spectrum: analysis.spectrum.iter().map(|band| (band.wave_number, band.density)).collect(),
-    }
-}
-
-/// The profile and its spectrum, before smoothing too.
-fn drawn(treated: &TreatedSurface, command: &Surface) -> ProfilePicture {
-    let TreatedSurface { read, surface, analysis, .. } = treated;
-    let before = analysis.removed.is_some().then(|| SurfaceAnalysis::of(read, command.wavelengths.as_ref()));
-    let hurst = analysis.law.map(|law| format!(", Hurst exponent {:.2}", law.hurst)).unwrap_or_default();
-    ProfilePicture {
-        title: format!("{}: rms height {:.3e} m{hurst}", name_of(&command.file), analysis.statistics.rms_height),
-        read: before.map(|before| curves(read, &before)),
-        used: curves(surface, analysis),
-        law: analysis.law_curve().into_iter().map(|[q, density]| (q, density)).collect(),
-    }
 }

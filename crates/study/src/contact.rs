@@ -5,7 +5,9 @@ use clap::Args;
 use serde::{Deserialize, Serialize};
 
 use crate::Error;
+use crate::decimals::rounded;
 use crate::implausible::{FoundFriction, implausible};
+use crate::picture::{Axis, Colour, ColourScale, Colours, Fit, Mark, Panel, Picture, Row, Shape, fitted, slides};
 use crate::steady::{SlideProblem, SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 use crate::sweep::{Method, SlidingOptions, SweepMethod, check_possible};
 use crate::values::{pressure, speed};
@@ -93,5 +95,67 @@ impl ContactFields {
             pressures,
             gaps: slide.contact.gaps.clone(),
         }
+    }
+}
+
+impl SolvedContact {
+    /// Along a profile the rubber's surface above it and the pressure; over a map pressure, gap, and where on the heights
+    /// the contact is.
+    pub fn picture(&self) -> Picture {
+        if self.surface.size.ny > 1 { self.maps() } else { self.fields.curves() }
+    }
+
+    /// Maps side by side, or below each other where the surface is long.
+    fn maps(&self) -> Picture {
+        /// A surface that is so many times as long as wide is long.
+        const LONG: f64 = 1.6;
+        let (surface, fields) = (&self.surface, &self.fields);
+        let is_long = surface.length > LONG * surface.width;
+        let size = fitted([surface.length, surface.width], if is_long { [760.0, 300.0] } else { [320.0, 440.0] });
+        let [x, y] = [("x", surface.length), ("y", surface.width)]
+            .map(|(name, side)| Axis::linear((name, "m"), [0.0, side], Fit::Tight));
+        let is_touched = |i: usize| fields.pressures[i] > 0.0;
+        let map = |of: (&str, &str),
+                   values: &[f64],
+                   colours: Colours,
+                   (name, colour): (&str, Colour),
+                   is_left_out: &dyn Fn(usize) -> bool| {
+            let shown = values.iter().enumerate().map(|(i, value)| Some(*value).filter(|_| !is_left_out(i))).collect();
+            let heat = Shape::Heat { columns: surface.size.nx, values: shown };
+            let mark = Mark::new(name, 0, heat).coloured(colour);
+            let scale = ColourScale { axis: Axis::linear(of, values.iter().copied(), Fit::Tight), colours };
+            let panel = Panel::new(x.clone(), y.clone(), vec![mark]).sized(size[0], size[1]);
+            Panel { title: of.0.into(), scale: Some(scale), ..panel }
+        };
+        let contact = format!("contact, {} % of the area", rounded(100.0 * self.slide.area, 3));
+        let panels = vec![
+            map(("pressure", "Pa"), &fields.pressures, Colours::Viridis, ("no contact", Colour::GRID), &|i| {
+                !is_touched(i)
+            }),
+            map(("gap", "m"), &fields.gaps, Colours::Blues, ("", Colour::GRID), &|_| false),
+            map(("height", "m"), &fields.heights, Colours::Greys, (&contact, Colour::nth(1)), &is_touched),
+        ];
+        let note = slides(1.0).trim_start_matches(", ").to_owned();
+        let mut rows = match is_long {
+            true => panels.into_iter().map(Row::from).collect(),
+            false => vec![Row { panels, ..Row::default() }],
+        };
+        rows.iter_mut().take(1).for_each(|row| row.note.clone_from(&note));
+        Picture::of(rows)
+    }
+}
+
+impl ContactFields {
+    /// The profile with the rubber's surface above it, and the pressure below.
+    fn curves(&self) -> Picture {
+        let line = |name: &str, look: usize, values: &mut dyn Iterator<Item = f64>| {
+            Mark::line(name, look, self.x.iter().copied().zip(values).map(|(x, value)| [x, value]).collect())
+        };
+        let mut rubber = self.heights.iter().zip(&self.gaps).map(|(height, gap)| height + gap);
+        let heights = vec![line("rubber", 1, &mut rubber), line("surface", 0, &mut self.heights.iter().copied())];
+        let pressure = vec![line("pressure", 1, &mut self.pressures.iter().copied())];
+        let mut picture = Picture::over(("x", "m"), vec![(("height", "m"), heights), (("pressure", "Pa"), pressure)]);
+        picture.rows[0].note = picture.rows[0].panels[0].exaggeration() + slides(1.0);
+        picture
     }
 }

@@ -15,32 +15,36 @@
 //! | [`decimals`] | | numbers as text: in all their digits, rounded, with prefixes of units |
 //! | [`values`] | decimals | values of options as people write them: with units, lists, ranges |
 //! | [`html`] | | pages in HTML: templates filled in, tables |
+//! | [`picture`] | decimals | pictures as plain data: panels with axes and marks |
 //! | [`progress`] | | how far long work is, and how it is ended |
 //! | [`implausible`] | decimals | friction and areas of contact that no rubber has |
 //! | [`settings`] | | keys of scenes and patches set to other values |
 //! | `error` | progress | why something is not done: what was expected, what was found, and where |
 //! | [`files`] | error | scenes, patches and other files, read |
 //! | [`csv`] | decimals, error, files | tables of text with a header, read and written |
-//! | [`elements`] | html | what the masses of a layer do over a run, as arrays, as pictures and as a page show it |
+//! | [`masses`] | decimals, html, picture | what the masses of a layer do over a run, as arrays, as a picture and as an animation |
+//! | [`time_history`] | picture | a run over time as a picture |
+//! | [`patch_history`] | decimals, picture, time_history | a run of a patch as a picture |
 //! | [`runner`] | progress | a scene along its excitation, row by row |
 //! | [`steady`] | | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
 //! | [`uncertainty`] | error | scenes drawn from what is not known of one: Sobol' points, distributions, indices |
-//! | [`sweep`] | decimals, error, files, implausible, progress, steady, uncertainty, values | friction over speed, load and temperature, as a table |
-//! | [`contact`] | implausible, steady, sweep, values | the contact of a surface in steady sliding |
-//! | [`converge`] | decimals, error, steady, sweep | whether area and friction depend on spacing, length or chance |
-//! | [`calibration`] | csv, decimals, error, files, implausible, settings, steady, sweep | free numbers of a scene from measured friction: models, least squares, errors, plans |
+//! | [`sweep`] | decimals, error, files, implausible, picture, progress, steady, uncertainty, values | friction over speed, load and temperature, as a table |
+//! | [`contact`] | implausible, picture, steady, sweep, values | the contact of a surface in steady sliding |
+//! | [`converge`] | decimals, error, picture, steady, sweep | whether area and friction depend on spacing, length or chance |
+//! | [`calibration`] | csv, decimals, error, files, implausible, picture, settings, steady, sweep | free numbers of a scene from measured friction: models, least squares, errors, plans |
 //! | [`comparison`] | calibration, sweep | a table of a sweep beside measured friction |
-//! | [`rank`] | calibration, comparison, csv, decimals, error, files, progress, sweep, uncertainty | scenes in the order of their friction, and how sure that is |
-//! | [`fit`] | decimals, error, files | Prony series and shift factors from measured moduli |
-//! | [`material`] | decimals, error | moduli of a scene's compound, or stiffnesses of its links, over frequency |
-//! | [`surface`] | decimals | numbers, spectra and power laws of a surface; smoothed, split and made periodic |
-//! | [`summary`] | decimals, error, runner, steady | what there is in a scene, a patch or a table, in lines |
+//! | [`friction_map`] | calibration, comparison, picture, sweep | a table's friction over two of its quantities |
+//! | [`rank`] | calibration, comparison, csv, decimals, error, files, picture, progress, sweep, uncertainty | scenes in the order of their friction, and how sure that is |
+//! | [`fit`] | decimals, error, files, picture | Prony series and shift factors from measured moduli |
+//! | [`material`] | decimals, error, picture | moduli of a scene's compound, or stiffnesses of its links, over frequency |
+//! | [`surface`] | decimals, picture | numbers, spectra and power laws of a surface; smoothed, split and made periodic |
+//! | [`summary`] | decimals, error, picture, runner, steady | what there is in a scene, a patch or a table, in lines |
 //! | [`run_figures`] | decimals, implausible, summary | forces and friction of a run, what it cost, and what would make it cheaper |
 //! | [`robustness`] | | a catalogue of perturbations of a scene, and the judge of perturbed runs |
-//! | [`pack`] | decimals, error, files, html, robustness, runner, summary, sweep | scenes, tables and patches as FMUs |
+//! | [`pack`] | decimals, error, files, html, picture, robustness, runner, summary, sweep | scenes, tables and patches as FMUs |
 //! | [`motion`] | error, files | the motion that a patch is moved along |
-//! | [`check`] | csv, decimals, error, progress, runner, summary, sweep | elements and patches against what was swept |
-//! | [`report`] | csv, decimals, progress, robustness, runner | what the runs of a scene cost and how accurate they are |
+//! | [`check`] | csv, decimals, error, picture, progress, runner, summary, sweep | elements and patches against what was swept |
+//! | [`report`] | csv, decimals, picture, progress, robustness, runner | what the runs of a scene cost and how accurate they are |
 
 pub mod calibration;
 pub mod check;
@@ -49,18 +53,21 @@ pub mod contact;
 pub mod converge;
 pub mod csv;
 pub mod decimals;
-pub mod elements;
 mod error;
 pub mod files;
 pub mod fit;
+pub mod friction_map;
 pub mod html;
 pub mod implausible;
 #[cfg(test)]
 #[path = "../../../src/in_tests.rs"]
 mod in_tests;
+pub mod masses;
 pub mod material;
 pub mod motion;
 pub mod pack;
+pub mod patch_history;
+pub mod picture;
 pub mod progress;
 pub mod rank;
 pub mod report;
@@ -72,6 +79,7 @@ pub mod steady;
 pub mod summary;
 pub mod surface;
 pub mod sweep;
+pub mod time_history;
 pub mod uncertainty;
 pub mod values;
 

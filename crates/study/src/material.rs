@@ -5,6 +5,7 @@ use asperity::scene::{Link, LinkKind, MaxwellElement, Scene};
 
 use crate::decimals::short;
 use crate::error::{Context as _, Error};
+use crate::picture::{Mark, Picture};
 
 /// The scene at another temperature, K.
 ///
@@ -206,6 +207,31 @@ impl<'a> Responses<'a> {
             [storage, loss, response.loss_tangent(omega)]
         });
         std::iter::once(omega).chain(values).collect()
+    }
+
+    /// The moduli of a compound with its loss tangent, or the stiffnesses of the links with theirs, at `omegas` (rad/s).
+    pub fn picture(&self, omegas: &[f64]) -> Picture {
+        let curve = |look: usize, name: &str, value: &dyn Fn(f64) -> f64| {
+            Mark::line(name, look, omegas.iter().map(|&omega| [omega, value(omega)]).collect())
+        };
+        let of_all = |value: fn(&Response, f64) -> f64| -> Vec<Mark> {
+            let all = self.responses.iter().enumerate();
+            all.map(|(i, response)| curve(i, response.name, &|omega| value(response, omega))).collect()
+        };
+        let panels = if self.is_material() {
+            let response = &self.responses[0];
+            let storage = curve(0, "E'", &|omega| response.at(omega).0);
+            let loss = curve(1, "E''", &|omega| response.at(omega).1);
+            let tangent = curve(2, "tan δ", &|omega| response.loss_tangent(omega));
+            vec![(("modulus", "Pa"), vec![storage, loss]), (("tan δ", ""), vec![tangent])]
+        } else {
+            vec![
+                (("K'", "N/m"), of_all(|response, omega| response.at(omega).0)),
+                (("K''", "N/m"), of_all(|response, omega| response.at(omega).1)),
+                (("tan δ", ""), of_all(Response::loss_tangent)),
+            ]
+        };
+        Picture::stacked(("angular frequency", "rad/s"), panels)
     }
 
     /// The table as a file.

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use asperity_study::steady::{SlidingRubber, SteadySolver};
 
-use super::picture::{Curve, Legend, Picture};
+use super::picture::{Curve, Picture};
 use super::row::{Claim, Comparison, Entry, Row};
 use super::sliding::{largest_pressure, map, rubber, sine, slide};
 
@@ -128,7 +128,6 @@ fn wave() -> Comparison {
             x: "p / p*",
             y: "area of contact over the whole",
             is_logarithmic: false,
-            legend: Legend::UpperLeft,
             curves: vec![
                 Curve::line("Westergaard", (0..=400).map(|i| f64::from(i) / 400.0).map(|x| (x, exact(x))).collect()),
                 Curve::marks("asperity", shares.into_iter().zip(found).collect()),
@@ -196,7 +195,6 @@ fn waves() -> Comparison {
             x: "p / p*",
             y: "area of contact over the whole",
             is_logarithmic: false,
-            legend: Legend::LowerRight,
             curves: vec![
                 Curve::line("small pressures", line(&few, 0, 40)),
                 Curve::line("near full contact", line(&almost_all, 70, 100)),

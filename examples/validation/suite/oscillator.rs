@@ -6,7 +6,7 @@ use asperity::scene::Scene;
 use asperity::simulation::Start;
 
 use super::layer::{begin, even_times, sample, straight};
-use super::picture::{Curve, Legend, Picture};
+use super::picture::{Curve, Picture};
 use super::row::{Claim, Comparison, Entry, Row};
 use super::sliding::parse;
 
@@ -90,7 +90,6 @@ fn block() -> Comparison {
             x: "time in ms",
             y: "force of the spring in N",
             is_logarithmic: false,
-            legend: Legend::Above,
             curves: vec![
                 Curve::line("force at break", vec![(0.0, most), (picture.last().unwrap().0, most)]),
                 Curve::line("force at stop", vec![(0.0, least), (picture.last().unwrap().0, least)]),

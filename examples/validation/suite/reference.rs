@@ -4,7 +4,7 @@ use std::fs;
 
 use asperity::scene::Scene;
 
-use super::picture::{Curve, Legend, Picture};
+use super::picture::{Curve, Picture};
 use super::root;
 use super::row::{Claim, Comparison, Entry, Row};
 use crate::common::{Table, runs};
@@ -87,7 +87,6 @@ fn cases() -> Comparison {
             x: "displacement in µm",
             y: "tangential force in mN",
             is_logarithmic: false,
-            legend: Legend::MiddleRight,
             curves,
         }],
         remark: "A row right at an event may count otherwise. The paper gives no numbers: its figure is compared by \

@@ -6,7 +6,7 @@ use asperity_study::decimals::short;
 use asperity_study::steady::{SlidingRubber, SteadySolver, SurfaceGrid};
 use asperity_study::sweep::{StopBounds, steady_sliding};
 
-use super::picture::{Curve, Legend, Picture};
+use super::picture::{Curve, Picture};
 use super::root;
 use super::row::{Claim, Comparison, Entry, Row};
 
@@ -118,7 +118,6 @@ fn tread() -> Comparison {
             x: "speed in m/s",
             y: "friction coefficient",
             is_logarithmic: true,
-            legend: Legend::LowerRight,
             curves: vec![Curve::line("20 °C", curve), Curve::line("40 °C", speeds.into_iter().zip(hot).collect())],
         }],
         remark: format!(

@@ -6,7 +6,7 @@ use asperity::math::SplitMix64;
 use asperity_study::decimals::short;
 use asperity_study::steady::{GridSize, SlidingRubber, SteadySolver, SurfaceGrid};
 
-use super::picture::{Curve, Legend, Picture};
+use super::picture::{Curve, Picture};
 use super::row::{Claim, Comparison, Entry, Row};
 use super::sliding::{rubber, slide};
 
@@ -189,7 +189,6 @@ fn spectrum() -> Comparison {
             x: "speed in m/s",
             y: "friction coefficient",
             is_logarithmic: true,
-            legend: Legend::UpperRight,
             curves: vec![
                 Curve::line("S = 1", line(0)),
                 Curve::line("S = ¾ + ¼P²", line(1)),

@@ -6,7 +6,7 @@ use std::fs;
 
 use asperity::patch::{Patch, PatchMotion, PatchOutput, PatchRun, PatchStart, Pose};
 
-use super::picture::{Curve, Legend, Picture};
+use super::picture::{Curve, Picture};
 use super::row::{Claim, Comparison, Entry, Row};
 
 pub const SPRINGS: Entry = Entry {
@@ -134,7 +134,6 @@ fn springs() -> Comparison {
             x: "angle over μp₀/(ka)",
             y: "moment over μNa",
             is_logarithmic: false,
-            legend: Legend::LowerRight,
             curves: vec![
                 Curve::line("closed form", (0..=100).map(|i| 0.05 * f64::from(i)).map(|x| (x, spin(x))).collect()),
                 Curve::marks("asperity", found),

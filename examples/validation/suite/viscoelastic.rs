@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use asperity_study::decimals::{percent, short};
 
-use super::picture::{Curve, Legend, Picture};
+use super::picture::{Curve, Picture};
 use super::row::{Claim, Comparison, Entry, Row};
 use super::sliding::{cylinder, largest_pressure, parse, rubber, sine, slide};
 
@@ -188,7 +188,6 @@ fn rolling() -> Comparison {
             x: "vτ / a",
             y: "friction coefficient",
             is_logarithmic: true,
-            legend: Legend::UpperRight,
             curves: vec![Curve::line("Hunter", line), one, four, sixteen],
         }],
         remark: format!(

@@ -9,21 +9,22 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use asperity::scene::{Scene, read_text};
+use asperity_study::calibration::ModelCurves;
 use asperity_study::calibration::{
-    Calibration, CalibrationError, CalibrationOptions, CalibrationStage, Calibrator, CandidateOptions, CurveGrid,
+    self, Calibration, CalibrationError, CalibrationOptions, CalibrationStage, Calibrator, CandidateOptions, CurveGrid,
     FitCovariance, FreeScene, Outcome, Task, calibrated_text, named_covariance,
 };
 use asperity_study::decimals::rounded;
+use asperity_study::picture::Stroke;
 use indicatif::ProgressBar;
 
 use super::cli::Calibrate;
-use super::figure::{Figure as _, Stroke};
 use super::files::{
     self, FileError, check_outputs, is_standard_output, load_without_run, name_of, picture_beside, print_beside,
 };
 use super::interrupt::Farewell;
-use super::measured_friction::{self, ModelCurves};
 use super::output::of_set;
+use super::picture;
 use super::terminal::{self, note, warn};
 use super::{NOT_REACHED, SUCCESS};
 use kept::KeptPoints;
@@ -192,16 +193,16 @@ fn drawn(
     free: &FreeScene<'_>,
     calibration: &Calibration,
     calibrator: &Calibrator<'_>,
-    picture: &Path,
+    path: &Path,
 ) -> Result<(), CalibrateError> {
     let grid = CurveGrid::new(calibration.problem.points.iter());
     let [before, after] = calibrator.curves(calibration, grid.points(CURVE))?;
     let curves = [
         ModelCurves { name: "before", stroke: Stroke::Dashed, points: before },
-        ModelCurves { name: "after", stroke: Stroke::Line, points: after },
+        ModelCurves { name: "after", stroke: Stroke::Solid, points: after },
     ];
     let rows = &calibration.measurements.rows;
-    Ok(measured_friction::picture(&free.scene().name, &grid, rows, &curves).write(picture)?)
+    Ok(picture::write(&calibration::picture(&free.scene().name, &grid, rows, &curves), path)?)
 }
 
 fn candidates(command: &Calibrate) -> CandidateOptions {

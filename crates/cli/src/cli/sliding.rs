@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use asperity::tables::Dimension;
 use asperity_study::contact::SteadyState;
-use asperity_study::sweep::{SlidingOptions, SweepOptions};
+use asperity_study::sweep::{Over, SlidingOptions, SweepOptions};
 use asperity_study::values::Values;
 use clap::{ArgGroup, Args};
 
 use super::shared::Set;
-use super::sweep_values::{Over, Shard};
+use super::sweep_values::Shard;
 use super::values::{count, picture, seeds, share, table_or_arrays};
 
 /// Options of a sweep that --merge does not take.

@@ -1,7 +1,6 @@
 //! `asperity contact`: where the rubber touches in steady sliding, and how hard, as a picture and as data.
 
 mod data;
-mod picture;
 
 use asperity::scene::Scene;
 use asperity_study::Error;
@@ -10,6 +9,7 @@ use asperity_study::steady::SteadySlide;
 
 use super::cli::Contact;
 use super::files::{self, check_outputs, ends_in, load_without_run, named, print_beside};
+use super::picture;
 use super::terminal::{lines, warn};
 use asperity_study::decimals::rounded;
 
@@ -19,8 +19,8 @@ pub(crate) fn contact(command: &Contact) -> Result<(), Error> {
     let outputs: Vec<_> = [&command.output].into_iter().chain(&command.write).cloned().collect();
     check_outputs(&outputs, scene.sources(&command.scene))?;
     let solved = solve_contact(&scene, command.at, command.sliding)?;
-    let SolvedContact { surface, slide, fields, problem, warnings } = &solved;
-    picture::write(surface, fields, slide.area, &command.output)?;
+    let SolvedContact { slide, fields, problem, warnings, .. } = &solved;
+    picture::write(&solved.picture(), &command.output)?;
     if let Some(path) = &command.write {
         let bytes = if ends_in(path, "npz") {
             data::npz(fields).map_err(|error| Error::value(format!("cannot write {}: {error}", path.display())))?

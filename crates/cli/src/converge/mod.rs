@@ -1,6 +1,5 @@
 //! `asperity converge`: whether area and friction of a scene depend on its spacing, its length or on chance.
 
-mod plot;
 mod summary;
 mod table;
 
@@ -9,15 +8,17 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use asperity_study::contact::SteadyState;
-use asperity_study::converge::{ConvergeError, ConvergenceOptions, ConvergenceStudy, Ended, Findings, Round, RunRow};
+use asperity_study::converge::{
+    self, ConvergeError, ConvergenceOptions, ConvergenceStudy, Ended, Findings, Round, RunRow,
+};
 use asperity_study::sweep::SlidingOptions;
 
 use super::cli::Converge;
 use super::draft::TablePlace;
-use super::figure::Figure as _;
 use super::files::{FileError, check_outputs, default_output, load_without_run, picture_beside, print_beside};
 use super::interrupt::Farewell;
 use super::output::of_set;
+use super::picture;
 use super::terminal::{self, warn};
 use super::{NOT_REACHED, SUCCESS};
 use table::StudyTable;
@@ -65,8 +66,8 @@ pub(crate) fn converge(command: &Converge) -> Result<u8, ConvergeCommandError> {
     print_beside([&output], &format!("{rows}\n{}", summary::judgement(&study, &findings)))?;
     drop(table);
     place.finish()?;
-    if let Some(picture) = &picture {
-        plot::picture(&scene.name, &findings.runs).write(picture)?;
+    if let Some(path) = &picture {
+        picture::write(&converge::picture(&scene.name, &findings.runs), path)?;
     }
     Ok(if findings.verdict.is_converged() { SUCCESS } else { NOT_REACHED })
 }

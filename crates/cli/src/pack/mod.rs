@@ -1,7 +1,6 @@
 //! `asperity pack`: packs a scene, or the table of a sweep, and the shared library as one FMU.
 
 mod check;
-mod picture;
 mod quantile;
 
 use std::path::{Path, PathBuf};
@@ -9,11 +8,14 @@ use std::path::{Path, PathBuf};
 use asperity::element::{FrictionTable, PointContact};
 use asperity_fmi::Definition;
 use asperity_study::Error;
-use asperity_study::pack::{self, Fmu, Library, LibraryFile, flat_names, no_start, not_converged};
+use asperity_study::pack::{
+    self, Fmu, Library, LibraryFile, element_icon, flat_names, layer_icon, no_start, not_converged,
+};
 use asperity_study::summary::missing_backing;
 
 use super::cli::Pack;
 use super::files::{self, check_outputs, named, print, write};
+use super::picture::icon;
 use super::terminal::{LabelledLine, labelled, lines, note, warn};
 use quantile::Sample;
 
@@ -118,9 +120,9 @@ fn summary(command: &Pack, definition: &Definition) -> Result<Vec<LabelledLine>,
 /// model.png.
 fn picture(definition: &Definition) -> Result<Vec<u8>, Error> {
     let picture = match definition {
-        Definition::Layer(scene) => picture::layer_png(scene),
-        Definition::Element(contact) => picture::element_png(contact.table()),
-        Definition::Patch(patch) => picture::element_png(patch.table()),
+        Definition::Layer(scene) => layer_icon(scene),
+        Definition::Element(contact) => element_icon(contact.table()),
+        Definition::Patch(patch) => element_icon(patch.table()),
     };
-    picture.map_err(|error| files::not_drawn(Path::new("model.png"), error))
+    icon(&picture).map_err(|error| files::not_drawn(Path::new("model.png"), error))
 }

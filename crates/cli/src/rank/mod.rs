@@ -1,16 +1,16 @@
 //! `asperity rank`: scenes in the order of their friction, and how sure that is.
 
-mod picture;
 mod summary;
 
 use std::time::Duration;
 
 use asperity_study::progress::Stop;
-use asperity_study::rank::{RankError, RankFound, RankPlan, RankScene, Weights, measured_ranking, table};
+use asperity_study::rank::{self, RankError, RankFound, RankPlan, RankScene, Weights, measured_ranking, table};
 use asperity_study::uncertainty::SampleOptions;
 
 use super::cli::Rank;
 use super::files::{FileError, check_outputs, load_without_run, picture_beside, print_beside, write};
+use super::picture;
 use super::terminal::{self, note, warn};
 use super::{NOT_REACHED, SUCCESS};
 
@@ -38,8 +38,8 @@ pub(crate) fn rank(command: &Rank) -> Result<u8, RankCommandError> {
     measured.iter().flat_map(|measured| &measured.notes).for_each(|text| note(text));
     found.ranking.warnings().iter().for_each(|warning| warn(warning));
     write(&command.output, table(&found.ranking))?;
-    if let Some(picture) = &picture {
-        picture::draw(picture, &found)?;
+    if let Some(path) = &picture {
+        picture::write(&rank::picture(&found), path)?;
     }
     let files: Vec<_> = std::iter::once(&command.output).chain(&picture).collect();
     let summary = summary::text(&plan, &found.ranking, measured.as_ref(), &files);

@@ -3,8 +3,10 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::figure::{Figure as _, Ladders};
+use asperity_study::picture::Picture;
+
 use crate::files::{FileError, check_output, not_drawn, write};
+use crate::picture;
 
 /// The page.
 pub(super) const INDEX: &str = "index.html";
@@ -51,11 +53,11 @@ impl ReportFolder {
     }
 
     /// Draws a picture as SVG and PNG. Returns the text of the SVG.
-    pub(super) fn draw(&self, name: &str, picture: &Ladders) -> Result<String, FileError> {
+    pub(super) fn draw(&self, name: &str, drawn: &Picture) -> Result<String, FileError> {
         let [svg_file, png_file] = ["svg", "png"].map(|ending| self.file(name, ending));
-        let svg = picture.svg().map_err(|error| not_drawn(&svg_file, error))?;
+        let svg = picture::svg(drawn).map_err(|error| not_drawn(&svg_file, error))?;
         write(&svg_file, &svg)?;
-        picture.write(&png_file)?;
+        picture::write(drawn, &png_file)?;
         Ok(svg)
     }
 }

@@ -7,7 +7,7 @@ mod scene_report;
 use std::path::{Path, PathBuf};
 
 use asperity_study::csv::CsvError;
-use asperity_study::report::{self, Judgement, judgements_table};
+use asperity_study::report::{self, Judgement, judgement_picture, judgements_table};
 
 use super::cli::Report;
 use super::files::{FileError, write};
@@ -73,7 +73,7 @@ fn write_overview(folder: &ReportFolder, names: &[String], judgements: &[Vec<Jud
 /// Writes the table and the picture of errors over the tolerance, and returns the section.
 fn write_judgements(folder: &ReportFolder, scenes: &[SceneJudgements<'_>]) -> Result<String, FileError> {
     write(&folder.file(JUDGEMENTS, "csv"), judgements_table(scenes.iter().copied()))?;
-    let picture = folder.draw(JUDGEMENTS, &page::judgement_picture(scenes))?;
+    let picture = folder.draw(JUDGEMENTS, &judgement_picture(scenes.iter().flat_map(|(_, runs)| runs.iter())))?;
     page::judgements(scenes, &picture).map_err(folder.error())
 }
 

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use asperity::scene::Scene;
 
 use asperity_study::report::{
-    Judgement, Peers, ReportOptions, SceneReport, communication_table, errors_table, read_peers, robustness_table,
+    Judgement, Peers, ReportOptions, SceneReport, communication_picture, communication_table, errors_table, read_peers,
+    robustness_table, tolerance_picture,
 };
 
 use super::folder::{COMMUNICATION, ERRORS, INDEX, JUDGEMENTS, ReportFolder, STRESS};
@@ -70,10 +71,10 @@ impl<'a> WrittenReport<'a> {
         let name = scene.name.as_str();
         write(&folder.file(ERRORS, "csv"), errors_table(name, reference, &rows))?;
         write(&folder.file(COMMUNICATION, "csv"), communication_table(name, reference, communication))?;
-        let picture = folder.draw(ERRORS, &page::tolerance_picture(reference, &rows))?;
+        let picture = folder.draw(ERRORS, &tolerance_picture(reference, &rows))?;
         let mut sections = vec![page::tolerances(command, reference, &rows, &picture).map_err(folder.error())?];
         sections.push(write_judgements(folder, &[(name, judgements)])?);
-        let picture = folder.draw(COMMUNICATION, &page::communication_picture(reference, communication))?;
+        let picture = folder.draw(COMMUNICATION, &communication_picture(reference, communication))?;
         sections.push(page::communication(scene, reference, communication, &picture).map_err(folder.error())?);
         if let Some(robustness) = robustness {
             write(&folder.file(STRESS, "csv"), robustness_table(name, robustness))?;

@@ -1,7 +1,5 @@
 //! `asperity sweep`: the friction coefficient over speed, load and temperature, as a table and a plot.
 
-mod map;
-mod plot;
 mod printed;
 mod samples;
 mod ways;
@@ -14,16 +12,16 @@ use asperity::element::{OperatingPoint, some_of};
 use asperity::scene::{Scene, Wlf};
 use asperity::table::{Table, TableError};
 use asperity_study::Error;
+use asperity_study::friction_map::Maps;
 use asperity_study::progress::Stop;
-use asperity_study::sweep::{SweepHeader, SweepPlan, SweepRow, SweepTable, verdict};
+use asperity_study::sweep::{SweepHeader, SweepPlan, SweepRow, SweepTable, master_picture, sweep_picture, verdict};
 
 use super::cli::Sweep;
-use super::figure::Figure as _;
 use super::files::{check_outputs, default_output, load_without_run, named, picture_beside, print_beside, read};
 use super::interrupt::Farewell;
+use super::picture;
 use super::table_file::TableFile;
-use super::terminal::{self, LabelledLine, lines, warn};
-use map::Maps;
+use super::terminal::{self, LabelledLine, lines, note, warn};
 
 /// Computes a table or merges several.
 pub(crate) fn sweep(command: &Sweep) -> Result<(), Error> {
@@ -239,7 +237,9 @@ fn maps(command: &Sweep, header: &SweepHeader, output: &Path) -> Result<Option<M
             named(output)
         )));
     }
-    Maps::new(over, header, output, command.data.as_ref()).map(Some)
+    let maps = Maps::new(over, header, output, command.data.as_deref())?;
+    maps.notes.iter().for_each(|text| note(text));
+    Ok(Some(maps))
 }
 
 /// What is drawn of a table.
@@ -261,10 +261,14 @@ fn finish(
 ) -> Result<(), Error> {
     let Pictures { friction, maps, master } = pictures;
     friction.map_or(Ok(()), |path| match maps {
-        Some(maps) => maps.picture(table).write(path),
-        None => plot::draw(path, table),
+        Some(maps) => {
+            let (picture, left_out) = maps.picture(table);
+            left_out.iter().for_each(|text| warn(text));
+            picture::write(&picture, path)
+        }
+        None => picture::write(&sweep_picture(table), path),
     })?;
-    master.map_or(Ok(()), |(path, wlf)| plot::draw_master(path, table, &wlf))?;
+    master.map_or(Ok(()), |(path, wlf)| picture::write(&master_picture(table, &wlf), path))?;
     let mut summary = printed::lines(table);
     summary.extend(table.header.keys.text_of("low_end").map(|low_end| ("Low end", low_end.to_owned())));
     summary.extend(maps.iter().filter_map(|_| Some(("No result", Maps::empty(table)?))));

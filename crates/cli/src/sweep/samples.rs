@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use asperity::scene::Scene;
 use asperity_study::Error;
 use asperity_study::decimals::rounded;
-use asperity_study::sweep::{Matters, Sampled, SweepPlan, SweepRow, SweepTable};
+use asperity_study::sweep::{Matters, Sampled, SweepPlan, SweepRow, SweepTable, matters_picture};
 use asperity_study::uncertainty::{SampleOptions, UncertainScene};
 
 use crate::cli::Sweep;
-use crate::figure::{Bar, Bars, Figure as _};
 use crate::files::write as write_file;
 use crate::output::is_stream;
+use crate::picture;
 use crate::terminal::{LabelledLine, labelled};
 
 /// The sweep of a scene, with samples where they are asked for.
@@ -45,7 +45,7 @@ pub(super) fn write(
     for file in files {
         match file.extension().and_then(|extension| extension.to_str()) {
             _ if command.keep.as_ref() == Some(file) => write_file(file, plan.samples_table(&table.rows).text())?,
-            Some("svg") => picture(table, &matters).write(file)?,
+            Some("svg") => picture::write(&matters_picture(table, &matters), file)?,
             _ => write_file(file, matters.table(table.header.load).text())?,
         }
     }
@@ -89,18 +89,4 @@ fn lines(matters: &Matters) -> Vec<LabelledLine> {
     });
     let rest = format!("{:<width$}  {:>4.0} %       {}", matters.rest, 100.0 * mean.rest, bar(mean.rest));
     labelled("Matters", of_key.chain([rest]).map(|line| line.trim_end().to_owned()))
-}
-
-/// Bars of what matters in the mean over all points.
-fn picture(table: &SweepTable, matters: &Matters) -> Bars {
-    let of_key = |(name, index): (&str, asperity_study::uncertainty::Index)| Bar {
-        name: name.to_owned(),
-        value: index.share,
-        error: index.error,
-    };
-    let rest = matters.mean.iter().map(|mean| Bar { name: matters.rest.to_owned(), value: mean.rest, error: 0.0 });
-    Bars {
-        title: format!("{}: part of the variance of mean friction", table.header.scene()),
-        bars: matters.largest().into_iter().map(of_key).chain(rest).collect(),
-    }
 }

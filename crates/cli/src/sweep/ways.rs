@@ -2,15 +2,14 @@
 
 use std::path::Path;
 
-use asperity::element::{OperatingPoint, Quantity};
 use asperity::scene::Scene;
 use asperity::table::{Cell, Column, Header, Table};
 use asperity_study::Error;
 use asperity_study::progress::Stop;
-use asperity_study::sweep::{SlidingOptions, SweepOptions, SweepPlan, SweepRow, SweepTable};
+use asperity_study::sweep::{SlidingOptions, SweepOptions, SweepPlan, SweepTable, over_ways};
 
-use crate::figure::{Curve, Figure as _, Panel, PanelRow, SideBySide, Stroke};
 use crate::files::write;
+use crate::picture;
 use crate::terminal::{self, warn};
 
 /// Sweeps a scene over `ways` (m), writes table and picture, and returns how many points there are, and have no result.
@@ -33,8 +32,8 @@ pub(super) fn sweep(
         plan.warnings(&table.rows).iter().for_each(|warning| warn(warning));
     }
     write(output, whole(ways, &tables).text())?;
-    if let Some(picture) = picture {
-        self::picture(ways, &tables).write(picture)?;
+    if let Some(path) = picture {
+        picture::write(&over_ways(ways, &tables), path)?;
     }
     let rows = || tables.iter().flat_map(|table| &table.rows);
     Ok([rows().count(), rows().filter(|row| !row.is_result()).count()])
@@ -48,26 +47,4 @@ fn whole(ways: &[f64], tables: &[SweepTable]) -> Table {
         table.rows.iter().for_each(|row| whole.push([Cell::from(*way)].into_iter().chain(row.cells())));
     }
     whole
-}
-
-/// Friction over the way: a panel for each load and temperature, a colour for each speed.
-fn picture(ways: &[f64], tables: &[SweepTable]) -> SideBySide {
-    let Some(first) = tables.first() else {
-        return SideBySide { title: String::new(), x_title: String::new(), rows: Vec::new() };
-    };
-    let grid = &first.header.grid;
-    let panel = |at: OperatingPoint| {
-        let curve = |(look, &speed): (usize, &f64)| {
-            let of = |row: &&SweepRow| row.point == OperatingPoint { speed, ..at } && row.is_result();
-            let friction = |table: &SweepTable| table.rows.iter().find(of)?.value(Quantity::Friction);
-            let points = ways.iter().zip(tables).filter_map(|(&way, table)| Some((way, friction(table)?)));
-            Curve { name: format!("{speed} m/s"), look, stroke: Stroke::Marked, points: points.collect() }
-        };
-        let title = at.describe(first.header.load);
-        let title = title.split_once(", ").map(|(_, rest)| rest.to_owned()).unwrap_or_default();
-        Panel { title, curves: grid.speeds.iter().enumerate().map(curve).collect() }
-    };
-    let panels = grid.points().step_by(grid.speeds.len()).map(panel).collect();
-    let row = PanelRow { y_title: "friction coefficient".into(), panels };
-    SideBySide { title: first.header.scene().to_owned(), x_title: "way in m".into(), rows: vec![row] }
 }

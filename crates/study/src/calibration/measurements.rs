@@ -38,7 +38,7 @@ pub(super) fn assumed_sigma(friction: f64) -> f64 {
 }
 
 /// A table of measured friction.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measurements {
     /// The rows; several of a point are repeats.
     pub rows: Vec<Measured>,

@@ -7,6 +7,7 @@ mod drag;
 mod element;
 mod measure;
 mod patch;
+mod picture;
 mod sliding;
 mod tilt;
 mod wrench;

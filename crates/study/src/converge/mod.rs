@@ -2,6 +2,7 @@
 
 mod error;
 mod measure;
+mod picture;
 mod plan;
 mod study;
 mod table;
@@ -9,6 +10,7 @@ mod variants;
 mod verdict;
 
 pub use error::ConvergeError;
+pub use picture::picture;
 pub use study::{ConvergenceOptions, ConvergenceStudy, Ended, Findings, Round};
 pub use table::{Measured, RunRow, RunsDone, StudyHeader, StudyTableError};
 pub use variants::{Dimensions, Parts, Variant};

@@ -14,6 +14,7 @@ mod fitted;
 mod measured;
 mod nnls;
 mod options;
+mod picture;
 mod prony_problem;
 mod reading;
 mod sample;

@@ -4,8 +4,10 @@ mod archive;
 mod description;
 mod experiment;
 mod fmu;
+mod icon;
 mod library;
 mod references;
 
 pub use fmu::{Fmu, flat_names, no_start, not_converged, summary};
+pub use icon::{element_icon, layer_icon};
 pub use library::{Library, LibraryFile, Platform};

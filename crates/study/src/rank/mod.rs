@@ -6,6 +6,7 @@
 
 mod error;
 mod measured;
+mod picture;
 mod plan;
 mod ranking;
 mod table;
@@ -16,6 +17,7 @@ mod weights;
 
 pub use error::RankError;
 pub use measured::{MeasuredRanking, MeasuredScene, kendall, measured_ranking};
+pub use picture::picture;
 pub use plan::{RankFound, RankPlan, RankScene};
 pub use ranking::{Band, Pair, QUANTILES, RankedPoint, RankedScene, Ranking, SURE};
 pub use table::table;

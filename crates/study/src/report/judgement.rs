@@ -90,6 +90,19 @@ impl Judgement {
         })
     }
 
+    /// The runs of each method, those that are scaled by themselves, in their order.
+    pub fn groups<'a>(runs: impl Iterator<Item = &'a Self>) -> Vec<(String, Vec<&'a Self>)> {
+        let mut groups: Vec<(String, Vec<&Self>)> = Vec::new();
+        for run in runs {
+            let name = if run.perturbation.is_some() { format!("{}, scaled", run.method) } else { run.method.clone() };
+            match groups.iter_mut().find(|(own, _)| *own == name) {
+                Some((_, runs)) => runs.push(run),
+                None => groups.push((name, vec![run])),
+            }
+        }
+        groups
+    }
+
     /// What the run warns of, as tables have it.
     pub fn warning(&self) -> &'static str {
         if self.estimate.warned { "does not converge" } else { "" }

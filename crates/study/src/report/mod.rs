@@ -6,6 +6,7 @@ mod figures;
 mod judgement;
 mod machine;
 mod master;
+mod picture;
 mod recorder;
 mod reference;
 mod robustness;
@@ -22,6 +23,7 @@ pub use figures::{CompletedRun, Counts, Estimate, RunFigures};
 pub use judgement::{Judgement, Ratios, Standing, median};
 pub use machine::{Machine, build};
 pub use master::MasterInputs;
+pub use picture::{communication_picture, judgement_picture, tolerance_picture};
 pub use reference::{Comparison, Reference, StartSensitivity};
 pub use robustness::{
     BUDGET, COMMUNICATION_STEPS, EndedTrial, MAX_COMMUNICATION_STEPS, Robustness, SHORT_STEPS, Trial,

@@ -13,7 +13,7 @@ use crate::steady::persson::WholeFriction;
 const SPEEDS: [f64; 3] = [1e-4, 1e-2, 1.0];
 const PRESSURES: [f64; 3] = [1e5, 3e5, 1e6];
 /// Pressure (Pa) at which friction is divided into its parts.
-pub const MIDDLE: f64 = PRESSURES[1];
+pub(super) const MIDDLE: f64 = PRESSURES[1];
 
 /// The summary in a line each; nothing where the profile lacks nothing.
 pub(super) fn fine(scene: &Scene) -> Vec<String> {
@@ -186,7 +186,7 @@ const POINTS: usize = 121;
 
 /// μ_h of a mass over speed, under the pressure [`MIDDLE`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct FineFrictionCurve {
+pub(super) struct FineFrictionCurve {
     /// The layer's temperature, K, where the scene has one.
     pub temperature: Option<f64>,
     /// Speeds (m/s) and friction coefficients.
@@ -195,7 +195,7 @@ pub struct FineFrictionCurve {
 
 impl FineFrictionCurve {
     /// At the temperature of a scene and at those around it, from cold to warm; none without bands that rub.
-    pub fn around(scene: &Scene) -> Vec<Self> {
+    pub(super) fn around(scene: &Scene) -> Vec<Self> {
         let Some(area) = scene.layer.element_area().filter(|_| scene.has_fine_hysteresis()) else { return Vec::new() };
         let own = temperature(scene);
         let temperatures = own.map_or(vec![None], |own| [own - AROUND, own, own + AROUND].map(Some).to_vec());

@@ -6,13 +6,14 @@ mod fine;
 mod foundation;
 mod friction;
 mod patch;
+mod picture;
 mod scene;
 mod words;
 
 pub use described::{DescribedScene, described, described_patch, described_shortly};
-pub use fine::{FineFrictionCurve, MIDDLE as MIDDLE_PRESSURE};
 pub use friction::FallingFriction;
 pub use patch::{missing_backing, patch_rows, table_rows};
+pub use picture::picture;
 pub use scene::scene_rows;
 
 /// A line with a label; without one it continues the line above.

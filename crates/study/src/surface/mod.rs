@@ -4,6 +4,7 @@ mod analysis;
 mod files;
 mod map;
 mod periodic;
+mod picture;
 mod profile;
 mod treated;
 

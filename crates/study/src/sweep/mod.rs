@@ -3,6 +3,8 @@
 mod layer;
 mod load_search;
 mod options;
+mod over;
+mod picture;
 mod plan;
 mod point;
 mod sampled;
@@ -18,6 +20,8 @@ mod window;
 pub use layer::relevant;
 pub use load_search::separation_at_rest;
 pub use options::{Method, SlidingOptions, SweepMethod, SweepOptions, check_possible, fingerprint, way_of};
+pub use over::{Over, SweptQuantity};
+pub use picture::{master_picture, matters_picture, over_ways, sweep_picture};
 pub use plan::{SweepPlan, quantile_table};
 pub use point::steady_sliding;
 pub use sampled::{SampleHeader, SampleValues, Sampled, quantile};

@@ -8,11 +8,10 @@ use quick_xml::escape::escape;
 
 use super::{NOTHING, count, errors, grouped, head, number, per_cent, reason, seconds, short};
 use crate::cli::Report;
-use crate::figure::{Ladder, LadderPanel, Ladders, Rung, Stroke};
 use asperity_study::html::{Cell, fill, table};
 use asperity_study::report::{
-    CommunicationRow, Comparison, Errors, MasterInputs, PATIENCE, PROGRAM, QUANTITIES, Reference, RunFigures, Timed,
-    ToleranceRow, WINDOWS, method,
+    CommunicationRow, Errors, PATIENCE, PROGRAM, QUANTITIES, Reference, RunFigures, Timed, ToleranceRow, WINDOWS,
+    method,
 };
 
 const TOLERANCES: &str = include_str!("tolerances.html");
@@ -274,83 +273,4 @@ fn communication_cells(row: &CommunicationRow, reference: &Reference) -> Vec<Cel
         Err(why) => cells.push(reason(&why.to_string(), communication_figures(reference).len())),
     }
     cells
-}
-
-/// Errors over run time, one line for each program and method.
-pub(in crate::report) fn tolerance_picture(reference: &Reference, rows: &[ToleranceRow]) -> Ladders {
-    let mut names: Vec<String> = Vec::new();
-    for name in rows.iter().map(ToleranceRow::name) {
-        if !names.contains(&name) {
-            names.push(name);
-        }
-    }
-    let panels = panels(reference, |quantity| {
-        let ladders = names.iter().enumerate().map(|(look, name)| {
-            let own = rows.iter().filter(|row| row.name() == *name);
-            let processes = own.clone().all(|row| row.timed == Timed::WholeProcess);
-            let stroke = if processes { Stroke::Dashed } else { Stroke::Line };
-            let rungs: Vec<Rung> = own.filter_map(|row| rung(row, quantity)).collect();
-            Ladder { name: name.clone(), stroke, look, rungs: with_end_labels(rungs) }
-        });
-        ladders.filter(|ladder| !ladder.rungs.is_empty()).collect()
-    });
-    Ladders { x_title: "run time in s".into(), panels }
-}
-
-fn rung(row: &ToleranceRow, quantity: usize) -> Option<Rung> {
-    let figures = row.result.as_ref().ok()?;
-    Some(Rung { x: figures.time?, y: figures.errors[quantity]?, label: format!("{:e}", row.tolerance) })
-}
-
-/// The tolerances of the first and the last rung alone: those between are powers of ten.
-fn with_end_labels(mut rungs: Vec<Rung>) -> Vec<Rung> {
-    let last = rungs.len().saturating_sub(1);
-    rungs.iter_mut().enumerate().filter(|(i, _)| *i != 0 && *i != last).for_each(|(_, rung)| rung.label.clear());
-    rungs
-}
-
-/// Errors over the communication step: the largest and, dashed, the root mean squares.
-pub(in crate::report) fn communication_picture(reference: &Reference, rows: &[CommunicationRow]) -> Ladders {
-    let panels = panels(reference, |quantity| {
-        let ladder = |given: MasterInputs, look: usize, mean_square: bool| {
-            let pick = |row: &CommunicationRow| {
-                let (figures, mean_squares) = row.result.as_ref().ok()?;
-                let errors: Errors = if mean_square { (*mean_squares)? } else { figures.errors };
-                Some(Rung { x: row.step?, y: errors[quantity]?, label: String::new() })
-            };
-            let (kind, stroke) = if mean_square { (", root mean square", Stroke::Dashed) } else { ("", Stroke::Line) };
-            let rungs = rows.iter().filter(|row| row.given == given).filter_map(pick).collect();
-            Ladder { name: format!("{}{kind}", given.name()), stroke, look, rungs }
-        };
-        let lines = [(MasterInputs::Rates, 0), (MasterInputs::Values, 1)]
-            .into_iter()
-            .flat_map(|(given, look)| [false, true].map(|mean_square| ladder(given, look, mean_square)));
-        lines.filter(|ladder| !ladder.rungs.is_empty()).collect()
-    });
-    Ladders { x_title: "communication step in s".into(), panels }
-}
-
-/// One panel for each quantity that the scene has; if it has none, an empty one of F_z.
-fn panels(reference: &Reference, ladders: impl Fn(usize) -> Vec<Ladder>) -> Vec<LadderPanel> {
-    let there = (0..QUANTITIES.len()).filter(|&quantity| reference.own[quantity].is_some());
-    let mut shown: Vec<usize> = there.collect();
-    if shown.is_empty() {
-        shown.push(1);
-    }
-    let panel = |quantity: usize| LadderPanel {
-        title: title(quantity, reference.comparison),
-        floor: reference.own[quantity].filter(|own| own.is_finite()),
-        lines: Vec::new(),
-        ladders: ladders(quantity),
-    };
-    shown.into_iter().map(panel).collect()
-}
-
-fn title(quantity: usize, comparison: Comparison) -> String {
-    let name = QUANTITIES[quantity];
-    if comparison.is_of_means() && quantity != 2 {
-        format!("error of {name}, means")
-    } else {
-        format!("error of {name}")
-    }
 }

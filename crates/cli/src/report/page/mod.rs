@@ -13,8 +13,8 @@ use quick_xml::escape::escape;
 use asperity_study::html::{Cell, fill, table};
 use asperity_study::report::{Errors, Machine, Reference, build};
 
-pub(super) use convergence::{communication, communication_picture, tolerance_picture, tolerances};
-pub(super) use judgement::{SceneJudgements, judgement_picture, judgements};
+pub(super) use convergence::{communication, tolerances};
+pub(super) use judgement::{SceneJudgements, judgements};
 pub(super) use robustness::robustness;
 
 const TEMPLATE: &str = include_str!("page.html");

@@ -1,0 +1,235 @@
+//! A run of a contact patch as a picture: its wrench over time, and its face at the moment of the largest force and at some
+//! others.
+
+mod moment;
+
+use asperity::patch::{FaceLayout, Patch, PatchOutput, PatchRun, PatchVariable};
+
+use crate::decimals::with_prefix;
+use crate::picture::{
+    Axis, Colour, ColourScale, Colours, Fill, Fit, Frame, Mark, Panel, Picture, Row, Shape, Symbol, fitted,
+    rounded_down,
+};
+use crate::time_history::over_time;
+use moment::{Detail, Moment, Tile};
+
+/// A run of a patch: force, moment and energy lost, collected row by row, and its face at some of the rows.
+#[derive(Debug)]
+pub struct PatchHistory {
+    title: String,
+    variables: Vec<PatchVariable>,
+    times: Vec<f64>,
+    rows: Vec<Vec<f64>>,
+    face: FaceLayout,
+    /// The indices of the rows whose faces are drawn in the strip.
+    in_strip: Vec<usize>,
+    strip: Vec<Moment>,
+    /// The moment of the largest force so far.
+    largest: Option<Moment>,
+}
+
+/// A panel of a run: the quantity, its unit, and which outputs it shows.
+type RunPanel = (&'static str, &'static str, fn(&PatchOutput) -> bool);
+
+const RUN_PANELS: [RunPanel; 3] = [
+    ("force", "N", |output| matches!(output, PatchOutput::Force(_) | PatchOutput::TransportForce)),
+    ("moment", "N m", |output| matches!(output, PatchOutput::Moment(_))),
+    ("energy lost", "J", |output| {
+        matches!(output, PatchOutput::Energy | PatchOutput::SlipEnergy | PatchOutput::ReleaseEnergy)
+    }),
+];
+/// Moments in the strip.
+const STRIP: usize = 5;
+
+impl PatchHistory {
+    /// For a run with rows at `times` (s).
+    pub fn new(patch: &Patch, times: &[f64]) -> Self {
+        let mut variables = patch.all_variables();
+        variables.retain(|variable| RUN_PANELS.iter().any(|(_, _, shows)| shows(&variable.output)));
+        Self {
+            title: patch.name().to_owned(),
+            variables,
+            times: Vec::new(),
+            rows: Vec::new(),
+            face: patch.layout(),
+            in_strip: ends_of_parts(times),
+            strip: Vec::new(),
+            largest: None,
+        }
+    }
+
+    /// Adds the present row of the run.
+    pub fn add(&mut self, run: &mut PatchRun) {
+        let mut values = vec![0.0; self.variables.len()];
+        run.evaluate(&self.variables, &mut values);
+        let (force, [large, small]) = (force(&self.variables, &values), details(&self.face));
+        if self.largest.as_ref().is_none_or(|largest| force > largest.force) {
+            self.largest = Some(Moment::new(run, &self.face, large, force));
+        }
+        if self.in_strip.contains(&self.rows.len()) {
+            self.strip.push(Moment::new(run, &self.face, small, force));
+        }
+        self.times.push(run.time());
+        self.rows.push(values);
+    }
+
+    /// The wrench over time, and below it the face: large when the force is largest, and in a strip.
+    pub fn picture(&self) -> Picture {
+        let panel = |&(quantity, unit, shows): &RunPanel| {
+            let shown = self.variables.iter().enumerate().filter(|(_, variable)| shows(&variable.output));
+            let shown = shown.map(|(i, variable)| (i, variable.name.as_str()));
+            over_time((quantity, unit), &self.times, &self.rows, shown)
+        };
+        let panels = RUN_PANELS.iter().map(panel).map(Row::from);
+        let faces = self.largest.iter().flat_map(|largest| self.faces(largest));
+        Picture::of(panels.chain(faces).collect()).titled(&self.title)
+    }
+
+    fn faces(&self, largest: &Moment) -> [Row; 2] {
+        let faces = Faces::new(&self.face, self.strip.iter().chain([largest]));
+        let [time, force, pressure] = [(largest.time, "s"), (largest.force, "N"), (largest.pressure, "Pa")]
+            .map(|(value, unit)| with_prefix(value, value, unit));
+        let note = format!("At {time}, when the force is largest, {force}: pressure up to {pressure}");
+        let last = self.strip.last().map_or(0.0, |last| last.time);
+        let small = |moment: &Moment| {
+            let [time, force] = [with_prefix(moment.time, last, "s"), with_prefix(moment.force, largest.force, "N")];
+            Panel { title: format!("{time}, {force}"), frame: Frame::Line, ..faces.panel(moment, SMALL) }
+        };
+        let strip = Row { panels: self.strip.iter().map(small).collect(), ..Row::default() };
+        [Row { note, ..faces.panel(largest, LARGE).into() }, strip]
+    }
+}
+
+/// The rows nearest to the ends of even parts of the time from the first to the last of them.
+fn ends_of_parts(times: &[f64]) -> Vec<usize> {
+    let (Some(first), Some(last)) = (times.first(), times.last()) else { return Vec::new() };
+    let end = |part: usize| first + (last - first) * part as f64 / STRIP as f64;
+    let nearest = |time: f64| {
+        let after = times.partition_point(|&other| other < time).min(times.len() - 1);
+        let before = after.saturating_sub(1);
+        if time - times[before] < times[after] - time { before } else { after }
+    };
+    let mut rows: Vec<usize> = (1..=STRIP).map(|part| nearest(end(part))).collect();
+    rows.dedup();
+    rows
+}
+
+/// The absolute value of the force, N.
+fn force(variables: &[PatchVariable], values: &[f64]) -> f64 {
+    let parts = variables.iter().zip(values).filter(|(variable, _)| matches!(variable.output, PatchOutput::Force(_)));
+    parts.map(|(_, force)| force * force).sum::<f64>().sqrt()
+}
+
+/// Most pixels along and across the face, in the large map and in one of the strip.
+const LARGE: [f64; 2] = [620.0, 420.0];
+const SMALL: [f64; 2] = [172.0, 240.0];
+/// Most tiles along each axis of these.
+const TILES: [usize; 2] = [60, 30];
+/// The distance of arrows and the length of the longest, pixels; shorter ones than this share of it are left out.
+const ARROW: f64 = 30.0;
+const MIN_ARROW: f64 = 0.08;
+/// The least radius of a point.
+const MIN_RADIUS: f64 = 2.5;
+
+/// The size of a face's map, pixels.
+fn size(face: &FaceLayout, within: [f64; 2]) -> [f64; 2] {
+    fitted(face.extents.map(|(low, high)| high - low), within)
+}
+
+/// What the large map and one of the strip can show.
+fn details(face: &FaceLayout) -> [Detail; 2] {
+    [(TILES[0], LARGE), (TILES[1], SMALL)].map(|(tiles, within)| {
+        let pixels = size(face, within);
+        let distance = |axis: usize| ARROW * (face.extents[axis].1 - face.extents[axis].0) / pixels[axis];
+        Detail { tiles, arrows: [distance(0), distance(1)] }
+    })
+}
+
+/// How all moments of a face are drawn: with the same colours, and the same length of arrows.
+#[derive(Debug)]
+struct Faces<'a> {
+    face: &'a FaceLayout,
+    scale: ColourScale,
+    /// The largest of the arrows, Pa.
+    traction: f64,
+}
+
+impl<'a> Faces<'a> {
+    fn new<'m>(face: &'a FaceLayout, moments: impl Iterator<Item = &'m Moment>) -> Self {
+        let (mut pressure, mut traction) = (0.0_f64, 0.0_f64);
+        for moment in moments {
+            pressure = moment.tiles.iter().map(|tile| tile.pressure).fold(pressure, f64::max);
+            traction = moment.arrows.iter().map(length).fold(traction, f64::max);
+        }
+        let axis = Axis::linear(("pressure", "Pa"), [0.0, pressure], Fit::Tight);
+        Self { face, scale: ColourScale { axis, colours: Colours::Viridis }, traction }
+    }
+
+    /// Both axes have the same scale, unless one side is far longer than the other.
+    fn panel(&self, moment: &Moment, within: [f64; 2]) -> Panel {
+        let [x, y] = [0, 1].map(|axis| {
+            let (low, high) = self.face.extents[axis];
+            Axis::linear((self.face.axes[axis], "m"), [low, high], Fit::Tight)
+        });
+        let pixels = size(self.face, within);
+        // Pixels of a metre.
+        let per_metre = [pixels[0] / (x.high - x.low), pixels[1] / (y.high - y.low)];
+        let marks = vec![
+            tiles(moment, per_metre, false),
+            tiles(moment, per_metre, true),
+            self.arrows(moment, per_metre, false),
+            self.arrows(moment, per_metre, true),
+        ];
+        Panel { scale: Some(self.scale.clone()), ..Panel::new(x, y, marks) }.sized(pixels[0], pixels[1])
+    }
+
+    /// The tractions that slip or stick, each arrow with its middle at its place.
+    fn arrows(&self, moment: &Moment, per_metre: [f64; 2], sticks: bool) -> Mark {
+        let arrow = |tile: &Tile| {
+            let half = 0.5 * ARROW * length(tile) / self.traction;
+            let [x, y] = [0, 1].map(|axis| half * tile.traction[axis] / length(tile) / per_metre[axis]);
+            [tile.place[0] - x, tile.place[1] - y, tile.place[0] + x, tile.place[1] + y]
+        };
+        let seen = |tile: &&Tile| tile.sticks == sticks && length(tile) > MIN_ARROW * self.traction;
+        let unit = rounded_down(self.traction);
+        let name = format!("traction of {}, {}", with_prefix(unit, unit, "Pa"), if sticks { "stick" } else { "slip" });
+        let arrows = moment.arrows.iter().filter(seen).map(arrow).collect();
+        let name = if self.traction > 0.0 { name } else { String::new() };
+        let mark = Mark::new(name, 0, Shape::Arrows { arrows, key: ARROW * unit / self.traction });
+        mark.coloured(if sticks { Colour::WHITE } else { Colour::INK })
+    }
+}
+
+/// The tiles in contact, coloured by pressure, or those that are free.
+fn tiles(moment: &Moment, per_metre: [f64; 2], are_free: bool) -> Mark {
+    let tiles: Vec<&Tile> = moment.tiles.iter().filter(|tile| (tile.pressure <= 0.0) == are_free).collect();
+    let values = if are_free { Vec::new() } else { tiles.iter().map(|tile| tile.pressure).collect() };
+    let shape = if moment.are_points {
+        let area = tiles.iter().map(|tile| tile.area).sum::<f64>() / tiles.len().max(1) as f64;
+        let radius = (area * per_metre[0] * per_metre[1] / std::f64::consts::PI).sqrt().max(MIN_RADIUS);
+        let points = tiles.iter().map(|tile| tile.place).collect();
+        Shape::Points { points, symbol: Symbol::Disc, fill: Fill::Full, radius, labels: Vec::new(), values }
+    } else {
+        let boxes = tiles.iter().map(|tile| [tile.low[0], tile.low[1], tile.high[0], tile.high[1]]).collect();
+        Shape::Boxes { boxes, values }
+    };
+    Mark::new(if are_free { "free" } else { "" }, 0, shape).coloured(Colour::GRID)
+}
+
+/// Of a traction, Pa.
+fn length(tile: &Tile) -> f64 {
+    tile.traction[0].hypot(tile.traction[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_strip_has_the_rows_nearest_to_even_parts_of_the_time() {
+        let times: Vec<f64> = (0..=100).map(|i| 2.0 + 0.01 * f64::from(i)).collect();
+        assert_eq!(ends_of_parts(&times), [20, 40, 60, 80, 100]);
+        assert_eq!(ends_of_parts(&[0.0, 0.39, 0.62, 1.0]), [1, 2, 3]);
+        assert_eq!((ends_of_parts(&[0.0]), ends_of_parts(&[])), (vec![0], vec![]));
+    }
+}
