@@ -138,3 +138,13 @@ pub enum CalibrationError {
     #[error("cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
 }
+
+impl From<CalibrationError> for Error {
+    fn from(error: CalibrationError) -> Self {
+        match error {
+            CalibrationError::Read(error) => error,
+            CalibrationError::Measured(error) => error.into(),
+            error => Self::value(error),
+        }
+    }
+}

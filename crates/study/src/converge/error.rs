@@ -33,3 +33,12 @@ pub enum ConvergeError {
     )]
     FewParts { parts: &'static str, own: u64, least: u64 },
 }
+
+impl From<ConvergeError> for Error {
+    fn from(error: ConvergeError) -> Self {
+        match error {
+            ConvergeError::Read(error) => error,
+            error => Self::scene(error),
+        }
+    }
+}

@@ -28,3 +28,12 @@ pub enum FitError {
 fn sheets(found: &[String], expected: &str) -> String {
     format!("sheets {}: expected {expected}", found.join(", "))
 }
+
+impl From<FitError> for Error {
+    fn from(error: FitError) -> Self {
+        match error {
+            FitError::Read(error) => error,
+            error => Self::value(error),
+        }
+    }
+}

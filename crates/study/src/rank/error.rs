@@ -48,3 +48,15 @@ pub enum RankError {
     #[error(transparent)]
     Stopped(#[from] Stopped),
 }
+
+impl From<RankError> for Error {
+    fn from(error: RankError) -> Self {
+        match error {
+            RankError::Read(error) => error,
+            error @ (RankError::Sweep { .. } | RankError::OtherTemperatures(_) | RankError::Uncertainty(_)) => {
+                Self::scene(error)
+            }
+            error => Self::value(error),
+        }
+    }
+}

@@ -55,6 +55,8 @@ pub enum SurfaceError {
     },
 }
 
+crate::error::of_kind! { SurfaceError => Value }
+
 /// A surface before and after, and its analysis.
 #[derive(Debug)]
 pub struct TreatedSurface {
