@@ -7,8 +7,7 @@
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-use super::compliance::Compliance;
-use super::linear::{LinearSolver, gather};
+use super::linear::{Compliance, LinearSolver, gather};
 use super::surface::SurfaceGrid;
 use super::transform::{Convolution, GridSize};
 use asperity::math::{SplitMix64, sum};

@@ -9,19 +9,16 @@
 //! grid is a contact with a pressure, on which the law of friction acts along the surface, and heat moves along with the
 //! rubber (docs/steady.md).
 
-mod compliance;
 mod contact;
 mod flash;
 mod heat;
 mod krylov;
 mod linear;
 pub mod persson;
-mod resample;
 mod rubber;
 mod slide;
 mod surface;
 mod transform;
-mod way;
 
 pub use contact::Contact;
 pub use heat::HeatResponse;

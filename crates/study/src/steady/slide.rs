@@ -1,12 +1,10 @@
 //! Steady sliding under a pressure at a speed: contact, friction of its points, and the heat that it makes.
 
-use super::compliance::{Compliance, viscous_losses};
 use super::contact::{Contact, ContactSolver};
-use super::flash::{MOST_STEPS, RubbingContact, SurfaceRise, WarmingContact};
-use super::linear::scatter;
+use super::flash::{MOST_STEPS, RubbingContact, SurfaceRise, WarmingContact, march};
+use super::linear::{Compliance, scatter, viscous_losses};
 use super::rubber::{SlidingContact, SlidingRubber, Slope};
 use super::surface::SurfaceGrid;
-use super::way::march;
 use asperity::math::sum;
 use asperity::scene::ElasticBody;
 
