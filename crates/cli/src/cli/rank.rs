@@ -9,7 +9,7 @@ use super::shared::Set;
 use super::values::{count, picture};
 
 #[derive(Debug, Args)]
-#[command(mut_arg("speeds", |speeds| speeds.required(true)))]
+#[command(group(ArgGroup::new("over").required(true).args(["speeds"])))]
 #[command(group(ArgGroup::new("loads").required(true).args(["pressures", "forces"])))]
 #[command(after_help = example!(
     "asperity rank scenes/road/road.toml scenes/two-maxima/two-maxima.toml --speeds 0.1..10/5 --pressures 2bar \\\n\

@@ -51,6 +51,10 @@ impl From<ConvergeError> for ConvergeCommandError {
 
 /// Makes the runs, prints the study and draws it.
 pub(crate) fn converge(command: &Converge) -> Result<u8, ConvergeCommandError> {
+    if command.sliding.friction_error.is_some() {
+        let problem = "--friction-error: expected none, since runs are known to a tenth of --error";
+        return Err(FileError::value(problem).into());
+    }
     let options = options(command);
     let scene = load_without_run(&command.scene, &command.set, |scene| !options.sliding().solves(scene))?;
     let study = ConvergenceStudy::new(&scene, &command.scene, options)?;
