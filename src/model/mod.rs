@@ -5,7 +5,6 @@
 mod carrier;
 mod constants;
 mod contact;
-mod end_forces;
 mod energy;
 mod even_sliding;
 mod fine_friction;
@@ -21,7 +20,6 @@ pub use carrier::{BodyEnergy, BodyInterpolant, BodyStart, Carrier, CarrierPositi
 pub use constants::{DrivenBody, LinkLaw, MaxwellRow, SurfacePoint};
 pub use contact::ContactForces;
 pub use contact::FrictionPower;
-pub use end_forces::EndForces;
 pub use energy::{BoundaryPowers, ChannelEnergies, Powers, elastic_energy, kinetic_energy, vertical_spring_energy_at};
 pub use even_sliding::EvenSliding;
 pub use fine_friction::{ContactQuantity, FineContact, FineFriction, PressedContact};
@@ -31,6 +29,7 @@ pub use reduction::{Reduction, Replaced, Replacement};
 pub use slip_curve::SlipCurve;
 pub use slip_history::{Flash, FlashKernel, FlashTerm, HeatParts, SURFACE_TERMS, SpeedShift, surface_kernel};
 pub use slip_history::{RememberedSpeed, SlipHistory, SpeedMemory, aged, memory_rate};
+pub use state::EndForces;
 pub use state::{CarrierPoint, Mode, State, Tangents, TangentsOf};
 
 use std::sync::Arc;

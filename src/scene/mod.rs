@@ -10,7 +10,6 @@ mod axis;
 mod carrier;
 mod derived;
 mod error;
-mod excitation;
 mod file_values;
 mod fine_roughness;
 mod foundation;
@@ -46,8 +45,8 @@ use crate::tables::ReadingNote;
 pub use crate::tables::{LARGEST, SMALLEST};
 pub use axis::{Axis, ByAxis, ByLink, LinkKind};
 pub use carrier::{CarrierBodies, CarrierBody, CarrierInitial, Input};
+pub use carrier::{Force, Motion, Path, Phase};
 pub use error::{ParameterError, Problem, SceneError, did_you_mean};
-pub use excitation::{Force, Motion, Path, Phase};
 pub use file_values::{FileValues, Setting};
 pub use fine_roughness::{
     FineBand, FineRoughness, FineWaves, ModulusFactors, RoughnessSpectrum, Softening, SofteningRow, SpectrumFactors,

@@ -2,7 +2,7 @@
 //! linear between the rows.
 
 use super::carrier::{CarrierBodies, CarrierBody};
-use super::excitation::{Force, Path, Phase};
+use super::carrier::{Force, Path, Phase};
 use super::material::Wlf;
 use crate::tables::{
     Choice, Column, ContentError, Dimension, Format, POSITIVE, ReadingNote, Table, Wanted, Words, decode,

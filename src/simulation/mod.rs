@@ -23,7 +23,6 @@ mod rows;
 mod run;
 mod sampler;
 mod settings;
-mod start;
 mod state;
 mod stepper;
 #[cfg(test)]
@@ -44,7 +43,7 @@ pub use rows::{ResultRow, ResultRows, run};
 use run::Run;
 use sampler::RowSampler;
 use settings::Settings;
-use start::body_starts;
+use settings::body_starts;
 use state::check_length;
 pub use state::{SimulationRestoreError, SimulationState};
 

@@ -29,7 +29,7 @@
 //! | [`steady`] | | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
 //! | [`uncertainty`] | error | scenes drawn from what is not known of one: Sobol' points, distributions, indices |
 //! | [`sweep`] | decimals, error, files, implausible, picture, progress, steady, uncertainty, values | friction over speed, load and temperature, as a table |
-//! | [`contact`] | implausible, picture, steady, sweep, values | the contact of a surface in steady sliding |
+//! | [`contact`] | decimals, implausible, picture, steady, sweep, values | the contact of a surface in steady sliding |
 //! | [`converge`] | decimals, error, picture, steady, sweep | whether area and friction depend on spacing, length or chance |
 //! | [`calibration`] | csv, decimals, error, files, implausible, picture, settings, steady, sweep | free numbers of a scene from measured friction: models, least squares, errors, plans |
 //! | [`comparison`] | calibration, sweep | a table of a sweep beside measured friction |

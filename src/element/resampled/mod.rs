@@ -8,7 +8,6 @@
 //! Where each element has a temperature of its own, the law is kept at several temperatures, planes, and is linear
 //! between two of them: p, μp and κ at an approach. Cells of a plane are computed when they are first met.
 
-mod planes;
 mod speed_grid;
 #[cfg(test)]
 mod tests;
@@ -23,7 +22,7 @@ use super::limits::TableLimits;
 use super::quantity::Quantity;
 use crate::math::Number;
 use crate::scene::Backing;
-use planes::Planes;
+use speed_grid::Planes;
 use speed_grid::SpeedGrid;
 
 /// Width of a cell, in ln v, at most.

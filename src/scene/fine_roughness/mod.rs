@@ -9,12 +9,11 @@ use super::{Friction, LARGEST, Material, SelfAffine, Surface};
 
 mod files;
 mod spectrum;
-mod split;
 mod warnings;
 
 pub(super) use files::{Convention, read_softening, read_spectrum};
 pub use spectrum::RoughnessSpectrum;
-pub use split::{SplitError, SplitSurface};
+pub use spectrum::{SplitError, SplitSurface};
 
 /// The waves that the profile lacks, and how contacts rub on them; in the material form alone.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -10,7 +10,6 @@
 //! All regions of a step move on together, in the order of time: so a wider one can be opened, or the step cut short,
 //! at any time. At the end of the step their masses take the places of those in it.
 
-mod layer_part;
 mod region;
 #[cfg(test)]
 mod tests;
