@@ -55,7 +55,7 @@ def main():
     manifest, output = sys.argv[1:]
     holders, lines = {}, ["Packages that are linked into what this wheel brings, and their licences.", ""]
     # The figures' font is no package.
-    font = Path(manifest).parent / "crates/cli/src/figure/font/LICENSE.txt"
+    font = Path(manifest).parent / "crates/cli/src/picture/font/LICENSE.txt"
     holders[font.read_text(encoding="utf-8").strip()] = ["DejaVu Sans"]
     lines.append("DejaVu Sans, the font of the program's figures")
     for package in linked(metadata(manifest)):

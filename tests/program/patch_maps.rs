@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use crate::common::{Table, asperity, root, run, scratch};
 
 /// What free cells are filled with, and the swatch of the legend.
-const FREE: &str = "#E1E1E1";
-/// Rectangles that are no cells: the background, the scale of the colours, that swatch.
-const OTHERS: usize = 1 + 64 + 1;
+const FREE: &str = "#e1e1e1";
+/// Rectangles that are no cells: the scale of the colours, that swatch and what is behind it.
+const OTHERS: usize = 64 + 2;
 
 fn reference() -> PathBuf {
     root().join("tests/reference/patch")
@@ -23,10 +23,21 @@ fn drawn(patch: &Path, motion: &Path, folder: &Path) -> (String, Table) {
     (fs::read_to_string(plot).unwrap(), Table::read(&output))
 }
 
-/// The colours of the rectangles that are filled.
+/// The rectangles that are filled: colour, width and height.
+fn rectangles(picture: &str) -> Vec<(&str, f64, f64)> {
+    let rectangle = |line| {
+        let (points, rest) = str::strip_prefix(line, "<polygon points=\"")?.split_once("\" fill=\"")?;
+        let corners: Vec<f64> = points.split([' ', ',']).map(|number| number.parse().unwrap()).collect();
+        let colour = rest.split('"').next()?;
+        (corners.len() == 8 && colour != "none")
+            .then(|| (colour, (corners[4] - corners[0]).abs(), (corners[5] - corners[1]).abs()))
+    };
+    picture.lines().filter_map(rectangle).collect()
+}
+
+/// Their colours.
 fn filled(picture: &str) -> Vec<&str> {
-    let rectangles = picture.lines().filter(|line| line.starts_with("<rect") && line.contains("stroke=\"none\""));
-    rectangles.map(|line| line.split("fill=\"").nth(1).unwrap().split('"').next().unwrap()).collect()
+    rectangles(picture).into_iter().map(|(colour, ..)| colour).collect()
 }
 
 /// A block that is lifted on one side at the end: every cell is drawn in each of six maps, those that bear in colour, and
@@ -47,7 +58,7 @@ fn a_map_has_each_cell_and_the_heading_the_largest_pressure() {
     assert!(counts[last] < 24.0);
     assert_eq!(colours.iter().filter(|&&colour| colour == FREE).count(), 6 * 24 - bearing as usize + 1);
     // The largest pressure of all is yellow.
-    assert!(colours.contains(&"#FEE825"), "{colours:?}");
+    assert!(colours.contains(&"#fde725"), "{colours:?}");
     let [time, pressure] = [times[largest] * 1e3, pressures[largest] * 1e-3];
     let heading = format!(
         "At {time:.0} ms, when the force is largest, {:.0} N: pressure up to {pressure:.0} kPa",
@@ -60,7 +71,7 @@ fn a_map_has_each_cell_and_the_heading_the_largest_pressure() {
 }
 
 /// An attribute of an element of the picture.
-fn number(line: &str, key: &str) -> i32 {
+fn number(line: &str, key: &str) -> f64 {
     line.split(&format!(" {key}=\"")).nth(1).unwrap().split('"').next().unwrap().parse().unwrap()
 }
 
@@ -82,17 +93,16 @@ fn partly_entered_cells_are_drawn_as_wide_as_they_are() {
         "time,x,y,z,roll,pitch,yaw,transport.speed\n0,0,0,0.29997,0,0,0,2\n0.000975,0.00195,0,0.29996,0,0,0,2\n";
     let [patch, motion] = written(&folder, "winkler.table.csv", &text, motion);
     let (picture, _) = drawn(&patch, &motion, &folder);
-    // Of the large map, whose cells are the highest rectangles but for the background.
-    let cells = picture.lines().filter(|line| line.starts_with("<rect") && line.contains("stroke=\"none\""));
-    let cells = cells.filter(|line| (1000..4000).contains(&number(line, "height")));
-    let mut widths: Vec<i32> = cells.map(|line| number(line, "width")).collect();
-    widths.sort_unstable();
-    // Edges take 6 subpixels of a cell that is not too narrow for them, in pictures of 6 subpixels a pixel.
-    let whole = widths[25] + 6;
-    let expected = [whole / 4, whole / 4, 3 * whole / 4 - 6, 3 * whole / 4 - 6];
+    // Of the large map, whose cells are the highest rectangles.
+    let cells = rectangles(&picture).into_iter().filter(|(.., height)| (150.0..650.0).contains(height));
+    let mut widths: Vec<f64> = cells.map(|(_, width, _)| width).collect();
+    widths.sort_unstable_by(f64::total_cmp);
+    // Edges take a pixel of a cell that is not too narrow for them.
+    let whole = widths[25] + 1.0;
+    let expected = [whole / 4.0, whole / 4.0, 3.0 * whole / 4.0 - 1.0, 3.0 * whole / 4.0 - 1.0];
     assert_eq!(widths.len(), 50);
-    assert!(widths.iter().zip(expected).all(|(width, expected)| (width - expected).abs() <= 2), "{widths:?}");
-    assert!(widths[4..].iter().all(|width| (width - widths[25]).abs() <= 1), "{widths:?}");
+    assert!(widths.iter().zip(expected).all(|(width, expected)| (width - expected).abs() <= 0.3), "{widths:?}");
+    assert!(widths[4..].iter().all(|width| (width - widths[25]).abs() <= 0.2), "{widths:?}");
 }
 
 #[test]
@@ -103,11 +113,11 @@ fn points_are_drawn_as_discs_of_their_area() {
     let motion = "time,x,y,z,roll,pitch,yaw\n0,0,0,-2e-5,0,0,0\n0.1,0,0,-3e-5,0,0,0\n";
     let [patch, motion] = written(&folder, "winkler.table.csv", text, motion);
     let (picture, _) = drawn(&patch, &motion, &folder);
-    let radii: Vec<i32> =
+    let radii: Vec<f64> =
         picture.lines().filter(|line| line.starts_with("<circle")).map(|line| number(line, "r")).collect();
     // The large map comes first; both rows are in the strip.
     assert_eq!(radii.len(), 9, "{radii:?}");
-    assert!(radii[1] == radii[2] && (radii[0] - 2 * radii[1]).abs() <= 1, "{radii:?}");
+    assert!(radii[1] == radii[2] && (radii[0] - 2.0 * radii[1]).abs() <= 0.2, "{radii:?}");
 }
 
 /// A picture of many elements has no more tiles than can be told apart.

@@ -251,7 +251,7 @@ fn a_contact_of_a_map_is_drawn_as_maps() {
     let svg = fs::read_to_string(file("contact.svg")).unwrap();
     assert_eq!(svg.matches("<image ").count(), 3);
     for text in
-        ["pressure in MPa", "gap in µm", "height in µm", "contact, 14.9 % of the area", "1 mm", "the rubber slides"]
+        ["pressure in MPa", "gap in µm", "height in µm", "contact, 14.9 % of the area", "x in mm", "the rubber slides"]
     {
         assert!(svg.contains(text), "{text}");
     }

@@ -3,8 +3,8 @@
 //! whose answer may end it.
 //!
 //! What is asked for are types that say what each option means, from which the program's arguments are made. It knows
-//! nothing else of arguments, and nothing of the terminal, of pictures and of the process: its errors speak of options in
-//! backquotes, which the program makes flags of.
+//! nothing else of arguments, and nothing of the terminal, of how pictures are drawn and of the process: its errors speak of
+//! options in backquotes, which the program makes flags of.
 //!
 //! # Modules
 //!

@@ -193,10 +193,13 @@ impl Layout {
 
     /// The colours of a scale from its low end, below, to its high one, and its title above.
     fn bar(&mut self, scale: &ColourScale, [left, top]: Point, height: f64) {
-        let colours = (0..COLOURS).rev().map(|i| at(scale.colours, (f64::from(i) + 0.5) / f64::from(COLOURS)));
-        let size = [BAR, height];
-        self.items.push(Item::Image { corner: [left, top], size, columns: 1, colours: colours.collect() });
         let (right, bottom) = (left + BAR, top + height);
+        let shares = |i: u32| [0.0, 0.5, 1.0].map(|part| (f64::from(i) + part) / f64::from(COLOURS));
+        self.items.extend((0..COLOURS).map(shares).map(|[low, middle, high]| {
+            let [low, high] = [low, high].map(|share| bottom - share * height);
+            // Half a pixel further than the next begins, so that nothing shows between them.
+            Item::rectangle([left, low], [right, (high - 0.5).max(top)], Paint::full(at(scale.colours, middle)))
+        }));
         let pen = Pen::new(Colour::INK, 1.0);
         let points = vec![[left, top], [right, top], [right, bottom], [left, bottom]];
         self.items.push(Item::Path { points, is_closed: true, fill: None, pen: Some(pen) });

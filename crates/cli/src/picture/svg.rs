@@ -47,7 +47,7 @@ fn element(item: &Item) -> Result<String, png::EncodingError> {
                 false => ([*x, y + down], String::new()),
             };
             format!(
-                "<text x=\"{}\" y=\"{}\" text-anchor=\"{anchor}\" font-size=\"{size}\" fill=\"{}\"{turned}>{}</text>\n",
+                "<text x=\"{}\" y=\"{}\" text-anchor=\"{anchor}\" font-size=\"{size}\" fill=\"{}\"{turned}>\n{}\n</text>\n",
                 short(place[0]),
                 short(place[1]),
                 hexadecimal(*colour),

@@ -174,13 +174,10 @@ impl<'a> Faces<'a> {
         let pixels = size(self.face, within);
         // Pixels of a metre.
         let per_metre = [pixels[0] / (x.high - x.low), pixels[1] / (y.high - y.low)];
-        let marks = vec![
-            tiles(moment, per_metre, false),
-            tiles(moment, per_metre, true),
-            self.arrows(moment, per_metre, false),
-            self.arrows(moment, per_metre, true),
-        ];
-        Panel { scale: Some(self.scale.clone()), ..Panel::new(x, y, marks) }.sized(pixels[0], pixels[1])
+        let tiles = [false, true].into_iter().flat_map(|are_free| tiles(moment, per_metre, are_free));
+        let arrows = [false, true].map(|sticks| self.arrows(moment, per_metre, sticks));
+        let panel = Panel::new(x, y, tiles.chain(arrows).collect());
+        Panel { scale: Some(self.scale.clone()), ..panel }.sized(pixels[0], pixels[1])
     }
 
     /// The tractions that slip or stick, each arrow with its middle at its place.
@@ -200,20 +197,21 @@ impl<'a> Faces<'a> {
     }
 }
 
-/// The tiles in contact, coloured by pressure, or those that are free.
-fn tiles(moment: &Moment, per_metre: [f64; 2], are_free: bool) -> Mark {
+/// The tiles in contact, coloured by pressure, or those that are free; single points as discs of their areas.
+fn tiles(moment: &Moment, per_metre: [f64; 2], are_free: bool) -> Vec<Mark> {
     let tiles: Vec<&Tile> = moment.tiles.iter().filter(|tile| (tile.pressure <= 0.0) == are_free).collect();
-    let values = if are_free { Vec::new() } else { tiles.iter().map(|tile| tile.pressure).collect() };
-    let shape = if moment.are_points {
-        let area = tiles.iter().map(|tile| tile.area).sum::<f64>() / tiles.len().max(1) as f64;
-        let radius = (area * per_metre[0] * per_metre[1] / std::f64::consts::PI).sqrt().max(MIN_RADIUS);
-        let points = tiles.iter().map(|tile| tile.place).collect();
+    let values = |tiles: &[&Tile]| if are_free { Vec::new() } else { tiles.iter().map(|tile| tile.pressure).collect() };
+    let disc = |tile: &&Tile| {
+        let radius = (tile.area * per_metre[0] * per_metre[1] / std::f64::consts::PI).sqrt().max(MIN_RADIUS);
+        let (points, values) = (vec![tile.place], values(&[tile]));
         Shape::Points { points, symbol: Symbol::Disc, fill: Fill::Full, radius, labels: Vec::new(), values }
-    } else {
-        let boxes = tiles.iter().map(|tile| [tile.low[0], tile.low[1], tile.high[0], tile.high[1]]).collect();
-        Shape::Boxes { boxes, values }
     };
-    Mark::new(if are_free { "free" } else { "" }, 0, shape).coloured(Colour::GRID)
+    let of_points = tiles.iter().filter(|_| moment.are_points).map(disc);
+    let in_boxes: Vec<&Tile> = tiles.iter().copied().filter(|_| !moment.are_points).collect();
+    let boxes = in_boxes.iter().map(|tile| [tile.low[0], tile.low[1], tile.high[0], tile.high[1]]).collect();
+    let boxes = Shape::Boxes { boxes, values: values(&in_boxes) };
+    let boxes = Mark::new(if are_free { "free" } else { "" }, 0, boxes).coloured(Colour::GRID);
+    of_points.map(|shape| Mark::new("", 0, shape).coloured(Colour::GRID)).chain([boxes]).collect()
 }
 
 /// Of a traction, Pa.

@@ -37,10 +37,8 @@ fn bands(ranking: &Ranking) -> Row {
     let (low, high) = (values().fold(f64::MAX, f64::min), values().fold(f64::MIN, f64::max));
     let room = (ROOM * (high - low)).max(0.01 * high.abs());
     let first = ranking.scenes.first().map(|scene| scene.label.as_str()).unwrap_or_default();
-    let quantity = match ranking.samples {
-        0 => format!("mean friction, {first} = 100"),
-        _ => format!("mean friction, {first} = 100: bands of 50 and 90 %, line: median, ring: own numbers"),
-    };
+    let quantity = format!("mean friction, {first} = 100");
+    let note = if ranking.samples == 0 { "" } else { "bands of 50 and 90 %, line: median, ring: own numbers" };
     let x = Axis::linear((&quantity, ""), [low - room, high + room], Fit::Tight);
     let y = Axis::names(scenes().map(|(_, scene, _)| scene.label.clone()));
     let beside = scenes().map(|(_, scene, at)| {
@@ -51,7 +49,8 @@ fn bands(ranking: &Ranking) -> Row {
         Tick { at, name }
     });
     let beside = beside.collect();
-    Panel { beside, ..Panel::new(x, y, marks) }.sized(440.0, 40.0 * ranking.order.len() as f64).into()
+    let panel = Panel { beside, ..Panel::new(x, y, marks) }.sized(440.0, 40.0 * ranking.order.len() as f64);
+    Row { note: note.to_owned(), ..panel.into() }
 }
 
 /// The map over speed and temperature or, where one of these has one value alone, with the load in its place.
