@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use asperity::element::{FrictionTable, PointContact};
 use asperity_study::Error;
 use asperity_study::sweep::{SlidingOptions, SweepMethod, SweepOptions, SweepPlan, SweepTable, quantile_table};
-use asperity_study::uncertainty::{SampleOptions, UncertainScene, UncertaintyError};
+use asperity_study::uncertainty::{SampleOptions, UncertainScene};
 use asperity_study::values::Values;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -79,7 +79,7 @@ impl Source {
         Self { scene: Arc::clone(&scene.scene) }
     }
 
-    fn uncertain(&self) -> Result<UncertainScene, UncertaintyError> {
+    fn uncertain(&self) -> Result<UncertainScene, Error> {
         UncertainScene::new((*self.scene).clone())
     }
 }

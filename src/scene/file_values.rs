@@ -14,7 +14,8 @@ use toml::{Spanned, Table, Value};
 
 use super::error::{Location, Problem, SceneError};
 use super::profile::{Profile, ProfileOptions};
-use super::{FileFormats, TextAlone, read_file};
+use super::values::similar_word;
+use super::{FileFormats, TextAlone, keys, read_file};
 
 type Result<T> = std::result::Result<T, SceneError>;
 
@@ -211,6 +212,29 @@ impl FileValues {
             }
         }
         Ok(in_files)
+    }
+
+    /// The error of what is at a path.
+    pub fn error(&self, path: &str, problem: Problem) -> SceneError {
+        SceneError::new(self.location(path), path, problem)
+    }
+
+    /// Refuses the value at a path for not being what was `expected`; of words in quotation marks, one that looks like it is
+    /// named.
+    pub fn refuse(&self, path: &str, expected: impl ToString) -> SceneError {
+        let (expected, value) = (expected.to_string(), self.get(path));
+        let meant = value.and_then(Value::as_str).and_then(|given| similar_word(given, &expected));
+        let hint = meant.map(|word| format!("; did you mean \"{word}\"?")).unwrap_or_default();
+        let given = value.map(|value| self.given(path, value)).unwrap_or_default();
+        self.error(path, Problem::value(given, expected + &hint))
+    }
+
+    /// Refuses the key at a path, of a table that has those `allowed` alone.
+    pub fn unknown(&self, path: &str, allowed: &[&str]) -> SceneError {
+        let name = path.rsplit('.').next().unwrap_or_default();
+        let allowed: Vec<String> = allowed.iter().map(|name| (*name).to_owned()).collect();
+        let similar = keys::closest(name, allowed.iter().cloned());
+        self.error(path, Problem::Unknown { allowed, similar })
     }
 
     /// Where the value at a path stands in the file, or the name of a table; where it is not there, what is around it. No

@@ -24,11 +24,11 @@ mod profile;
 mod prony_file;
 mod reader;
 mod regular_file;
+mod scaled_spectrum;
 mod self_affine;
 mod settings;
 mod spectrum;
 mod surface;
-mod uncertainty;
 mod values;
 mod warnings;
 
@@ -57,7 +57,7 @@ pub use height_map::{HeightMap, MOST_HEIGHTS, MapError, peak_to_valley};
 pub use keys::{Absent, KeyEntry, patch_keys, scene_keys, similar_keys};
 pub use layer::{FoundationKind, Friction, Initial, Layer, Link, MaxwellElement, RateShear};
 pub use material::{Heat, Material, PronyTerm, Wlf, complex_stiffness};
-pub use parameters::Parameter;
+pub use parameters::{KeyNumber, Parameter};
 pub use patch_file::{Backing, FaceHeat, FaceShape, Grid, NotDoubled, PatchFile, PatchGroup, TableExtrapolation};
 pub use profile::{
     Areal, Depth, Extract, FileFormats, LengthUnit, LoadedProfile, MeasuredPoints, MeasuredSurface, Missing,
@@ -68,7 +68,6 @@ pub use self_affine::SelfAffine;
 pub use settings::{DependencyList, Extrapolation, FmuOptions, IntegerType, Method, OutputGroup, Solver};
 pub use spectrum::{PowerLaw, Spectrum, SpectrumBand};
 pub use surface::{MeanLine, Surface};
-pub use uncertainty::{Covariance, Distribution, FittedNumber, Scale, Spread, UncertainKey, Uncertainty};
 pub use values::{LOOSEST_TOLERANCE, Unit, Value, is_possible};
 
 /// A whole scene, checked. Serialised, it is every number of it: what the scene does not name is null or empty.
@@ -105,9 +104,6 @@ pub struct Scene {
     pub fmu: FmuOptions,
     /// The motion of the carrier in runs without a master.
     pub excitation: Vec<Phase>,
-    /// What is not known of it; no run depends on that.
-    #[serde(skip)]
-    pub uncertainty: Uncertainty,
     /// The files that the scene reads and an FMU carries: relative to its folder, as the scene names them; a line of an
     /// areal measurement by the name of its extract.
     #[serde(skip)]

@@ -188,8 +188,21 @@ impl Unit {
         unit.map(|_| if self == Self::Hertz { number / TAU } else { number })
     }
 
-    /// The difference of two numbers that a text such as `2 °C` gives, in this unit, as [`read`](Self::read) a number.
-    pub(super) fn read_difference(self, text: &str) -> Option<f64> {
+    /// A difference above 0 of numbers of this unit: a number in SI units, or a text such as `2 °C`.
+    ///
+    /// # Errors
+    /// What is expected.
+    pub fn difference(self, value: &toml::Value) -> Result<f64, String> {
+        let plain = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
+        let read = plain.or_else(|| self.read_difference(value.as_str()?));
+        read.filter(|&number| POSITIVE.holds(number)).ok_or_else(|| match self.readable() {
+            units if units.is_empty() => POSITIVE.to_string(),
+            units => format!("{POSITIVE}, in SI units or as a text with its unit, one of {units}"),
+        })
+    }
+
+    /// The difference of two numbers that a text gives, in this unit, as [`read`](Self::read) a number.
+    fn read_difference(self, text: &str) -> Option<f64> {
         let (number, unit) = quantity(text, self.dimension()?)?;
         let difference = number - unit?.to_si(0.0);
         Some(if self == Self::Hertz { difference / TAU } else { difference })

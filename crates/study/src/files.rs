@@ -9,6 +9,7 @@ use asperity::tables::{ContentError, text_or_sheet};
 use asperity_formats::Instruments;
 
 use crate::error::Error;
+use crate::uncertainty::{Uncertainty, covariance_file};
 
 /// Reads a scene from `text`, its keys set to other values, as if it were the content of `file`.
 ///
@@ -16,6 +17,9 @@ use crate::error::Error;
 /// Where the text or what is set in it is refused.
 pub fn parse_scene(text: &str, file: &Path, set: &[Setting]) -> Result<Scene, Error> {
     let mut scene = Scene::parse_with(text, file, &Instruments, set)?;
+    let (_, warnings) = Uncertainty::of(&scene)?;
+    scene.warnings.extend(warnings);
+    scene.files.extend(covariance_file(&scene));
     EvenSliding::warn_of(&mut scene);
     Ok(scene)
 }

@@ -18,20 +18,20 @@
 //! | [`picture`] | decimals | pictures as plain data: panels with axes and marks |
 //! | [`progress`] | | how far long work is, and how it is ended |
 //! | [`implausible`] | decimals | friction and areas of contact that no rubber has |
-//! | [`settings`] | | keys of scenes and patches set to other values |
+//! | [`settings`] | | keys set in the text of a file, so that its comments stay |
 //! | `error` | progress | why something is not done: what was expected, what was found, and where |
-//! | [`files`] | error | scenes, patches and other files, read |
+//! | [`uncertainty`] | error | what is not known of a scene, scenes drawn from it, what of it matters |
+//! | [`files`] | error, uncertainty | scenes, patches and other files, read |
 //! | [`csv`] | decimals, error, files | tables of text with a header, read and written |
 //! | [`masses`] | decimals, html, picture | what the masses of a layer do over a run, as arrays, as a picture and as an animation |
 //! | [`time_history`] | picture | a run over time as a picture |
 //! | [`patch_history`] | decimals, picture, time_history | a run of a patch as a picture |
 //! | [`runner`] | progress | a scene along its excitation, row by row |
 //! | [`steady`] | | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
-//! | [`uncertainty`] | error | scenes drawn from what is not known of one: Sobol' points, distributions, indices |
 //! | [`sweep`] | decimals, error, files, implausible, picture, progress, steady, uncertainty, values | friction over speed, load and temperature, as a table |
 //! | [`contact`] | decimals, implausible, picture, steady, sweep, values | the contact of a surface in steady sliding |
 //! | [`converge`] | decimals, error, picture, steady, sweep | whether area and friction depend on spacing, length or chance |
-//! | [`calibration`] | csv, decimals, error, files, implausible, picture, settings, steady, sweep | free numbers of a scene from measured friction: models, least squares, errors, plans |
+//! | [`calibration`] | csv, decimals, error, files, implausible, picture, settings, steady, sweep, uncertainty | free numbers of a scene from measured friction: models, least squares, errors, plans |
 //! | [`comparison`] | calibration, sweep | a table of a sweep beside measured friction |
 //! | [`friction_map`] | calibration, comparison, picture, sweep | a table's friction over two of its quantities |
 //! | [`rank`] | calibration, comparison, csv, decimals, error, files, picture, progress, sweep, uncertainty | scenes in the order of their friction, and how sure that is |

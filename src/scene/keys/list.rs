@@ -1,7 +1,7 @@
 //! The keys in a list, each with its full path.
 
 use super::patch::PATCH_ROOT;
-use super::scene_file::{RETIRED, ROOT};
+use super::scene_file::ROOT;
 use super::{Absent, Allowed, At, Form, Key, KindKeys};
 use crate::scene::Unit;
 use crate::scene::values::{NumberRange, POSITIVE};
@@ -64,7 +64,7 @@ pub(in crate::scene) fn elsewhere(root: &'static [Key], form: Form, given: &str)
     const LEAST_LETTERS: usize = 4;
     const MANY: usize = 4;
     let name = given.rsplit('.').next().unwrap_or_default();
-    let all = || rows(root).into_iter().filter(|row| row.path != RETIRED);
+    let all = || rows(root).into_iter();
     let of_form = |row: &KeyRow| row.key.form.is_none_or(|own| own == form);
     let found: Vec<String> = all()
         .filter(|row| row.key.name == name && of_form(row) && !row.path.starts_with(ROUGHNESS))
@@ -107,11 +107,9 @@ pub struct KeyEntry {
     pub of_material: Option<bool>,
 }
 
-/// All keys of a scene; those of its surface are the layer's roughness's too. A retired key is left out.
+/// All keys of a scene; those of its surface are the layer's roughness's too.
 pub fn scene_keys() -> Vec<KeyEntry> {
-    let left_out = [ROUGHNESS, RETIRED];
-    let all = rows(ROOT).into_iter();
-    all.filter(|row| !left_out.iter().any(|path| row.path.starts_with(path))).map(KeyEntry::from).collect()
+    rows(ROOT).into_iter().filter(|row| !row.path.starts_with(ROUGHNESS)).map(KeyEntry::from).collect()
 }
 
 /// All keys of a patch.

@@ -7,7 +7,6 @@ mod list;
 mod patch;
 mod scene_file;
 mod surface;
-mod uncertainty;
 
 use std::fmt;
 
@@ -16,11 +15,10 @@ use super::{Scene, Unit};
 
 pub(super) use field::{At, Field};
 pub use list::{KeyEntry, patch_keys, scene_keys, similar_keys};
-pub(super) use list::{KeyRow, closest, elsewhere, fields, find, is_similar, range_of, rows};
+pub(super) use list::{KeyRow, closest, elsewhere, fields, find, is_similar, range_of};
 pub(super) use patch::{PATCH_ROOT, ShapeKind};
-pub(super) use scene_file::{RETIRED, ROOT};
+pub(super) use scene_file::ROOT;
 pub(super) use surface::SurfaceKind;
-pub(super) use uncertainty::SPREAD;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Key {

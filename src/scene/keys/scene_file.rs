@@ -2,7 +2,6 @@
 
 use super::field::{At, FieldValue, field};
 use super::surface::SURFACE;
-use super::uncertainty::UNCERTAINTY;
 use super::{Allowed, Key, PATH, key, number, table, whole, word};
 use crate::scene::values::{ANY, LOOSEST_TOLERANCE, NOT_NEGATIVE, POSITIVE, words};
 use crate::scene::{
@@ -190,7 +189,6 @@ const FRICTION: &[Key] = &[
         friction.and_then(|_| scene.memory_way().value())
     })),
     table("rate_shear", RATE_SHEAR),
-    table("real_area", REAL_AREA).material(),
     number("shear_force", NOT_NEGATIVE, Unit::Newton, "Adhesive shear force of one mass in contact")
         .default("0")
         .direct()
@@ -259,16 +257,6 @@ const CARRIER_Z: &[Key] = &[
     )
     .default("\"start\"")
     .parameter(field!(|scene, _| scene.carrier.z?.initial)),
-];
-
-/// An old key, which the reader refuses with what says the same in `surface.fine`.
-pub(in crate::scene) const RETIRED: &str = "friction.real_area";
-
-const REAL_AREA: &[Key] = &[
-    number("rms_slope", NOT_NEGATIVE, Unit::One, "In its place: surface.fine"),
-    number("wavelength", POSITIVE, Unit::Meter, "In its place: surface.fine"),
-    number("modulus", POSITIVE, Unit::Pascal, "In its place: surface.fine"),
-    number("cut_off_wavelength", POSITIVE, Unit::Meter, "In its place: surface.fine"),
 ];
 
 const RATE_SHEAR: &[Key] = &[
@@ -347,6 +335,10 @@ const INPUT: &[Key] = &[
         .parameter(field!(|scene, _| scene.extrapolation)),
     key("temperature", Allowed::Flag, "Whether the layer's temperature is an input").default("false").material(),
 ];
+
+/// Beside them any number of the scene by its path: they are read by what draws samples.
+const UNCERTAINTY: &[Key] =
+    &[key("covariance", Allowed::Text(PATH), "File of numbers that were fitted together, as calibrate writes it")];
 
 const FMU: &[Key] = &[
     key("outputs", Allowed::Words(words::<OutputGroup>), "Groups of output variables")

@@ -96,6 +96,21 @@ impl Parameter {
     }
 }
 
+/// A number of a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KeyNumber {
+    /// Its value, in SI units.
+    pub value: f64,
+    /// Its unit.
+    pub unit: Unit,
+}
+
+/// The element of the list in a path, from 0; 0 without one.
+fn element_of(path: &str) -> Option<usize> {
+    let Some((_, rest)) = path.split_once('[') else { return Some(At::FIRST.index) };
+    rest.split_once(']')?.0.parse::<usize>().ok()?.checked_sub(1)
+}
+
 impl Scene {
     /// The parameters that this scene has, in the order of the scene's keys.
     pub fn parameters(&self) -> Vec<Parameter> {
@@ -165,6 +180,35 @@ impl Scene {
         let parameter = self.parameter_named(name).ok_or_else(|| self.unknown(name))?;
         let value = parameter.key().parse(text.trim()).ok_or_else(|| parameter.refuse(text))?;
         self.set_parameter(parameter, value)
+    }
+
+    /// Whether a path is that of a table of a scene file.
+    pub fn is_table(path: &str) -> bool {
+        keys::find(keys::ROOT, path).is_some_and(|(key, _)| !key.keys().is_empty())
+    }
+
+    /// The number at the path of a key, elements of lists counted from 1: as the file has it, or as it follows.
+    ///
+    /// # Errors
+    /// Where there is no such key, or the scene has no number there.
+    pub fn number_or_following(&self, path: &str) -> Result<KeyNumber, ParameterError> {
+        let refused = |expected: &str| ParameterError::new(path, Problem::value(path, expected));
+        let Some((key, at)) = keys::find(keys::ROOT, path) else {
+            return Err(match keys::similar_keys(path).first() {
+                Some(similar) => refused(&format!("the key of a number of the scene; did you mean {similar}?")),
+                None => refused("the key of a number of the scene, as friction.rate_shear.strength"),
+            });
+        };
+        let Some(range) = key.range() else {
+            return Err(refused("the key of a number that may have any value in a range"));
+        };
+        let in_file = self.number(path).filter(|number| range.holds(*number));
+        let following = || match (key.field?.get)(self, at.element(element_of(path)?))? {
+            Value::Real(number) => Some(number),
+            _ => None,
+        };
+        let value = in_file.or_else(following).ok_or_else(|| refused("the key of a number that the scene has"))?;
+        Ok(KeyNumber { value, unit: key.unit })
     }
 
     fn unknown(&self, name: &str) -> ParameterError {

@@ -5,7 +5,6 @@ mod fine;
 mod patch;
 mod surface;
 mod table;
-mod uncertainty;
 
 use std::path::Path as FilePath;
 use std::sync::Arc;
@@ -17,7 +16,7 @@ use super::values::Word;
 use super::{
     CarrierBodies, Extrapolation, FileFormats, FmuOptions, Foundation, FoundationKind, Friction, Heat, Layer, Link,
     LinkKind, Material, MaxwellElement, OutputGroup, ParameterError, PronyTerm, RateShear, Scene, SceneError, Solver,
-    Surface, TextAlone, Uncertainty, Wlf, read_text, warnings,
+    Surface, TextAlone, Wlf, read_text, warnings,
 };
 use surface::Findings;
 use table::{Entry, Result, Source, TableReader};
@@ -145,7 +144,8 @@ fn read_root(mut root: TableReader<'_>, found: &mut Findings) -> Result<Scene> {
     scene.excitation = root.tables("excitation", phases)?.concat();
     scene.foundation =
         scene.material.as_ref().and_then(|material| Foundation::new(&scene.layer, material, &scene.surface));
-    scene.uncertainty = uncertainty::read(&mut root, &scene, found)?;
+    // What is not known of the scene: no run depends on it.
+    root.entry("uncertainty").map(|entry| entry.open()).transpose()?;
     root.finish()?;
     scene.warnings = std::mem::take(&mut found.warnings);
     add_warnings(&mut scene);
@@ -172,7 +172,6 @@ fn unread_scene() -> Scene {
         outputs: default_outputs(),
         fmu: FmuOptions::default(),
         excitation: Vec::new(),
-        uncertainty: Uncertainty::default(),
         files: Vec::new(),
         extracts: Vec::new(),
         warnings: Vec::new(),
@@ -319,9 +318,6 @@ fn read_wlf(table: &mut TableReader<'_>, scene: &mut Scene) -> Result<()> {
 }
 
 fn read_friction(table: &mut TableReader<'_>, scene: &mut Scene) -> Result<()> {
-    if let Some(entry) = table.entry("real_area") {
-        return Err(entry.refuse(entry.table(fine_in_place)?));
-    }
     scene.friction = Some(Friction::default());
     table.fill(scene, At::FIRST)?;
     table.optional_table("rate_shear", |table| {
@@ -329,26 +325,6 @@ fn read_friction(table: &mut TableReader<'_>, scene: &mut Scene) -> Result<()> {
         table.fill(scene, At::FIRST)
     })?;
     Ok(())
-}
-
-/// What says the same as the old key `friction.real_area`.
-fn fine_in_place(table: &mut TableReader<'_>) -> Result<String> {
-    /// Half a band, of which one wave is the middle.
-    const HALF_BAND: f64 = 1.0 / 16.0;
-    let [slope, wavelength, modulus, cut_off] =
-        ["rms_slope", "wavelength", "modulus", "cut_off_wavelength"].map(|name| table.optional_number(name));
-    let keys = match (slope?, wavelength?, modulus?, cut_off?) {
-        (Some(slope), Some(length), ..) => {
-            let [longest, shortest] = [HALF_BAND, -HALF_BAND].map(|decades| length * 10_f64.powf(decades));
-            format!(
-                "hurst = 1, rms_slope = {slope}, longest = {longest:.6e}, shortest = {shortest:.6e}, hysteresis = false"
-            )
-        }
-        (Some(slope), None, Some(modulus), _) => format!("rms_slope = {slope}, modulus = {modulus}"),
-        (_, _, _, Some(cut_off)) => format!("shortest = {cut_off}, hysteresis = false"),
-        _ => "...".into(),
-    };
-    Ok(format!("surface.fine = {{ {keys} }} in its place"))
 }
 
 fn read_input(table: &mut TableReader<'_>) -> Result<Extrapolation> {

@@ -6,7 +6,7 @@ use toml::{Table, Value as TomlValue};
 use crate::scene::error::{Location, Problem, SceneError};
 use crate::scene::file_values::FileValues;
 use crate::scene::keys::{self, Absent, Allowed, At, Field, Form, Key, Kinds};
-use crate::scene::values::{NumberRange, POSITIVE, Value, Word, similar_word, words};
+use crate::scene::values::{NumberRange, Value, Word, words};
 use crate::scene::{Scene, Unit};
 
 pub(super) type Result<T> = std::result::Result<T, SceneError>;
@@ -58,15 +58,12 @@ impl<'a> Entry<'a> {
     }
 
     pub(super) fn error(&self, problem: Problem) -> SceneError {
-        SceneError::new(self.location(), &self.path, problem)
+        self.source.values.error(&self.path, problem)
     }
 
     /// Refuses the value for not being what was `expected`; of words in quotation marks, one that looks like it is named.
     pub(super) fn refuse(&self, expected: impl ToString) -> SceneError {
-        let expected = expected.to_string();
-        let meant = self.value.as_str().and_then(|given| similar_word(given, &expected));
-        let hint = meant.map(|word| format!("; did you mean \"{word}\"?")).unwrap_or_default();
-        self.error(Problem::value(self.given(), expected + &hint))
+        self.source.values.refuse(&self.path, expected)
     }
 
     pub(super) fn refuse_count(&self, count: usize, expected: &str) -> SceneError {
@@ -86,15 +83,6 @@ impl<'a> Entry<'a> {
     pub(super) fn number(&self) -> Result<f64> {
         let Allowed::Number(range) = self.key.allowed else { return Err(self.refuse_type()) };
         self.number_of(self.value).filter(|&number| range.holds(number)).ok_or_else(|| self.refuse_number(range))
-    }
-
-    /// A difference above 0 of numbers in a `unit`, in SI units or with a unit behind it.
-    pub(super) fn difference(&self, unit: Unit) -> Result<f64> {
-        let read = number(self.value).or_else(|| unit.read_difference(self.value.as_str()?));
-        read.filter(|&number| POSITIVE.holds(number)).ok_or_else(|| match unit.readable() {
-            units if units.is_empty() => self.refuse(POSITIVE),
-            units => self.refuse(format_args!("{POSITIVE}, in SI units or as a text with its unit, one of {units}")),
-        })
     }
 
     /// A number, in SI units or with a unit behind it: a text.
@@ -201,7 +189,7 @@ pub(super) fn number_of(value: &TomlValue, unit: Unit) -> Option<f64> {
     number(value).or_else(|| unit.read(value.as_str()?))
 }
 
-fn number(value: &TomlValue) -> Option<f64> {
+pub(in crate::scene) fn number(value: &TomlValue) -> Option<f64> {
     value.as_float().or_else(|| value.as_integer().map(|number| number as f64))
 }
 
@@ -233,7 +221,7 @@ impl<'a> TableReader<'a> {
         let foreign = self.keys.iter().filter(|key| key.form.is_some_and(|other| other != form));
         if let Some(entry) = foreign.into_iter().find_map(|key| self.find(key)) {
             let own = self.keys.iter().filter(|key| key.form == Some(form)).map(|key| key.name);
-            let own: Vec<&str> = own.filter(|name| self.full(name) != keys::RETIRED).collect();
+            let own: Vec<&str> = own.collect();
             let instead = if own.is_empty() { String::new() } else { format!("; instead: {}", own.join(", ")) };
             let with = if form == Form::Direct { "without" } else { "beside" };
             return Err(entry.refuse(format_args!("no such key {with} [material]{instead}")));
@@ -251,8 +239,7 @@ impl<'a> TableReader<'a> {
         let unknown = self.table.keys().filter(|name| !allowed.contains(&name.as_str()));
         match unknown.min_by_key(|name| self.source.values.offset(&self.full(name))) {
             Some(name) => {
-                let names = allowed.iter().filter(|name| self.full(name) != keys::RETIRED);
-                let allowed: Vec<String> = names.copied().map(String::from).collect();
+                let allowed: Vec<String> = allowed.iter().copied().map(String::from).collect();
                 let problem = Problem::Unknown { similar: self.similar(name, &allowed), allowed };
                 Err(SceneError::new(self.source.values.location(&self.full(name)), self.full(name), problem))
             }
@@ -271,37 +258,6 @@ impl<'a> TableReader<'a> {
 
     fn full(&self, name: &str) -> String {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
-    }
-
-    /// All of its entries, each with the `key` in place of its own; names are in quotation marks.
-    pub(super) fn entries(&self, key: &'static Key) -> Vec<(String, Entry<'a>)> {
-        let source = self.source;
-        let path = |name: &str| format!("{}.\"{name}\"", self.path);
-        let entry =
-            |(name, value): (&String, &'a TomlValue)| (name.clone(), Entry { source, path: path(name), key, value });
-        let mut entries: Vec<_> = self.table.iter().map(entry).collect();
-        entries.sort_by_key(|(_, entry)| source.values.offset(&entry.path));
-        entries
-    }
-
-    /// The entry at the path of a `key` of the file, elements of lists counted from 1.
-    pub(super) fn at(&self, path: &str, key: &'static Key) -> Option<Entry<'a>> {
-        Some(Entry { source: self.source, path: path.to_owned(), key, value: self.source.values.get(path)? })
-    }
-
-    /// The problem of a path that leads to no key of the file.
-    pub(super) fn unknown_path(&self, path: &str) -> Problem {
-        let all = keys::rows(self.source.keys).into_iter().map(|row| row.path.replace("[]", "[1]"));
-        let mut similar = keys::closest(path, all);
-        if similar.is_empty() {
-            similar = keys::elsewhere(self.source.keys, self.source.form, path);
-        }
-        match similar.first() {
-            Some(similar) => {
-                Problem::value(path, format_args!("the key of a number of the scene; did you mean {similar}?"))
-            }
-            None => Problem::value(path, "the key of a number of the scene, as friction.rate_shear.strength"),
-        }
     }
 
     fn key(&self, name: &str) -> &'static Key {

@@ -132,7 +132,6 @@ fn cases_of(scales: Scales, method: Method) -> impl Strategy<Value = Case> {
                 solver,
                 extrapolation: Extrapolation::Linear,
                 temperature_input: false,
-                uncertainty: Default::default(),
                 outputs: GROUPS.to_vec(),
                 fmu: FmuOptions::default(),
                 excitation: Vec::new(),

@@ -7,7 +7,6 @@ use asperity::tables::ContentError;
 use crate::csv::CsvError;
 use crate::error::Error;
 use crate::progress::Stopped;
-use crate::uncertainty::UncertaintyError;
 
 /// The scenes cannot be ranked.
 #[derive(Debug, thiserror::Error)]
@@ -17,8 +16,6 @@ pub enum RankError {
     Read(#[from] Error),
     #[error("{scene}: {error}")]
     Sweep { scene: String, error: Box<Error> },
-    #[error(transparent)]
-    Uncertainty(#[from] UncertaintyError),
     #[error(transparent)]
     Csv(#[from] CsvError),
     #[error("expected at least 2 scenes to rank, found {0}")]

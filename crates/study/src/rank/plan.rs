@@ -12,7 +12,7 @@ use crate::Error;
 use crate::files::name_of;
 use crate::progress::{Stop, Stopped};
 use crate::sweep::{SweepOptions, SweepPlan, SweepTable};
-use crate::uncertainty::{Drawn, Refused, SampleOptions, Sampler, UncertainScene, UncertaintyError};
+use crate::uncertainty::{Drawn, Refused, SampleOptions, Sampler, UncertainScene, Uncertainty};
 
 /// Friction of a scene at all points, or why it cannot be swept.
 type Found = Result<Vec<Option<f64>>, Error>;
@@ -68,7 +68,7 @@ impl RankPlan {
             let RankScene { scene, file } = scene;
             let refused = |error| RankError::Sweep { scene: label.clone(), error: Box::new(error) };
             let plan = SweepPlan::new(scene.clone(), &options, None).map_err(refused)?;
-            let is_known = scene.uncertainty.is_empty();
+            let is_known = Uncertainty::of(&scene)?.0.is_empty();
             let uncertain = (!is_known).then(|| UncertainScene::new(scene)).transpose()?;
             Ok(Entry { label, file, plan, uncertain })
         };
@@ -161,7 +161,7 @@ impl RankPlan {
         stopped(stop)?;
         let draws = draws?;
         let whole = |(sample, drawn): (usize, Vec<Found>)| {
-            let failed = |error: Error| UncertaintyError::Sample { sample: sample + 1, problem: error.to_string() };
+            let failed = |error: Error| error.context(format!("sample {}", sample + 1));
             let drawn = drawn.into_iter().collect::<Result<Frictions, _>>().map_err(failed)?;
             let mut drawn = drawn.into_iter();
             let of = |(entry, own): (&Entry, &Vec<Option<f64>>)| match entry.uncertain {

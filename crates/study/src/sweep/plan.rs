@@ -54,7 +54,7 @@ impl SweepPlan {
     ) -> Result<Self, Error> {
         let scene = uncertain.scene();
         let Self { own, mut header, .. } = Self::new(scene.clone(), options, convergence)?;
-        let settings = format!("{} {samples:?} {:?}", header.fingerprint(), scene.uncertainty);
+        let settings = format!("{} {samples:?} {:?}", header.fingerprint(), uncertain.uncertainty());
         let samples = Samples::new(uncertain, &own, options, samples)?;
         header.keys.set(FINGERPRINT, &fingerprint_of(&settings));
         samples.header().set_in(&mut header);

@@ -1,18 +1,19 @@
 //! Scenes drawn from what is not known of one.
 
-use asperity::scene::{
-    Covariance, Distribution, Scale, Scene, SceneError, Setting, SpectrumFactors, Spread, UncertainKey, Uncertainty,
-};
+use asperity::scene::{ParameterError, Scene, SceneError, Setting, SpectrumFactors};
 use rayon::prelude::*;
 
-use super::error::UncertaintyError;
+use super::covariance::{Covariance, Scale};
 use super::groups::{Group, decade_name, fitted_axis, groups, process};
 use super::sampler::Sampler;
+use super::section::{Distribution, Spread, UncertainKey, Uncertainty};
+use crate::error::Error;
 
 /// A scene of which something is not known, as it was read.
 #[derive(Clone, Debug)]
 pub struct UncertainScene {
     scene: Scene,
+    uncertainty: Uncertainty,
     groups: Vec<Group>,
 }
 
@@ -54,12 +55,14 @@ impl UncertainScene {
     ///
     /// # Errors
     /// Where everything is known of it.
-    pub fn new(scene: Scene) -> Result<Self, UncertaintyError> {
-        if scene.uncertainty.is_empty() {
-            return Err(UncertaintyError::Nothing);
+    pub fn new(scene: Scene) -> Result<Self, Error> {
+        let (uncertainty, _) = Uncertainty::of(&scene)?;
+        if uncertainty.is_empty() {
+            let expected = "expected a scene with a section [uncertainty], which says how far its numbers may be off";
+            return Err(Error::scene(format!("`samples`: {expected}")));
         }
-        let groups = groups(&scene);
-        Ok(Self { scene, groups })
+        let groups = groups(&uncertainty);
+        Ok(Self { scene, uncertainty, groups })
     }
 
     /// The scene as it was read.
@@ -68,6 +71,11 @@ impl UncertainScene {
     }
 
     /// What is not known of it.
+    pub fn uncertainty(&self) -> &Uncertainty {
+        &self.uncertainty
+    }
+
+    /// That in groups.
     pub fn groups(&self) -> &[Group] {
         &self.groups
     }
@@ -89,7 +97,7 @@ impl UncertainScene {
     pub fn draw(&self, sampler: &Sampler, index: usize, attempt: u32) -> Result<Drawn, Refused> {
         let normal = |axis: &str| sampler.normal(index, attempt, axis);
         let unit = |axis: &str| sampler.unit(index, attempt, axis);
-        let Uncertainty { keys, covariance } = &self.scene.uncertainty;
+        let Uncertainty { keys, covariance } = &self.uncertainty;
         let (mut values, mut set) = (Vec::new(), Vec::new());
         for UncertainKey { key, spread } in keys {
             match spread {
@@ -111,7 +119,6 @@ impl UncertainScene {
         for UncertainKey { key, spread } in keys {
             scene = transformed(scene, key, spread, normal, &mut values)?;
         }
-        scene.uncertainty = Uncertainty::default();
         let normals = self.groups.iter().flat_map(|group| &group.axes).map(|axis| normal(axis)).collect();
         Ok(Drawn { scene, values, normals })
     }
@@ -124,7 +131,7 @@ impl UncertainScene {
         &self,
         sampler: &Sampler,
         make: impl Fn(Drawn) -> Result<T, Refused> + Sync,
-    ) -> Result<Draws<T>, UncertaintyError> {
+    ) -> Result<Draws<T>, Error> {
         Self::draw_together(&[self], sampler, |drawn| drawn.into_iter().map(&make).collect::<Result<Vec<T>, _>>())
             .map(|Draws { made, redrawn }| Draws { made: made.into_iter().flatten().collect(), redrawn })
     }
@@ -138,7 +145,7 @@ impl UncertainScene {
         scenes: &[&Self],
         sampler: &Sampler,
         make: impl Fn(Vec<Drawn>) -> Result<T, Refused> + Sync,
-    ) -> Result<Draws<T>, UncertaintyError> {
+    ) -> Result<Draws<T>, Error> {
         let attempt = |index: usize, attempt: u32| {
             let drawn = scenes.iter().map(|scene| scene.draw(sampler, index, attempt));
             drawn.collect::<Result<Vec<_>, _>>().and_then(&make)
@@ -160,7 +167,11 @@ impl UncertainScene {
         let made: Vec<T> = all.into_iter().filter_map(|(made, ..)| made).collect();
         match first {
             Some(Refused { key, problem }) if made.len() < count || is_too_many(redrawn, count) => {
-                Err(UncertaintyError::Refused { key, problem, refused: redrawn, drawn: count + redrawn })
+                let drawn = count + redrawn;
+                Err(Error::scene(format!(
+                    "{redrawn} of {drawn} draws are no scene, expected one of ten at most; the first: {problem}; give {key} \
+                     less in [uncertainty]"
+                )))
             }
             _ => Ok(Draws { made, redrawn }),
         }
@@ -236,8 +247,8 @@ impl From<SceneError> for Refused {
     }
 }
 
-impl From<asperity::scene::ParameterError> for Refused {
-    fn from(error: asperity::scene::ParameterError) -> Self {
+impl From<ParameterError> for Refused {
+    fn from(error: ParameterError) -> Self {
         Self { key: error.name().to_owned(), problem: error.to_string() }
     }
 }

@@ -1,6 +1,6 @@
 //! What is not known, in groups: each key, and each file of a covariance; and the axes that each is drawn along.
 
-use asperity::scene::{Scene, Spread, UncertainKey, Uncertainty};
+use super::section::{Spread, UncertainKey, Uncertainty};
 
 /// A key or a file of a covariance.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -15,8 +15,8 @@ pub struct Group {
 const LENGTH: f64 = 2.0;
 
 /// What is not known of a scene, in the order of the keys; the covariance last.
-pub(super) fn groups(scene: &Scene) -> Vec<Group> {
-    let Uncertainty { keys, covariance } = &scene.uncertainty;
+pub(super) fn groups(uncertainty: &Uncertainty) -> Vec<Group> {
+    let Uncertainty { keys, covariance } = uncertainty;
     let of_key = |key: &UncertainKey| Group { name: key.key.clone(), axes: axes(key) };
     let fitted = covariance.iter().map(|covariance| {
         let name = covariance.file.to_string_lossy().into_owned();

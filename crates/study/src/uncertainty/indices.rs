@@ -9,7 +9,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::groups::Group;
-use super::normal::inverse_normal;
+use super::sampler::inverse_normal;
 
 /// What a group explains.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,17 +1,19 @@
-//! Scenes drawn from what is not known of one, and what of it matters.
+//! What is not known of a scene, scenes drawn from it, and what of it matters.
 
+mod covariance;
 mod drawing;
-mod error;
 mod groups;
 mod indices;
-mod normal;
 mod sampler;
+mod section;
+#[cfg(test)]
+mod section_tests;
 #[cfg(test)]
 mod tests;
 
+pub use covariance::{Covariance, FittedNumber, Scale};
 pub use drawing::{Drawn, Draws, Refused, UncertainScene};
-pub use error::UncertaintyError;
 pub use groups::{Group, decade_name};
 pub use indices::{Index, Indices, indices};
-pub use normal::inverse_normal;
-pub use sampler::{SampleOptions, Sampler};
+pub use sampler::{SampleOptions, Sampler, inverse_normal};
+pub use section::{Distribution, Spread, UncertainKey, Uncertainty, covariance_file};

@@ -1,7 +1,11 @@
-#![allow(clippy::unwrap_used)]
+//! What the section says.
+
+use std::path::PathBuf;
+
+use asperity::scene::Scene;
 
 use super::*;
-use crate::scene::Scene;
+use crate::files::parse_scene;
 
 const HEAD: &str = "name = 'rough'
 layer = { foundation = 'half_space', masses = 32, spacing = 1e-4, width = '10 mm' }
@@ -17,11 +21,15 @@ wlf = { c1 = 8.86, c2 = 101.6, reference_temperature = 293.15, temperature = 293
 
 fn parse(section: &str) -> Result<Scene, String> {
     let text = format!("{HEAD}[uncertainty]\n{section}");
-    Scene::parse(&text, "s.toml".as_ref()).map_err(|error| error.to_string())
+    parse_scene(&text, "s.toml".as_ref(), &[]).map_err(|error| error.to_string())
+}
+
+fn uncertainty(scene: &Scene) -> Uncertainty {
+    Uncertainty::of(scene).unwrap().0
 }
 
 fn keys(section: &str) -> Vec<UncertainKey> {
-    parse(section).unwrap_or_else(|error| unreachable!("{section}: {error}")).uncertainty.keys
+    uncertainty(&parse(section).unwrap_or_else(|error| unreachable!("{section}: {error}"))).keys
 }
 
 fn number(key: &str, value: f64, distribution: Distribution) -> UncertainKey {
@@ -54,23 +62,11 @@ fn what_is_no_number_has_a_spread_of_its_own() {
     let spread = |key: &str, spread| UncertainKey { key: key.into(), spread };
     let decades = Some(vec![-6, -5, -4, -3, -2, -1]);
     let wanted = [
-        spread("material.prony", Spread::of_prony(0.05, [1e-6, 1e-2].into_iter())),
+        spread("material.prony", Spread::Prony { relative: 0.05, decades: vec![1e-6_f64.log10(), 1e-2_f64.log10()] }),
         spread("surface", Spread::Seed),
         spread("surface.spectrum", Spread::Spectrum { relative: 0.2, decades }),
     ];
     assert_eq!(found, wanted);
-}
-
-/// It changes nothing that is computed: neither the scene as it is written, from which fingerprints are, nor its
-/// parameters.
-#[test]
-fn a_scene_is_the_same_without() {
-    let with = parse("'layer.width' = { relative = 0.1 }").unwrap();
-    let without = Scene::parse(HEAD, "s.toml".as_ref()).unwrap();
-    assert!(without.uncertainty.is_empty() && !with.uncertainty.is_empty());
-    let written = |scene: &Scene| postcard::to_stdvec(&scene.material).unwrap();
-    assert_eq!((written(&with), with.parameters()), (written(&without), without.parameters()));
-    assert_eq!(Scene { uncertainty: Uncertainty::default(), ..with }, without);
 }
 
 #[test]
@@ -120,10 +116,10 @@ fn fitted_numbers_are_read_from_their_file() {
     let read = |file: &str, more: &str| {
         std::fs::write(folder.join("fit.csv"), file).unwrap();
         let text = format!("{HEAD}[uncertainty]\ncovariance = 'fit.csv'\n{more}");
-        Scene::parse(&text, &folder.join("s.toml")).map_err(|error| error.to_string())
+        parse_scene(&text, &folder.join("s.toml"), &[]).map_err(|error| error.to_string())
     };
     let scene = read(&text(["1.000002e6", "300"], "material.wlf.temperature"), "").unwrap();
-    let covariance = scene.uncertainty.covariance.unwrap();
+    let covariance = uncertainty(&scene).covariance.unwrap();
     assert_eq!((scene.files, covariance.file), (vec![PathBuf::from("fit.csv")], PathBuf::from("fit.csv")));
     let numbers: Vec<(f64, Scale)> = covariance.numbers.iter().map(|number| (number.value, number.scale)).collect();
     assert_eq!(numbers, [(1e6, Scale::Log), (293.15, Scale::Linear)]);

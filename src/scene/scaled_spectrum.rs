@@ -33,7 +33,7 @@ impl Scene {
     /// Where its slopes are too steep to work with, or contacts that flatten by a given modulus have no wavelengths.
     pub fn with_spectrum(mut self, factors: SpectrumFactors) -> Result<Self, ParameterError> {
         let refused = |expected: String| {
-            ParameterError::new(Uncertainty::SPECTRUM, Problem::value(format_args!("{factors:?}"), expected))
+            ParameterError::new("surface.spectrum", Problem::value(format_args!("{factors:?}"), expected))
         };
         if let Some(fine) = &mut self.fine {
             match (&mut fine.waves, &factors) {

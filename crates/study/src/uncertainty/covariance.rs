@@ -3,12 +3,10 @@
 //! Lines of comments begin with `#`. The columns are key, value, scale and one for each key, in the order of the rows:
 //! the covariance of the numbers or, where the scale is `log`, of their logarithms.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
+use asperity::tables::{ContentError, LARGEST, decode, fields};
 use nalgebra::{DMatrix, SymmetricEigen};
-
-use crate::scene::values::{LARGEST, Word, words};
-use crate::tables::{ContentError, ReadingNote, decode, fields};
 
 /// Numbers of a scene that move together.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,10 +39,6 @@ pub enum Scale {
     Linear,
 }
 
-impl Word for Scale {
-    const WORDS: &'static [(&'static str, Self)] = &[("log", Self::Log), ("linear", Self::Linear)];
-}
-
 /// The columns before those of the keys.
 const COLUMNS: [&str; 3] = ["key", "value", "scale"];
 /// What is written with some digits is symmetric and positive but for this part.
@@ -54,7 +48,7 @@ const ROUNDING: f64 = 1e-6;
 type Read = (Covariance, Vec<usize>);
 
 /// The covariance in the bytes of a file.
-pub(in crate::scene) fn read_covariance(bytes: &[u8]) -> Result<(Read, Vec<ReadingNote>), ContentError> {
+pub(super) fn read_covariance(bytes: &[u8]) -> Result<Read, ContentError> {
     let text = decode(bytes)?;
     let is_data = |line: &&str| !line.trim().is_empty() && !line.starts_with('#');
     let mut lines = (1..).zip(text.lines()).filter(|(_, line)| is_data(line));
@@ -77,7 +71,7 @@ pub(in crate::scene) fn read_covariance(bytes: &[u8]) -> Result<(Read, Vec<Readi
         return Err(ContentError::value(None, "rows", &numbers.len().to_string(), &expected));
     }
     let root = root(&rows).map_err(|expected| ContentError::value(Some(first), "covariance", "", &expected))?;
-    Ok(((Covariance { file: PathBuf::new(), numbers, root }, at), Vec::new()))
+    Ok((Covariance { file: PathBuf::new(), numbers, root }, at))
 }
 
 /// Row `index` of a file with columns for these keys.
@@ -100,7 +94,11 @@ fn read_row(line: usize, text: &str, keys: &[String], index: usize) -> Result<(F
         let number = text.parse().ok().filter(|number: &f64| number.abs() <= LARGEST);
         number.ok_or_else(|| error(name, text, "a number"))
     };
-    let scale = Scale::parse(&found[2]).ok_or_else(|| error("scale", &found[2], &words::<Scale>()))?;
+    let scale = match &*found[2] {
+        "log" => Scale::Log,
+        "linear" => Scale::Linear,
+        other => return Err(error("scale", other, "one of \"log\", \"linear\"")),
+    };
     let value = number("value", &found[1])?;
     let row = found[COLUMNS.len()..].iter().zip(keys).map(|(text, name)| number(name, text));
     Ok((FittedNumber { key: key.clone(), value, scale }, row.collect::<Result<_, _>>()?))
@@ -129,16 +127,9 @@ fn root(rows: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, String> {
     Ok((0..count).map(|i| (0..count).map(|k| part(i, k)).collect()).collect())
 }
 
-impl Covariance {
-    /// With the name of its file.
-    pub(in crate::scene) fn of_file(self, file: &Path) -> Self {
-        Self { file: file.to_owned(), ..self }
-    }
-}
-
 impl FittedNumber {
     /// Whether what the scene says differs from what was fitted by more than the rounding of either.
-    pub(in crate::scene) fn is_moved(&self, value: f64) -> bool {
+    pub(super) fn is_moved(&self, value: f64) -> bool {
         /// Both are written with so many digits at least.
         const DIGITS: f64 = 1e-5;
         (self.value - value).abs() > DIGITS * self.value.abs().max(value.abs())
@@ -146,13 +137,12 @@ impl FittedNumber {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
     use crate::in_tests::assert_within;
 
     fn read(text: &str) -> Result<Covariance, String> {
-        read_covariance(text.as_bytes()).map(|((covariance, _), _)| covariance).map_err(|error| error.to_string())
+        read_covariance(text.as_bytes()).map(|(covariance, _)| covariance).map_err(|error| error.to_string())
     }
 
     #[test]
