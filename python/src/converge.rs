@@ -4,7 +4,8 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use asperity_study::converge::{ConvergeError, ConvergenceOptions, ConvergenceStudy, Ended, Findings};
+use asperity_study::Error;
+use asperity_study::converge::{ConvergenceOptions, ConvergenceStudy, Ended, Findings};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -15,7 +16,7 @@ use crate::scene::Scene;
 use crate::sweep::sliding;
 
 /// Makes all runs of a study; `None` where nobody waits for them any more.
-fn find(study: &ConvergenceStudy, task: &Task) -> Result<Option<Findings>, ConvergeError> {
+fn find(study: &ConvergenceStudy, task: &Task) -> Result<Option<Findings>, Error> {
     let (done, all) = (AtomicUsize::new(0), AtomicUsize::new(1));
     let begun = |round: &asperity_study::converge::Round| all.store(round.all.max(1), Ordering::Relaxed);
     let found = study.run(Vec::new(), begun, |_| {
@@ -55,7 +56,7 @@ pub(crate) fn converge<'py>(
         let study = ConvergenceStudy::new(&data, &file, options)?;
         Ok(find(&study, task)?.map(|findings| (study, findings)))
     })?;
-    let found = found.map_err(|error: ConvergeError| error.raise())?;
+    let found = found.map_err(|error: Error| error.raise())?;
     // It is only stopped where nobody waits.
     let (study, findings) = found.ok_or_else(|| PyValueError::new_err("stopped"))?;
     as_dictionary(py, &study, &findings)

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use asperity_study::rank::{MeasuredRanking, RankError, RankPlan, RankScene, Ranking, Weights, measured_ranking};
+use asperity_study::Error;
+use asperity_study::rank::{MeasuredRanking, RankPlan, RankScene, Ranking, Weights, measured_ranking};
 use asperity_study::uncertainty::SampleOptions;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -36,7 +37,7 @@ pub(crate) fn rank<'py>(
     let options = options(speeds, (pressures, forces), temperatures, sliding(method, way, points, error, distance)?);
     let scene = |scene: &PyRef<'_, Scene>| RankScene { scene: (*scene.scene).clone(), file: scene.file.clone() };
     let scenes: Vec<RankScene> = scenes.iter().map(scene).collect();
-    let found = in_background(py, progress, move |task| -> Result<_, RankError> {
+    let found = in_background(py, progress, move |task| -> Result<_, Error> {
         let plan = RankPlan::new(scenes, options, SampleOptions { count: samples.0, seed: samples.1 })?;
         let weights = weights.as_deref().map(Weights::read).transpose()?.unwrap_or_default();
         let (all, done) = (plan.sweeps() as f64, AtomicUsize::new(0));

@@ -4,7 +4,6 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use super::Uncertainty;
 use crate::math::{FourierDirection, fourier, fourier_2d};
 use crate::scene::error::{ParameterError, Problem};
 use crate::scene::{FineWaves, HeightMap, Scene, Spectrum, SpectrumFactors, Surface, decade_of};

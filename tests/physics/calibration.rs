@@ -29,7 +29,7 @@ fn problem() -> (Problem, Vec<f64>, f64) {
     (Problem::new(parameters, &measured), values, chi_square)
 }
 
-fn scene_at(keys: &[FreeParameter]) -> impl Fn(&[f64]) -> Result<Scene, ModelError> + Sync {
+fn scene_at(keys: &[FreeParameter]) -> impl Fn(&[f64]) -> Result<Scene, asperity_study::Error> + Sync {
     let path = reference("theory.toml");
     let scene = Scene::parse(&std::fs::read_to_string(&path).unwrap(), &path).unwrap();
     move |values| {

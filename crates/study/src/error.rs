@@ -245,6 +245,7 @@ macro_rules! of_kind {
         })*
     };
 }
+pub(crate) use of_kind;
 
 of_kind! {
     ContentError => Value,

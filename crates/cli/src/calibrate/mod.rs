@@ -1,6 +1,5 @@
 //! `asperity calibrate`: fits numbers of a scene to measured friction.
 
-mod kept;
 mod summary;
 
 use std::ops::ControlFlow;
@@ -9,54 +8,22 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use asperity::scene::{Scene, read_text};
-use asperity_study::calibration::ModelCurves;
+use asperity_study::Error;
 use asperity_study::calibration::{
-    self, Calibration, CalibrationError, CalibrationOptions, CalibrationStage, Calibrator, CandidateOptions, CurveGrid,
-    FitCovariance, FreeScene, Outcome, Task, calibrated_text, named_covariance,
+    self, Calibration, CalibrationOptions, CalibrationStage, Calibrator, CandidateOptions, CurveGrid, FitCovariance,
+    FreeScene, ModelCurves, Outcome, PointsTable, Task, calibrated_text, named_covariance,
 };
 use asperity_study::decimals::rounded;
 use asperity_study::picture::Stroke;
 use indicatif::ProgressBar;
 
 use super::cli::Calibrate;
-use super::files::{
-    self, FileError, check_outputs, is_standard_output, load_without_run, name_of, picture_beside, print_beside,
-};
+use super::files::{self, check_outputs, is_standard_output, load_without_run, name_of, picture_beside, print_beside};
 use super::interrupt::Farewell;
-use super::output::of_set;
 use super::picture;
+use super::resumable_table::ResumableTable;
 use super::terminal::{self, note, warn};
 use super::{NOT_REACHED, SUCCESS};
-use kept::KeptPoints;
-
-/// `asperity calibrate` failed.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum CalibrateError {
-    #[error(transparent)]
-    File(FileError),
-    #[error(transparent)]
-    Calibration(CalibrationError),
-    #[error(
-        "{} is of another calibration: of another scene, other parameters, method or version; name another -o, or give --force \
-         to replace it",
-        .path.display()
-    )]
-    OtherCalibration { path: PathBuf },
-    #[error(
-        "-o {}: the scene names files relative to its folder ({}): expected an output there",
-        .output.display(), .file.display()
-    )]
-    OtherFolder { output: PathBuf, file: PathBuf },
-}
-
-impl<E: Into<CalibrationError>> From<E> for CalibrateError {
-    fn from(error: E) -> Self {
-        match error.into() {
-            CalibrationError::Read(error) => Self::File(of_set(error)),
-            error => Self::Calibration(error),
-        }
-    }
-}
 
 /// Points of a curve.
 const CURVE: u32 = 25;
@@ -85,7 +52,7 @@ struct Outputs {
 
 impl Outputs {
     /// Those of a command, which overwrite nothing that is read.
-    fn new(command: &Calibrate, scene: &Scene) -> Result<Self, CalibrateError> {
+    fn new(command: &Calibrate, scene: &Scene) -> Result<Self, Error> {
         let output = command.output.clone().unwrap_or_else(|| command.scene.with_extension("calibrated.toml"));
         let picture = picture_beside(&output, command.plot.as_ref());
         let beside = |extension| (!is_standard_output(&output)).then(|| output.with_extension(extension));
@@ -105,9 +72,9 @@ impl Outputs {
 }
 
 /// Fits, writes the scene and the picture, and says what the data tell.
-pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, CalibrateError> {
+pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, Error> {
     let scene = load_without_run(&command.scene, &command.set, |scene| !command.sliding.solves(scene))?;
-    let text = read_text(&command.scene).map_err(FileError::io("read", &command.scene))?;
+    let text = read_text(&command.scene).map_err(Error::io("read", &command.scene))?;
     let options = command.into();
     let free = FreeScene::new(&options, &text, scene)?;
     let measurements = free.measurements()?;
@@ -115,8 +82,7 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, CalibrateError> {
     let outputs = Outputs::new(command, free.scene())?;
     let (kept, known) = match &outputs.table {
         Some(table) => {
-            let opened =
-                KeptPoints::open(table, &free.fingerprint().map_err(CalibrationError::from)?, &free, command.force)?;
+            let opened = kept_points(table, &free, command.force)?;
             (Some(opened.0), opened.1)
         }
         None => (None, Vec::new()),
@@ -127,7 +93,7 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, CalibrateError> {
     let failed = Mutex::new(None);
     let found = |task: &Task, outcome: &Outcome| {
         bar.inc(1);
-        match kept.as_ref().map_or(Ok(()), |kept| kept.add(task, outcome)) {
+        match kept.as_ref().map_or(Ok(()), |kept| kept.add(&PointsTable::line(task, outcome))) {
             Ok(()) => ControlFlow::Continue(()),
             Err(error) => {
                 failed.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
@@ -151,13 +117,32 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, CalibrateError> {
         Ok(if calibration.is_whole() { SUCCESS } else { NOT_REACHED })
     });
     match failed.into_inner().unwrap_or_else(PoisonError::into_inner) {
-        Some(error) => Err(error.into()),
+        Some(error) => Err(error),
         None => done,
     }
 }
 
+/// Begins the table of points at `path` or, unless it is to be replaced, continues the one that is there; and the points that
+/// it has.
+fn kept_points(
+    path: &Path,
+    free: &FreeScene<'_>,
+    replace: bool,
+) -> Result<(ResumableTable, Vec<(Task, Outcome)>), Error> {
+    let points = PointsTable::new(&free.fingerprint()?, free.parameters());
+    let read = |text: &str| {
+        let other = "is of another calibration: of another scene, other parameters, method or version";
+        let advice = "name another -o, or give --force to replace it";
+        let refused = || Error::value(format!("{} {other}; {advice}", path.display()));
+        let (known, damaged) = points.read(text, path).ok_or_else(refused)?;
+        damaged.iter().for_each(|error| warn(&format!("{error}; its point is found again")));
+        Ok(known)
+    };
+    ResumableTable::open(path, &points.head(), replace, read, |(task, outcome)| PointsTable::line(task, outcome))
+}
+
 /// Writes the scene and, where it is told and has a place, the covariance, which the scene then names; whether it did.
-fn written(outputs: &Outputs, scene: String, covariance: &FitCovariance) -> Result<bool, CalibrateError> {
+fn written(outputs: &Outputs, scene: String, covariance: &FitCovariance) -> Result<bool, Error> {
     let (Some(path), Some(table)) = (&outputs.covariance, covariance.text()) else {
         files::write(&outputs.scene, scene)?;
         return Ok(false);
@@ -175,7 +160,7 @@ fn written(outputs: &Outputs, scene: String, covariance: &FitCovariance) -> Resu
 }
 
 /// Refuses an output from whose folder the files that the scene names could not be found.
-fn check_folder(output: &Path, command: &Calibrate, scene: &Scene) -> Result<(), CalibrateError> {
+fn check_folder(output: &Path, command: &Calibrate, scene: &Scene) -> Result<(), Error> {
     let named = scene.files.iter().chain(scene.extracts.iter().map(|extract| &extract.source));
     let Some(file) = named.into_iter().find(|file| file.is_relative()) else { return Ok(()) };
     let folder = |path: &Path| {
@@ -185,7 +170,9 @@ fn check_folder(output: &Path, command: &Calibrate, scene: &Scene) -> Result<(),
     if is_standard_output(output) || folder(output) == folder(&command.scene) {
         return Ok(());
     }
-    Err(CalibrateError::OtherFolder { output: output.to_owned(), file: PathBuf::from(file) })
+    let (output, file) = (output.display(), file.display());
+    let problem = "the scene names files relative to its folder";
+    Err(Error::value(format!("-o {output}: {problem} ({file}): expected an output there")))
 }
 
 /// Draws friction before and after over the speed.
@@ -194,7 +181,7 @@ fn drawn(
     calibration: &Calibration,
     calibrator: &Calibrator<'_>,
     path: &Path,
-) -> Result<(), CalibrateError> {
+) -> Result<(), Error> {
     let grid = CurveGrid::new(calibration.problem.points.iter());
     let [before, after] = calibrator.curves(calibration, grid.points(CURVE))?;
     let curves = [

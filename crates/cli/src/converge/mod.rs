@@ -1,59 +1,31 @@
 //! `asperity converge`: whether area and friction of a scene depend on its spacing, its length or on chance.
 
 mod summary;
-mod table;
 
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
+use asperity_study::Error;
 use asperity_study::contact::SteadyState;
 use asperity_study::converge::{
-    self, ConvergeError, ConvergenceOptions, ConvergenceStudy, Ended, Findings, Round, RunRow,
+    self, ConvergenceOptions, ConvergenceStudy, Ended, Findings, Round, RunRow, StudyHeader,
 };
 use asperity_study::sweep::SlidingOptions;
 
 use super::cli::Converge;
 use super::draft::TablePlace;
-use super::files::{FileError, check_outputs, default_output, load_without_run, picture_beside, print_beside};
+use super::files::{check_outputs, default_output, load_without_run, picture_beside, print_beside, write};
 use super::interrupt::Farewell;
-use super::output::of_set;
 use super::picture;
+use super::resumable_table::ResumableTable;
 use super::terminal::{self, warn};
 use super::{NOT_REACHED, SUCCESS};
-use table::StudyTable;
-
-/// `asperity converge` refused a scene or a file.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum ConvergeCommandError {
-    #[error(transparent)]
-    Study(ConvergeError),
-    #[error(transparent)]
-    File(#[from] FileError),
-    #[error("{}: not the table of a study: {problem}; name another -o, or give --force to replace it", .path.display())]
-    NotATable { path: PathBuf, problem: String },
-    #[error(
-        "{} is the table of another study: of another scene, pressure, speed, error or distance; name another -o, or give \
-         --force to replace it",
-        .path.display()
-    )]
-    OtherStudy { path: PathBuf },
-}
-
-impl From<ConvergeError> for ConvergeCommandError {
-    fn from(error: ConvergeError) -> Self {
-        match error {
-            ConvergeError::Read(error) => Self::File(of_set(error)),
-            error => Self::Study(error),
-        }
-    }
-}
 
 /// Makes the runs, prints the study and draws it.
-pub(crate) fn converge(command: &Converge) -> Result<u8, ConvergeCommandError> {
+pub(crate) fn converge(command: &Converge) -> Result<u8, Error> {
     if command.sliding.friction_error.is_some() {
-        let problem = "--friction-error: expected none, since runs are known to a tenth of --error";
-        return Err(FileError::value(problem).into());
+        return Err(Error::value("--friction-error: expected none, since runs are known to a tenth of --error"));
     }
     let options = options(command);
     let scene = load_without_run(&command.scene, &command.set, |scene| !options.sliding().solves(scene))?;
@@ -63,9 +35,14 @@ pub(crate) fn converge(command: &Converge) -> Result<u8, ConvergeCommandError> {
     let picture = picture_beside(&output, command.plot.as_ref());
     check_outputs([&output].into_iter().chain(&picture), scene.sources(&command.scene))?;
     let place = TablePlace::new(&output)?;
-    let (table, runs) = StudyTable::open(&place.path, study.header(), command.force)?;
+    let header = study.header();
+    let read = |text: &str| runs_done(header, text, &place.path);
+    let head = header.text(None);
+    let (table, runs) = ResumableTable::open(&place.path, &head, command.force, read, |run| run.line(None))?;
     let findings = run(&study, runs, &table, &output)?;
-    table.finish(&findings)?;
+    // With the verdict and the changes of the values, which rows that were added do not have.
+    let lines: String = findings.changes().iter().map(|(run, change)| run.line(*change)).collect();
+    write(&place.path, header.text(Some(&findings.verdict.sentence())) + &lines)?;
     let rows = summary::table(&findings.changes(), study.parts());
     print_beside([&output], &format!("{rows}\n{}", summary::judgement(&study, &findings)))?;
     drop(table);
@@ -76,6 +53,14 @@ pub(crate) fn converge(command: &Converge) -> Result<u8, ConvergeCommandError> {
     Ok(if findings.verdict.is_converged() { SUCCESS } else { NOT_REACHED })
 }
 
+/// The runs of the table at `path`, which is the `text`, without the corrupt rows, which are named.
+fn runs_done(header: &StudyHeader, text: &str, path: &Path) -> Result<Vec<RunRow>, Error> {
+    let advice = "name another -o, or give --force to replace it";
+    let done = header.runs_done(text, path).map_err(|error| Error::value(format!("{error}; {advice}")))?;
+    done.corrupt.iter().for_each(|error| warn(&format!("{error}; the run is made again")));
+    Ok(done.runs)
+}
+
 fn options(command: &Converge) -> ConvergenceOptions {
     let Converge { at: SteadyState { pressure, speed }, error, seeds, most_points, sliding, .. } = *command;
     let SlidingOptions { method, way, points, distance, .. } = sliding;
@@ -83,12 +68,7 @@ fn options(command: &Converge) -> ConvergenceOptions {
 }
 
 /// Makes what is missing beside `runs` and shows how far it is.
-fn run(
-    study: &ConvergenceStudy,
-    runs: Vec<RunRow>,
-    table: &StudyTable<'_>,
-    output: &Path,
-) -> Result<Findings, FileError> {
+fn run(study: &ConvergenceStudy, runs: Vec<RunRow>, table: &ResumableTable, output: &Path) -> Result<Findings, Error> {
     let bar = terminal::bar(0);
     bar.enable_steady_tick(Duration::from_secs(1));
     let done = bar.clone();
@@ -104,7 +84,7 @@ fn run(
         bar.set_message(format!("now with {} {}", counts.join(", "), study.parts().name()));
     };
     let findings = study.run(runs, begun, |run| {
-        if let Err(error) = table.add(run) {
+        if let Err(error) = table.add(&run.line(None)) {
             return ControlFlow::Break(error);
         }
         bar.inc(1);

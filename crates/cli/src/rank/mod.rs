@@ -4,27 +4,19 @@ mod summary;
 
 use std::time::Duration;
 
+use asperity_study::Error;
 use asperity_study::progress::Stop;
-use asperity_study::rank::{self, RankError, RankFound, RankPlan, RankScene, Weights, measured_ranking, table};
+use asperity_study::rank::{self, RankFound, RankPlan, RankScene, Weights, measured_ranking, table};
 use asperity_study::uncertainty::SampleOptions;
 
 use super::cli::Rank;
-use super::files::{FileError, check_outputs, load_without_run, picture_beside, print_beside, write};
+use super::files::{check_outputs, load_without_run, picture_beside, print_beside, write};
 use super::picture;
 use super::terminal::{self, note, warn};
 use super::{NOT_REACHED, SUCCESS};
 
-/// `asperity rank` failed.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum RankCommandError {
-    #[error(transparent)]
-    File(#[from] FileError),
-    #[error(transparent)]
-    Rank(#[from] RankError),
-}
-
 /// Ranks scenes, writes the table and the picture.
-pub(crate) fn rank(command: &Rank) -> Result<u8, RankCommandError> {
+pub(crate) fn rank(command: &Rank) -> Result<u8, Error> {
     let picture = picture_beside(&command.output, command.plot.as_ref());
     let scenes = scenes(command)?;
     let sources = scenes.iter().flat_map(|scene| scene.scene.sources(&scene.file));
@@ -47,9 +39,9 @@ pub(crate) fn rank(command: &Rank) -> Result<u8, RankCommandError> {
     Ok(if found.ranking.is_sure() { SUCCESS } else { NOT_REACHED })
 }
 
-fn scenes(command: &Rank) -> Result<Vec<RankScene>, RankCommandError> {
+fn scenes(command: &Rank) -> Result<Vec<RankScene>, Error> {
     let solves = command.options.sliding;
-    let scene = |file: &std::path::PathBuf| -> Result<RankScene, RankCommandError> {
+    let scene = |file: &std::path::PathBuf| -> Result<RankScene, Error> {
         // It says what is to be said of the scene.
         let scene = load_without_run(file, &command.set, |scene| !solves.solves(scene))?;
         Ok(RankScene { scene, file: file.clone() })
@@ -61,7 +53,7 @@ fn samples(command: &Rank) -> SampleOptions {
     SampleOptions { count: command.samples as usize, seed: command.seed }
 }
 
-fn found(plan: &RankPlan, weights: &Weights) -> Result<RankFound, RankError> {
+fn found(plan: &RankPlan, weights: &Weights) -> Result<RankFound, Error> {
     let bar = terminal::bar(plan.sweeps() as u64);
     bar.set_message(format!("of {} sweeps", plan.sweeps()));
     bar.enable_steady_tick(Duration::from_secs(1));

@@ -1,4 +1,6 @@
 //! The course of a calibration: a first fit by the theory, the fit by steady sliding, what to measure next.
+//!
+//! What a calibration found.
 
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
@@ -6,25 +8,20 @@ use std::sync::{Mutex, PoisonError};
 use asperity::element::OperatingPoint;
 use asperity::scene::Scene;
 
-use super::calibrated::Calibration;
-use super::candidates::candidates;
-use super::covariance::FitCovariance;
 use super::curve_grid::in_words;
-use super::error::{CalibrationError, ModelError};
-use super::fit::{Fitted, Tolerance, minimise, starts_by_theory};
-use super::free_scene::FreeScene;
-use super::layer_model::LayerModel;
+use super::fit::{Fitted, Tolerance, map_space, minimise, starts_by_theory};
+use super::free_scene::{CalibrationOptions, CandidateOptions, FreeScene};
 use super::measurements::Measurements;
-use super::memo::{Memo, NewOutcome};
-use super::model::{FrictionModel, FrictionParts, Outcome, Task};
-use super::options::{CalibrationOptions, CandidateOptions};
-use super::plan::{Plan, plan};
-use super::problem::{FrictionMeasurement, Linearised, Problem};
-use super::scene_text::calibrated_text;
-use super::space_mapping::map_space;
+use super::models::{
+    FrictionModel, FrictionParts, LayerModel, Memo, NewOutcome, Outcome, SteadyModel, Task, TheoryModel,
+};
+use super::models::{ModelError, NoSliding};
+use super::plan::{Plan, candidates, plan};
+use super::problem::{FreeParameter, FrictionMeasurement, Linearised, Problem};
 use super::statistics::{Statistics, chi_square_per_degree};
-use super::steady_model::SteadyModel;
-use super::theory_model::TheoryModel;
+use super::written::{FitCovariance, calibrated_text};
+use crate::decimals::{rounded, short};
+use crate::error::Error;
 use crate::files::parse_scene;
 use crate::implausible::{FoundFriction, implausible};
 use crate::sweep::Method;
@@ -68,7 +65,7 @@ impl FreeScene<'_> {
         let scene_at = |values: &[f64]| self.at(values);
         let grid_of = |scene: &Scene| match sliding.choose(scene)? {
             (Method::Steady(grid), _) => Ok(grid),
-            (Method::Layer, of_method) => Err(ModelError::Layer(of_method)),
+            (Method::Layer, of_method) => Err(Error::value(of_method)),
         };
         let theory = TheoryModel::new(&scene_at);
         let steady = SteadyModel::new(&scene_at, &grid_of);
@@ -234,7 +231,7 @@ pub fn calibrate_scene(
     text: &str,
     options: &CalibrationOptions,
     found: impl Fn() -> ControlFlow<()> + Sync,
-) -> Result<(Calibration, String, FitCovariance), CalibrationError> {
+) -> Result<(Calibration, String, FitCovariance), Error> {
     let scene = parse_scene(text, &options.scene, &options.set)?;
     let free = FreeScene::new(options, text, scene)?;
     let measurements = free.measurements()?;
@@ -242,4 +239,105 @@ pub fn calibrate_scene(
     let calibration = free.with_models(Vec::new(), &|_, _| found(), &|_| (), calibrate)?;
     let (text, covariance) = (calibrated_text(&free, &calibration), FitCovariance::new(&free, &calibration));
     Ok((calibration, text, covariance))
+}
+
+/// Where a fit led, and what the data say there.
+#[derive(Debug)]
+pub struct Calibration {
+    /// The values that the scene had before.
+    pub own: Vec<f64>,
+    /// What was measured.
+    pub measurements: Measurements,
+    /// The measurements that were fitted.
+    pub problem: Problem,
+    /// Where the fit ended.
+    pub fitted: Fitted,
+    /// Residuals and derivatives there.
+    pub linearised: Linearised,
+    /// Errors and identifiability of the parameters.
+    pub statistics: Statistics,
+    /// Friction of the problem's points.
+    pub frictions: Vec<FrictionParts>,
+    /// The points that cannot be simulated, and why.
+    pub left_out: Vec<(OperatingPoint, NoSliding)>,
+    /// What of it no rubber has, and why.
+    pub implausible: Vec<String>,
+    /// How it was fitted.
+    pub way: String,
+}
+
+/// A number that was fitted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CalibratedParameter {
+    /// The path of its key.
+    pub key: String,
+    /// Its value in the scene.
+    pub before: f64,
+    /// Its value now.
+    pub value: f64,
+    /// Its standard error; `None` at a bound, and where the data do not tell it.
+    pub standard_error: Option<f64>,
+    /// Its 95 % interval; `None` as for the error.
+    pub interval: Option<(f64, f64)>,
+    /// Whether the data tell it.
+    pub is_identifiable: bool,
+}
+
+/// Digits of a fitted number.
+const DIGITS: usize = 7;
+
+impl Calibration {
+    /// The values of the parameters.
+    pub fn values(&self) -> Vec<f64> {
+        self.problem.values(&self.fitted.places).iter().map(|value| rounded(*value, DIGITS)).collect()
+    }
+
+    /// The parameters with their values and errors.
+    pub fn parameters(&self) -> Vec<CalibratedParameter> {
+        let (statistics, values) = (&self.statistics, self.values());
+        let parameter = |(index, parameter): (usize, &FreeParameter)| {
+            let is_identifiable = statistics.is_identifiable(index);
+            let error = statistics.errors[index].map(|error| parameter.error_of_value(values[index], error));
+            CalibratedParameter {
+                key: parameter.key.clone(),
+                before: self.own[index],
+                value: values[index],
+                standard_error: error.filter(|_| is_identifiable),
+                interval: statistics.intervals[index].filter(|_| is_identifiable),
+                is_identifiable,
+            }
+        };
+        self.problem.parameters.iter().enumerate().map(parameter).collect()
+    }
+
+    /// Friction at a point that was measured; `None` where it was left out.
+    pub fn friction_at(&self, point: &OperatingPoint) -> Option<f64> {
+        let index = self.problem.points.iter().position(|other| other == point)?;
+        Some(self.frictions[index].friction())
+    }
+
+    /// Whether the fit has converged, and all numbers are identifiable.
+    pub fn is_whole(&self) -> bool {
+        self.fitted.has_converged && self.statistics.tell_all()
+    }
+
+    /// What is left out, and what is not as it should be.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        warnings.extend(self.measurements.left_out_in_words(&self.left_out));
+        warnings.extend(self.implausible.iter().cloned());
+        if !self.fitted.has_converged {
+            warnings.push("the fit has not converged: other bounds or fewer parameters may help".to_owned());
+        }
+        for (parameter, bound) in self.problem.parameters.iter().zip(&self.statistics.at_bound) {
+            if let Some(bound) = bound {
+                warnings.push(format!("{} is at its bound {}", parameter.key, short(*bound, 4)));
+            }
+        }
+        if !self.statistics.tell_all() {
+            let advice = "measure what tells them apart, or fix one of them";
+            warnings.push(format!("not all parameters are identifiable: {advice}"));
+        }
+        warnings
+    }
 }

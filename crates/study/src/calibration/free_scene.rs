@@ -1,16 +1,16 @@
 //! The scene that is calibrated: its text, its free numbers, and the measurements that go with it.
+//!
+//! What is asked of a calibration.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use asperity::scene::{Scene, Setting};
+use asperity::scene::{Scene, Setting, did_you_mean, similar_keys};
 
-use super::error::{CalibrationError, FreeParameterError, MeasuredFrictionError, ModelError};
 use super::measurements::Measurements;
-use super::options::CalibrationOptions;
-use super::parameter::FreeParameter;
+use super::problem::FreeParameter;
 use crate::error::Error;
 use crate::settings::edited;
-use crate::sweep::{Method, fingerprint, relevant};
+use crate::sweep::{Method, SlidingOptions, fingerprint, relevant};
 
 /// Most free parameters.
 const MOST_FREE: usize = 12;
@@ -35,11 +35,13 @@ impl<'a> FreeScene<'a> {
     ///
     /// # Errors
     /// Where the scene or the parameters are refused.
-    pub fn new(options: &'a CalibrationOptions, text: &str, scene: Scene) -> Result<Self, CalibrationError> {
+    pub fn new(options: &'a CalibrationOptions, text: &str, scene: Scene) -> Result<Self, Error> {
         if scene.carrier.x.is_some() {
-            return Err(CalibrationError::BodyAlongX);
+            return Err(Error::value("the scene has [carrier.x]; expected none, since the speed is prescribed"));
         }
-        let area = scene.layer.area().filter(|_| scene.material.is_some()).ok_or(CalibrationError::NoArea)?;
+        let no_area =
+            "the scene has no material or layer.width, so nothing in it has a pressure: expected the material form";
+        let area = scene.layer.area().filter(|_| scene.material.is_some()).ok_or_else(|| Error::value(no_area))?;
         let text = edited(text, &options.set);
         let (method, of_method) = options.sliding.choose(&scene)?;
         method.check(&scene)?;
@@ -50,31 +52,37 @@ impl<'a> FreeScene<'a> {
     }
 
     /// The parameters are numbers of the file, each once, and the scene is possible at each of their bounds.
-    fn check_parameters(&mut self) -> Result<(), FreeParameterError> {
+    fn check_parameters(&mut self) -> Result<(), Error> {
+        let refused = |key: &str, problem: String| Error::value(format!("`free` {key}: {problem}"));
         let keys: Vec<String> = self.parameters.iter().map(|parameter| parameter.key.clone()).collect();
         if keys.is_empty() {
-            return Err(FreeParameterError::None);
+            return Err(Error::value("`free`: expected a parameter to fit, found none"));
         }
         if keys.len() > MOST_FREE {
-            return Err(FreeParameterError::Many { most: MOST_FREE, found: keys.len() });
+            let found = keys.len();
+            return Err(Error::value(format!("`free`: expected at most {MOST_FREE} parameters, found {found}")));
         }
         for (index, key) in keys.iter().enumerate() {
             if keys[..index].contains(key) {
-                return Err(FreeParameterError::Twice { key: key.clone() });
+                return Err(refused(key, "expected it once".to_owned()));
             }
             if matches!(self.method, Method::Layer) && key.starts_with("material.heat") {
-                return Err(FreeParameterError::HeatOfLayer { key: key.clone() });
+                let expected = "expected a scene whose steady sliding is solved for: the layer has no heat in it";
+                return Err(refused(key, expected.to_owned()));
             }
             let own = self.scene.number(key);
-            self.own.push(own.ok_or_else(|| FreeParameterError::NoNumber { key: key.clone() })?);
+            self.own.push(own.ok_or_else(|| {
+                let similar = did_you_mean(&similar_keys(key));
+                let expected = "expected a number in the scene file, to start from; the file has none there";
+                refused(key, format!("{expected}{similar}"))
+            })?);
         }
         for (index, parameter) in self.parameters.iter().enumerate() {
             let (low, high) = parameter.bounds();
             for bound in [low, high] {
                 let mut values = self.own.clone();
                 values[index] = bound;
-                let refused = |problem| FreeParameterError::Bound { key: parameter.key.clone(), problem };
-                self.at(&values).map_err(refused)?;
+                self.at(&values).map_err(|error| refused(&parameter.key, error.to_string()))?;
             }
         }
         Ok(())
@@ -111,11 +119,11 @@ impl<'a> FreeScene<'a> {
     }
 
     /// The scene at some values.
-    pub(super) fn at(&self, values: &[f64]) -> Result<Scene, ModelError> {
+    pub(super) fn at(&self, values: &[f64]) -> Result<Scene, Error> {
         let settings = self.settings(values);
         self.scene.with_all(&settings).map_err(|problem| {
             let named: Vec<String> = settings.iter().map(Setting::to_string).collect();
-            ModelError::Scene { parameters: named.join(", "), problem: Box::new(problem.into()) }
+            Error::value(format!("{}: {problem}", named.join(", ")))
         })
     }
 
@@ -123,27 +131,28 @@ impl<'a> FreeScene<'a> {
     ///
     /// # Errors
     /// Where the table cannot be read, or its temperatures do not go with the scene.
-    pub fn measurements(&self) -> Result<Measurements, MeasuredFrictionError> {
+    pub fn measurements(&self) -> Result<Measurements, Error> {
         let path = &self.options.data;
         let mut measurements = Measurements::read(path, self.area)?;
         for row in &mut measurements.rows {
             row.point.way = row.point.way.or(self.options.sliding.way);
             let checked = self.options.sliding.check_way(&self.scene, row.point.way);
-            checked.map_err(|problem| MeasuredFrictionError::Way { path: path.clone(), line: row.line, problem })?;
+            checked.map_err(|problem| Error::in_file(path, Some(row.line), problem))?;
         }
         let Some(own) = self.scene.temperature() else {
             return match measurements.has_temperature() {
-                true => Err(MeasuredFrictionError::NoWlf(path.clone())),
+                true => {
+                    let problem =
+                        "the scene has no material.wlf, so nothing in it depends on the temperature of the data";
+                    Err(Error::in_file(path, None, problem))
+                }
                 false => Ok(measurements),
             };
         };
         for row in &mut measurements.rows {
             let temperature = *row.point.temperature.get_or_insert(own);
-            self.scene.with_temperature(temperature).check().map_err(|problem| MeasuredFrictionError::Temperature {
-                path: path.clone(),
-                line: row.line,
-                problem,
-            })?;
+            let checked = self.scene.with_temperature(temperature).check();
+            checked.map_err(|problem| Error::in_file(path, Some(row.line), problem))?;
         }
         Ok(measurements)
     }
@@ -155,4 +164,30 @@ impl<'a> FreeScene<'a> {
     pub fn fingerprint(&self) -> Result<String, Error> {
         fingerprint(&relevant(self.scene.clone()), self.options.sliding, self.method.surface(), "calibrate")
     }
+}
+
+/// What is calibrated, and by what.
+#[derive(Clone, Debug)]
+pub struct CalibrationOptions {
+    /// The scene file: files that the scene names are looked for beside it.
+    pub scene: PathBuf,
+    /// Keys of it that are set, none of them free.
+    pub set: Vec<Setting>,
+    /// The numbers to fit.
+    pub free: Vec<FreeParameter>,
+    /// The table of measured friction.
+    pub data: PathBuf,
+    /// How steady sliding is found.
+    pub sliding: SlidingOptions,
+}
+
+/// The points among which those to measure next are chosen: where there are none, points beyond the measurements.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CandidateOptions {
+    /// Speeds, m/s.
+    pub speeds: Option<Vec<f64>>,
+    /// Pressures, Pa.
+    pub pressures: Option<Vec<f64>>,
+    /// Temperatures, K.
+    pub temperatures: Option<Vec<f64>>,
 }

@@ -9,7 +9,8 @@ use asperity::tables::{
 };
 
 use super::curve_grid::left_out_in_words;
-use super::error::{MeasuredFrictionError, NoSliding};
+use super::models::NoSliding;
+use crate::error::Error;
 use crate::files;
 
 /// A measured friction coefficient.
@@ -176,10 +177,9 @@ impl Measurements {
     ///
     /// # Errors
     /// Where the file cannot be read, or the table in it is refused.
-    pub fn read(path: &Path, area: f64) -> Result<Self, MeasuredFrictionError> {
-        let refused = |error| MeasuredFrictionError::Content { path: path.to_owned(), error };
+    pub fn read(path: &Path, area: f64) -> Result<Self, Error> {
         let read = files::read_table(&files::bytes(path)?, |bytes| Self::parse(bytes, area));
-        let (mut measurements, sheet) = read.map_err(refused)?;
+        let (mut measurements, sheet) = read.map_err(Error::content(path))?;
         measurements.notes.splice(0..0, sheet);
         Ok(measurements)
     }

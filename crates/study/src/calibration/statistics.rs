@@ -7,8 +7,7 @@
 
 use nalgebra::DMatrix;
 
-use super::parameter::FreeParameter;
-use super::problem::{Linearised, Problem, sum_of_squares};
+use super::problem::{FreeParameter, Linearised, Problem, sum_of_squares};
 
 /// A singular value below this part of the largest is of a direction that is not identifiable.
 const NOT_IDENTIFIABLE: f64 = 1e-3;

@@ -1,22 +1,22 @@
 //! The study: its runs, and what they come to.
+//!
+//! Friction and area of a run.
 
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use asperity::element::PointStatus;
+use asperity::element::{Load, OperatingPoint, PointStatus};
 use asperity::scene::{LinkKind, Scene};
 use cpu_time::ThreadTime;
 use rayon::prelude::*;
 
-use super::error::ConvergeError;
-use super::measure::{self, State};
-use super::plan::{Next, Plan};
-use super::table::{RunRow, StudyHeader};
+use super::plan::{Next, Pair, Plan, Study, Verdict};
+use super::table::{Measured, RunRow, StudyHeader};
 use super::variants::{Parts, Template, Variant};
-use super::verdict::{Pair, Study, Verdict};
-use crate::error::Error;
+use crate::Error;
 use crate::steady::persson::{Roughness, Theory};
-use crate::sweep::{Method, SlidingOptions, StopBounds, SweepMethod, fingerprint, relevant};
+use crate::steady::{SlidingRubber, SteadySolver};
+use crate::sweep::{Method, NotSteady, SlidingOptions, StopBounds, SweepMethod, fingerprint, relevant, steady_sliding};
 
 /// What a study is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,9 +112,11 @@ impl ConvergenceStudy {
     ///
     /// # Errors
     /// Where the scene does not go with the options, or has nothing that could be varied.
-    pub fn new(scene: &Scene, path: &Path, options: ConvergenceOptions) -> Result<Self, ConvergeError> {
+    pub fn new(scene: &Scene, path: &Path, options: ConvergenceOptions) -> Result<Self, Error> {
         if scene.material.is_none() {
-            return Err(ConvergeError::DirectForm { path: path.to_owned() });
+            let problem = "the scene is in the direct form: its masses and links do not follow the spacing, so nothing could \
+                           converge; give [material], layer.width and layer.foundation";
+            return Err(Error::scene(format!("{}: {problem}", path.display())));
         }
         let template = Template::new(scene, path)?;
         let (method, of_method) = options.sliding().choose(scene)?;
@@ -207,9 +209,9 @@ impl ConvergenceStudy {
         let dimensions = self.template.dimensions(variant);
         let is_of_layer = self.parts() == Parts::Masses;
         let measured = if is_of_layer {
-            measure::slide(&scene, state, StopBounds { error: RUN_ERROR * error, distance })
+            slide(&scene, state, StopBounds { error: RUN_ERROR * error, distance })
         } else {
-            measure::solve(&scene, state, dimensions.count)
+            solve(&scene, state, dimensions.count)
         };
         let run_time = clock.elapsed().as_secs_f64();
         let theories = [Roughness::Ridges, Roughness::Isotropic]
@@ -225,17 +227,20 @@ impl ConvergenceStudy {
     }
 }
 
-fn plan(options: &ConvergenceOptions, template: &Template) -> Result<Plan, ConvergeError> {
+fn plan(options: &ConvergenceOptions, template: &Template) -> Result<Plan, Error> {
     let parts = template.parts();
     let most = options.most_points.unwrap_or(if parts == Parts::Masses { MOST.0 } else { MOST.1 });
     let within = |halvings: &u32| template.contacts(*halvings) <= u64::from(most);
     let max_halvings = (1..u32::BITS).take_while(within).count() as u32;
     if max_halvings == 0 {
         let [own, least] = [0, 1].map(|halvings| template.contacts(halvings));
-        return Err(ConvergeError::FewParts { parts: parts.name(), own, least });
+        let (parts, halved) = (parts.name(), "and its spacing is halved at least once");
+        let expected = format!("`most_{parts}`: expected at least {least}");
+        return Err(Error::scene(format!("{expected}: the scene has {own} {parts}, {halved}")));
     }
     if options.seeds.is_some() && !template.has_seed() {
-        return Err(ConvergeError::NoSeed);
+        let problem = "neither the scene's surface nor its roughness is self_affine, so nothing depends on a seed";
+        return Err(Error::scene(format!("`seeds`: {problem}")));
     }
     let seeds = template.has_seed().then_some(options.seeds.unwrap_or(SEEDS));
     let (has_length, has_split) = (template.has_length(), template.has_split());
@@ -258,4 +263,50 @@ impl Findings {
     pub fn ladder(&self) -> Vec<&RunRow> {
         self.runs.iter().filter(|run| run.variant.is_of_ladder()).take(self.steady).collect()
     }
+}
+
+/// A state of steady sliding.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct State {
+    /// Mean pressure, Pa.
+    pub(super) pressure: f64,
+    /// Sliding speed, m/s.
+    pub(super) speed: f64,
+    /// The way that rubber as warm as the scene has slid, m; `None`: its surface is as warm.
+    pub(super) way: Option<f64>,
+}
+
+fn not_solved() -> Error {
+    Error::value("not to be solved for")
+}
+
+/// Friction and area in steady sliding, solved for on so many points along x.
+pub(super) fn solve(scene: &Scene, state: State, points: u64) -> Result<Measured, Error> {
+    let few = u32::try_from(points).map_err(|_| Error::value(format!("{points} points are too many")))?;
+    let asked = SlidingOptions { method: Some(SweepMethod::Steady), points: Some(few), ..SlidingOptions::default() };
+    let (Method::Steady(surface), _) = asked.choose(scene)? else { return Err(not_solved()) };
+    let rubber = SlidingRubber::new(scene).ok_or_else(not_solved)?;
+    let slide = SteadySolver::new(surface).slide_over(&rubber, state.speed, state.pressure, state.way);
+    if let Some(problem) = slide.problem().filter(|problem| !problem.is_result()) {
+        return Err(Error::value(NotSteady::from(problem)));
+    }
+    // It does not jam.
+    let friction = slide.friction().unwrap_or_default();
+    Ok(Measured {
+        mean: Pair { friction, area: slide.area },
+        error: Pair { friction: 0.0, area: 0.0 },
+        hysteresis: slide.hysteresis.unwrap_or_default(),
+    })
+}
+
+/// Friction and area of the layer in steady sliding, known to `bounds`.
+pub(super) fn slide(scene: &Scene, state: State, bounds: StopBounds) -> Result<Measured, Error> {
+    let area = scene.layer.area().ok_or_else(|| Error::value("the layer has no width"))?;
+    let point = OperatingPoint { speed: state.speed, load: state.pressure, temperature: None, way: None };
+    let sliding = steady_sliding(scene, &point, Load::Pressure { area }, bounds).map_err(Error::value)?;
+    Ok(Measured {
+        mean: Pair { friction: sliding.friction(), area: sliding.contact_ratio },
+        error: Pair { friction: sliding.friction_error, area: sliding.contact_error },
+        hysteresis: sliding.hysteresis(),
+    })
 }

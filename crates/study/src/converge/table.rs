@@ -1,43 +1,45 @@
 //! The table of a study: rows are added as their runs are done and not computed again.
 
-use asperity::element::PointStatus;
-use asperity::tables;
+use std::path::Path;
 
+use asperity::element::PointStatus;
+use asperity::table::{Cell, Column, Header, Table, TableError};
+
+use super::plan::Pair;
 use super::variants::{Dimensions, Parts, Variant};
-use super::verdict::Pair;
-use crate::decimals::real;
+use crate::error::Error;
 use crate::steady::persson::Theory;
 
-/// The first line of a table; its number grows when readers have to know of a change.
-const FORMAT: &str = "# asperity converge = 3";
+/// The kind of the table; its number grows when readers have to know of a change.
+const KIND: (&str, u64) = ("asperity converge", 3);
 
-/// The columns; the fifth is called as what it counts.
-const COLUMNS: [&str; 25] = [
-    "halvings [1]",
-    "length_factor [1]",
-    "seed_shift [1]",
-    "split_factor [1]",
-    "masses [1]",
-    "spacing [m]",
-    "length [m]",
-    "seed [1]",
-    "split [m]",
-    "status",
-    "fit_rms [1]",
-    "friction [1]",
-    "friction_standard_error [1]",
-    "friction_change [1]",
-    "hysteresis [1]",
-    "area [1]",
-    "area_standard_error [1]",
-    "area_change [1]",
-    "persson_area_1d [1]",
-    "persson_friction_1d [1]",
-    "persson_friction_1d_reduced [1]",
-    "persson_area_2d [1]",
-    "persson_friction_2d [1]",
-    "persson_friction_2d_reduced [1]",
-    "run_time [s]",
+/// The columns with their units; the fifth is called as what it counts.
+const COLUMNS: [(&str, &str); 25] = [
+    ("halvings", "1"),
+    ("length_factor", "1"),
+    ("seed_shift", "1"),
+    ("split_factor", "1"),
+    ("masses", "1"),
+    ("spacing", "m"),
+    ("length", "m"),
+    ("seed", "1"),
+    ("split", "m"),
+    ("status", ""),
+    ("fit_rms", "1"),
+    ("friction", "1"),
+    ("friction_standard_error", "1"),
+    ("friction_change", "1"),
+    ("hysteresis", "1"),
+    ("area", "1"),
+    ("area_standard_error", "1"),
+    ("area_change", "1"),
+    ("persson_area_1d", "1"),
+    ("persson_friction_1d", "1"),
+    ("persson_friction_1d_reduced", "1"),
+    ("persson_area_2d", "1"),
+    ("persson_friction_2d", "1"),
+    ("persson_friction_2d_reduced", "1"),
+    ("run_time", "s"),
 ];
 
 /// What a run measured, with the standard errors of it.
@@ -80,7 +82,6 @@ impl RunRow {
     pub fn line(&self, change: Option<Pair>) -> String {
         let Dimensions { count, spacing, seed, split: longest } = self.dimensions;
         let measured = self.measured.as_ref();
-        let text = |value: Option<f64>| value.map(real).unwrap_or_default();
         let of = |value: fn(&Pair) -> f64| {
             [
                 measured.map(|run| value(&run.mean)),
@@ -89,60 +90,67 @@ impl RunRow {
             ]
         };
         let Variant { halvings, doubled, seed_shift, split } = self.variant;
-        let dimensions = [
-            halvings.to_string(),
-            if doubled { "2" } else { "1" }.to_owned(),
-            seed_shift.to_string(),
-            if split { "0.5" } else { "1" }.to_owned(),
-            count.to_string(),
-            real(spacing),
-            real(self.dimensions.length()),
-            seed.map(|seed| seed.to_string()).unwrap_or_default(),
-            text(longest),
-            tables::quoted(self.status.text()),
-            text(self.fit_rms),
+        let dimensions: [Cell; 11] = [
+            f64::from(halvings).into(),
+            if doubled { 2.0 } else { 1.0 }.into(),
+            f64::from(seed_shift).into(),
+            if split { 0.5 } else { 1.0 }.into(),
+            (count as f64).into(),
+            spacing.into(),
+            self.dimensions.length().into(),
+            // Of 64 bits.
+            seed.map(|seed| seed.to_string()).unwrap_or_default().into(),
+            longest.into(),
+            self.status.text().into(),
+            self.fit_rms.into(),
         ];
         let [friction, area] = [of(|pair| pair.friction), of(|pair| pair.area)];
         let values = [&friction[..], &[measured.map(|run| run.hysteresis)], &area].concat();
         let theories = self.theories.iter().flat_map(|theory| theory.values().map(Some));
-        let numbers = values.into_iter().chain(theories).chain([Some(self.run_time)]).map(text);
-        dimensions.into_iter().chain(numbers).collect::<Vec<_>>().join(",") + "\n"
+        let numbers = values.into_iter().chain(theories).chain([Some(self.run_time)]).map(Cell::from);
+        Table::line(&dimensions.into_iter().chain(numbers).collect::<Vec<_>>())
     }
 
     /// The run of a row; `None` where a field is not what it should be.
-    fn from_fields(fields: &[impl AsRef<str>]) -> Option<Self> {
-        if fields.len() != COLUMNS.len() {
-            return None;
-        }
-        let text = |i: usize| fields.get(i).map(AsRef::as_ref).unwrap_or_default();
-        let number = |i: usize| text(i).parse::<f64>().ok().filter(|number| number.is_finite());
-        let theory =
-            |i: usize| Some(Theory { area: number(i)?, friction: number(i + 1)?, friction_reduced: number(i + 2)? });
-        let whole = |i: usize| text(i).parse::<u64>().ok();
-        let small = |i: usize| text(i).parse::<u32>().ok();
-        let optional = |i: usize| if text(i).is_empty() { Some(None) } else { Some(Some(number(i)?)) };
-        let seed = if text(7).is_empty() { None } else { Some(whole(7)?) };
-        let pair = |friction: usize, area: usize| Some(Pair { friction: number(friction)?, area: number(area)? });
-        let status = PointStatus::read(text(9));
+    fn read(table: &Table, row: usize, parts: Parts) -> Option<Self> {
+        let optional = |name: &str, unit: &str| table.number(row, name, unit).ok();
+        let number = |name: &str| optional(name, "1")?;
+        let whole = |name: &str| number(name).filter(|number| number.fract() == 0.0 && *number >= 0.0);
+        let theory = |of: &str| {
+            let values = ["area", "friction"].map(|what| number(&format!("persson_{what}_{of}")));
+            let [area, friction] = values;
+            let friction_reduced = number(&format!("persson_friction_{of}_reduced"))?;
+            Some(Theory { area: area?, friction: friction?, friction_reduced })
+        };
+        let pair = |friction: &str, area: &str| Some(Pair { friction: number(friction)?, area: number(area)? });
+        let status = PointStatus::read(&table.word(row, "status", "").ok()?);
         let measured = match &status {
-            PointStatus::Steady | PointStatus::FullContact => {
-                Some(Measured { mean: pair(11, 15)?, error: pair(12, 16)?, hysteresis: number(14)? })
-            }
+            PointStatus::Steady | PointStatus::FullContact => Some(Measured {
+                mean: pair("friction", "area")?,
+                error: pair("friction_standard_error", "area_standard_error")?,
+                hysteresis: number("hysteresis")?,
+            }),
             PointStatus::Problem(_) => None,
         };
+        let seed = table.word(row, "seed", "1").ok()?;
         Some(Self {
             variant: Variant {
-                halvings: small(0)?,
-                doubled: text(1) == "2",
-                seed_shift: small(2)?,
-                split: text(3) == "0.5",
+                halvings: whole("halvings")? as u32,
+                doubled: number("length_factor")? == 2.0,
+                seed_shift: whole("seed_shift")? as u32,
+                split: number("split_factor")? == 0.5,
             },
-            dimensions: Dimensions { count: whole(4)?, spacing: number(5)?, seed, split: optional(8)? },
-            fit_rms: optional(10)?,
+            dimensions: Dimensions {
+                count: whole(parts.name())? as u64,
+                spacing: optional("spacing", "m")??,
+                seed: if seed.is_empty() { None } else { Some(seed.parse().ok()?) },
+                split: optional("split", "m")?,
+            },
+            fit_rms: optional("fit_rms", "1")?,
             status,
             measured,
-            theories: [theory(18)?, theory(21)?],
-            run_time: number(24)?,
+            theories: [theory("1d")?, theory("2d")?],
+            run_time: optional("run_time", "s")??,
         })
     }
 }
@@ -168,73 +176,62 @@ pub struct StudyHeader {
     pub error: f64,
 }
 
-impl StudyHeader {
-    /// The lines of the header, the names of the columns included; once there is one, the verdict.
-    pub fn text(&self, verdict: Option<&str>) -> String {
-        let mut lines = vec![
-            FORMAT.to_owned(),
-            format!("# scene = {}", self.scene),
-            format!("# fingerprint = {}", self.fingerprint),
-            format!("# method = {}", self.method),
-            format!("# pressure = {} Pa", real(self.pressure)),
-            format!("# speed = {} m/s", real(self.speed)),
-            format!("# error = {}", real(self.error)),
-        ];
-        lines.extend(self.way.map(|way| format!("# way = {} m", real(way))));
-        lines.extend(verdict.map(|verdict| format!("# verdict = {verdict}")));
-        lines.push(self.columns());
-        lines.join("\n") + "\n"
-    }
-
-    fn columns(&self) -> String {
-        COLUMNS.join(",").replace("masses", self.parts.name())
-    }
-}
-
 /// The runs of a table that was begun.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunsDone {
     /// The runs.
     pub runs: Vec<RunRow>,
-    /// The lines that are no rows of the study.
-    pub corrupt: Vec<usize>,
-}
-
-/// A text is not the table of a study.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum StudyTableError {
-    /// It is no such table.
-    #[error("{0}")]
-    NotATable(String),
-    /// It is of another scene, pressure, speed, error or distance.
-    #[error("the table of another study")]
-    OtherStudy,
+    /// What is wrong with the rows that are none of the study.
+    pub corrupt: Vec<TableError>,
 }
 
 impl StudyHeader {
-    /// The runs in the `text` of a table of the study.
+    /// The lines of the header, the names of the columns included; once there is one, the verdict.
+    pub fn text(&self, verdict: Option<&str>) -> String {
+        self.table(verdict).head()
+    }
+
+    /// The table without rows.
+    fn table(&self, verdict: Option<&str>) -> Table {
+        let mut header = Header::new(KIND)
+            .with("scene", &self.scene)
+            .with("fingerprint", &self.fingerprint)
+            .with("method", &self.method)
+            .with_number("pressure", self.pressure, "Pa")
+            .with_number("speed", self.speed, "m/s")
+            .with_number("error", self.error, "");
+        if let Some(way) = self.way {
+            header = header.with_number("way", way, "m");
+        }
+        let column = |(name, unit): (&'static str, &'static str)| match name {
+            "masses" => Column::numbers(self.parts.name(), unit),
+            "status" | "seed" => Column::words(name, unit),
+            _ => Column::numbers(name, unit),
+        };
+        Table::new(header.with_some("verdict", verdict), COLUMNS.map(column))
+    }
+
+    /// The runs in the `text` of the table at `path`, which is one of the study.
     ///
     /// # Errors
     /// Where it is not that.
-    pub fn runs_done(&self, text: &str) -> Result<RunsDone, StudyTableError> {
-        let mut rows = tables::rows(text, Some(','));
-        if !text.starts_with(FORMAT) || rows.next().is_none_or(|names| names.fields.len() != COLUMNS.len()) {
-            let problem = format!("expected the line `{FORMAT}` and the columns {}", self.columns());
-            return Err(StudyTableError::NotATable(problem));
+    pub fn runs_done(&self, text: &str, path: &Path) -> Result<RunsDone, Error> {
+        let not_a_table = |error: TableError| Error::value(error).context("not the table of a study");
+        let (table, mut corrupt) = self.table(None).begun(text, path).map_err(not_a_table)?;
+        table.header.check_kind(KIND).map_err(not_a_table)?;
+        if table.header.text_of("fingerprint") != Some(&self.fingerprint) {
+            let other = "is the table of another study: of another scene, pressure, speed, error or distance";
+            return Err(Error::value(format!("{} {other}", path.display())));
         }
-        let key = format!("# fingerprint = {}", self.fingerprint);
-        if !text.lines().any(|line| line == key) {
-            return Err(StudyTableError::OtherStudy);
-        }
-        let mut done = RunsDone { runs: Vec::new(), corrupt: Vec::new() };
-        for row in rows {
-            let is_new = |run: &RunRow| done.runs.iter().all(|other| other.variant != run.variant);
-            match RunRow::from_fields(&row.fields).filter(is_new) {
-                Some(run) => done.runs.push(run),
-                None => done.corrupt.push(row.line),
+        let mut runs: Vec<RunRow> = Vec::new();
+        for row in 0..table.len() {
+            let is_new = |run: &RunRow| runs.iter().all(|other| other.variant != run.variant);
+            match RunRow::read(&table, row, self.parts).filter(is_new) {
+                Some(run) => runs.push(run),
+                None => corrupt.push(table.error_in(row, "not a row of this study")),
             }
         }
-        Ok(done)
+        Ok(RunsDone { runs, corrupt })
     }
 }
 
@@ -264,13 +261,26 @@ mod tests {
         let steady = run(PointStatus::Steady, Some(Measured { mean, error, hysteresis: 0.1 }));
         let failed = run(PointStatus::Problem("not steady after 0.5 m, at all: \"never\"".into()), None);
         let seedless = Dimensions { seed: None, split: None, ..steady.dimensions };
+        let header = StudyHeader {
+            scene: "a".into(),
+            fingerprint: "f".into(),
+            method: "layer".into(),
+            parts: Parts::Masses,
+            pressure: 1e5,
+            speed: 0.1,
+            way: None,
+            error: 0.01,
+        };
         for run in [steady.clone(), failed, RunRow { dimensions: seedless, fit_rms: None, ..steady }] {
             for change in [None, Some(pair(-0.5, 0.25))] {
-                let line = run.line(change);
-                let row = tables::rows(&line, Some(',')).next().unwrap();
-                assert_eq!((row.fields.len(), RunRow::from_fields(&row.fields)), (COLUMNS.len(), Some(run.clone())));
+                let text = header.text(None) + &run.line(change) + "64,1\n" + &run.line(change);
+                let done = header.runs_done(&text, Path::new("t.csv")).unwrap();
+                assert_eq!(done.runs, [run.clone()]);
+                // One of two fields, and one that is there already.
+                assert_eq!(done.corrupt.len(), 2);
             }
         }
-        assert_eq!(RunRow::from_fields(&["64"; COLUMNS.len() - 1]), None);
+        let other = StudyHeader { fingerprint: "g".into(), ..header.clone() };
+        assert!(other.runs_done(&header.text(None), Path::new("t.csv")).is_err());
     }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use asperity::scene::{Scene, SceneError, Setting};
 
-use super::error::ConvergeError;
+use crate::error::Error;
 use crate::steady::{GridSize, SurfaceGrid};
 
 /// What a run differs in from the scene.
@@ -123,10 +123,12 @@ pub(super) struct Template {
 
 impl Template {
     /// Of a `scene` that was read from the file at `path`.
-    pub(super) fn new(scene: &Scene, path: &Path) -> Result<Self, ConvergeError> {
+    pub(super) fn new(scene: &Scene, path: &Path) -> Result<Self, Error> {
         let has = |key: &str| scene.values.get(key).is_some();
         if has("layer.roughness.z") && !has("layer.roughness.x") {
-            return Err(ConvergeError::HeightsAtMasses { path: path.to_owned() });
+            let problem = "layer.roughness has one height for each mass, and none for the masses between at half the spacing: \
+                           give x too, or another kind";
+            return Err(Error::scene(format!("{}: {problem}", path.display())));
         }
         let tables = ["surface", "layer.roughness"];
         let self_affine: Vec<_> = tables.into_iter().filter_map(|table| SelfAffineNumbers::new(scene, table)).collect();
@@ -259,7 +261,7 @@ mod tests {
         [surface]\nkind = 'self_affine'\nlength = 1.6e-3\npoints = 64\nhurst = 0.8\nrms = 1e-6\n\
         roll_off_wavelength = 1e-3\ncut_off_wavelength = 2e-4\nseed = 5\n[solver]\nabsolute_tolerance = 1e-4\n";
 
-    fn template(text: &str) -> Result<Template, ConvergeError> {
+    fn template(text: &str) -> Result<Template, Error> {
         Template::new(&Scene::parse(text, "scene.toml".as_ref()).unwrap(), "scene.toml".as_ref())
     }
 
@@ -301,6 +303,6 @@ mod tests {
         let roughness = TEXT.find("{ kind = 'self_affine', seed").unwrap()..TEXT.find(" }\n").unwrap();
         let mut text = TEXT.to_owned();
         text.replace_range(roughness, points);
-        assert!(matches!(template(&text), Err(ConvergeError::HeightsAtMasses { .. })));
+        assert!(template(&text).unwrap_err().to_string().contains("one height for each mass"));
     }
 }

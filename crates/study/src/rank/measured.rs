@@ -4,14 +4,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use asperity::element::{Load, OperatingPoint};
-use asperity::tables::Csv;
 
-use super::error::RankError;
 use super::plan::{RankFound, RankPlan};
 use crate::calibration::{Measured, Measurements, left_out_in_words};
 use crate::comparison::{NoFriction, swept_friction};
 use crate::csv;
-use crate::files::name_of;
+use crate::error::Error;
+use crate::files::{bytes, name_of};
 
 /// The column of the scenes' names.
 const SCENE: &str = "scene";
@@ -47,10 +46,10 @@ type Compared = (Measured, f64);
 ///
 /// # Errors
 /// Where the file is no such table, names scenes that are not ranked, or has no point at which two of them were measured.
-pub fn measured_ranking(plan: &RankPlan, found: &RankFound, path: &Path) -> Result<MeasuredRanking, RankError> {
-    let refused = |problem: String| RankError::Measured { path: path.to_owned(), problem };
-    let csv = csv::read(path)?;
-    let column = csv.column(SCENE).map_err(|error| csv::CsvError::content(path, error))?;
+pub fn measured_ranking(plan: &RankPlan, found: &RankFound, path: &Path) -> Result<MeasuredRanking, Error> {
+    let refused = |problem: String| Error::in_file(path, None, problem);
+    let (bytes, csv) = (bytes(path)?, csv::read(path)?);
+    let column = csv.column(SCENE).map_err(Error::content(path))?;
     let labels = plan.labels();
     let mut lines: BTreeMap<usize, usize> = BTreeMap::new();
     for row in &csv.rows {
@@ -72,11 +71,9 @@ pub fn measured_ranking(plan: &RankPlan, found: &RankFound, path: &Path) -> Resu
         let Load::Pressure { area } = table.header.load else {
             return Err(refused("the ranking is over forces: expected one over pressures".to_owned()));
         };
-        let text = only(&csv, column, |line| lines.get(&line) == Some(&scene));
-        let measurements =
-            Measurements::parse(text.as_bytes(), area).map_err(|error| csv::CsvError::content(path, error))?;
+        let measurements = Measurements::parse(&bytes, area).map_err(Error::content(path))?;
         notes.extend(measurements.notes.iter().filter(|note| !notes.contains(*note)).cloned().collect::<Vec<_>>());
-        for mut row in measurements.rows {
+        for mut row in measurements.rows.into_iter().filter(|row| lines.get(&row.line) == Some(&scene)) {
             if let (None, [only]) = (row.point.temperature, &table.header.grid.temperatures[..]) {
                 row.point.temperature = Some(*only);
             }
@@ -109,21 +106,6 @@ fn named(plan: &RankPlan, name: &str) -> Option<usize> {
         all.next().filter(|_| all.next().is_none())
     };
     labels.iter().position(|label| label == name).or_else(by_file)
-}
-
-/// The table without the column, and with some of its lines alone, which keep their numbers.
-fn only(csv: &Csv, column: usize, has: impl Fn(usize) -> bool) -> String {
-    let last = csv.rows.last().map_or(csv.line, |row| row.line);
-    let mut lines = vec![String::new(); last];
-    let joined = |fields: &mut dyn Iterator<Item = &str>| fields.collect::<Vec<_>>().join(";");
-    let without = |i: usize| i != column;
-    lines[csv.line - 1] =
-        joined(&mut csv.names.iter().enumerate().filter(|(i, _)| without(*i)).map(|(_, name)| name.as_str()));
-    for row in csv.rows.iter().filter(|row| has(row.line)) {
-        lines[row.line - 1] =
-            joined(&mut row.fields.iter().enumerate().filter(|(i, _)| without(*i)).map(|(_, field)| &**field));
-    }
-    lines.iter().map(|line| format!("{line}\n")).collect()
 }
 
 /// The means of the scenes that were measured over the points at which all of them were, and how many these are.

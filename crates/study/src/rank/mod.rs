@@ -4,7 +4,6 @@
 //! draws the same for keys of the same name and for a surface's seed, so that what the scenes share drops out of their
 //! comparison.
 
-mod error;
 mod measured;
 mod picture;
 mod plan;
@@ -15,7 +14,6 @@ mod table;
 mod tests;
 mod weights;
 
-pub use error::RankError;
 pub use measured::{MeasuredRanking, MeasuredScene, kendall, measured_ranking};
 pub use picture::picture;
 pub use plan::{RankFound, RankPlan, RankScene};

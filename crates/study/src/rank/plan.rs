@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use asperity::element::{Load, OperatingPoint, Quantity};
 use asperity::scene::Scene;
 
-use super::error::RankError;
 use super::ranking::{Frictions, Ranking};
 use super::weights::Weights;
 use crate::Error;
@@ -56,17 +55,17 @@ impl RankPlan {
     ///
     /// # Errors
     /// Where a scene does not go with the options, or with the others.
-    pub fn new(scenes: Vec<RankScene>, options: SweepOptions, samples: SampleOptions) -> Result<Self, RankError> {
+    pub fn new(scenes: Vec<RankScene>, options: SweepOptions, samples: SampleOptions) -> Result<Self, Error> {
         if scenes.len() < 2 {
-            return Err(RankError::TooFew(scenes.len()));
+            return Err(Error::value(format!("expected at least 2 scenes to rank, found {}", scenes.len())));
         }
         let labels = labels(&scenes);
         if options.temperatures.is_none() {
             check_temperatures(&scenes, &labels)?;
         }
-        let entry = |(scene, label): (RankScene, String)| -> Result<Entry, RankError> {
+        let entry = |(scene, label): (RankScene, String)| -> Result<Entry, Error> {
             let RankScene { scene, file } = scene;
-            let refused = |error| RankError::Sweep { scene: label.clone(), error: Box::new(error) };
+            let refused = |error| Error::from(error).context(&label);
             let plan = SweepPlan::new(scene.clone(), &options, None).map_err(refused)?;
             let is_known = Uncertainty::of(&scene)?.0.is_empty();
             let uncertain = (!is_known).then(|| UncertainScene::new(scene)).transpose()?;
@@ -125,7 +124,7 @@ impl RankPlan {
     ///
     /// # Errors
     /// Where it is stopped, there is nothing to rank by, or more than one of ten draws is no scene.
-    pub fn find(&self, weights: &Weights, stop: &Stop, done: &(dyn Fn() + Sync)) -> Result<RankFound, RankError> {
+    pub fn find(&self, weights: &Weights, stop: &Stop, done: &(dyn Fn() + Sync)) -> Result<RankFound, Error> {
         let points = self.points();
         let weights = weights.of(&points, self.load())?;
         let mut tables = Vec::new();
@@ -146,7 +145,7 @@ impl RankPlan {
         own: &Frictions,
         stop: &Stop,
         done: &(dyn Fn() + Sync),
-    ) -> Result<(Vec<Frictions>, usize), RankError> {
+    ) -> Result<(Vec<Frictions>, usize), Error> {
         let Some(sampler) = &self.sampler else { return Ok((Vec::new(), 0)) };
         let uncertain: Vec<&UncertainScene> =
             self.entries.iter().filter_map(|entry| entry.uncertain.as_ref()).collect();
@@ -170,7 +169,7 @@ impl RankPlan {
             };
             Ok(self.entries.iter().zip(own).map(of).collect())
         };
-        let samples = draws.made.into_iter().enumerate().map(whole).collect::<Result<_, RankError>>()?;
+        let samples = draws.made.into_iter().enumerate().map(whole).collect::<Result<_, Error>>()?;
         Ok((samples, draws.redrawn))
     }
 
@@ -217,7 +216,7 @@ fn labels(scenes: &[RankScene]) -> Vec<String> {
 }
 
 /// Scenes that are compared at their own temperatures must have the same.
-fn check_temperatures(scenes: &[RankScene], labels: &[String]) -> Result<(), RankError> {
+fn check_temperatures(scenes: &[RankScene], labels: &[String]) -> Result<(), Error> {
     let own: Vec<Option<f64>> = scenes.iter().map(|scene| scene.scene.temperature()).collect();
     if own.windows(2).all(|pair| pair[0] == pair[1]) {
         return Ok(());
@@ -225,5 +224,7 @@ fn check_temperatures(scenes: &[RankScene], labels: &[String]) -> Result<(), Ran
     let named = |(label, own): (&String, &Option<f64>)| {
         format!("{label} {}", own.map_or_else(|| "none".to_owned(), |kelvin| format!("{kelvin} K")))
     };
-    Err(RankError::OtherTemperatures(labels.iter().zip(&own).map(named).collect::<Vec<_>>().join(", ")))
+    let named = labels.iter().zip(&own).map(named).collect::<Vec<_>>().join(", ");
+    let problem = "the scenes have other temperatures of their own";
+    Err(Error::scene(format!("{problem}: {named}; expected `temperatures`, at which all are compared")))
 }

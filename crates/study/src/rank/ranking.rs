@@ -1,9 +1,8 @@
 //! The ranking, from friction of all scenes at all points, their own and that of the samples.
 
+use crate::error::Error;
 use crate::sweep::quantile;
 use asperity::element::{Load, OperatingPoint, some_of};
-
-use super::error::RankError;
 
 /// The quantiles of a band.
 pub const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
@@ -87,18 +86,23 @@ impl Ranking {
         (load, points): (Load, &[(OperatingPoint, f64)]),
         own: &Frictions,
         samples: &[Frictions],
-    ) -> Result<Self, RankError> {
+    ) -> Result<Self, Error> {
         let weights = weights(load, points, own)?;
         let mean = |friction: &Vec<Option<f64>>| mean(friction, &weights);
         let means: Vec<f64> = own.iter().filter_map(mean).collect();
         if means.first().is_none_or(|first| *first <= 0.0) {
-            return Err(RankError::NoFriction(labels.into_iter().next().unwrap_or_default()));
+            let first = labels.into_iter().next().unwrap_or_default();
+            let problem = "its friction in the mean is not above 0, so that nothing can be compared with it: name another scene \
+                           first";
+            return Err(Error::value(format!("{first}: {problem}")));
         }
         let sampled = |sample: &Frictions| sample.iter().map(mean).collect::<Option<Vec<f64>>>();
         let kept: Vec<Vec<f64>> = samples.iter().filter_map(sampled).filter(|means| means[0] > 0.0).collect();
         if !samples.is_empty() && kept.len() < 2 {
             let (failed, count) = (samples.len() - kept.len(), samples.len());
-            return Err(RankError::NoSamples { failed, count, left: kept.len() });
+            let left = kept.len();
+            let problem = format!("{failed} of {count} samples have no result: {left} are too few to rank by");
+            return Err(Error::value(problem));
         }
         let alone = [means.clone()];
         let counted: &[Vec<f64>] = if kept.is_empty() { &alone } else { &kept };
@@ -170,12 +174,12 @@ impl Ranking {
 }
 
 /// The weights of the points at which all scenes have a result, of all 1 together; 0 of the others.
-fn weights(load: Load, points: &[(OperatingPoint, f64)], own: &Frictions) -> Result<Vec<f64>, RankError> {
+fn weights(load: Load, points: &[(OperatingPoint, f64)], own: &Frictions) -> Result<Vec<f64>, Error> {
     let counts = |at: usize| own.iter().all(|friction| friction[at].is_some());
     let sum: f64 = points.iter().enumerate().filter(|(at, _)| counts(*at)).map(|(_, (_, weight))| weight).sum();
     if sum <= 0.0 {
         let all: Vec<String> = points.iter().map(|(point, _)| point.describe(load)).collect();
-        return Err(RankError::NoPoint(some_of(&all)));
+        return Err(Error::value(format!("there is no point at which all scenes have a result: {}", some_of(&all))));
     }
     Ok(points.iter().enumerate().map(|(at, (_, weight))| if counts(at) { weight / sum } else { 0.0 }).collect())
 }
@@ -252,7 +256,7 @@ mod tests {
         weights.iter().enumerate().map(|(i, weight)| (point(i), *weight)).collect()
     }
 
-    fn ranked(points: &[(OperatingPoint, f64)], own: &Frictions, samples: &[Frictions]) -> Result<Ranking, RankError> {
+    fn ranked(points: &[(OperatingPoint, f64)], own: &Frictions, samples: &[Frictions]) -> Result<Ranking, Error> {
         let labels = (0..own.len()).map(|i| format!("scene {i}")).collect();
         Ranking::new(labels, (Load::Force, points), own, samples)
     }
@@ -310,7 +314,7 @@ mod tests {
         assert!(warnings[0].starts_with("1 of 2 points are left out of the mean") && warnings[0].contains("2 m/s"));
         assert!(warnings[1].starts_with("1 of 3 samples"), "{warnings:?}");
         own[0][0] = None;
-        assert!(matches!(ranked(&points(&[1.0, 1.0]), &own, &[]), Err(RankError::NoPoint(_))));
+        assert!(ranked(&points(&[1.0, 1.0]), &own, &[]).is_err());
     }
 
     /// Number 8 of Hyndman and Fan, as a table of a sweep has them.

@@ -7,7 +7,7 @@ use asperity::tables::{
     ABOVE_ZERO, Choice, ContentError, Dimension, Format, NOT_NEGATIVE, Others, UnitRule, Wanted, Words, decode,
 };
 
-use super::error::RankError;
+use crate::error::Error;
 use crate::files::{bytes, read_table};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,14 +71,13 @@ impl Weights {
     ///
     /// # Errors
     /// Where it is no such table.
-    pub fn read(path: &Path) -> Result<Self, RankError> {
-        let refused = |error| RankError::Weights { path: path.to_owned(), error };
-        let (rows, _) = read_table(&bytes(path)?, parse).map_err(refused)?;
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let (rows, _) = read_table(&bytes(path)?, parse).map_err(Error::content(path))?;
         Ok(Self { path: Some(path.to_owned()), rows })
     }
 
     /// The weights of `points`, 1 of each without a table.
-    pub(super) fn of(&self, points: &[OperatingPoint], load: Load) -> Result<Vec<f64>, RankError> {
+    pub(super) fn of(&self, points: &[OperatingPoint], load: Load) -> Result<Vec<f64>, Error> {
         let Some(path) = &self.path else { return Ok(vec![1.0; points.len()]) };
         let mut found: Vec<Option<&Weight>> = vec![None; points.len()];
         for row in &self.rows {
@@ -86,21 +85,26 @@ impl Weights {
             for (place, point) in found.iter_mut().zip(points).filter(|(_, point)| row.is_of(point, load)) {
                 is_asked = true;
                 if let Some(other) = place.replace(row) {
-                    let (line, other, point) = (row.line, other.line, point.describe(load));
-                    return Err(RankError::Twice { path: path.clone(), line, other, point });
+                    let (other, point) = (other.line, point.describe(load));
+                    let problem = format!("{point} has a weight in line {other} already");
+                    return Err(Error::in_file(path, Some(row.line), problem));
                 }
             }
             if !is_asked {
-                return Err(RankError::NotAsked { path: path.clone(), line: row.line, point: row.describe() });
+                let problem = format!("a weight of a point that is not asked for: {}", row.describe());
+                return Err(Error::in_file(path, Some(row.line), problem));
             }
         }
         let without = points.iter().zip(&found).filter(|(_, row)| row.is_none());
         let without: Vec<String> = without.map(|(point, _)| point.describe(load)).collect();
         if !without.is_empty() {
-            return Err(RankError::NoWeight { path: path.clone(), points: some_of(&without) });
+            return Err(Error::in_file(path, None, format!("no weight of {}", some_of(&without))));
         }
         let weights: Vec<f64> = found.iter().flatten().map(|row| row.weight).collect();
-        if weights.iter().sum::<f64>() > 0.0 { Ok(weights) } else { Err(RankError::AllZero { path: path.clone() }) }
+        match weights.iter().sum::<f64>() > 0.0 {
+            true => Ok(weights),
+            false => Err(Error::in_file(path, None, "expected a weight above 0")),
+        }
     }
 }
 

@@ -39,6 +39,16 @@ pub enum Scale {
     Linear,
 }
 
+impl Scale {
+    /// The word for it in a file.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Log => "log",
+            Self::Linear => "linear",
+        }
+    }
+}
+
 /// The columns before those of the keys.
 const COLUMNS: [&str; 3] = ["key", "value", "scale"];
 /// What is written with some digits is symmetric and positive but for this part.

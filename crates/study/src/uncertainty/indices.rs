@@ -8,7 +8,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::groups::Group;
+use super::drawing::Group;
 use super::sampler::inverse_normal;
 
 /// What a group explains.

@@ -2,7 +2,6 @@
 
 mod covariance;
 mod drawing;
-mod groups;
 mod indices;
 mod sampler;
 mod section;
@@ -12,8 +11,7 @@ mod section_tests;
 mod tests;
 
 pub use covariance::{Covariance, FittedNumber, Scale};
-pub use drawing::{Drawn, Draws, Refused, UncertainScene};
-pub use groups::{Group, decade_name};
+pub use drawing::{Drawn, Draws, Group, Refused, UncertainScene, decade_name};
 pub use indices::{Index, Indices, indices};
 pub use sampler::{SampleOptions, Sampler, inverse_normal};
 pub use section::{Distribution, Spread, UncertainKey, Uncertainty, covariance_file};

@@ -1,6 +1,7 @@
+use asperity::scene::{Scene, Setting};
+
 use super::*;
 use crate::files::parse_scene;
-use asperity::scene::{Scene, Setting};
 
 const SCENE: &str = "
 name = 'rough'
