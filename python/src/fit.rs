@@ -123,6 +123,7 @@ pub(crate) fn fit(
         data,
         sheet,
         ignored,
+        columns: Vec::new(),
         units: units.into_iter().map(unit).collect::<PyResult<_>>()?,
         frequency,
         poisson_ratio,

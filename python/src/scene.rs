@@ -92,12 +92,7 @@ impl Scene {
 
     /// The files that the scene reads, as it names them.
     fn files(&self) -> Vec<PathBuf> {
-        let mut files = self.scene.files.clone();
-        for extract in &self.scene.extracts {
-            files.retain(|file| *file != extract.name);
-            files.push(extract.source.clone());
-        }
-        files
+        self.scene.files.iter().map(|file| file.path.clone()).collect()
     }
 
     /// What stands at a key of the text, tables as dictionaries.
@@ -139,7 +134,6 @@ impl Scene {
     fn is_same(&self, other: &Self) -> bool {
         let content = |scene: &asperity::scene::Scene| asperity::scene::Scene {
             files: Vec::new(),
-            extracts: Vec::new(),
             warnings: Vec::new(),
             notes: Vec::new(),
             ..scene.clone()

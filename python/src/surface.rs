@@ -50,7 +50,7 @@ impl Reading {
             tilt: word("tilt", self.tilt.as_ref())?.unwrap_or_default(),
             depth: word("depth", self.depth.as_ref())?,
             third_column: word("third_column", self.third_column.as_ref())?,
-            columns: self.columns.clone(),
+            columns: asperity::scene::ProfileOptions::axes(&self.columns),
             spacing: self.spacing.clone(),
             line: self.line,
             periodic: self.periodic,

@@ -6,10 +6,12 @@ use std::sync::Arc;
 use super::face::{Face, FixedPoints, Section, Tread};
 use crate::element::{Clearance, FrictionTable, Load, Node, Quantity, ResampledLaw};
 use crate::scene::{
-    Backing, Extrapolation, FaceHeat, FaceShape, FmuOptions, Grid, NotDoubled, Parameter, ParameterError, PatchFile,
-    PatchGroup, Problem, SceneError, Setting, TableExtrapolation, Value,
+    Backing, CanonicalFiles, Extrapolation, FaceHeat, FaceShape, FileFormats, FmuOptions, Grid, NotDoubled, POINTS,
+    Parameter, ParameterError, PatchFile, PatchGroup, Problem, SceneError, Setting, TableExtrapolation, Value,
+    read_file,
 };
 use crate::table::TableError;
+use crate::tables::canonical;
 
 /// Why a patch is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -94,15 +96,20 @@ impl Patch {
     /// # Errors
     /// As for [`load`](Self::load).
     pub fn parse(text: &str, path: &Path) -> Result<Self, PatchError> {
-        Self::parse_with(text, path, &[])
+        Self::parse_with(text, path, &CanonicalFiles, &[])
     }
 
-    /// As [`parse`](Self::parse), with keys set to other values.
+    /// As [`parse`](Self::parse), with the file of points in one of `formats`, and with keys set to other values.
     ///
     /// # Errors
     /// As for [`load`](Self::load); without file and line where it is the value of a key that is set.
-    pub fn parse_with(text: &str, path: &Path, settings: &[Setting]) -> Result<Self, PatchError> {
-        Self::new(PatchFile::parse_with(text, path, settings)?, path)
+    pub fn parse_with(
+        text: &str,
+        path: &Path,
+        formats: &'static dyn FileFormats,
+        settings: &[Setting],
+    ) -> Result<Self, PatchError> {
+        Self::new(PatchFile::parse_with(text, path, formats, settings)?, path)
     }
 
     fn new(file: PatchFile, path: &Path) -> Result<Self, PatchError> {
@@ -273,6 +280,22 @@ impl Patch {
     /// Paths of the files that it reads besides its own, relative to that one's folder.
     pub fn files(&self) -> &[PathBuf] {
         &self.files
+    }
+
+    /// What an FMU carries of one of the [`files`](Self::files): the points in their canonical form, the table as it is.
+    ///
+    /// # Errors
+    /// Where it cannot be read.
+    pub fn carried(&self, folder: &Path, file: &Path) -> std::io::Result<Vec<u8>> {
+        match &self.file.shape {
+            FaceShape::Points { path, points } if path == file => {
+                let columns = [0, 1, 2, 3].map(|i| points.iter().map(|point| point[i]).collect::<Vec<f64>>());
+                let roles = POINTS.roles.iter().zip(&columns);
+                let columns: Vec<_> = roles.map(|(role, values)| (role.key, role.dimension, &values[..])).collect();
+                Ok(canonical(&columns).into_bytes())
+            }
+            _ => read_file(&folder.join(file)),
+        }
     }
 
     /// The file of the table, relative to the patch's folder; it is one of the [`files`](Self::files).

@@ -1,14 +1,13 @@
 //! What follows from the numbers of a scene: masses and links of a material, friction at a temperature, inputs, tolerances.
 
 use std::f64::consts::TAU;
-use std::io;
 use std::path::{Path as FilePath, PathBuf};
 
 use super::error::{ParameterError, Problem};
 use super::foundation::Quality;
 use super::{
     ByLink, CarrierBody, CarrierInitial, FineBand, FineWaves, Initial, Input, Layer, Link, LinkKind, Material, Phase,
-    RateShear, SMALLEST, Scene, Waves, is_possible, keys, peak_to_valley, read_file,
+    RateShear, SMALLEST, Scene, Waves, is_possible, keys, peak_to_valley,
 };
 
 impl Scene {
@@ -20,19 +19,7 @@ impl Scene {
     /// Paths of the files that the scene was read from; `path` is that of its own.
     pub fn sources(&self, path: &FilePath) -> Vec<PathBuf> {
         let folder = path.parent().unwrap_or(FilePath::new(""));
-        let files = self.files.iter().chain(self.extracts.iter().map(|extract| &extract.source));
-        std::iter::once(path.to_owned()).chain(files.map(|file| folder.join(file))).collect()
-    }
-
-    /// The bytes of one of the scene's [`files`](Self::files) as an FMU carries them; `folder` is the scene's.
-    ///
-    /// # Errors
-    /// Where the file cannot be read.
-    pub fn carried(&self, folder: &FilePath, file: &FilePath) -> io::Result<Vec<u8>> {
-        match self.extracts.iter().find(|extract| extract.name == file) {
-            Some(extract) => Ok(extract.text.clone().into_bytes()),
-            None => read_file(&folder.join(file)),
-        }
+        std::iter::once(path.to_owned()).chain(self.files.iter().map(|file| folder.join(&file.path))).collect()
     }
 
     /// The scene's height, m: the peak-to-valley heights of the profile's data points and of the layer's roughness

@@ -13,9 +13,9 @@ use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Table, Value};
 
 use super::error::{Location, Problem, SceneError};
-use super::profile::{Profile, ProfileOptions};
+use super::files::carried_name;
 use super::values::similar_word;
-use super::{FileFormats, TextAlone, keys, read_file};
+use super::{CanonicalFiles, FileFormats, LoadedProfile, ProfileOptions, keys, read_file};
 
 type Result<T> = std::result::Result<T, SceneError>;
 
@@ -81,7 +81,7 @@ pub struct FileValues {
 #[derive(Clone, Default)]
 pub(super) struct NamedFiles {
     contents: BTreeMap<PathBuf, Arc<[u8]>>,
-    pub(super) profiles: Vec<(PathBuf, ProfileOptions, Arc<Profile>)>,
+    pub(super) profiles: Vec<(PathBuf, ProfileOptions, Arc<LoadedProfile>)>,
 }
 
 impl NamedFiles {
@@ -94,13 +94,27 @@ impl NamedFiles {
         self.contents.insert(path.to_owned(), bytes.clone());
         Ok(bytes)
     }
+
+    /// The file at `path` below a `folder`, or what an FMU carries in its place; and which of both was read.
+    pub(super) fn read(
+        &mut self,
+        folder: &Path,
+        path: &Path,
+        options: Option<&ProfileOptions>,
+    ) -> io::Result<(PathBuf, Arc<[u8]>)> {
+        let (file, carried) = (folder.join(path), folder.join(carried_name(path, options)));
+        match self.bytes(&file) {
+            Ok(bytes) => Ok((file, bytes)),
+            Err(error) => self.bytes(&carried).map(|bytes| (carried, bytes)).map_err(|_| error),
+        }
+    }
 }
 
 /// Of what was made in code.
 impl Default for FileValues {
     fn default() -> Self {
         let (file, text, root, set) = (PathBuf::new(), "".into(), Table::new(), Vec::new());
-        Self { file, text, root, set, formats: &TextAlone, files: NamedFiles::default() }
+        Self { file, text, root, set, formats: &CanonicalFiles, files: NamedFiles::default() }
     }
 }
 

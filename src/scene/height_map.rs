@@ -172,7 +172,7 @@ impl HeightMap {
     }
 
     /// The map without its last line and its last column where they repeat the first ones, as the edges of a period do.
-    pub(super) fn without_repetition(self) -> Self {
+    pub fn without_repetition(self) -> Self {
         let tolerance = ROUNDING * peak_to_valley(&self.heights);
         let same = |(a, b): (&f64, &f64)| (a - b).abs() <= tolerance;
         let open_along_x = |map: Self| {
@@ -187,7 +187,10 @@ impl HeightMap {
     }
 
     /// Checks that heights and slopes are numbers that can be worked with.
-    pub(super) fn check(&self) -> Result<(), MapError> {
+    ///
+    /// # Errors
+    /// [`MapError`] with what is wrong.
+    pub fn check(&self) -> Result<(), MapError> {
         let [dx, dy] = self.spacing;
         if dx.min(dy) < SMALLEST {
             return Err(MapError::TooClose(dx.min(dy)));

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::LinkKind;
 use super::error::{ParameterError, Problem};
 use super::layer::{Layer, Link, MaxwellElement};
+use crate::tables::{Dimension, FileKind, NOT_NEGATIVE, POSITIVE, ReadTable, Role};
 
 /// A linear viscoelastic solid: a spring, a dashpot and Maxwell elements in parallel, as moduli.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -43,6 +44,25 @@ pub struct PronyTerm {
     pub relaxation_time: f64,
     /// Modulus E_j, Pa.
     pub modulus: f64,
+}
+
+const SERIES_ROLES: [Role; 2] = [
+    Role::new("relaxation_time", "", Dimension::Time).within(POSITIVE),
+    Role::new("modulus", "", Dimension::Pressure).within(NOT_NEGATIVE),
+];
+/// The file of a series in its canonical form: moduli of tension.
+pub const SERIES: FileKind = FileKind::new(
+    "a Prony series",
+    &SERIES_ROLES,
+    "a relaxation time and a modulus: relaxation_time [s], modulus [Pa]",
+);
+
+impl PronyTerm {
+    /// The terms of a file.
+    pub(super) fn of_table(table: &ReadTable) -> Vec<Self> {
+        let rows = table.values("relaxation_time").iter().zip(table.values("modulus"));
+        rows.map(|(&relaxation_time, &modulus)| Self { relaxation_time, modulus }).collect()
+    }
 }
 
 /// The shift of all times with temperature after Williams, Landel and Ferry.

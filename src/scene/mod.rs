@@ -11,6 +11,7 @@ mod carrier;
 mod derived;
 mod error;
 mod file_values;
+mod files;
 mod fine_roughness;
 mod foundation;
 mod height_map;
@@ -21,9 +22,7 @@ mod motion_file;
 mod parameters;
 mod patch_file;
 mod profile;
-mod prony_file;
 mod reader;
-mod regular_file;
 mod scaled_spectrum;
 mod self_affine;
 mod settings;
@@ -35,7 +34,6 @@ mod warnings;
 #[cfg(test)]
 mod tests;
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use serde::Serialize;
@@ -48,26 +46,27 @@ pub use carrier::{CarrierBodies, CarrierBody, CarrierInitial, Input};
 pub use carrier::{Force, Motion, Path, Phase};
 pub use error::{ParameterError, Problem, SceneError, did_you_mean};
 pub use file_values::{FileValues, Setting};
+pub use files::{
+    CanonicalFiles, ElasticConstants, FileFormats, LoadedProfile, SceneFile, line_note, read_file, read_text,
+};
 pub use fine_roughness::{
-    FineBand, FineRoughness, FineWaves, ModulusFactors, RoughnessSpectrum, Softening, SofteningRow, SpectrumFactors,
-    SplitError, SplitSurface, WaveModuli, decade_of,
+    Convention, FineBand, FineRoughness, FineWaves, LEAST_DENSITY, ModulusFactors, RoughnessSpectrum, SOFTENING,
+    SPECTRUM, Softening, SofteningRow, SpectrumFactors, SplitError, SplitSurface, WaveModuli, decade_of,
 };
 pub use foundation::{ElasticBody, Foundation, Quality, Stiffness, Wave, Waves};
 pub use height_map::{HeightMap, MOST_HEIGHTS, MapError, peak_to_valley};
 pub use keys::{Absent, KeyEntry, patch_keys, scene_keys, similar_keys};
 pub use layer::{FoundationKind, Friction, Initial, Layer, Link, MaxwellElement, RateShear};
-pub use material::{Heat, Material, PronyTerm, Wlf, complex_stiffness};
+pub use material::{Heat, Material, PronyTerm, SERIES, Wlf, complex_stiffness};
+pub use motion_file::MOTION;
 pub use parameters::{KeyNumber, Parameter};
 pub use patch_file::{Backing, FaceHeat, FaceShape, Grid, NotDoubled, PatchFile, PatchGroup, TableExtrapolation};
-pub use profile::{
-    Areal, Depth, Extract, FileFormats, LengthUnit, LoadedProfile, MeasuredPoints, MeasuredSurface, Missing,
-    ProfileOptions, TextAlone, ThirdColumn, Tilt, UnknownWord, line_note,
-};
-pub use regular_file::{read_file, read_text};
+pub use profile::{Depth, LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
+pub use reader::POINTS;
 pub use self_affine::SelfAffine;
 pub use settings::{DependencyList, Extrapolation, FmuOptions, IntegerType, Method, OutputGroup, Solver};
 pub use spectrum::{PowerLaw, Spectrum, SpectrumBand};
-pub use surface::{MeanLine, Surface};
+pub use surface::{Coordinate, MeanLine, PointsError, Surface, UnfitPoints, check_points, remove_tilt};
 pub use values::{LOOSEST_TOLERANCE, Unit, Value, is_possible};
 
 /// A whole scene, checked. Serialised, it is every number of it: what the scene does not name is null or empty.
@@ -104,13 +103,9 @@ pub struct Scene {
     pub fmu: FmuOptions,
     /// The motion of the carrier in runs without a master.
     pub excitation: Vec<Phase>,
-    /// The files that the scene reads and an FMU carries: relative to its folder, as the scene names them; a line of an
-    /// areal measurement by the name of its extract.
+    /// The files that the scene names, each once.
     #[serde(skip)]
-    pub files: Vec<PathBuf>,
-    /// The lines of areal measurements among them.
-    #[serde(skip)]
-    pub extracts: Vec<Extract>,
+    pub files: Vec<SceneFile>,
     /// Warnings: what is probably not meant though the scene is valid.
     #[serde(skip)]
     pub warnings: Vec<String>,

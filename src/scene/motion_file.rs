@@ -4,114 +4,96 @@
 use super::carrier::{CarrierBodies, CarrierBody};
 use super::carrier::{Force, Path, Phase};
 use super::material::Wlf;
-use crate::tables::{
-    Choice, Column, ContentError, Dimension, Format, POSITIVE, ReadingNote, Table, Wanted, Words, decode,
-};
+use crate::tables::{ContentError, Dimension, FileKind, POSITIVE, Presence, ReadTable, ReadingNote, Role};
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum OfMotion {
-    Time,
-    U,
-    W,
-    Load,
-    /// F_z as a tester has it: a load where the carrier bears one, or else what came of the motion.
-    NormalForce,
-    Pull,
-    Pressure,
-    Temperature,
-}
-
-const MOTION: Format<OfMotion, 7> = Format {
+const MOTION_ROLES: [Role; 8] = [
+    Role::new("time", "t, times, zeit, elapsed time, test time", Dimension::Time),
+    Role {
+        presence: Presence::Unnamed,
+        ..Role::new("u", "x, displacement u, displacement x, carrier u, carrier x, x displacement", Dimension::Length)
+    },
+    Role {
+        presence: Presence::Unnamed,
+        ..Role::new("w", "z, displacement w, displacement z, carrier w, carrier z, z displacement", Dimension::Length)
+    },
+    Role::new("load", "normal load, load force", Dimension::Force).optional(),
+    Role::new(
+        "normal_force",
+        "Fz, F_z, Fn, F_n, F_N, normal force F_N, measured normal force, force z, z force, vertical force, normalkraft",
+        Dimension::Force,
+    )
+    .optional(),
+    Role::new("pull", "tangential pull, pull force", Dimension::Force).optional(),
+    Role::new("pressure", "mean pressure", Dimension::Pressure).optional(),
+    Role::new("temperature", "T, temp, temperatur", Dimension::Temperature).optional().within(POSITIVE),
+];
+/// The file of a motion.
+pub const MOTION: FileKind = FileKind {
     least: 2,
     rises: true,
-    ..Format::new(
-        &[
-            Words::new(OfMotion::Time, Dimension::Time, "time t zeit", ""),
-            Words::new(OfMotion::U, Dimension::Length, "u x", "displacement carrier"),
-            Words::new(OfMotion::W, Dimension::Length, "w z", "displacement carrier"),
-            Words::new(OfMotion::Load, Dimension::Force, "load", "normal force"),
-            Words::new(
-                OfMotion::NormalForce,
-                Dimension::Force,
-                "fz fn normal normalkraft f+z f+n",
-                "force vertical z n f measured",
-            ),
-            Words::new(OfMotion::Pull, Dimension::Force, "pull", "tangential force"),
-            Words::new(OfMotion::Pressure, Dimension::Pressure, "pressure", "mean"),
-            Words::new(OfMotion::Temperature, Dimension::Temperature, "temperature temp", ""),
-        ],
-        [
-            Wanted::new(&[OfMotion::Time], "time", "times"),
-            Wanted::new(&[OfMotion::U], "u", "displacements u").optional_by_name(),
-            Wanted::new(&[OfMotion::W], "w", "displacements w").optional_by_name(),
-            Wanted {
-                choice: Choice::FirstQuantity,
-                ..Wanted::new(&[OfMotion::Load, OfMotion::NormalForce], "load", "loads").optional()
-            },
-            Wanted::new(&[OfMotion::Pull], "pull", "tangential forces").optional(),
-            Wanted::new(&[OfMotion::Pressure], "pressure", "pressures").optional(),
-            Wanted::new(&[OfMotion::Temperature], "temperature", "temperatures").optional().within(POSITIVE),
-        ],
+    ..FileKind::new(
+        "a motion",
+        &MOTION_ROLES,
         "time, u and w, of which one that rests may be missing, and of a body along an axis, which has no u or w but by \
          its drive, load, pressure or pull; temperature where it is an input",
     )
 };
 
-/// The phases between the rows of a file, for a carrier whose bodies are these. u and w count from the first row: the
-/// carrier moves from where it stands.
+/// The phases between the rows of a file, for a carrier whose bodies are these, and what is said of it. u and w count from
+/// the first row: the carrier moves from where it stands.
 ///
-/// A temperature is held from row to row.
-pub(super) fn read_motion(
-    bytes: &[u8],
+/// A temperature is held from row to row. A force that a tester has measured along z is a load where the carrier bears one,
+/// or else what came of the motion.
+pub(super) fn phases(
+    table: &ReadTable,
     carrier: &CarrierBodies,
 ) -> Result<(Vec<Phase>, Vec<ReadingNote>), ContentError> {
-    let text = decode(bytes)?;
-    let Table { mut columns, rows, mut notes, line, .. } = MOTION.read(&text)?;
-    if let Some(measured) = columns[3].take_if(|column| is_measured(column) && carrier.z.is_none()) {
-        notes.retain(|note| !note.text.contains(&measured.label()));
-        let text = format!("{} is left out: without [carrier.z] it comes of w", measured.label());
+    let measured = table.column("normal_force").filter(|_| carrier.z.is_none() || table.column("load").is_some());
+    let mut notes = Vec::new();
+    if let Some(column) = measured {
+        let text = format!("{} is left out: without [carrier.z] it comes of w", column.label());
         notes.push(ReadingNote { text, assumed: true });
     }
-    check_forces(&columns, line, carrier)?;
-    notes.extend(resting(&columns, line, carrier)?);
-    let first = rows.first().copied().unwrap_or_default();
-    if first[1..3] != [0.0, 0.0] {
-        let text = format!("u and w count from the first row, {:?} m and {:?} m", first[1], first[2]);
-        notes.push(ReadingNote { text, assumed: true });
-    }
-    let phase = |rows: &[[f64; 7]]| {
-        let ([here, there], duration) = ([rows[0], rows[1]], rows[1][0] - rows[0][0]);
-        let rate = |column: usize| (there[column] - here[column]) / duration;
-        let path = |column: usize| Path { rate: rate(column), ..Path::default() };
-        let force =
-            |column: usize| columns[column].as_ref().map(|_| Force { start: Some(here[column]), change: path(column) });
-        Phase {
-            duration,
-            u: path(1),
-            w: path(2),
-            load: force(3),
-            pull: force(4),
-            pressure: force(5),
-            temperature: columns[6].as_ref().map(|_| here[6]),
-            is_row: true,
-            ..Phase::default()
-        }
+    let load = if measured.is_some() || table.column("load").is_some() { "load" } else { "normal_force" };
+    check_forces(table, load, carrier)?;
+    notes.extend(resting(table, carrier)?);
+    let values = |key: &str, row: usize| table.values(key).get(row).copied();
+    let rate = |key: &str, row: usize| {
+        let [here, there, from, to] =
+            [values(key, row)?, values(key, row + 1)?, values("time", row)?, values("time", row + 1)?];
+        Some((there - here) / (to - from))
     };
-    Ok((rows.windows(2).map(phase).collect(), notes))
+    let first = ["u", "w"].map(|key| values(key, 0).unwrap_or(0.0));
+    if first != [0.0, 0.0] {
+        let text = format!("u and w count from the first row, {:?} m and {:?} m", first[0], first[1]);
+        notes.push(ReadingNote { text, assumed: true });
+    }
+    let path = |key: &str, row: usize| Path { rate: rate(key, row).unwrap_or(0.0), ..Path::default() };
+    let force =
+        |key: &str, row: usize| values(key, row).map(|here| Force { start: Some(here), change: path(key, row) });
+    let times = table.values("time");
+    let phase = |row: usize| Phase {
+        duration: times[row + 1] - times[row],
+        u: path("u", row),
+        w: path("w", row),
+        load: force(load, row),
+        pull: force("pull", row),
+        pressure: force("pressure", row),
+        temperature: values("temperature", row),
+        is_row: true,
+        ..Phase::default()
+    };
+    Ok(((0..times.len() - 1).map(phase).collect(), notes))
 }
 
 /// What is said of displacements that the file does not have and that nothing else moves; refused where it has nothing
 /// but times.
-fn resting(
-    columns: &[Option<Column<OfMotion>>; 7],
-    line: Option<usize>,
-    carrier: &CarrierBodies,
-) -> Result<Option<ReadingNote>, ContentError> {
-    if columns[1..].iter().all(Option::is_none) {
-        return Err(ContentError::value(line, "columns", "time alone", MOTION.expected));
+fn resting(table: &ReadTable, carrier: &CarrierBodies) -> Result<Option<ReadingNote>, ContentError> {
+    if table.columns.len() == 1 {
+        return Err(ContentError::value(table.line, "columns", "time alone", MOTION.expected));
     }
-    let rests = |column: &Option<_>, body: &Option<CarrierBody>| column.is_none() && !is_free(body);
-    let names = match [rests(&columns[1], &carrier.x), rests(&columns[2], &carrier.z)] {
+    let rests = |key: &str, body: &Option<CarrierBody>| table.column(key).is_none() && !is_free(body);
+    let names = match [rests("u", &carrier.x), rests("w", &carrier.z)] {
         [false, false] => return Ok(None),
         [true, false] => "u",
         [false, true] => "w",
@@ -127,27 +109,21 @@ fn is_free(body: &Option<CarrierBody>) -> bool {
     body.as_ref().is_some_and(|body| !body.has_drive())
 }
 
-fn is_measured(column: &Column<OfMotion>) -> bool {
-    column.quantity == OfMotion::NormalForce
-}
-
 /// Refuses forces on an axis along which the carrier is no body, and two loads.
-fn check_forces(
-    [_, _, _, load, pull, pressure, _]: &[Option<Column<OfMotion>>; 7],
-    line: Option<usize>,
-    carrier: &CarrierBodies,
-) -> Result<(), ContentError> {
+fn check_forces(table: &ReadTable, load: &str, carrier: &CarrierBodies) -> Result<(), ContentError> {
     let no_z = "no load and no pressure without [carrier.z]";
     let refused = [
-        (pressure, load.is_some(), "no load beside pressure"),
+        ("pressure", table.column(load).is_some(), "no load beside pressure"),
         (load, carrier.z.is_none(), no_z),
-        (pressure, carrier.z.is_none(), no_z),
-        (pull, carrier.x.is_none(), "no pull without [carrier.x]"),
+        ("pressure", carrier.z.is_none(), no_z),
+        ("pull", carrier.x.is_none(), "no pull without [carrier.x]"),
     ];
-    match refused.into_iter().find(|(column, is_refused, _)| column.is_some() && *is_refused) {
-        Some((Some(column), _, expected)) => Err(ContentError::value(line, "columns", &column.label(), expected)),
-        _ => Ok(()),
+    for (key, is_refused, expected) in refused {
+        if let Some(column) = table.column(key).filter(|_| is_refused) {
+            return Err(ContentError::value(table.line, "columns", &column.label(), expected));
+        }
     }
+    Ok(())
 }
 
 /// What a file must not have for a carrier whose bodies are these, with `material.wlf` where the temperature is an input.
@@ -169,11 +145,18 @@ pub(super) fn obstacle(phase: &Phase, carrier: &CarrierBodies, temperature: Opti
 mod tests {
     use super::*;
 
+    fn read(text: &str, carrier: &CarrierBodies) -> Result<(Vec<Phase>, Vec<ReadingNote>), ContentError> {
+        phases(&MOTION.read_canonical(text.as_bytes())?, carrier)
+    }
+
+    fn on_body() -> CarrierBodies {
+        CarrierBodies { z: Some(CarrierBody::default()), ..CarrierBodies::default() }
+    }
+
     #[test]
     fn rows_are_ends_of_straight_motions() {
-        let text = "time [ms], u [mm], w [µm], load [N]\n0, 1, 0, 5\n2, 1.5, -40, 5\n3, 1.5, -40, 6\n";
-        let on_body = CarrierBodies { z: Some(CarrierBody::default()), ..CarrierBodies::default() };
-        let (phases, notes) = read_motion(text.as_bytes(), &on_body).unwrap();
+        let text = "time [s],u [m],w [m],load [N]\n0,1e-3,0,5\n2e-3,1.5e-3,-4e-5,5\n3e-3,1.5e-3,-4e-5,6\n";
+        let (phases, notes) = read(text, &on_body()).unwrap();
         let close = |a: f64, b: f64| (a - b).abs() <= 1e-12 * b.abs();
         assert!(phases.len() == 2 && close(phases[0].duration, 2e-3) && close(phases[0].u.rate, 0.25));
         assert!(close(phases[0].w.rate, -0.02) && phases[1].w.rate == 0.0 && phases[1].pull.is_none());
@@ -182,54 +165,33 @@ mod tests {
         assert!(notes.iter().any(|note| note.text.contains("first row")), "{notes:?}");
     }
 
-    #[test]
-    fn files_that_are_no_motion_are_refused() {
-        for text in [
-            "time, v\n0, 1\n1, 2\n",
-            "0, 1\n1, 2\n",
-            "time, u, w\n0, 1, 2\n0, 1, 2\n",
-            "time, u, w\n0, 1, x\n1, 1, 2\n",
-            "",
-        ] {
-            assert!(read_motion(text.as_bytes(), &CarrierBodies::default()).is_err(), "{text}");
-        }
-    }
-
-    /// Those rest, which is said; without names there is no telling which of them is missing.
+    /// Those rest, which is said.
     #[test]
     fn displacements_that_are_missing_rest() {
-        let read = |text: &str| read_motion(text.as_bytes(), &CarrierBodies::default()).unwrap();
-        for (name, other, [u, w]) in [("u", "w", [0.25, 0.0]), ("w", "u", [0.0, 0.25])] {
-            let (phases, notes) = read(&format!("time [s], {name} [m]\n0, 0\n2, 0.5\n"));
+        let none = CarrierBodies::default();
+        for (name, [u, w]) in [("u", [0.25, 0.0]), ("w", [0.0, 0.25])] {
+            let (phases, notes) = read(&format!("time [s],{name} [m]\n0,0\n2,0.5\n"), &none).unwrap();
             assert_eq!([phases[0].u.rate, phases[0].w.rate], [u, w]);
-            let said = format!("no column {other}: it stays as at the start");
-            assert!(notes.iter().any(|note| note.assumed && note.text == said), "{notes:?}");
+            assert!(notes.iter().any(|note| note.assumed), "{notes:?}");
         }
-        let on_body = CarrierBodies { z: Some(CarrierBody::default()), ..CarrierBodies::default() };
-        let (_, notes) = read_motion(b"time [s], u [m], load [N]\n0, 0, 5\n2, 0.5, 5\n", &on_body).unwrap();
+        let (_, notes) = read("time [s],u [m],load [N]\n0,0,5\n2,0.5,5\n", &on_body()).unwrap();
         assert!(notes.iter().all(|note| !note.assumed), "{notes:?}");
-        let (phases, notes) = read("time [s], temperature [K]\n0, 300\n2, 310\n");
+        let (phases, notes) = read("time [s],temperature [K]\n0,300\n2,310\n", &none).unwrap();
         assert_eq!([phases[0].u.rate, phases[0].w.rate], [0.0, 0.0]);
-        let said = "no columns u and w: they stay as at the start";
-        assert!(notes.iter().any(|note| note.assumed && note.text == said), "{notes:?}");
+        assert!(notes.iter().any(|note| note.assumed), "{notes:?}");
+        assert!(read("time [s]\n0\n2\n", &none).is_err());
     }
 
     /// A tester's log has the forces that came of the motion; a load is none.
     #[test]
     fn measured_forces_are_left_out_or_loads() {
         let none = CarrierBodies::default();
-        let on_body = CarrierBodies { z: Some(CarrierBody::default()), ..CarrierBodies::default() };
-        let log = |name: &str| format!("time [s],Fx [N],u [mm],{name},w [mm]\n0,1,0,5,-0.01\n1,1,1,5,-0.01\n");
-        for name in ["Fz [N]", "F_z [N]", "Fn [N]", "Normal force [N]", "normal_force_N"] {
-            let (phases, notes) = read_motion(log(name).as_bytes(), &none).unwrap();
-            let said = format!("column 4 ({name}) is left out: without [carrier.z] it comes of w");
-            assert!(phases[0].load.is_none(), "{name}");
-            assert!(notes.iter().any(|note| note.assumed && note.text == said), "{name} {notes:?}");
-            let (phases, _) = read_motion(log(name).as_bytes(), &on_body).unwrap();
-            assert_eq!(phases[0].load.and_then(|load| load.start), Some(5.0), "{name}");
-        }
-        let refused = read_motion(log("load [N]").as_bytes(), &none).unwrap_err().to_string();
-        let expected = "columns = column 4 (load [N]): expected no load and no pressure without [carrier.z]";
-        assert_eq!(refused, expected);
+        let log = |name: &str| format!("time [s],u [m],{name} [N],w [m]\n0,0,5,-1e-5\n1,1,5,-1e-5\n");
+        let (phases, notes) = read(&log("normal_force"), &none).unwrap();
+        assert!(phases[0].load.is_none() && notes.iter().any(|note| note.text.contains("left out")), "{notes:?}");
+        let (phases, _) = read(&log("normal_force"), &on_body()).unwrap();
+        assert_eq!(phases[0].load.and_then(|load| load.start), Some(5.0));
+        let refused = read(&log("load"), &none).unwrap_err();
+        assert_eq!((&refused.key[..], &refused.given[..]), ("columns", "column 3 \"load\""));
     }
 }

@@ -31,14 +31,16 @@ pub struct Surface {
 
 /// Why no profile goes through points: what they should be, and are.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub(super) enum UnfitPoints {
+pub enum UnfitPoints {
     #[error(
         "points with a spline of slopes up to {steepest:e} and curvatures up to {largest:e} 1/m",
         steepest = STEEPEST,
         largest = LARGEST
     )]
+    /// The spline is too steep or too bent.
     TooSteep,
     #[error("points at least {least:e} m apart along x, not {0:e} m", least = SMALLEST)]
+    /// Points are too close to each other.
     TooClose(f64),
 }
 
@@ -114,7 +116,7 @@ impl Surface {
     }
 
     /// The profile as a line of a map, or of an areal measurement that is none for the reason given.
-    pub(super) fn with_map(self, map: Option<Result<HeightMap, MapError>>) -> Self {
+    pub fn with_map(self, map: Option<Result<HeightMap, MapError>>) -> Self {
         Self { map: map.map(Arc::new), ..self }
     }
 
@@ -143,7 +145,10 @@ impl Surface {
     }
 
     /// Checks that slopes and curvatures of the spline are numbers that can be worked with.
-    pub(super) fn check_slopes(&self) -> Result<(), UnfitPoints> {
+    ///
+    /// # Errors
+    /// What they should be.
+    pub fn check_slopes(&self) -> Result<(), UnfitPoints> {
         let bounds = self.spline.bounds();
         let closest = self.x.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
         let possible = bounds.slope_max_abs <= STEEPEST && bounds.curvature_max_abs <= LARGEST;
@@ -267,27 +272,36 @@ impl MeanLine {
 }
 
 /// Subtracts the least squares line from the heights.
-pub(super) fn remove_tilt(x: &[f64], z: &mut [f64]) {
+pub fn remove_tilt(x: &[f64], z: &mut [f64]) {
     let line = MeanLine::through(x, z);
     z.iter_mut().zip(x).for_each(|(z, x)| *z = (*z - line.z) - line.slope * (x - line.x));
 }
 
+/// A coordinate of a point of a profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Coordinate {
+pub enum Coordinate {
+    /// Its position.
     X,
+    /// Its height.
     Z,
 }
 
+/// Points that make no profile.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct PointsError {
-    pub(super) coordinate: Coordinate,
+pub struct PointsError {
+    /// What is wrong of the point.
+    pub coordinate: Coordinate,
     /// The wrong point, from 0; `None` where their number is wrong.
-    pub(super) index: Option<usize>,
-    pub(super) expected: String,
+    pub index: Option<usize>,
+    /// What is allowed.
+    pub expected: String,
 }
 
 /// Checks that there are enough points, that x rises and that periodic ends meet, and makes these ends exactly equal.
-pub(super) fn check_points(x: &[f64], z: &mut [f64], periodic: bool) -> Result<(), PointsError> {
+///
+/// # Errors
+/// [`PointsError`] with the first point that is wrong.
+pub fn check_points(x: &[f64], z: &mut [f64], periodic: bool) -> Result<(), PointsError> {
     check_count(x.len(), periodic)?;
     check_order(x)?;
     if periodic { close(z) } else { Ok(()) }

@@ -144,12 +144,12 @@ fn derives_an_identifier_from_the_name() {
 fn reads_files_once_each_from_beside_the_scene() {
     let folder = std::env::temp_dir().join(format!("asperity-files-{}", std::process::id()));
     std::fs::create_dir_all(folder.join("profiles")).unwrap();
-    std::fs::write(folder.join("profiles/a.csv"), "x;z\r\n0;0,5\r\n1;0,5\r\n").unwrap();
+    std::fs::write(folder.join("profiles/a.csv"), "x [m],z [m]\r\n0,0.5\r\n1,0.5\r\n").unwrap();
     let file = |more: &str| format!("kind = 'file', path = '{more}profiles/a.csv'");
     let text = format!("name = 'f'\nsurface = {{ {} }}\n[layer]\nmasses = 1\nspacing = 1\nmass = 1\n", file("./"));
     std::fs::write(folder.join("s.toml"), format!("\u{feff}{text}roughness = {{ {} }}", file(""))).unwrap();
     let scene = Scene::load(&folder.join("s.toml")).unwrap();
-    assert_eq!(scene.files, [PathBuf::from("profiles/a.csv")]);
+    assert_eq!(scene.files[0].path, PathBuf::from("profiles/a.csv"));
     assert_eq!((scene.surface.z(), scene.layer.roughness.as_slice()), ([0.5, 0.5].as_slice(), [0.5].as_slice()));
     std::fs::remove_dir_all(folder).unwrap();
 }

@@ -141,7 +141,8 @@ fn field_end(text: &str, separator: char) -> Option<usize> {
     None
 }
 
-pub(super) fn unquoted(field: &str) -> Cow<'_, str> {
+/// A field without its quotation marks.
+pub fn unquoted(field: &str) -> Cow<'_, str> {
     let Some(quoted) = field.strip_prefix('"') else { return Cow::Borrowed(field) };
     let (mut text, mut inside, mut letters) = (String::new(), true, quoted.chars().peekable());
     while let Some(letter) = letters.next() {

@@ -54,6 +54,9 @@ pub struct Unit {
     offset: f64,
 }
 
+/// The unit of a spatial frequency, of which 2π rad/m are one.
+pub const CYCLES: &str = "cycles/m";
+
 impl Unit {
     /// No unit: of numbers that are plain, or in SI units.
     pub const ONE: Self = Self::new("1", Dimension::Number, 1.0);
@@ -132,6 +135,13 @@ fn plain(text: &str) -> String {
     plain
 }
 
+impl Unit {
+    /// Whether it is one of a quantity; a frequency may be in 1/s.
+    pub fn is_of(&self, dimension: Dimension) -> bool {
+        self.dimension == dimension || (dimension == Dimension::Frequency && self.dimension == Dimension::Rate)
+    }
+}
+
 impl Dimension {
     const fn si_name(self) -> &'static str {
         match self {
@@ -199,6 +209,7 @@ impl fmt::Display for Unit {
 }
 
 const METRES_PER_INCH: f64 = 0.0254;
+const NEWTONS_PER_POUND: f64 = 4.448_221_615_260_5;
 const PASCALS_PER_PSI: f64 = 6_894.757_293_168_361;
 /// 0 °C in K.
 const FREEZING: f64 = 273.15;
@@ -248,6 +259,7 @@ const UNITS: &[(Unit, &[&str])] = &{
         (Unit::part("ns", Time, 1e9), &["ns", "nanosecond", "nanoseconds"]),
         (Unit::new("min", Time, 60.0), &["min", "mins", "minute", "minutes"]),
         (Unit::new("h", Time, 3600.0), &["h", "hr", "hrs", "hour", "hours"]),
+        (Unit::new("d", Time, 86_400.0), &["d", "day", "days"]),
         (Unit::new("Hz", Frequency, TAU), &["Hz", "hertz", "cps"]),
         (Unit::si(Frequency), &["rad/s", "rads-1", "rad/sec", "radian/s"]),
         (Unit::new("mHz", Frequency, 1e-3 * TAU), &["mHz"]),
@@ -273,15 +285,22 @@ const UNITS: &[(Unit, &[&str])] = &{
         (Unit::part("m/min", Speed, 60.0), &["m/min"]),
         (Unit::part("mm/min", Speed, 6e4), &["mm/min"]),
         (Unit::new("mph", Speed, 0.44704), &["mph"]),
-        (Unit::si(Force), &["N", "newton"]),
+        (Unit::new("in/s", Speed, METRES_PER_INCH), &["in/s", "in/sec", "inch/s", "ips"]),
+        (Unit::new("ft/s", Speed, 12.0 * METRES_PER_INCH), &["ft/s", "ft/sec", "fps"]),
+        (Unit::si(Force), &["N", "newton", "newtons"]),
         (Unit::new("kN", Force, 1e3), &["kN"]),
+        (Unit::part("mN", Force, 1e3), &["mN"]),
+        (Unit::new("kgf", Force, 9.80665), &["kgf", "kp"]),
+        (Unit::new("lbf", Force, NEWTONS_PER_POUND), &["lbf", "lbs-force"]),
         (Unit::si(Mass), &["kg"]),
         (Unit::part("g", Mass, 1e3), &["g"]),
         (Unit::si(Density), &["kg/m3"]),
         (Unit::new("g/cm³", Density, 1e3), &["g/cm3", "g/ml"]),
         (Unit::si(Stiffness), &["N/m"]),
         (Unit::new("N/mm", Stiffness, 1e3), &["N/mm", "kN/m"]),
+        (Unit::new("kN/mm", Stiffness, 1e6), &["kN/mm"]),
         (Unit::si(WaveNumber), &["1/m", "m-1", "rad/m", "radm-1"]),
+        (Unit::new(CYCLES, WaveNumber, TAU), &["cycles/m", "cycle/m", "cyc/m", "c/m"]),
         (Unit::new("1/cm", WaveNumber, 1e2), &["1/cm", "cm-1", "rad/cm", "radcm-1"]),
         (Unit::new("1/mm", WaveNumber, 1e3), &["1/mm", "mm-1", "rad/mm", "radmm-1"]),
         (Unit::new("1/µm", WaveNumber, 1e6), &["1/um", "um-1", "rad/um", "radum-1"]),

@@ -25,7 +25,7 @@ fn found_by_scipy() -> (Vec<FreeParameter>, Vec<f64>, f64) {
 
 fn problem() -> (Problem, Vec<f64>, f64) {
     let (parameters, values, chi_square) = found_by_scipy();
-    let measured = Measurements::parse(&std::fs::read(reference("theory.measured.csv")).unwrap(), 1.0).unwrap();
+    let measured = Measurements::parse(&std::fs::read(reference("theory.measured.csv")).unwrap(), 1.0, &[]).unwrap();
     (Problem::new(parameters, &measured), values, chi_square)
 }
 
@@ -104,7 +104,8 @@ impl FrictionModel for Jump {
 #[test]
 fn a_derivative_is_not_taken_across_a_jump() {
     let parameter = FreeParameter::new("friction.coulomb".to_owned(), 1.0, 3.0).unwrap();
-    let measured = Measurements::parse(b"speed [m/s],pressure [Pa],mu,sigma\n1,1e5,2,1\n2,1e5,2,1\n", 1.0).unwrap();
+    let measured =
+        Measurements::parse(b"speed [m/s],pressure [Pa],mu,sigma\n1,1e5,2,1\n2,1e5,2,1\n", 1.0, &[]).unwrap();
     let problem = Problem::new(vec![parameter], &measured);
     let derivative = |linearised: asperity_study::calibration::Linearised| linearised.jacobian[(0, 0)];
     // Two between the bounds; the step of 2e-4 is lost in rounding to 1e-12 of the quotient.

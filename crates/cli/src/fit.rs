@@ -35,6 +35,7 @@ impl From<&Fit> for FitOptions {
             data: command.data.clone(),
             sheet: command.sheet.clone(),
             ignored: command.ignore.clone(),
+            columns: command.columns.clone(),
             units: command.unit.clone(),
             frequency: command.frequency,
             poisson_ratio: command.poisson_ratio,

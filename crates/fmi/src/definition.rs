@@ -147,9 +147,8 @@ impl Sources {
     pub fn new(path: &Path, definition: &dyn FmuModel) -> io::Result<Self> {
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut files = vec![fs::read(path)?];
-        for file in definition.files() {
-            files.push(definition.carried(folder, file)?);
-        }
+        let carried = definition.carried(folder).map_err(|(_, error)| error)?;
+        files.extend(carried.into_iter().map(|(_, content)| content));
         Ok(Self { files })
     }
 

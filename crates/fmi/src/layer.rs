@@ -14,7 +14,8 @@ use super::variables::VariableRef;
 use asperity::model::{FlashKernel, Reduction, Replacement};
 use asperity::outputs::{self, Output, Variable};
 use asperity::scene::{
-    Extrapolation, FmuOptions, Force, Input, LinkKind, OutputGroup, Parameter, ParameterError, Path, Scene, Value,
+    Extrapolation, FmuOptions, Force, Input, LinkKind, OutputGroup, Parameter, ParameterError, Path, Scene, SceneFile,
+    Value,
 };
 use asperity::simulation::{Motion, Simulation, Start};
 
@@ -31,12 +32,12 @@ impl FmuModel for Arc<Scene> {
         SCENE_FILE
     }
 
-    fn files(&self) -> &[PathBuf] {
-        &self.files
-    }
-
-    fn carried(&self, folder: &FilePath, file: &FilePath) -> io::Result<Vec<u8>> {
-        Scene::carried(self, folder, file)
+    fn carried(&self, folder: &FilePath) -> Result<Vec<(PathBuf, Vec<u8>)>, (PathBuf, io::Error)> {
+        let content = |file: &SceneFile| match file.carried(folder) {
+            Ok(bytes) => Ok((file.carried_name.clone(), bytes)),
+            Err(error) => Err((folder.join(&file.path), error)),
+        };
+        self.files.iter().map(content).collect()
     }
 
     fn sources(&self, path: &FilePath) -> Vec<PathBuf> {

@@ -2,8 +2,8 @@
 //! with its parameters, [`FmuRun`] a run of it.
 
 use std::fmt::Debug;
+use std::io;
 use std::path::{Path, PathBuf};
-use std::{fs, io};
 
 use serde::{Deserialize, Serialize};
 
@@ -32,17 +32,13 @@ pub trait FmuModel: Debug {
     /// The name of its own file in the resources.
     fn file_name(&self) -> &'static str;
 
-    /// Paths of the files that it reads besides its own, relative to that one's folder.
-    fn files(&self) -> &[PathBuf] {
-        &[]
-    }
-
-    /// The content of one of its [`files`](Self::files) as it is packed into an FMU; `folder` is that of its own file.
+    /// The files that it reads besides its own as they are packed into an FMU: their paths relative to that one, and what
+    /// is in them; `folder` is that of its own.
     ///
     /// # Errors
-    /// Where the file cannot be read.
-    fn carried(&self, folder: &Path, file: &Path) -> io::Result<Vec<u8>> {
-        fs::read(folder.join(file))
+    /// Where a file cannot be read, with its path.
+    fn carried(&self, _folder: &Path) -> Result<Vec<(PathBuf, Vec<u8>)>, (PathBuf, io::Error)> {
+        Ok(Vec::new())
     }
 
     /// Paths of all files that it was read from; `path` is that of its own.

@@ -1,6 +1,7 @@
 //! A contact patch as an FMU's model. Between communication points the pose is continuous and runs straight to its
 //! targets; a temperature is held.
 
+use std::io;
 use std::path::{Path, PathBuf};
 
 use super::error::{Error, InputOutOfRange, RestoreError};
@@ -42,8 +43,12 @@ impl FmuModel for Patch {
         PATCH_FILE
     }
 
-    fn files(&self) -> &[PathBuf] {
-        self.files()
+    fn carried(&self, folder: &Path) -> Result<Vec<(PathBuf, Vec<u8>)>, (PathBuf, io::Error)> {
+        let content = |file: &PathBuf| match self.carried(folder, file) {
+            Ok(bytes) => Ok((file.clone(), bytes)),
+            Err(error) => Err((folder.join(file), error)),
+        };
+        self.files().iter().map(content).collect()
     }
 
     fn sources(&self, path: &Path) -> Vec<PathBuf> {

@@ -3,16 +3,14 @@
 //! A few bytes may unpack into all memory, and two cells may span a billion empty ones. What is unpacked is bounded, and
 //! cells are kept one by one, never as the rectangle that they span.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{Cursor, Read as _, copy, sink};
-use std::path::Path;
 
+use asperity::tables::ContentError;
 use calamine::{Data, DataRef, Ods, Range, Reader as _, Xls, Xlsb, Xlsx};
 use quick_xml::events::{BytesStart, Event};
 use zip::ZipArchive;
 
-/// The endings of workbooks.
-const ENDINGS: [&str; 5] = ["xlsx", "xls", "xlsm", "xlsb", "ods"];
 /// How an archive begins, and how an old workbook of Excel does.
 const ARCHIVE: &[u8] = b"PK\x03\x04";
 const OLD: &[u8] = b"\xd0\xcf\x11\xe0";
@@ -21,10 +19,43 @@ const MOST_BYTES: u64 = 1 << 27;
 /// The most cells of a sheet.
 const MOST_CELLS: u64 = 1_000_000;
 
-/// Whether bytes are those of a workbook: a zip archive or an old one of Excel.
-pub fn is_workbook(bytes: &[u8], path: &Path) -> bool {
-    let named = path.extension().is_some_and(|ending| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)));
-    named || bytes.starts_with(ARCHIVE) || bytes.starts_with(OLD)
+/// Parts that an archive has that is a workbook.
+const PARTS: [&str; 3] = ["xl/workbook.xml", "xl/workbook.bin", "content.xml"];
+
+/// Whether bytes are those of a workbook: a zip archive with one's parts, or an old one of Excel.
+pub fn is_workbook(bytes: &[u8]) -> bool {
+    let has = |archive: ZipArchive<Cursor<&[u8]>>| PARTS.iter().any(|part| archive.index_for_name(part).is_some());
+    bytes.starts_with(OLD) || (bytes.starts_with(ARCHIVE) && ZipArchive::new(Cursor::new(bytes)).is_ok_and(has))
+}
+
+impl From<WorkbookError> for ContentError {
+    fn from(error: WorkbookError) -> Self {
+        Self::value(None, "", "a workbook", &format!("one that can be read: {error}"))
+    }
+}
+
+/// What `read` makes of the only sheet that it can read, and the name of that.
+///
+/// # Errors
+/// [`ContentError`] where none can be read, that of the longest; or several can.
+pub fn only_sheet<T>(
+    sheets: &[(String, String)],
+    read: impl Fn(&[u8]) -> Result<T, ContentError>,
+) -> Result<(T, String), ContentError> {
+    let (mut found, mut errors) = (Vec::new(), Vec::new());
+    for (name, text) in sheets.iter().filter(|(_, text)| !text.trim().is_empty()) {
+        match read(text.as_bytes()) {
+            Ok(content) => found.push((content, name.clone())),
+            Err(error) => errors.push((text.len(), error.in_sheet(name))),
+        }
+    }
+    if found.len() > 1 {
+        let names: Vec<&str> = found.iter().map(|(_, name)| name.as_str()).collect();
+        return Err(ContentError::value(None, "sheets", &names.join(", "), "one with such a table"));
+    }
+    let longest = errors.into_iter().max_by_key(|(length, _)| *length).map(|(_, error)| error);
+    let none = || longest.unwrap_or_else(|| ContentError::value(None, "sheets", "empty", "one with a table"));
+    found.pop().ok_or_else(none)
 }
 
 /// A workbook cannot be read.
@@ -55,8 +86,9 @@ pub enum WorkbookError {
     TooManyCells(String),
 }
 
-/// The sheets as lines with tabs: name and text. Lines count as in the sheet. Of a formula the value is taken that was
-/// stored with it; one without is given as it stands, behind a sign of equality.
+/// The sheets as lines with tabs: name and text. Lines count as in the sheet, and have as many fields. Of a formula the
+/// value is taken that was stored with it; one without is given as it stands, behind a sign of equality. A number in per
+/// cent is given with its sign, as it is seen.
 ///
 /// # Errors
 /// Where the bytes are no workbook, a sheet cannot be read, or there is more in it than can be meant.
@@ -110,9 +142,10 @@ impl Sheet {
 
     /// The cells as lines with tabs, which are counted before they are written.
     fn text(&self, name: &str) -> Result<String, WorkbookError> {
-        let last = |cells: &BTreeMap<u32, String>| cells.last_key_value().map_or(0, |(column, _)| u64::from(*column));
+        let last = |cells: &BTreeMap<u32, String>| cells.last_key_value().map_or(0, |(column, _)| *column);
+        let width = self.rows.values().map(last).max().unwrap_or(0);
         let gaps = self.rows.last_key_value().map_or(0, |(row, _)| u64::from(*row))
-            + self.rows.values().map(last).sum::<u64>();
+            + self.rows.len() as u64 * u64::from(width);
         if gaps > MOST_BYTES {
             return Err(WorkbookError::TooManyCells(name.to_owned()));
         }
@@ -126,6 +159,7 @@ impl Sheet {
                 at = *column;
                 text += cell;
             }
+            (at..width).for_each(|_| text.push('\t'));
         }
         text.push('\n');
         Ok(text)
@@ -136,19 +170,121 @@ fn xlsx_sheets(bytes: &[u8]) -> Result<Vec<(String, String)>, WorkbookError> {
     let error = |error| WorkbookError::Content(calamine::Error::Xlsx(error));
     let mut workbook = Xlsx::new(Cursor::new(bytes)).map_err(error)?;
     let names = workbook.sheet_names();
-    let read = |name: String| {
+    let percent = percent_cells(bytes)?;
+    let read = |(index, name): (usize, String)| {
         let mut sheet = Sheet::default();
         let mut cells = workbook.worksheet_cells_reader(&name).map_err(error)?;
         while let Some(found) = cells.next_cell_with_formula().map_err(error)? {
+            let is_percent = percent.get(index).is_some_and(|cells| cells.contains(&found.pos));
             let text = match (found.value, found.formula) {
                 (DataRef::Empty, Some(formula)) => format!("={formula}"),
+                (DataRef::Float(number), _) if is_percent => in_percent(number),
+                (DataRef::Int(number), _) if is_percent => in_percent(number as f64),
                 (value, _) => text_of(&value.into()),
             };
             sheet.add(&name, found.pos, text)?;
         }
         sheet.text(&name).map(|text| (name, text))
     };
-    names.into_iter().map(read).collect()
+    names.into_iter().enumerate().map(read).collect()
+}
+
+/// What a number in the format of per cent shows.
+fn in_percent(number: f64) -> String {
+    // Twelve digits: the rounding of a hundredth is none of the number.
+    let shown: f64 = format!("{:.11e}", 100.0 * number).parse().unwrap_or(100.0 * number);
+    format!("{}%", decimal(shown))
+}
+
+/// The places of the cells in the format of per cent, of each sheet in the order of the workbook.
+fn percent_cells(bytes: &[u8]) -> Result<Vec<BTreeSet<(u32, u32)>>, WorkbookError> {
+    let mut archive = ZipArchive::new(Cursor::new(bytes))?;
+    let mut part = |name: &str| {
+        let mut text = String::new();
+        let read = archive.by_name(name).ok().map(|mut part| part.read_to_string(&mut text));
+        read.and_then(Result::ok).map(|_| text)
+    };
+    let Some(styles) = part("xl/styles.xml") else { return Ok(Vec::new()) };
+    let styles = percent_styles(&styles)?;
+    if styles.is_empty() {
+        return Ok(Vec::new());
+    }
+    let (workbook, relations) =
+        (part("xl/workbook.xml").unwrap_or_default(), part("xl/_rels/workbook.xml.rels").unwrap_or_default());
+    let mut targets = BTreeMap::new();
+    each_element(&relations, |element| {
+        targets.extend(attribute(element, "Id").zip(attribute(element, "Target")));
+    })?;
+    let mut ids = Vec::new();
+    each_element(&workbook, |element| {
+        if element.name().0.rsplit(':').next() == Some("sheet") {
+            ids.push(attribute(element, "r:id").unwrap_or_default());
+        }
+    })?;
+    let mut found = Vec::new();
+    for id in ids {
+        let target = targets.get(&id).cloned().unwrap_or_default();
+        let name = target.strip_prefix('/').map_or_else(|| format!("xl/{target}"), str::to_owned);
+        let mut cells = BTreeSet::new();
+        each_element(&part(&name).unwrap_or_default(), |element| {
+            let style = attribute(element, "s").and_then(|style| style.parse().ok());
+            if element.name().0 == "c" && style.is_some_and(|style: usize| styles.contains(&style)) {
+                cells.extend(attribute(element, "r").and_then(|place| cell_place(&place)));
+            }
+        })?;
+        found.push(cells);
+    }
+    Ok(found)
+}
+
+/// The numbers of the styles of cells that are formats of per cent.
+fn percent_styles(styles: &str) -> Result<BTreeSet<usize>, WorkbookError> {
+    // 0% and 0.00% are built in.
+    let mut formats = BTreeSet::from(["9".to_owned(), "10".to_owned()]);
+    let (mut found, mut index, mut is_of_cells) = (BTreeSet::new(), 0, false);
+    each_element(styles, |element| match element.name().0 {
+        "numFmt" => {
+            let code = attribute(element, "formatCode").unwrap_or_default();
+            // A sign in quotation marks is a text.
+            let is_percent = code.split('"').step_by(2).any(|part| part.replace("\\%", "").contains('%'));
+            formats.extend(attribute(element, "numFmtId").filter(|_| is_percent));
+        }
+        "cellXfs" => is_of_cells = true,
+        "cellStyles" | "dxfs" => is_of_cells = false,
+        "xf" if is_of_cells => {
+            if attribute(element, "numFmtId").is_some_and(|format| formats.contains(&format)) {
+                found.insert(index);
+            }
+            index += 1;
+        }
+        _ => (),
+    })?;
+    Ok(found)
+}
+
+fn each_element(text: &str, mut see: impl FnMut(&BytesStart<'_>)) -> Result<(), WorkbookError> {
+    let mut reader = quick_xml::Reader::from_str(text);
+    loop {
+        match reader.read_event()? {
+            Event::Start(element) | Event::Empty(element) => see(&element),
+            Event::Eof => return Ok(()),
+            _ => (),
+        }
+    }
+}
+
+fn attribute(element: &BytesStart<'_>, key: &str) -> Option<String> {
+    let found = element.attributes().flatten().find(|attribute| attribute.key.0 == key);
+    found.map(|attribute| attribute.value.into_owned())
+}
+
+/// Row and column, from 0, of `B3`.
+fn cell_place(text: &str) -> Option<(u32, u32)> {
+    let digits = text.find(|letter: char| letter.is_ascii_digit())?;
+    let column = text[..digits].bytes().try_fold(0_u32, |column, letter| {
+        column.checked_mul(26)?.checked_add(u32::from(letter.to_ascii_uppercase()).checked_sub(64)?)
+    })?;
+    Some((text[digits..].parse::<u32>().ok()?.checked_sub(1)?, column.checked_sub(1)?))
 }
 
 fn xlsb_sheets(bytes: &[u8]) -> Result<Vec<(String, String)>, WorkbookError> {
@@ -322,7 +458,10 @@ mod tests {
             "<row r=\"1\"><c r=\"A1\"><v>1</v></c></row><row r=\"1048576\"><c r=\"XFD1048576\"><v>2</v></c></row>",
         ));
         let lines: Vec<&str> = cells.lines().collect();
-        assert_eq!((lines.len(), lines[0], lines[1], lines[1_048_575].len()), (1 << 20, "1.0", "", 16383 + 3));
+        assert_eq!(
+            (lines.len(), lines[0].trim_end(), lines[1], lines[1_048_575].len()),
+            (1 << 20, "1.0", "", 16383 + 3)
+        );
     }
 
     #[test]

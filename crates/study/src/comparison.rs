@@ -111,7 +111,7 @@ pub fn measured_beside(header: &SweepHeader, path: &Path, data: &Path) -> Result
             "a table over forces: expected one over pressures, as `asperity sweep --pressures` makes",
         ));
     };
-    let mut measurements = Measurements::read(data, area)?;
+    let mut measurements = Measurements::read(data, area, &[])?;
     let temperatures = &header.grid.temperatures;
     if temperatures.len() > 1 && !measurements.has_temperature() {
         return Err(Error::in_file(

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use asperity::model::EvenSliding;
 use asperity::patch::Patch;
-use asperity::scene::{FileFormats as _, Scene, Setting, read_file, read_text};
-use asperity::tables::{ContentError, text_or_sheet};
+use asperity::scene::{FileFormats as _, Scene, SceneFile, Setting, read_file, read_text};
+use asperity::tables::{FileKind, ReadTable};
 use asperity_formats::Instruments;
 
 use crate::error::Error;
@@ -19,7 +19,7 @@ pub fn parse_scene(text: &str, file: &Path, set: &[Setting]) -> Result<Scene, Er
     let mut scene = Scene::parse_with(text, file, &Instruments, set)?;
     let (_, warnings) = Uncertainty::of(&scene)?;
     scene.warnings.extend(warnings);
-    scene.files.extend(covariance_file(&scene));
+    scene.files.extend(covariance_file(&scene).map(SceneFile::itself));
     EvenSliding::warn_of(&mut scene);
     Ok(scene)
 }
@@ -37,7 +37,7 @@ pub fn load_scene(path: &Path, set: &[Setting]) -> Result<Scene, Error> {
 /// # Errors
 /// As for [`load_scene`].
 pub fn load_patch(path: &Path, set: &[Setting]) -> Result<Patch, Error> {
-    Ok(Patch::parse_with(&text(path)?, path, set)?)
+    Ok(Patch::parse_with(&text(path)?, path, &Instruments, set)?)
 }
 
 /// The text of the file at `path`.
@@ -56,16 +56,12 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
     read_file(path).map_err(Error::io("read", path))
 }
 
-/// What `read` makes of the bytes of a file of a table, or of a sheet of a workbook; then with a note of its name.
+/// The table of a kind in the file at `path`, text or a workbook.
 ///
 /// # Errors
-/// Those of `read`, and where several sheets could be meant.
-pub fn read_table<T>(
-    bytes: &[u8],
-    read: impl Fn(&[u8]) -> Result<T, ContentError>,
-) -> Result<(T, Option<String>), ContentError> {
-    let (content, sheet) = text_or_sheet(bytes, Instruments.sheets(bytes), read)?;
-    Ok((content, sheet.map(|(_, note)| note.text)))
+/// Where it cannot be read, or is no such table.
+pub fn read_table(path: &Path, kind: &FileKind, columns: &[(String, String)]) -> Result<ReadTable, Error> {
+    Instruments.table(&bytes(path)?, kind, columns).map_err(Error::content(path))
 }
 
 /// The file's name without its folder.

@@ -4,51 +4,34 @@ use std::path::Path;
 
 use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchStart, Pose};
 use asperity::scene;
-use asperity::tables::{Dimension, FINITE, Format, Others, Table, Wanted, Words, decode};
+use asperity::tables::{ContentError, Dimension, FINITE, FileKind, Others, ReadColumn, Role};
 
 use crate::error::Error;
-use crate::files::{bytes, read_table};
+use crate::files::read_table;
 
 const TIME: &str = "time";
 const TRANSPORT: &str = "transport.speed";
 const TEMPERATURE: &str = "temperature";
 
-const fn words(name: &'static str, dimension: Dimension) -> Words<&'static str> {
-    Words::new(name, dimension, name, "")
-}
-
-const fn wanted(name: &'static [&'static str], meaning: &'static str) -> Wanted<&'static str> {
-    Wanted::new(name, name[0], meaning).within(FINITE)
-}
-
-/// The columns of a patch with a tread whose temperature is an input.
-const MOTION: Format<&str, 9> = Format {
-    needs_names: true,
+const ROLES: [Role; 9] = [
+    Role::new(TIME, "t, times, zeit", Dimension::Time).within(FINITE),
+    Role::new("x", "position x", Dimension::Length).within(FINITE),
+    Role::new("y", "position y", Dimension::Length).within(FINITE),
+    Role::new("z", "position z", Dimension::Length).within(FINITE),
+    Role::new("roll", "angle of roll", Dimension::Angle).within(FINITE),
+    Role::new("pitch", "angle of pitch", Dimension::Angle).within(FINITE),
+    Role::new("yaw", "angle of yaw", Dimension::Angle).within(FINITE),
+    Role::new(TRANSPORT, "transport, speed", Dimension::Speed).within(FINITE).optional(),
+    Role::new(TEMPERATURE, "T, temp, temperatur", Dimension::Temperature).within(FINITE).optional(),
+];
+/// The file of a patch's motion.
+pub const PATCH_MOTION: FileKind = FileKind {
+    by_position: false,
     rises: true,
     others: Others::Refused,
-    ..Format::new(
-        &[
-            Words::new(TIME, Dimension::Time, "time t zeit", ""),
-            words("x", Dimension::Length),
-            words("y", Dimension::Length),
-            words("z", Dimension::Length),
-            words("roll", Dimension::Angle),
-            words("pitch", Dimension::Angle),
-            words("yaw", Dimension::Angle),
-            Words::new(TRANSPORT, Dimension::Speed, "transport speed", ""),
-            Words::new(TEMPERATURE, Dimension::Temperature, "temperature temp temperatur", ""),
-        ],
-        [
-            wanted(&[TIME], "times"),
-            wanted(&["x"], "positions x"),
-            wanted(&["y"], "positions y"),
-            wanted(&["z"], "positions z"),
-            wanted(&["roll"], "angles of roll"),
-            wanted(&["pitch"], "angles of pitch"),
-            wanted(&["yaw"], "angles of yaw"),
-            wanted(&[TRANSPORT], "speeds of the tread"),
-            wanted(&[TEMPERATURE], "temperatures").optional(),
-        ],
+    ..FileKind::new(
+        "a motion of a patch",
+        &ROLES,
         "time, x, y, z, roll, pitch, yaw, of a tread transport.speed, and temperature where it is an input",
     )
 };
@@ -59,6 +42,8 @@ pub struct MotionFile {
     rows: Vec<MotionRow>,
     has_transport: bool,
     has_temperature: bool,
+    /// How it was read.
+    pub notes: Vec<String>,
 }
 
 /// A row of a motion.
@@ -81,27 +66,32 @@ impl MotionFile {
     /// Where the file cannot be read, a column is missing or is none of these, or a field is not what its column holds.
     pub fn read(path: &Path, patch: &Patch) -> Result<Self, Error> {
         let (has_transport, may_have_temperature) = (patch.has_tread(), patch.has_temperatures());
-        let mut format = MOTION;
-        if !has_transport {
-            format.columns[7] = format.columns[7].absent();
-        }
-        if !may_have_temperature {
-            format.columns[8] = format.columns[8].absent();
-        }
-        let bytes = bytes(path)?;
-        let read = |bytes: &[u8]| {
-            let text = decode(bytes)?;
-            let Table { columns, rows, .. } = format.read(&text)?;
-            Ok((rows, columns[8].is_some()))
+        let mut table = read_table(path, &PATCH_MOTION, &[])?;
+        let refuse = |column: &ReadColumn, expected: &str| {
+            Error::content(path)(ContentError::value(table.line, "columns", &column.label(), expected))
         };
-        let ((rows, has_temperature), _) = read_table(&bytes, read).map_err(Error::content(path))?;
-        let row = |&[time, x, y, z, roll, pitch, yaw, transport_speed, temperature]: &[f64; 9]| MotionRow {
-            time,
-            pose: [x, y, z, roll, pitch, yaw],
-            transport_speed,
-            temperature: if has_temperature { temperature } else { patch.temperature() },
+        if let Some(column) = table.column(TRANSPORT).filter(|_| !has_transport) {
+            return Err(refuse(column, "no such column of a patch without a tread"));
+        }
+        if has_transport && table.column(TRANSPORT).is_none() {
+            let error = ContentError::value(table.line, "columns", "no transport.speed", PATCH_MOTION.expected);
+            return Err(Error::content(path)(error));
+        }
+        if let Some(column) = table.column(TEMPERATURE).filter(|_| !may_have_temperature) {
+            return Err(refuse(column, "no such column of a patch whose temperature is no input"));
+        }
+        let has_temperature = table.column(TEMPERATURE).is_some();
+        let value = |key: &str, row: usize| table.values(key).get(row).copied();
+        let row = |i: usize| MotionRow {
+            time: value(TIME, i).unwrap_or(0.0),
+            pose: COORDINATES.map(|key| value(key, i).unwrap_or(0.0)),
+            transport_speed: value(TRANSPORT, i).unwrap_or(0.0),
+            temperature: value(TEMPERATURE, i).unwrap_or_else(|| patch.temperature()),
         };
-        Ok(Self { rows: rows.iter().map(row).collect(), has_transport, has_temperature })
+        let rows = (0..table.lines.len()).map(row).collect();
+        let notes =
+            std::mem::take(&mut table.notes).into_iter().map(|note| format!("{}: {}", path.display(), note.text));
+        Ok(Self { rows, has_transport, has_temperature, notes: notes.collect() })
     }
 
     /// Its rows, one at least.

@@ -11,7 +11,7 @@ mod files;
 mod spectrum;
 mod warnings;
 
-pub(super) use files::{Convention, read_softening, read_spectrum};
+pub use files::{Convention, LEAST_DENSITY, SOFTENING, SPECTRUM};
 pub use spectrum::RoughnessSpectrum;
 pub use spectrum::{SplitError, SplitSurface};
 

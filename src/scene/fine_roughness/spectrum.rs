@@ -44,7 +44,7 @@ impl RoughnessSpectrum {
     ///
     /// C = (C1/q) Γ(1+H)/(2√π Γ(½+H)), exact where C1 ∝ q^-(1+2H). H is that of the least squares line of ln C1 over
     /// half a decade to either side.
-    pub(in crate::scene) fn of_lines(lines: &[[f64; 2]]) -> Self {
+    pub fn of_lines(lines: &[[f64; 2]]) -> Self {
         let logarithms = logarithms(lines);
         let point = |i: usize| {
             let [q, of_lines] = lines[i];

@@ -159,4 +159,4 @@ const FILE: &[Key] = &[
 ];
 
 /// What `columns` holds.
-const COLUMNS: &str = "[\"x\", \"z\"], the names or the numbers of the columns as texts, or [\"z\"] beside spacing";
+const COLUMNS: &str = "{ x = \"…\", z = \"…\" }, the names or the numbers of columns as texts; or [\"x\", \"z\"], or [\"z\"] beside spacing";

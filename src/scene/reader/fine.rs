@@ -1,10 +1,10 @@
 //! Reading of the roughness below the profile, `surface.fine`, and what else of a scene must go with it.
 
-use super::surface::{Findings, read_path};
+use super::surface::Findings;
 use super::table::{Entry, Result, TableReader};
-use crate::scene::fine_roughness::{Convention, read_softening, read_spectrum};
+use crate::scene::fine_roughness::{Convention, SOFTENING};
 use crate::scene::keys::SurfaceKind;
-use crate::scene::{FineRoughness, FineWaves, Scene, Softening, Surface};
+use crate::scene::{FileFormats, FineRoughness, FineWaves, RoughnessSpectrum, Scene, Softening, Surface};
 
 /// The forms: the key by which each is told, the first one that is there, and its other keys.
 const FORMS: [(&str, &[&str]); 5] = [
@@ -44,7 +44,10 @@ pub(super) fn read(
         creep_speed: table.optional_number("creep_speed")?,
         hysteresis: table.entry("hysteresis").map_or(Ok(true), |entry| entry.flag())?,
         softening: match table.entry("softening") {
-            Some(entry) if entry.is_text() => found.read_file(&entry, &read_path(&entry)?, read_softening)?,
+            Some(entry) if entry.is_text() => {
+                let read = |formats: &dyn FileFormats, bytes: &[u8]| formats.table(bytes, &SOFTENING, &[]);
+                found.read_table(&entry, read, |table| Ok((Softening::of_table(table), Vec::new())))?
+            }
             Some(entry) => Softening::Factor(entry.number()?),
             None => Softening::Factor(1.0),
         },
@@ -78,9 +81,10 @@ fn read_waves(
         "spectrum" => {
             let convention: Convention = table.optional_choice("convention")?.unwrap_or_default();
             let file = table.required("spectrum")?;
-            let path = read_path(&file)?;
             let (longest, shortest) = (table.number("longest")?, table.number("shortest")?);
-            let spectrum = found.read_file(&file, &path, |bytes| read_spectrum(bytes, convention))?;
+            let read = |formats: &dyn FileFormats, bytes: &[u8]| formats.spectrum(bytes, convention);
+            let spectrum =
+                found.read_table(&file, read, |table| Ok((RoughnessSpectrum::of_table(table), Vec::new())))?;
             FineWaves::Table { spectrum, longest, shortest }
         }
         "split" => {

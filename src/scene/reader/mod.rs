@@ -6,17 +6,18 @@ mod patch;
 mod surface;
 mod table;
 
+pub use patch::POINTS;
+
 use std::path::Path as FilePath;
 use std::sync::Arc;
 
 use super::file_values::{FileValues, Setting};
 use super::keys::{self, At, Form, KeyRow, ROOT};
-use super::prony_file::{ElasticConstants, PronySeries};
 use super::values::Word;
 use super::{
-    CarrierBodies, Extrapolation, FileFormats, FmuOptions, Foundation, FoundationKind, Friction, Heat, Layer, Link,
-    LinkKind, Material, MaxwellElement, OutputGroup, ParameterError, PronyTerm, RateShear, Scene, SceneError, Solver,
-    Surface, TextAlone, Wlf, read_text, warnings,
+    CanonicalFiles, CarrierBodies, ElasticConstants, Extrapolation, FileFormats, FmuOptions, Foundation,
+    FoundationKind, Friction, Heat, Layer, Link, LinkKind, Material, MaxwellElement, OutputGroup, ParameterError,
+    PronyTerm, RateShear, Scene, SceneError, Solver, Surface, Wlf, read_text, warnings,
 };
 use surface::Findings;
 use table::{Entry, Result, Source, TableReader};
@@ -40,7 +41,7 @@ impl Scene {
     /// # Errors
     /// As for [`load`](Self::load).
     pub fn parse(text: &str, file: &FilePath) -> Result<Self> {
-        Self::parse_with(text, file, &TextAlone, &[])
+        Self::parse_with(text, file, &CanonicalFiles, &[])
     }
 
     /// As [`parse`](Self::parse), with `formats` for the files of surfaces that are no text, and with keys set to other
@@ -117,7 +118,7 @@ fn read_scene(mut values: FileValues) -> Result<Scene> {
     let mut found = Findings { named: values.files.clone(), ..Findings::default() };
     let scene = read_root(TableReader::root(source)?, &mut found)?;
     values.files = found.named;
-    Ok(Scene { values: Arc::new(values), files: found.files, extracts: found.extracts, notes: found.notes, ..scene })
+    Ok(Scene { values: Arc::new(values), files: found.files, notes: found.notes, ..scene })
 }
 
 fn read_root(mut root: TableReader<'_>, found: &mut Findings) -> Result<Scene> {
@@ -173,7 +174,6 @@ fn unread_scene() -> Scene {
         fmu: FmuOptions::default(),
         excitation: Vec::new(),
         files: Vec::new(),
-        extracts: Vec::new(),
         warnings: Vec::new(),
         notes: Vec::new(),
         values: Arc::default(),
@@ -303,9 +303,8 @@ fn read_prony(entry: &Entry<'_>, scene: &mut Scene, found: &mut Findings) -> Res
     }
     let Material { poisson_ratio, equilibrium_modulus, .. } = *material;
     let elastic = ElasticConstants { poisson_ratio, equilibrium_modulus };
-    material.prony = found.read_file(entry, &surface::read_path(entry)?, |bytes| {
-        PronySeries::parse(bytes, elastic).map(|series| (series.terms, series.notes))
-    })?;
+    let read = |formats: &dyn FileFormats, bytes: &[u8]| formats.series(bytes, elastic);
+    material.prony = found.read_table(entry, read, |table| Ok((PronyTerm::of_table(table), Vec::new())))?;
     Ok(())
 }
 

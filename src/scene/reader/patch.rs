@@ -12,29 +12,18 @@ use crate::scene::keys::{Form, PATCH_ROOT, ShapeKind};
 use crate::scene::patch_file::{
     Backing, FaceHeat, FaceShape, Grid, MAX_ELEMENTS, PatchFile, PatchGroup, TableExtrapolation,
 };
-use crate::scene::{FmuOptions, SceneError, TextAlone, read_file, read_text};
-use crate::tables::{ContentError, Dimension, Format, Others, POSITIVE, Wanted, Words, decode};
+use crate::scene::{CanonicalFiles, FileFormats, FmuOptions, SceneError, read_file, read_text};
+use crate::tables::{ContentError, Dimension, FileKind, Others, POSITIVE, Role};
 
-/// A file of points: a row an element.
-const POINTS: Format<usize, 4> = Format {
-    needs_names: true,
-    others: Others::Refused,
-    ..Format::new(
-        &[
-            Words::new(0, Dimension::Length, "x", ""),
-            Words::new(1, Dimension::Length, "y", ""),
-            Words::new(2, Dimension::Length, "z", ""),
-            Words::new(3, Dimension::Area, "area fläche", "nominal"),
-        ],
-        [
-            Wanted::new(&[0], "x", "positions x"),
-            Wanted::new(&[1], "y", "positions y"),
-            Wanted::new(&[2], "z", "positions z"),
-            Wanted::new(&[3], "area", "areas").within(POSITIVE),
-        ],
-        "x,y,z,area",
-    )
-};
+const POINT_ROLES: [Role; 4] = [
+    Role::new("x", "position x, x position", Dimension::Length),
+    Role::new("y", "position y, y position", Dimension::Length),
+    Role::new("z", "position z, z position", Dimension::Length),
+    Role::new("area", "nominal area, fläche", Dimension::Area).within(POSITIVE),
+];
+/// The file of the points of a face.
+pub const POINTS: FileKind =
+    FileKind { others: Others::Refused, by_position: false, ..FileKind::new("points", &POINT_ROLES, "x,y,z,area") };
 
 impl PatchFile {
     /// Reads the patch file at `path` and the file of points that it names; the table is not read.
@@ -52,15 +41,20 @@ impl PatchFile {
     /// # Errors
     /// As for [`load`](Self::load).
     pub fn parse(text: &str, file: &FilePath) -> Result<Self> {
-        Self::parse_with(text, file, &[])
+        Self::parse_with(text, file, &CanonicalFiles, &[])
     }
 
-    /// As [`parse`](Self::parse), with keys set to other values.
+    /// As [`parse`](Self::parse), with the file of points in one of `formats`, and with keys set to other values.
     ///
     /// # Errors
     /// As for [`load`](Self::load); without file and line where it is the value of a key that is set.
-    pub fn parse_with(text: &str, file: &FilePath, settings: &[Setting]) -> Result<Self> {
-        let mut values = FileValues::parse(text, file, &TextAlone)?;
+    pub fn parse_with(
+        text: &str,
+        file: &FilePath,
+        formats: &'static dyn FileFormats,
+        settings: &[Setting],
+    ) -> Result<Self> {
+        let mut values = FileValues::parse(text, file, formats)?;
         if let Some((_, Setting { key, value })) = values.set_all(settings)?.into_iter().next() {
             let problem = Problem::value(value, "a key of the patch file");
             return Err(SceneError::new(Location::default(), key, problem));
@@ -176,22 +170,24 @@ fn read_offset(entry: &Entry<'_>) -> Result<[f64; 3]> {
 }
 
 fn read_points(entry: &Entry<'_>) -> Result<FaceShape> {
-    let path = surface::read_path(entry)?;
-    let file = entry.source().values.folder().join(&path);
-    let bytes = read_file(&file).map_err(|error| entry.unreadable(&error))?;
-    let points = parse_points(&bytes);
+    let (path, source) = (surface::read_path(entry)?, entry.source());
+    let (file, bytes) = read_file(&source.values.folder().join(&path))
+        .map(|bytes| (source.values.folder().join(&path), bytes))
+        .map_err(|error| entry.unreadable(&error))?;
+    let points = parse_points(&bytes, source.values.formats);
     let points = points.map_err(|error| error.in_file(file).named_by(entry.location(), entry.path()))?;
     Ok(FaceShape::Points { path, points })
 }
 
-fn parse_points(bytes: &[u8]) -> std::result::Result<Vec<[f64; 4]>, ContentError> {
-    let text = decode(bytes)?;
-    let table = POINTS.read(&text)?;
-    if table.rows.len() as i64 > MAX_ELEMENTS {
+fn parse_points(bytes: &[u8], formats: &dyn FileFormats) -> std::result::Result<Vec<[f64; 4]>, ContentError> {
+    let table = formats.table(bytes, &POINTS, &[])?;
+    let rows = table.lines.len();
+    if rows as i64 > MAX_ELEMENTS {
         let expected = format!("1 to {MAX_ELEMENTS}, one an element");
-        return Err(ContentError::value(table.line, "rows", &table.rows.len().to_string(), &expected));
+        return Err(ContentError::value(table.line, "rows", &rows.to_string(), &expected));
     }
-    Ok(table.rows)
+    let columns = ["x", "y", "z", "area"].map(|key| table.values(key));
+    Ok((0..rows).map(|row| columns.map(|column| column[row])).collect())
 }
 
 fn default_outputs() -> Vec<PatchGroup> {
@@ -200,21 +196,4 @@ fn default_outputs() -> Vec<PatchGroup> {
 
 fn read_outputs(table: &mut TableReader<'_>) -> Result<Vec<PatchGroup>> {
     table.entry("outputs").map_or_else(|| Ok(default_outputs()), |entry| super::read_groups(&entry))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn points_are_read_as_every_table_and_areas_have_their_unit() {
-        let read = |text: &str| parse_points(text.as_bytes()).map_err(|error| error.to_string());
-        let [x, y, area] = [1e-3, 2e-3, 4e-6];
-        let expected = Ok(vec![[x, y, 0.0, area]]);
-        for text in ["x [mm];y [mm];z [mm];area [mm²]\n1,0;2,0;0,0;4,0\n", "x,y,z,area\n1e-3,2e-3,0,4e-6\n"] {
-            assert_eq!(read(text), expected, "{text}");
-        }
-        let refusal = "unit of column 4 (area): expected the unit beside its name, as in area [m²], for column 1 (x [mm]) names mm";
-        assert_eq!(read("x [mm],y [mm],z [mm],area\n1,2,0,4e-6\n"), Err(refusal.to_owned()));
-    }
 }

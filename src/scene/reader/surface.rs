@@ -4,13 +4,16 @@ use std::path::{Component, Path as FilePath, PathBuf};
 use std::sync::Arc;
 
 use super::table::{Entry, Result, TableReader};
-use crate::scene::file_values::{FileValues, NamedFiles};
+use crate::scene::file_values::NamedFiles;
+use crate::scene::files::with_seams;
 use crate::scene::height_map::Seam;
 use crate::scene::keys::{PATH, SurfaceKind};
-use crate::scene::profile::{self, Extract, Profile, ProfileOptions, ReadFailure};
 use crate::scene::surface::{Coordinate, check_points};
-use crate::scene::{Layer, MOST_HEIGHTS, SelfAffine, Surface, warnings};
-use crate::tables::{ContentError, ReadingNote, text_or_sheet};
+use crate::scene::{
+    FileFormats, Layer, LoadedProfile, MOST_HEIGHTS, ProfileOptions, SceneFile, SelfAffine, Surface, line_note,
+    warnings,
+};
+use crate::tables::{ContentError, ReadTable, ReadingNote};
 
 /// A number of points that is whole but for rounding is that number.
 const ROUNDING: f64 = 1.0e-9;
@@ -19,8 +22,7 @@ const ROUNDING: f64 = 1.0e-9;
 #[derive(Default)]
 pub(super) struct Findings {
     pub(super) named: NamedFiles,
-    pub(super) files: Vec<PathBuf>,
-    pub(super) extracts: Vec<Extract>,
+    pub(super) files: Vec<SceneFile>,
     pub(super) warnings: Vec<String>,
     pub(super) notes: Vec<ReadingNote>,
 }
@@ -36,69 +38,48 @@ impl Findings {
         }
     }
 
-    /// What `parse` makes of the bytes of the file at `path`, which `entry` names, and of how it reads it. Of a workbook that
-    /// is a sheet, which is kept as an extract: where there is no such workbook, the extract may be there.
-    pub(super) fn read_file<T>(
+    /// What `make` makes of the table in the file that `entry` names, which `read` reads by the formats of the scene, and
+    /// what it says of it.
+    pub(super) fn read_table<T>(
         &mut self,
         entry: &Entry<'_>,
-        path: &FilePath,
-        parse: impl Fn(&[u8]) -> std::result::Result<(T, Vec<ReadingNote>), ContentError>,
+        read: impl Fn(&dyn FileFormats, &[u8]) -> std::result::Result<ReadTable, ContentError>,
+        make: impl Fn(&ReadTable) -> std::result::Result<(T, Vec<ReadingNote>), ContentError>,
     ) -> Result<T> {
-        let FileValues { formats, .. } = *entry.source().values;
-        let folder = entry.source().values.folder();
-        let name = sheet_name(path);
-        let (file, bytes) = match self.named.bytes(&folder.join(path)) {
-            Ok(bytes) => (path.to_owned(), bytes),
-            Err(error) => {
-                let bytes = self.named.bytes(&folder.join(&name)).map_err(|_| entry.unreadable(&error))?;
-                (name.clone(), bytes)
-            }
-        };
-        let refused = |error: ContentError| error.in_file(folder.join(&file)).named_by(entry.location(), entry.path());
-        let ((content, notes), sheet) = text_or_sheet(&bytes, formats.sheets(&bytes), parse).map_err(refused)?;
-        match sheet {
-            Some((text, note)) => {
-                self.add_notes(path, vec![note]);
-                if !self.files.contains(&name) {
-                    self.extracts.push(Extract { source: path.to_owned(), name: name.clone(), text });
-                }
-                self.add_file(name);
-            }
-            None => self.add_file(file),
-        }
-        self.add_notes(path, notes);
+        let (path, values) = (read_path(entry)?, entry.source().values);
+        let (file, bytes) = self.named.read(values.folder(), &path, None).map_err(|error| entry.unreadable(&error))?;
+        let made =
+            read(values.formats, &bytes).and_then(|table| make(&table).map(|(content, notes)| (table, content, notes)));
+        let refused = |error: ContentError| error.in_file(file).named_by(entry.location(), entry.path());
+        let (mut table, content, notes) = made.map_err(refused)?;
+        self.add_notes(&path, std::mem::take(&mut table.notes));
+        self.add_notes(&path, notes);
+        self.add_file(SceneFile::of_table(path, table));
         Ok(content)
     }
 
     /// The profile at `path`, which `entry` names: as it was read before, if it was.
-    fn profile(&mut self, entry: &Entry<'_>, path: &FilePath, options: &ProfileOptions) -> Result<Arc<Profile>> {
+    fn profile(&mut self, entry: &Entry<'_>, path: &FilePath, options: &ProfileOptions) -> Result<Arc<LoadedProfile>> {
         let is_it = |(file, read, _): &&(PathBuf, ProfileOptions, _)| file == path && read == options;
         if let Some((.., profile)) = self.named.profiles.iter().find(is_it) {
             return Ok(profile.clone());
         }
         let values = entry.source().values;
-        let read = profile::read(values.folder(), path, options, values.formats).map_err(|failure| match failure {
-            ReadFailure::Unreadable(error) => entry.unreadable(&error),
-            ReadFailure::Refused(error) => error.named_by(entry.location(), entry.path()),
-        })?;
+        let (file, bytes) =
+            self.named.read(values.folder(), path, Some(options)).map_err(|error| entry.unreadable(&error))?;
+        let read = values.formats.surface(&bytes, options).and_then(|read| with_seams(read, options));
+        let read = read.map_err(|error| error.in_file(file).named_by(entry.location(), entry.path()))?;
         let profile = Arc::new(read);
         self.named.profiles.push((path.to_owned(), options.clone(), profile.clone()));
         Ok(profile)
     }
 
     /// Adds a file that the scene reads, each once.
-    pub(super) fn add_file(&mut self, path: PathBuf) {
-        if !self.files.contains(&path) {
-            self.files.push(path);
+    pub(super) fn add_file(&mut self, file: SceneFile) {
+        if self.files.iter().all(|other| other.carried_name != file.carried_name) {
+            self.files.push(file);
         }
     }
-}
-
-/// `rig.xlsx.sheet.txt` of `rig.xlsx`.
-fn sheet_name(path: &FilePath) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(".sheet.txt");
-    name.into()
 }
 
 /// The surface given by the table `entry`, without the roughness below it; the file that it names, if any, is added to
@@ -167,7 +148,7 @@ fn read_self_affine(table: &mut TableReader<'_>, found: &mut Findings) -> Result
         Some(entry) => Err(entry.refuse(format_args!("a whole number from 1 to {lines}"))),
         None => {
             let taken = line.unwrap_or(lines.div_ceil(2));
-            found.notes.push(profile::line_note("an isotropic surface", taken, lines, line.is_some()));
+            found.notes.push(line_note("an isotropic surface", taken, lines, line.is_some()));
             Ok(law.surface(line))
         }
     }
@@ -213,14 +194,9 @@ fn read_file(table: &mut TableReader<'_>, found: &mut Findings) -> Result<Surfac
     let entry = table.required("path")?;
     let path = read_path(&entry)?;
     let profile = found.profile(&entry, &path, &options)?;
-    let warnings = profile.warnings.iter().map(|warning| format!("{}: {warning}", path.display()));
-    found.warnings.extend(warnings);
+    found.warnings.extend(profile.warnings.iter().map(|warning| format!("{}: {warning}", path.display())));
     found.add_notes(&path, profile.notes.clone());
-    if !found.files.contains(&profile.file) {
-        let name = profile.file.clone();
-        found.extracts.extend(profile.extract.clone().map(|text| Extract { source: path, name, text }));
-    }
-    found.add_file(profile.file.clone());
+    found.add_file(SceneFile::of_surface(path, &options, &profile.surface));
     Ok(profile.surface.clone())
 }
 
@@ -240,13 +216,22 @@ fn read_options(table: &mut TableReader<'_>) -> Result<ProfileOptions> {
     })
 }
 
-/// The names of columns: x and z, or z alone.
-fn read_columns(table: &mut TableReader<'_>) -> Result<Vec<String>> {
+/// The columns by their axes, `{ x = "…", z = "…" }`; or their names in a list, x and z, or z alone.
+fn read_columns(table: &mut TableReader<'_>) -> Result<Vec<(String, String)>> {
     let Some(entry) = table.entry("columns") else { return Ok(Vec::new()) };
+    if let Some(columns) = entry.texts_by_name() {
+        let is_axis = |(key, _): &(String, String)| ["x", "y", "z"].contains(&key.as_str());
+        let is_axes = !columns.is_empty() && columns.iter().all(is_axis);
+        return if is_axes {
+            Ok(columns)
+        } else {
+            Err(entry.refuse("columns by their axes: { x = \"…\", z = \"…\" }"))
+        };
+    }
     let elements = entry.elements()?;
     let names = elements.iter().map(|element| element.text().map(str::to_owned)).collect::<Result<Vec<_>>>();
     match names.unwrap_or_default() {
-        names if (1..=2).contains(&names.len()) => Ok(names),
+        names if (1..=2).contains(&names.len()) => Ok(ProfileOptions::axes(&names)),
         _ => Err(entry.refuse_type()),
     }
 }

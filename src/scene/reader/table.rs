@@ -123,6 +123,13 @@ impl<'a> Entry<'a> {
         self.value.as_str().ok_or_else(|| self.refuse_type())
     }
 
+    /// The texts of a table by their keys; `None` of anything else.
+    pub(super) fn texts_by_name(&self) -> Option<Vec<(String, String)>> {
+        let table = self.value.as_table()?;
+        let text = |(key, value): (&String, &TomlValue)| Some((key.clone(), value.as_str()?.to_owned()));
+        table.iter().map(text).collect()
+    }
+
     pub(super) fn is_text(&self) -> bool {
         self.value.is_str()
     }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::{env, fs, process};
 
-use asperity::scene::{Extract, Friction, Link, LinkKind, Method, Scene};
+use asperity::scene::{Friction, Link, LinkKind, Method, Scene};
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
@@ -28,16 +28,14 @@ pub fn run(bytes: &[u8]) {
     let periodic = bit(*first, 0);
     let of_rubber = bit(*first, 7);
     let read = if of_rubber { rubber(*second) } else { scene(periodic, &keys(*first, *second)) };
-    match Scene::parse(&read, &scene_file) {
+    match Scene::parse_with(&read, &scene_file, &asperity_formats::Instruments, &[]) {
         Ok(scene) if of_rubber => {
             check_fine(&scene);
             run_scene(scene);
         }
         Ok(scene) => {
             check(&scene, periodic);
-            if let Some(extract) = scene.extracts.first() {
-                check_extract(&scene, extract, &scene_file, &keys(*first, *second));
-            }
+            check_carried(&scene, &scene_file, &keys(*first, *second));
             run_scene(with_links(scene, if bit(*first, 1) { Method::Step } else { Method::Event }));
         }
         Err(error) => {
@@ -76,12 +74,14 @@ fn archive(bytes: &[u8]) -> Vec<u8> {
     writer.finish().unwrap().into_inner()
 }
 
-/// Checks that the extract that an FMU carries instead of the file is the same profile, bit for bit.
-fn check_extract(scene: &Scene, extract: &Extract, scene_file: &Path, keys: &str) {
+/// Checks that what an FMU carries in place of the file is the same profile, bit for bit.
+fn check_carried(scene: &Scene, scene_file: &Path, keys: &str) {
+    let Some(file) = scene.files.first() else { return };
+    let (name, content) = (folder().join(&file.carried_name), file.carried(folder()).unwrap());
     fs::remove_file(folder().join("profile.csv")).unwrap();
-    fs::write(folder().join(&extract.name), &extract.text).unwrap();
+    fs::write(&name, content).unwrap();
     let carried = Scene::parse(&self::scene(scene.surface.is_periodic(), keys), scene_file).unwrap();
-    fs::remove_file(folder().join(&extract.name)).unwrap();
+    fs::remove_file(name).unwrap();
     assert_eq!((&carried.surface, &carried.files), (&scene.surface, &scene.files));
 }
 

@@ -136,7 +136,6 @@ fn cases_of(scales: Scales, method: Method) -> impl Strategy<Value = Case> {
                 fmu: FmuOptions::default(),
                 excitation: Vec::new(),
                 files: Vec::new(),
-                extracts: Vec::new(),
                 warnings: Vec::new(),
                 notes: Vec::new(),
                 values: Default::default(),

@@ -161,8 +161,8 @@ fn written(outputs: &Outputs, scene: String, covariance: &FitCovariance) -> Resu
 
 /// Refuses an output from whose folder the files that the scene names could not be found.
 fn check_folder(output: &Path, command: &Calibrate, scene: &Scene) -> Result<(), Error> {
-    let named = scene.files.iter().chain(scene.extracts.iter().map(|extract| &extract.source));
-    let Some(file) = named.into_iter().find(|file| file.is_relative()) else { return Ok(()) };
+    let mut named = scene.files.iter().map(|file| &file.path);
+    let Some(file) = named.find(|file| file.is_relative()) else { return Ok(()) };
     let folder = |path: &Path| {
         let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
         folder.canonicalize().ok()

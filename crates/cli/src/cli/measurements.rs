@@ -8,8 +8,8 @@ use asperity_study::fit::WlfConstants;
 use clap::Args;
 
 use super::values::{
-    FitVertical, FitWeight, column_unit, count, expansion, fit_error, frequency, length, picture, poisson_ratio,
-    temperature, wavelengths, wlf_constants,
+    FitVertical, FitWeight, column_unit, count, expansion, fit_error, frequency, given_column, length, picture,
+    poisson_ratio, temperature, wavelengths, wlf_constants,
 };
 
 #[derive(Debug, Args)]
@@ -65,6 +65,9 @@ pub(crate) struct Fit {
     /// The sheet of a workbook. Default: the only one with moduli, or all of those named by temperatures: 20C, -10 °C.
     #[arg(long, value_name = "NAME")]
     pub(crate) sheet: Option<String>,
+    /// Which column is which, by its name or number, as in storage_modulus="E' 1". May be repeated.
+    #[arg(long = "column", value_name = "ROLE=COLUMN", value_parser = given_column)]
+    pub(crate) columns: Vec<(String, String)>,
     /// Ignores the column with this header, written exactly as in the file. May be repeated.
     #[arg(long, value_name = "COLUMN")]
     pub(crate) ignore: Vec<String>,
@@ -147,6 +150,9 @@ pub(crate) struct Reading {
     /// The columns of x and z, by their names or numbers, as in x,z; one alone holds heights. Default: by their names.
     #[arg(long, value_name = "X,Z", value_delimiter = ',', num_args = 1..=2)]
     pub(crate) columns: Vec<String>,
+    /// Which column is x, y or z, by its name or number, as in z=Texture. May be repeated.
+    #[arg(long = "column", value_name = "AXIS=COLUMN", value_parser = given_column, conflicts_with = "columns")]
+    pub(crate) column: Vec<(String, String)>,
     /// The distance of points of a file without x, in m, and of the lines of a matrix of heights; a unit may follow, as
     /// in 0.05mm.
     #[arg(long, value_name = "DX[,DY]", value_delimiter = ',', num_args = 1..=2, value_parser = length)]
@@ -160,6 +166,11 @@ pub(crate) struct Reading {
 }
 
 impl Reading {
+    /// The columns by their axes.
+    fn all_columns(&self) -> Vec<(String, String)> {
+        ProfileOptions::axes(&self.columns).into_iter().chain(self.column.iter().cloned()).collect()
+    }
+
     pub(crate) fn options(&self) -> ProfileOptions {
         ProfileOptions {
             x_unit: self.x_unit.or(self.unit),
@@ -168,7 +179,7 @@ impl Reading {
             tilt: self.tilt.unwrap_or_default(),
             depth: self.depth,
             third_column: self.third_column,
-            columns: self.columns.clone(),
+            columns: self.all_columns(),
             spacing: self.spacing.clone(),
             line: self.line.map(|line| line as usize),
             periodic: self.periodic,

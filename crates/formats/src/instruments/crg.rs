@@ -2,7 +2,9 @@
 //! or binary. A long section is read as a line along x; a slope or a bank of the reference line is left out, and said.
 
 use super::{Areal, check_size, check_step, refuse};
-use asperity::tables::{ContentError, ReadingNote, number};
+use asperity::tables::{ContentError, ReadingNote};
+
+use crate::text::number;
 
 const KIND: &str = "an OpenCRG file";
 /// A record of text or of binary data is filled up to a multiple of these bytes, where records are long ones.
@@ -41,7 +43,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Areal, ContentError> {
     let value = |name: &str| {
         let is_it = |line: &&String| line.split_once('=').is_some_and(|(key, _)| key.trim().eq_ignore_ascii_case(name));
         let text = header.iter().find(is_it).and_then(|line| line.split_once('=')).map(|(_, value)| value);
-        text.and_then(|text| number(text.split('!').next().unwrap_or(text).trim(), false))
+        text.and_then(|text| number(text.split('!').next().unwrap_or(text).trim()))
     };
     if header.iter().any(|line| line.to_ascii_uppercase().starts_with("$ROAD_CRG_FILE")) {
         return Err(refuse("an OpenCRG file that names another", "the file with the heights"));
@@ -135,7 +137,7 @@ impl Definition {
         };
         let (place, unit) = place.rsplit_once(',').unwrap_or((place, ""));
         let place = place.rsplit('=').next().unwrap_or(place).trim();
-        let (position, unit) = (number(place, false), unit.trim());
+        let (position, unit) = (number(place), unit.trim());
         match position {
             Some(position) if unit == "m" => {
                 self.columns.push(Some(position));
@@ -177,7 +179,7 @@ fn text(data: &[u8], format: Format, width: usize) -> Result<Vec<f64>, ContentEr
         for field in line.chunks(letters) {
             let field: String = field.iter().collect::<String>().trim().to_owned();
             let is_gap = field.is_empty() || field.contains('*') || field.eq_ignore_ascii_case("nan");
-            let value = number(&field, false).or(is_gap.then_some(f64::NAN));
+            let value = number(&field).or(is_gap.then_some(f64::NAN));
             values.push(value.ok_or_else(|| {
                 ContentError::value(None, "z", &format!("\"{field}\""), "a height of an OpenCRG file")
             })?);

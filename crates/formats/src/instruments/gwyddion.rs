@@ -1,7 +1,9 @@
 //! The text of a Gwyddion field: a matrix of heights below comments with its size.
 
 use super::{Areal, check_size, check_step, length_unit};
-use asperity::tables::{ContentError, decode, is_missing, number};
+use asperity::tables::{ContentError, decode};
+
+use crate::text::{is_missing, number};
 
 const KIND: &str = "a Gwyddion text file";
 
@@ -23,7 +25,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Areal, ContentError> {
     let length = |key: &str| {
         let value = setting(&text, key).unwrap_or_default();
         let parted = value.split_once(char::is_whitespace).unwrap_or((value, "m"));
-        let number = number(parted.0, true).filter(|number| *number > 0.0);
+        let number = number(parted.0).filter(|number| *number > 0.0);
         let number =
             number.ok_or_else(|| ContentError::value(None, key, &format!("\"{value}\""), "a length and its unit"))?;
         Ok::<f64, ContentError>(length_unit(key, parted.1)?.to_si(number))
@@ -33,7 +35,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Areal, ContentError> {
     for (line, row) in (1..).zip(text.lines()).filter(|(_, row)| !row.starts_with('#') && !row.trim().is_empty()) {
         let before = heights.len();
         for field in row.split([' ', '\t', ';']).filter(|field| !field.is_empty()) {
-            let height = number(field, true).or_else(|| is_missing(field).then_some(f64::NAN));
+            let height = number(field).or_else(|| is_missing(field).then_some(f64::NAN));
             let refuse = || ContentError::value(Some(line), "z", &format!("\"{field}\""), "a height");
             heights.push(unit.to_si(height.ok_or_else(refuse)?));
         }

@@ -10,11 +10,12 @@ mod sur;
 #[cfg(test)]
 mod tests;
 
-use asperity::scene::{Areal, MeasuredSurface, ProfileOptions};
 use asperity::tables::{ContentError, Dimension, Unit};
 
+use crate::profile::Areal;
+
 /// The points of a file that is one of these; `None` of any other.
-pub(super) fn read(bytes: &[u8], options: &ProfileOptions) -> Option<Result<MeasuredSurface, ContentError>> {
+pub(super) fn read(bytes: &[u8]) -> Option<Result<Areal, ContentError>> {
     type Read = fn(&[u8]) -> Result<Areal, ContentError>;
     let readers: [(bool, Read); 4] = [
         (sdf::is_sdf(bytes), sdf::read),
@@ -22,10 +23,7 @@ pub(super) fn read(bytes: &[u8], options: &ProfileOptions) -> Option<Result<Meas
         (crg::is_crg(bytes), crg::read),
         (gwyddion::is_text(bytes), gwyddion::read),
     ];
-    match readers.into_iter().find(|(is_it, _)| *is_it) {
-        Some((_, read)) => Some(read(bytes).and_then(|areal| areal.surface(options))),
-        None => foreign(bytes).map(Err),
-    }
+    readers.into_iter().find(|(is_it, _)| *is_it).map(|(_, read)| read(bytes))
 }
 
 /// The most heights of a file.
@@ -68,10 +66,19 @@ fn refuse(kind: &str, what: &str) -> ContentError {
 }
 
 /// Files that are known by their first bytes and not read; of ERD the text would look like a table of x and z.
-const FOREIGN: [(&[u8], &str); 11] = [
+const FOREIGN: [(&[u8], &str); 19] = [
     (b"GWYP", "Gwyddion"),
     (b"DSCOMPRESSED", "Digital Surf, compressed"),
     (b"ERDFILE", "ERD"),
+    (b"VK3_", "VK3 of Keyence"),
+    (b"VK4_", "VK4 of Keyence"),
+    (b"VK6_", "VK6 of Keyence"),
+    (b"AliconaImaging", "AL3D of Alicona"),
+    (b"\x01\0Directory", "OPD of Wyko"),
+    (b"\\*File list", "SPM of Nanoscope"),
+    (b"MATLAB 5.0 MAT-file", "MATLAB"),
+    (b"\x93NUMPY", "NumPy"),
+    (b"PAR1", "Parquet"),
     (b"\x89HDF\r\n\x1a\n", "HDF5"),
     (b"\x89PNG", "PNG"),
     (b"II*\0", "TIFF"),
@@ -79,11 +86,13 @@ const FOREIGN: [(&[u8], &str); 11] = [
     (b"\xff\xd8\xff", "JPEG"),
     (b"%PDF", "PDF"),
     (b"\x1f\x8b", "gzip"),
-    (b"\xd0\xcf\x11\xe0", "OLE2 (an old workbook of Excel)"),
 ];
 
-fn foreign(bytes: &[u8]) -> Option<ContentError> {
+/// The error of a file that is known and not read.
+pub(super) fn foreign(bytes: &[u8]) -> Option<ContentError> {
     let (_, kind) = FOREIGN.iter().find(|(magic, _)| bytes.starts_with(magic))?;
     let what = format!("a file of {kind}, which is not read");
-    Some(refuse(&what, "x and z as text or CSV, or the surface as X3P, SDF or SUR: export it as one of these"))
+    let expected =
+        "columns as text, CSV or a workbook; a surface as X3P, SDF, SUR or text of x and z: export it as one of these";
+    Some(refuse(&what, expected))
 }

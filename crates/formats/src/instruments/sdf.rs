@@ -3,7 +3,9 @@
 
 use super::binary::Binary;
 use super::{Areal, check_size, check_step, refuse};
-use asperity::tables::{ContentError, is_missing, number};
+use asperity::tables::ContentError;
+
+use crate::text::{is_missing, number};
 
 const KIND: &str = "an SDF file";
 /// Bytes of the binary header.
@@ -39,7 +41,7 @@ fn read_text(bytes: &[u8]) -> Result<Areal, ContentError> {
     let z_scale = value("Zscale")?;
     let mut heights = Vec::new();
     for field in lines.take_while(|line| line.trim() != "*").flat_map(str::split_whitespace) {
-        let height = number(field, false).or_else(|| is_missing(field).then_some(f64::NAN));
+        let height = number(field).or_else(|| is_missing(field).then_some(f64::NAN));
         heights.push(z_scale * height.ok_or_else(|| ContentError::value(None, "z", field, "a height or BAD"))?);
     }
     if heights.len() != size[0] * size[1] {

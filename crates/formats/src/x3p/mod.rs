@@ -15,11 +15,10 @@ use std::ops::Range;
 
 use md5::{Digest, Md5};
 
-use asperity::scene::MeasuredSurface;
-use asperity::scene::{Areal, line_note};
-use asperity::scene::{MOST_HEIGHTS, MapError};
-use asperity::scene::{MeasuredPoints, Missing, ProfileOptions};
+use asperity::scene::{MOST_HEIGHTS, MapError, Missing, ProfileOptions, line_note};
 use asperity::tables::{ANY, ContentError};
+
+use crate::profile::{Areal, MeasuredPoints, MeasuredSurface};
 use document::{Archive, Document, MatrixSize, missing, unreadable};
 
 /// What the file is, for messages.

@@ -133,7 +133,7 @@ impl<'a> FreeScene<'a> {
     /// Where the table cannot be read, or its temperatures do not go with the scene.
     pub fn measurements(&self) -> Result<Measurements, Error> {
         let path = &self.options.data;
-        let mut measurements = Measurements::read(path, self.area)?;
+        let mut measurements = Measurements::read(path, self.area, &[])?;
         for row in &mut measurements.rows {
             row.point.way = row.point.way.or(self.options.sliding.way);
             let checked = self.options.sliding.check_way(&self.scene, row.point.way);

@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use asperity::element::{Load, OperatingPoint};
+use asperity::scene::FileFormats as _;
 use asperity::tables::{
-    ABOVE_ZERO, Choice, Column, ContentError, Dimension, FINITE, Format, Others, ReadingNote, Table, UnitRule, Wanted,
-    Words, decode, words,
+    ABOVE_ZERO, ANY, ContentError, Dimension, FileKind, Others, POSITIVE, ReadColumn, ReadTable, Role,
 };
+use asperity_formats::Instruments;
 
 use super::curve_grid::left_out_in_words;
 use super::models::NoSliding;
@@ -47,141 +48,158 @@ pub struct Measurements {
     pub notes: Vec<String>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Quantity {
-    Speed,
-    Pressure,
-    Force,
-    Friction,
-    /// F_T beside F_N.
-    Tangential,
-    Temperature,
-    Way,
-    Deviation,
-}
-
-const FRICTION: Format<Quantity, 7> = Format {
-    needs_names: true,
+const ROLES: [Role; 8] = [
+    Role::new(
+        "speed",
+        "v, velocity, sliding speed, sliding velocity, slip speed, slip velocity, slide speed, mean speed, relative speed, \
+         relative velocity, geschwindigkeit, gleitgeschwindigkeit",
+        Dimension::Speed,
+    )
+    .within(ABOVE_ZERO),
+    Role::new(
+        "pressure",
+        "p, nominal pressure, contact pressure, mean pressure, average pressure, normal pressure, nominal contact \
+         pressure, mean contact pressure, druck, flächenpressung",
+        Dimension::Pressure,
+    )
+    .within(ABOVE_ZERO)
+    .optional(),
+    Role::new(
+        "normal_force",
+        "force, load, normal load, F_N, F_n, F_z, Fz, Fn, vertical force, vertical load, mean normal force, measured normal \
+         force, normalkraft, last",
+        Dimension::Force,
+    )
+    .within(ABOVE_ZERO)
+    .optional(),
+    Role::new(
+        "friction",
+        "mu, μ, cof, mu_k, friction coefficient, coefficient of friction, coefficient, mean friction, mean friction \
+         coefficient, measured friction, friction coefficient measured, kinetic friction coefficient, dynamic friction \
+         coefficient, sliding friction coefficient, reibwert, reibungszahl",
+        Dimension::Number,
+    )
+    .within(ANY)
+    .optional(),
+    Role::new(
+        "tangential_force",
+        "F_T, F_t, F_x, F_r, F_f, friction, friction force, lateral force, traction, traction force, tangential, mean \
+         friction force, measured friction force, reibkraft, tangentialkraft",
+        Dimension::Force,
+    )
+    .within(ANY)
+    .optional(),
+    Role::new(
+        "temperature",
+        "T, t, temp, sample temperature, rubber temperature, surface temperature, track temperature, ambient temperature, \
+         mean temperature, measured temperature, temperatur",
+        Dimension::Temperature,
+    )
+    .within(ABOVE_ZERO)
+    .with_unit()
+    .optional(),
+    Role::new(
+        "sigma",
+        "σ, std, std dev, sd, stdev, stddev, deviation, standard deviation, standard deviation of friction, standard \
+         deviation of mu, uncertainty, err, error, errors, se, sem, stderr, std err, standard error, mu_err, mu error, \
+         error of mu, err mu, mu_std, std mu, mu_sd, sd mu, mu_sigma, sigma mu, s_mu, s(mu), u_mu, u(mu), uncertainty of mu, \
+         σ_μ, s_μ, u_μ, μ_err, μ_std, cof_err, cof_std, std cof, s_cof, u_cof, friction_err, friction error, friction_std, \
+         std friction, s_friction, u_friction, friction uncertainty, error of friction, standardabweichung, unsicherheit, \
+         fehler",
+        Dimension::Number,
+    )
+    .within(POSITIVE)
+    .optional(),
+    Role::new(
+        "way",
+        "way slid, sliding way, sliding distance, slid distance, distance, distance slid, slip distance, weg, gleitweg",
+        Dimension::Length,
+    )
+    .within(ABOVE_ZERO)
+    .with_unit()
+    .optional(),
+];
+/// The file of measured friction.
+pub const FRICTION: FileKind = FileKind {
+    by_position: false,
     others: Others::Tables,
-    ..Format::new(
-        &[
-            Words::new(
-                Quantity::Deviation,
-                Dimension::Number,
-                "sigma σ std sd stdev stddev deviation uncertainty standardabweichung err error errors fehler se sem \
-                 stderr stdunc unsicherheit s+mu u+mu s+μ u+μ s+cof u+cof s+friction u+friction",
-                "standard of friction coefficient mu μ cof the in mean dev 1 reibwert",
-            ),
-            Words::new(
-                Quantity::Speed,
-                Dimension::Speed,
-                "speed velocity v geschwindigkeit gleitgeschwindigkeit",
-                "sliding slip slide relative mean v",
-            ),
-            Words::new(
-                Quantity::Pressure,
-                Dimension::Pressure,
-                "pressure p druck flächenpressung",
-                "mean nominal contact normal average p",
-            ),
-            Words::new(
-                Quantity::Force,
-                Dimension::Force,
-                "force load fz fn normalkraft last f+n f+z normal",
-                "normal f z n vertical mean measured",
-            ),
-            Words::new(
-                Quantity::Friction,
-                Dimension::Number,
-                "friction mu μ cof reibwert reibungszahl",
-                "coefficient of friction mean the measured",
-            ),
-            Words::new(
-                Quantity::Tangential,
-                Dimension::Force,
-                "ft fx fr friction tangential lateral traction reibkraft tangentialkraft f+T f+t f+x f+r",
-                "force f T t x r mean measured",
-            ),
-            Words::new(
-                Quantity::Temperature,
-                Dimension::Temperature,
-                "T temp temperature temperatur t",
-                "sample mean rubber surface ambient track measured",
-            ),
-            Words::new(
-                Quantity::Way,
-                Dimension::Length,
-                "way distance weg gleitweg",
-                "sliding slid slip of the sample measured",
-            ),
-        ],
-        [
-            Wanted::new(&[Quantity::Speed], "speed", "speeds").within(ABOVE_ZERO),
-            Wanted {
-                choice: Choice::FirstQuantity,
-                ..Wanted::new(&[Quantity::Pressure, Quantity::Force], "pressure", "loads").within(ABOVE_ZERO)
-            },
-            Wanted {
-                choice: Choice::FirstQuantity,
-                ..Wanted::new(&[Quantity::Friction, Quantity::Tangential], "friction", "friction").within(FINITE)
-            },
-            Wanted {
-                unit: UnitRule::Named,
-                ..Wanted::new(&[Quantity::Temperature], "temperature", "temperatures").optional().within(ABOVE_ZERO)
-            },
-            Wanted::new(&[Quantity::Deviation], "sigma", "standard deviations").optional().within(ABOVE_ZERO),
-            Wanted::new(&[], "normal force", "normal forces").optional().within(ABOVE_ZERO),
-            Wanted {
-                unit: UnitRule::Named,
-                ..Wanted::new(&[Quantity::Way], "way", "ways").optional().within(ABOVE_ZERO)
-            },
-        ],
+    one_of: &[&["friction", "tangential_force"]],
+    ..FileKind::new(
+        "measured friction",
+        &ROLES,
         "columns by their names with units: speed [m/s], pressure [bar] or force [N], friction, or F_T [N] beside the force; \
          temperature [°C], the way slid [mm] and the standard deviation of friction where there are such",
     )
 };
 
 impl Measurements {
-    /// Reads the table in the bytes of a file; forces are those on the whole layer, whose `area` (m²) makes pressures of
-    /// them. Friction is a column of its own, or F_T over F_N.
+    /// Reads the table in the bytes of a file, text or a workbook; forces are those on the whole layer, whose `area` (m²)
+    /// makes pressures of them. Friction is a column of its own, or F_T over F_N. Columns may be said to be those of roles.
     ///
     /// # Errors
     /// [`ContentError`] with the line, what was expected and what was found.
-    pub fn parse(bytes: &[u8], area: f64) -> Result<Self, ContentError> {
-        let text = decode(bytes)?;
-        let table = read_columns(&text)?;
-        let is_said = |note: &&ReadingNote| note.assumed || note.text.contains("left out");
-        let mut notes: Vec<String> = table.notes.iter().filter(is_said).map(|note| note.text.clone()).collect();
-        let has_forces = table.columns[1].as_ref().is_some_and(|column| column.quantity == Quantity::Force);
-        let to_pressure = if has_forces { Load::Pressure { area }.at_force(1.0) } else { 1.0 };
-        if has_forces {
-            notes.push(format!("forces are those on the scene's whole layer, {area:.6e} m²"));
-        }
-        let forces = Forces::of(&table, area);
-        notes.extend(forces.iter().map(Forces::note));
-        let deviation = Deviation::of(&table, forces.is_some());
-        notes.extend(deviation.note());
-        let has_temperature = table.columns[3].is_some();
-        let has_way = table.columns[6].is_some();
-        let row = |(row, line): (&[f64; 7], usize)| {
-            let &[speed, load, friction, kelvin, sigma, _, slid] = row;
-            let friction = forces.as_ref().map_or(friction, |forces| forces.friction(row));
-            let (load, temperature) = (to_pressure * load, has_temperature.then_some(kelvin));
-            let point = OperatingPoint { speed, load, temperature, way: has_way.then_some(slid) };
-            Measured { line, point, friction, sigma: deviation.sigma(sigma, friction) }
-        };
-        Ok(Self { rows: table.rows.iter().zip(table.lines.iter().copied()).map(row).collect(), notes })
+    pub fn parse(bytes: &[u8], area: f64, columns: &[(String, String)]) -> Result<Self, ContentError> {
+        Self::of_table(&Instruments.table(bytes, &FRICTION, columns)?, area)
     }
 
-    /// Reads the table in the file at `path`, text or a workbook, as [`Self::parse`] does.
+    fn of_table(table: &ReadTable, area: f64) -> Result<Self, ContentError> {
+        let mut notes: Vec<String> = table.notes.iter().map(|note| note.text.clone()).collect();
+        let (pressure, force) = (table.column("pressure"), table.column("normal_force"));
+        let loads: Vec<f64> = match (pressure, force) {
+            (Some(pressure), force) => {
+                force.map_or(Ok(()), |force| check_loads(table, pressure, force, area))?;
+                pressure.values.clone()
+            }
+            (None, Some(force)) => {
+                notes.push(format!("forces are those on the scene's whole layer, {area:.6e} m²"));
+                let to_pressure = Load::Pressure { area }.at_force(1.0);
+                force.values.iter().map(|force| to_pressure * force).collect()
+            }
+            (None, None) => {
+                return Err(ContentError::value(
+                    table.line,
+                    "columns",
+                    "neither pressure nor force",
+                    FRICTION.expected,
+                ));
+            }
+        };
+        let frictions = match (table.column("friction"), table.column("tangential_force")) {
+            (None, Some(tangential)) => {
+                let forces = Forces::of(tangential, &loads, force, area);
+                notes.push(forces.note());
+                forces.friction()
+            }
+            (friction, _) => friction.map_or(&[][..], |friction| &friction.values).to_vec(),
+        };
+        if !frictions.is_empty() && frictions.iter().all(|friction| *friction < 0.0) {
+            let expected = "a coefficient above 0: friction of a slide, without the sign of its direction";
+            let line = table.lines.first().copied();
+            return Err(ContentError::value(line, "friction", &frictions[0].to_string(), expected));
+        }
+        let deviation = Deviation::of(table);
+        deviation.check(table, &frictions)?;
+        notes.extend(deviation.note());
+        let value = |key: &str, row: usize| table.values(key).get(row).copied();
+        let row = |i: usize| {
+            let (temperature, way) = (value("temperature", i), value("way", i));
+            let point = OperatingPoint { speed: table.values("speed")[i], load: loads[i], temperature, way };
+            let sigma = value("sigma", i).and_then(|sigma| deviation.sigma(sigma, frictions[i]));
+            Measured { line: table.lines[i], point, friction: frictions[i], sigma }
+        };
+        Ok(Self { rows: (0..frictions.len()).map(row).collect(), notes })
+    }
+
+    /// Reads the table in the file at `path`, as [`Self::parse`] does.
     ///
     /// # Errors
     /// Where the file cannot be read, or the table in it is refused.
-    pub fn read(path: &Path, area: f64) -> Result<Self, Error> {
-        let read = files::read_table(&files::bytes(path)?, |bytes| Self::parse(bytes, area));
-        let (mut measurements, sheet) = read.map_err(Error::content(path))?;
-        measurements.notes.splice(0..0, sheet);
-        Ok(measurements)
+    pub fn read(path: &Path, area: f64, columns: &[(String, String)]) -> Result<Self, Error> {
+        let mut read = Self::parse(&files::bytes(path)?, area, columns).map_err(Error::content(path))?;
+        if let Some(told) = read.notes.first_mut() {
+            *told = format!("{}: {told}", files::name_of(path));
+        }
+        Ok(read)
     }
 
     /// How many rows are left out with the points that have no result, which, and why; `None` where none is.
@@ -208,57 +226,53 @@ impl Measurements {
     }
 }
 
-/// The columns of a text; where F_T stands beside a pressure, with F_N if there is such.
-fn read_columns(text: &str) -> Result<Table<'_, Quantity, 7>, ContentError> {
-    let table = FRICTION.read(text)?;
-    let holds = |place: usize, quantity| {
-        table.columns[place].as_ref().is_some_and(|column: &Column<Quantity>| column.quantity == quantity)
-    };
-    if !(holds(1, Quantity::Pressure) && holds(2, Quantity::Tangential)) {
-        return Ok(table);
-    }
-    let mut with_force = FRICTION;
-    with_force.columns[5].quantities = &[Quantity::Force];
-    with_force.read(text)
+/// Refuses pressures and forces that are not the same on the layer.
+fn check_loads(table: &ReadTable, pressure: &ReadColumn, force: &ReadColumn, area: f64) -> Result<(), ContentError> {
+    /// Of columns that are rounded.
+    const ROUNDING: f64 = 0.05;
+    let per_area = Load::Pressure { area }.at_force(1.0);
+    let differs = |(pressure, force): (&f64, &f64)| (per_area * force / pressure - 1.0).abs() > ROUNDING;
+    let Some(row) = pressure.values.iter().zip(&force.values).position(differs) else { return Ok(()) };
+    let given = format!("{} Pa beside {} N", pressure.values[row], force.values[row]);
+    let expected = format!(
+        "{} Pa, that of this force on the scene's whole layer, {area:.6e} m²; or one of both columns",
+        per_area * force.values[row]
+    );
+    Err(ContentError::value(table.lines.get(row).copied(), &pressure.label(), &given, &expected))
 }
 
 /// How forces make friction.
 #[derive(Debug)]
-struct Forces {
-    /// The place of F_N among the columns; `None` where the pressure makes it, with the area.
-    normal: Option<usize>,
-    area: f64,
+struct Forces<'t> {
+    tangential: &'t ReadColumn,
+    /// F_N, N.
+    normal: Vec<f64>,
+    /// What that is, in words.
+    over: String,
     /// -1 where F_T points backwards in all rows.
     sign: f64,
-    names: [String; 2],
 }
 
-impl Forces {
-    /// `None` where friction is a column of its own.
-    fn of(table: &Table<'_, Quantity, 7>, area: f64) -> Option<Self> {
-        let label = |place: usize| table.columns[place].as_ref().map(Column::label);
-        let is_tangential = table.columns[2].as_ref()?.quantity == Quantity::Tangential;
-        let is_force =
-            |place: &usize| table.columns[*place].as_ref().is_some_and(|column| column.quantity == Quantity::Force);
-        let normal = [1, 5].into_iter().find(is_force);
-        let backwards = table.rows.iter().all(|row| row[2] <= 0.0);
-        let names = [label(2)?, label(normal.unwrap_or(1))?];
-        is_tangential.then_some(Self { normal, area, sign: if backwards { -1.0 } else { 1.0 }, names })
+impl<'t> Forces<'t> {
+    fn of(tangential: &'t ReadColumn, pressures: &[f64], force: Option<&ReadColumn>, area: f64) -> Self {
+        let (normal, over) = match force {
+            Some(force) => (force.values.clone(), force.label()),
+            None => {
+                let forces = pressures.iter().map(|pressure| pressure * area).collect();
+                (forces, format!("the pressure on the scene's whole layer, {area:.6e} m²"))
+            }
+        };
+        let backwards = tangential.values.iter().all(|force| *force <= 0.0);
+        Self { tangential, normal, over, sign: if backwards { -1.0 } else { 1.0 } }
     }
 
-    fn friction(&self, row: &[f64; 7]) -> f64 {
-        let normal = self.normal.map_or_else(|| row[1] * self.area, |place| row[place]);
-        self.sign * row[2] / normal
+    fn friction(&self) -> Vec<f64> {
+        self.tangential.values.iter().zip(&self.normal).map(|(force, normal)| self.sign * force / normal).collect()
     }
 
     fn note(&self) -> String {
-        let [tangential, normal] = &self.names;
-        let over = match self.normal {
-            Some(_) => normal.clone(),
-            None => format!("{normal} on the scene's whole layer, {:.6e} m²", self.area),
-        };
         let turned = if self.sign < 0.0 { ", which is below 0 throughout and is turned over" } else { "" };
-        format!("friction is {tangential} over {over}{turned}")
+        format!("friction is {} over {}{turned}", self.tangential.label(), self.over)
     }
 }
 
@@ -274,15 +288,29 @@ enum Deviation {
 }
 
 impl Deviation {
-    fn of(table: &Table<'_, Quantity, 7>, of_forces: bool) -> Self {
-        const FRICTION: [&str; 7] = ["friction", "mu", "μ", "cof", "reibwert", "coefficient", "reibungszahl"];
-        let Some(column) = &table.columns[4] else { return Self::None };
-        let in_percent = |column: &Column<Quantity>| column.unit.name == "%";
-        if in_percent(column) && !table.columns[2].as_ref().is_some_and(in_percent) {
+    fn of(table: &ReadTable) -> Self {
+        let Some(column) = table.column("sigma") else { return Self::None };
+        let in_percent = |column: &ReadColumn| column.unit.name == "%";
+        if in_percent(column) && !table.column("friction").is_some_and(in_percent) {
             return Self::Relative;
         }
-        let names_friction = words(&column.text).iter().any(|word| FRICTION.contains(&word.as_str()));
-        if of_forces && !names_friction { Self::OfForce(column.label()) } else { Self::Absolute }
+        let text = column.text.to_lowercase();
+        let names_friction = ["friction", "mu", "μ", "\u{b5}", "cof"].iter().any(|name| text.contains(name));
+        let is_of_force = table.column("friction").is_none() && !names_friction;
+        if is_of_force { Self::OfForce(column.label()) } else { Self::Absolute }
+    }
+
+    /// Refuses deviations that are all as large as the friction itself.
+    fn check(&self, table: &ReadTable, frictions: &[f64]) -> Result<(), ContentError> {
+        let sigmas = table.values("sigma");
+        let is_large = |(sigma, friction): (&f64, &f64)| *sigma >= friction.abs();
+        let all_large = !sigmas.is_empty() && sigmas.iter().zip(frictions).all(is_large);
+        if !(matches!(self, Self::Absolute) && all_large) {
+            return Ok(());
+        }
+        let label = table.column("sigma").map(ReadColumn::label).unwrap_or_default();
+        let expected = "a standard deviation below the friction itself, or another name of the column";
+        Err(ContentError::value(table.lines.first().copied(), &label, &sigmas[0].to_string(), expected))
     }
 
     fn note(&self) -> Option<String> {
@@ -308,8 +336,8 @@ impl Deviation {
 mod tests {
     use super::*;
 
-    fn read(text: &str) -> Result<Measurements, String> {
-        Measurements::parse(text.as_bytes(), 2e-3).map_err(|error| error.within("t.csv".as_ref()))
+    fn read(text: &str) -> Result<Measurements, (Option<usize>, String)> {
+        Measurements::parse(text.as_bytes(), 2e-3, &[]).map_err(|error| (error.line, error.key))
     }
 
     #[test]
@@ -321,16 +349,22 @@ mod tests {
         assert_eq!(first.point, OperatingPoint { speed: 0.01, load: 2.5e5, temperature: Some(293.15), way: None });
         assert_eq!((first.friction, first.sigma), (0.8, Some(0.02)));
         assert!(measured.has_sigma() && measured.has_temperature());
-        assert_eq!(measured.notes, ["columns left out: sample"]);
+        assert!(measured.notes[0].ends_with("2 rows; left out: sample"), "{:?}", measured.notes);
+        for mu in ["μ", "\u{b5}", "MU", "Friction_Coefficient"] {
+            assert_eq!(read(&format!("speed_mm_s,p [bar],{mu}\n1,3,0.8\n")).map(|read| read.rows[0].friction), Ok(0.8));
+        }
+        // A time is no temperature.
+        for time in ["t [s]", "T (sec)"] {
+            let measured = read(&format!("{time},v [mm/s],p [bar],mu\n1,10,2.5,0.8\n")).unwrap();
+            assert!(!measured.has_temperature() && measured.notes[0].contains(time), "{:?}", measured.notes);
+        }
     }
 
     #[test]
     fn ways_are_read_with_their_unit() {
         let measured = read("v [m/s],p [bar],way [mm],mu\n1,2,20,0.8\n1,2,200,0.7\n").unwrap();
         assert_eq!(measured.rows.iter().map(|row| row.point.way).collect::<Vec<_>>(), [Some(0.02), Some(0.2)]);
-        assert!(measured.has_way() && measured.notes.is_empty(), "{:?}", measured.notes);
-        let refusal = read("v [m/s],p [bar],way,mu\n1,2,20,0.8\n").unwrap_err();
-        assert!(refusal.starts_with("t.csv:1: unit of column 3 (way): expected it"), "{refusal}");
+        assert_eq!(read("v [m/s],p [bar],way,mu\n1,2,20,0.8\n"), Err((Some(1), "unit of column 3 \"way\"".to_owned())));
     }
 
     /// 40 N on 2e-3 m² are 20 kPa; 5 % of 0.8 and 0.01 together are 0.0412.
@@ -339,8 +373,10 @@ mod tests {
         let measured = read("speed,normal force [N],friction coefficient\n0.1,40,0.8\n0.1,40,0.9\n").unwrap();
         assert_eq!(measured.rows[0].point.load, 40.0 / 2e-3);
         assert!((measured.rows[0].sigma_or_assumed() - 0.0412).abs() < 1e-4 && !measured.has_sigma());
-        assert_eq!(measured.notes.len(), 2, "{:?}", measured.notes);
-        assert!(measured.notes[0].contains("m/s is assumed"), "{:?}", measured.notes);
+        assert!(measured.notes[0].contains("in m/s, assumed"), "{:?}", measured.notes);
+        let both = |pressure: f64| read(&format!("v [m/s],p [Pa],F_N [N],mu\n1,{pressure},40,0.8\n"));
+        assert!(both(2e4).is_ok());
+        assert_eq!(both(3e4).map_err(|(line, _)| line), Err(Some(2)));
     }
 
     /// Errors by the names that they have in tables; what is no standard deviation is named as left out.
@@ -350,12 +386,13 @@ mod tests {
         for name in ["std", "mu_err", "err", "error", "Error of mu", "s_mu", "u(mu)", "σ_μ", "std. dev.", "sd mu"] {
             assert_eq!(table(name).rows[0].sigma, Some(0.02), "{name}");
         }
-        for name in ["mu_min", "mu_max", "CI95", "s", "u", "n"] {
+        for name in ["mu_min", "mu_max", "CI95", "s", "u", "n", "mu_s"] {
             let found = table(name);
-            assert_eq!((found.rows[0].sigma, found.notes), (None, vec![format!("columns left out: {name}")]));
+            assert!(found.rows[0].sigma.is_none() && found.notes[0].ends_with(&format!("left out: {name}")), "{name}");
         }
         let relative = read("v [mm/s],p [kPa],mu,error [%]\n1,10,0.5,2\n").unwrap();
-        assert!((relative.rows[0].sigma.unwrap() - 0.01).abs() < 1e-15 && relative.notes[0].contains("in %"));
+        assert!((relative.rows[0].sigma.unwrap() - 0.01).abs() < 1e-15);
+        assert_eq!(read("v [mm/s],p [kPa],mu,std\n1,10,0.5,0.6\n").map_err(|(line, _)| line), Err(Some(2)));
     }
 
     /// 12 N over 40 N are 0.3; over 20 kPa on 2e-3 m², which are 40 N too.
@@ -369,48 +406,33 @@ mod tests {
             ("v [mm/s],F_N [N],F_T [N]", "1,40,12"),
             ("v [mm/s],Fz [N],Fx [N]", "1,40,-12"),
             ("v [mm/s],Normal force [kN],Friction force [N]", "1,0.04,12"),
-            ("v [mm/s],F_n [N],F_t [N],std [N]", "1,40,12,0.5"),
             ("v [mm/s],p [kPa],F_N [N],Tangential force [N]", "1,20,40,12"),
             ("v [mm/s],p [kPa],F_T [N]", "1,20,12"),
         ] {
-            let text = format!("{names}\n{numbers}\n");
-            if names.contains("std") {
-                assert!(read(&text).unwrap_err().contains("unit of column 4 (std [N])"));
-                continue;
-            }
-            let measured = read(&text).unwrap();
+            let measured = read(&format!("{names}\n{numbers}\n")).unwrap();
             assert!(is_it(&measured), "{names}: {:?}", measured.rows);
-            assert!(measured.notes.iter().any(|note| note.starts_with("friction is column ")), "{:?}", measured.notes);
         }
-        let measured = read("v [mm/s],F_N [N],F_T [N],std\n1,40,12,0.5\n").unwrap();
-        assert!(measured.rows[0].sigma.is_none() && measured.notes.iter().any(|note| note.contains("may be that of")));
+        let of_force = read("v [mm/s],F_N [N],F_T [N],std\n1,40,12,0.5\n").unwrap();
+        assert!(of_force.rows[0].sigma.is_none());
         let both = read("v [mm/s],F_N [N],F_T [N],mu\n1,40,12,0.5\n").unwrap();
-        assert_eq!((both.rows[0].friction, &both.notes[0][..]), (0.5, "columns left out: F_T [N]"));
+        assert_eq!(both.rows[0].friction, 0.5);
     }
 
     #[test]
-    fn what_is_missing_or_wrong_is_said_with_its_line() {
-        for (text, message) in [
-            ("speed [m/s],friction\n1,2\n2,3\n", "t.csv:1: columns = \"speed [m/s], friction\": expected columns by"),
-            (
-                "speed [m/s],p [Pa],mu\n1,2,3\n2,-3,1\n",
-                "t.csv:3: column 2 (p [Pa]) = \"-3\": expected a number above 0",
-            ),
-            ("speed [m/s],p [bar],mu\n1,x,3\n", "t.csv:2: column 2 (p [bar]) = \"x\": expected a number above 0 in Pa"),
-            (
-                "speed [m/s],p [furlong],mu\n1,2,3\n",
-                "t.csv:1: unit of column 2 (p [furlong]) = \"furlong\": expected one of",
-            ),
-            ("speed [m/s],p [Pa],mu,temperature\n1,2,3,4\n", "t.csv:1: unit of column 4 (temperature): expected it"),
-            (
-                "speed [m/s],v [m/s],p [Pa],mu\n1,2,3,4\n",
-                "t.csv:1: columns = \"speed [m/s]\" and \"v [m/s]\": expected one of",
-            ),
-            ("1,2,3\n", "t.csv:1: columns = no names: expected columns by their names"),
-            ("only words\n", "t.csv:1: rows = 0: expected at least one row of numbers: columns by their names"),
+    fn what_is_missing_or_wrong_is_refused_at_its_line() {
+        for (text, line, key) in [
+            ("speed [m/s],friction\n1,2\n2,3\n", 1, "columns"),
+            ("speed [m/s],p [Pa],mu\n1,2,3\n2,-3,1\n", 3, "column 2 \"p [Pa]\""),
+            ("speed [m/s],p [bar],mu\n1,x,3\n", 2, "column 2 \"p [bar]\""),
+            ("speed [m/s],p [furlong],mu\n1,2,3\n", 1, "unit of column 2 \"p [furlong]\""),
+            ("speed [m/s],p [Pa],mu,temperature\n1,2,3,4\n", 1, "unit of column 4 \"temperature\""),
+            ("speed [m/s],v [m/s],p [Pa],mu\n1,2,3,4\n", 1, "columns"),
+            ("speed [m/s],p [Pa],mu\n1,2,-3\n", 2, "friction"),
+            ("speed [m/s],p [Pa],mu,std\n1,2,3,1e-300\n", 2, "column 4 \"std\""),
+            ("1,2,3\n", 1, "columns"),
+            ("only words\n", 1, "rows"),
         ] {
-            let refusal = read(text).unwrap_err();
-            assert!(refusal.starts_with(message), "{text}\n{refusal}");
+            assert_eq!(read(text), Err((Some(line), key.to_owned())), "{text}");
         }
     }
 }

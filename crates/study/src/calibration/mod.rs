@@ -22,7 +22,7 @@ pub use calibrator::{CalibratedParameter, Calibration, CalibrationStage, Calibra
 pub use curve_grid::{Cluster, Condition, CurveGrid, in_words, left_out_in_words};
 pub use fit::{Fitted, SpaceMapping, Tolerance, map_space, minimise, starts_by_theory};
 pub use free_scene::{CalibrationOptions, CandidateOptions, FreeScene};
-pub use measurements::{Measured, Measurements};
+pub use measurements::{FRICTION, Measured, Measurements};
 pub use models::{
     Done, FrictionModel, FrictionParts, GridOf, Memo, ModelError, NewOutcome, NoSliding, Outcome, SceneAt, SteadyModel,
     Task, TheoryModel,

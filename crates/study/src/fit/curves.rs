@@ -2,9 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use asperity::tables::{Block, Condition, ContentError, Dimension};
+use asperity::tables::{ContentError, Dimension};
+use asperity_formats::text::Block;
 
 use super::columns::{Column, Columns, Quantity};
+use super::heading::Condition;
 use super::reading::Reading;
 use super::stated_temperature::conditions_above;
 

@@ -3,10 +3,12 @@
 use std::f64::consts::TAU;
 
 use asperity::scene::Wlf;
-use asperity::tables::{Condition, ContentError, Dimension, Unit, find_quantity, number};
+use asperity::tables::{ContentError, Dimension, Unit};
+use asperity_formats::text::number;
 use asperity_formats::workbook;
 
 use super::error::FitError;
+use super::heading::{Condition, find_quantity};
 use super::measured::MeasuredModuli;
 use super::options::FitOptions;
 use super::reading::{GivenUnits, Reading};
@@ -24,12 +26,13 @@ pub(super) fn read_moduli(options: &FitOptions) -> Result<MeasuredModuli, FitErr
     let bytes = files::bytes(&options.data)?;
     let reading = Reading {
         ignored: &options.ignored,
+        columns: &options.columns,
         units: &options.units,
         frequency: options.frequency,
         poisson_ratio: options.poisson_ratio,
         shear: options.shear,
     };
-    if !workbook::is_workbook(&bytes, &options.data) {
+    if !workbook::is_workbook(&bytes) {
         return MeasuredModuli::parse(&bytes, &reading).map_err(|error| in_data(options, error));
     }
     let in_workbook = |error| FitError::Workbook { path: options.data.clone(), error: Box::new(error) };
@@ -141,10 +144,9 @@ impl Sheet<'_> {
 fn conditions_of(names: &[&str], units: &GivenUnits) -> Vec<Option<Condition>> {
     let settings: Vec<Option<Setting>> = names.iter().map(|name| setting(name, units)).collect();
     let bare = |found: &Option<Setting>| match found {
-        Some(Setting::Bare(text)) => text
-            .split_once(['=', ':'])
-            .or_else(|| text.split_once(' '))
-            .and_then(|(_, value)| number(value.trim(), true)),
+        Some(Setting::Bare(text)) => {
+            text.split_once(['=', ':']).or_else(|| text.split_once(' ')).and_then(|(_, value)| number(value.trim()))
+        }
         _ => None,
     };
     let in_celsius = settings.iter().filter_map(bare).any(|value| value < Wlf::COLDEST);

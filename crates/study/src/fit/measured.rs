@@ -1,7 +1,8 @@
 //! Tables of measured moduli, as people and instruments write them: what each row says, in SI units.
 
 use asperity::scene::Wlf;
-use asperity::tables::{Block, ContentError, decode, shortened};
+use asperity::tables::{ContentError, decode, shortened};
+use asperity_formats::text::Block;
 
 use super::columns::EXPECTED;
 use super::reading::{MeasuredPoint, Reading};
@@ -56,9 +57,8 @@ impl MeasuredModuli {
         }
         let (test, in_hertz, reduced) = (first.test(), first.in_hertz(), first.is_reduced());
         let mut points = Vec::new();
-        let (styles, decided) = ModuliTable::styles(&tables, text)?;
-        notes.extend(decided);
-        for (table, style) in tables.iter().zip(styles) {
+        let decimal = ModuliTable::decimal(&tables, text)?;
+        for table in &tables {
             if (table.test(), table.is_reduced()) != (test, reduced) {
                 let expected = "tables of one kind in a file: all of oscillation, or all of relaxation";
                 return Err(refused(table.line, "another kind of table", expected));
@@ -66,7 +66,7 @@ impl MeasuredModuli {
             if tables.len() > 1 {
                 table.check_temperature()?;
             }
-            match table.add_points(text, style, reading, &mut points)? {
+            match table.add_points(text, decimal, reading, &mut points)? {
                 0 => (),
                 1 => notes.push("a row whose loss is 0, below what was measured, is left out".into()),
                 zeros => notes.push(format!("{zeros} rows whose loss is 0, below what was measured, are left out")),
@@ -157,7 +157,7 @@ mod tests {
     use super::*;
 
     const READING: Reading<'_> =
-        Reading { ignored: &[], units: &[], frequency: None, poisson_ratio: 0.5, shear: false };
+        Reading { ignored: &[], columns: &[], units: &[], frequency: None, poisson_ratio: 0.5, shear: false };
 
     fn read_with(text: &str, reading: &Reading<'_>) -> MeasuredModuli {
         MeasuredModuli::parse(text.as_bytes(), reading).unwrap_or_else(|error| panic!("{text}: {error}"))

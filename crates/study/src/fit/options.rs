@@ -82,6 +82,8 @@ pub struct FitOptions {
     pub sheet: Option<String>,
     /// Columns to ignore, by their headings.
     pub ignored: Vec<String>,
+    /// Columns that are said to be those of roles: keys, and names or numbers from 1.
+    pub columns: Vec<(String, String)>,
     /// Units of columns, by their headings.
     pub units: Vec<(String, Unit)>,
     /// The frequency of all rows where the table has no column of it, rad/s.
@@ -113,6 +115,7 @@ impl Default for FitOptions {
             data: PathBuf::new(),
             sheet: None,
             ignored: Vec::new(),
+            columns: Vec::new(),
             units: Vec::new(),
             frequency: None,
             poisson_ratio: 0.5,

@@ -27,6 +27,8 @@ pub(super) struct MeasuredPoint {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reading<'a> {
     pub(super) ignored: &'a [String],
+    /// Columns that are said to be those of roles.
+    pub(super) columns: &'a [(String, String)],
     pub(super) units: &'a GivenUnits,
     /// The frequency of a table without one, rad/s.
     pub(super) frequency: Option<f64>,

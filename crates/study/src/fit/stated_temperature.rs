@@ -1,8 +1,11 @@
 //! Temperatures and frequencies that stand above a table, not in a column: in the line above its names, in a line of settings.
 
 use asperity::scene::Wlf;
-use asperity::tables::{Block, ContentError, Dimension, Unit, find_quantity, number, words};
+use asperity::tables::{ContentError, Dimension, Unit};
+use asperity_formats::text::{Block, number};
 
+use super::columns::given_unit;
+use super::heading::find_quantity;
 use super::reading::GivenUnits;
 
 /// The temperature in a text, K.
@@ -25,7 +28,7 @@ pub(super) fn conditions_above(
     let (mut found, mut last) = (Vec::new(), None);
     for (index, field) in fields.iter().enumerate() {
         let named = find_quantity(field, dimension).map(|(_, value)| value);
-        let bare = number(field, block.separator.allows_decimal_comma());
+        let bare = number(field);
         match (named, bare, of_line) {
             (Some(value), _, _) => last = Some(value),
             (None, Some(value), Some(unit)) => last = Some(unit.to_si(value)),
@@ -60,26 +63,38 @@ pub(super) enum Setting {
     Bare(String),
 }
 
+/// The keys of a temperature of all rows, in lower case and without blanks.
+const TEMPERATURE: [&str; 12] = [
+    "t",
+    "temp",
+    "temperature",
+    "sampletemperature",
+    "sampletemp",
+    "testtemperature",
+    "testtemp",
+    "measurementtemperature",
+    "isothermaltemperature",
+    "temperatur",
+    "prüftemperatur",
+    "probentemperatur",
+];
+
 /// The temperature of a line such as `Temperature: 20 °C` or `T=20;Mw=90`.
 pub(super) fn setting(line: &str, units: &GivenUnits) -> Option<Setting> {
     line.split([';', '\t', ',']).find_map(|part| {
         let (name, value) = part.split_once(['=', ':']).or_else(|| part.split_once(char::is_whitespace))?;
-        let found = words(name);
-        let is_temperature =
-            found.iter().any(|word| ["T", "temp", "temperature", "temperatur"].contains(&word.as_str()));
+        let bare = name.split(['[', '(']).next().unwrap_or_default().trim();
+        let key: String = bare.to_lowercase().chars().filter(|letter| letter.is_alphanumeric()).collect();
         let digits = value.trim();
-        if !is_temperature
-            || found.len() > 2
-            || !digits.starts_with(|letter: char| letter.is_ascii_digit() || letter == '-')
-        {
+        let is_number = digits.starts_with(|letter: char| letter.is_ascii_digit() || letter == '-');
+        if !(TEMPERATURE.contains(&key.as_str()) && is_number) || bare == "t" {
             return None;
         }
         if let Some(kelvin) = temperature(digits) {
             return Some(Setting::Kelvin(kelvin));
         }
-        let given = units.iter().find(|(name, _)| words(name) == found).map(|(_, unit)| *unit);
-        let unit = given.or_else(|| unit_of(name, Dimension::Temperature));
-        let number = number(digits, true);
+        let unit = given_unit(name, units).or_else(|| unit_of(name, Dimension::Temperature));
+        let number = number(digits);
         Some(match (unit, number) {
             (Some(unit), Some(number)) => Setting::Kelvin(unit.to_si(number)),
             _ => Setting::Bare(part.trim().to_owned()),

@@ -3,9 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use asperity::scene::Wlf;
-use asperity::tables::{
-    ABOVE_ZERO, Block, ContentError, DecimalSigns, Line, NumberStyle, POSITIVE, Row, UsedColumn, words,
-};
+use asperity::tables::{ABOVE_ZERO, ContentError, POSITIVE, Row, shortened};
+use asperity_formats::text::{Block, Decimal, Line, UsedColumn, decimal_of, left_out_words, plain};
 
 use super::columns::{self, Column, Columns, Quantity, with_unit};
 use super::curves::{Chosen, Curve, twin};
@@ -26,6 +25,8 @@ pub(super) struct ModuliTable<'a> {
     temperature: Option<Column>,
     /// A temperature above it that has no unit, and its line.
     bare_temperature: Option<(usize, String)>,
+    /// The line above it whose temperature holds, and its text.
+    temperature_line: Option<(usize, String)>,
     shift: Option<Column>,
     vertical: Option<Column>,
     set: Option<Column>,
@@ -58,7 +59,7 @@ impl<'a> ModuliTable<'a> {
 
     fn with_own_header(block: &Block<'a>, reading: &Reading<'_>) -> Result<Option<Self>, ContentError> {
         use Quantity::{Loss, LossTangent, Set, SetTemperature, ShearLoss, ShiftFactor, Temperature, VerticalFactor};
-        let Some(columns) = Columns::read(block, reading.ignored, reading.units)? else { return Ok(None) };
+        let Some(columns) = Columns::read(block, reading)? else { return Ok(None) };
         let Some(mut chosen) = Chosen::of(&columns)? else { return Ok(None) };
         let other_frequency = chosen.take_other_frequency();
         let curves = chosen.curves(block, &columns, reading)?;
@@ -71,6 +72,7 @@ impl<'a> ModuliTable<'a> {
             curves,
             temperature: one(&[&[Temperature], &[SetTemperature]]),
             bare_temperature: None,
+            temperature_line: None,
             shift: one(&[&[ShiftFactor]]),
             vertical: one(&[&[VerticalFactor]]),
             set: one(&[&[Set]]),
@@ -91,8 +93,7 @@ impl<'a> ModuliTable<'a> {
         for curve in &self.curves {
             let moduli: Vec<&Column> = [Some(&curve.modulus), curve.loss.as_ref()].into_iter().flatten().collect();
             for modulus in &moduli {
-                let checked = modulus.check_beside(moduli.iter().copied(), Some(self.line));
-                checked.map_err(|error| error.or("`unit` NAME=UNIT"))?;
+                modulus.check_beside(moduli.iter().copied(), self.line)?;
             }
         }
         let mut used = self.curves.iter().flat_map(Curve::columns).chain(&self.temperature);
@@ -105,11 +106,12 @@ impl<'a> ModuliTable<'a> {
             return;
         }
         let mut lines = self.block.above.iter().rev();
-        match lines.find_map(|(line, text)| Some((*line, setting(text, reading.units)?))) {
-            Some((_, Setting::Kelvin(kelvin))) => {
-                self.curves.iter_mut().for_each(|curve| curve.temperature = Some(kelvin))
+        match lines.find_map(|(line, text)| Some((*line, *text, setting(text, reading.units)?))) {
+            Some((line, text, Setting::Kelvin(kelvin))) => {
+                self.curves.iter_mut().for_each(|curve| curve.temperature = Some(kelvin));
+                self.temperature_line = Some((line, shortened(text)));
             }
-            Some((line, Setting::Bare(text))) => self.bare_temperature = Some((line, text)),
+            Some((line, _, Setting::Bare(text))) => self.bare_temperature = Some((line, text)),
             None => (),
         }
     }
@@ -141,7 +143,7 @@ impl<'a> ModuliTable<'a> {
     }
 
     pub(super) fn is_reduced(&self) -> bool {
-        self.curves[0].at.as_ref().is_some_and(columns::is_reduced)
+        self.columns.reduced
     }
 
     /// What was found and assumed.
@@ -149,15 +151,20 @@ impl<'a> ModuliTable<'a> {
         let curve = &self.curves[0];
         let name = Column::label;
         let used = [curve.at.as_ref(), Some(&curve.modulus), curve.loss.as_ref(), self.temperature.as_ref()];
-        let read: Vec<String> = used.into_iter().flatten().map(name).collect();
         let many = if tables > 1 { format!("{tables} tables, the first with ") } else { String::new() };
         let kind = if curve.frequency.is_some() { "frequencies" } else { "temperatures" };
-        let temperatures =
+        let more =
             if self.curves.len() > 1 { format!(", and so on for {} {kind}", self.curves.len()) } else { String::new() };
-        let mut notes = vec![format!("read {many}{}{temperatures}", read.join(", "))];
-        notes.extend(used.into_iter().flatten().filter_map(|column| {
-            Some(format!("{} names no unit: {} is assumed", name(column), column.assumed_unit()?))
-        }));
+        let read = used.into_iter().flatten().map(|column| {
+            let said = column.assumed_unit().map_or_else(String::new, |unit| format!(" in {unit}, assumed"));
+            format!("{} = {}{said}", key_of(column), name(column))
+        });
+        let read = read.collect::<Vec<_>>().join(", ");
+        let left_out = left_out_words(&self.columns.left_out);
+        let mut notes = vec![format!("{many}{read}{more}; {} rows{left_out}", self.block.rows)];
+        if let Some((line, text)) = &self.temperature_line {
+            notes.push(format!("all rows are at the temperature of line {line}, \"{text}\""));
+        }
         if let Some((line, text)) = &self.bare_temperature {
             notes.push(format!("line {line} ({text}) names no unit of temperature and is left out"));
         }
@@ -179,12 +186,6 @@ impl<'a> ModuliTable<'a> {
         if self.is_reduced() {
             notes.push("the frequencies are multiplied by a_T already: no row is shifted".into());
         }
-        let left_out = &self.columns.left_out;
-        if !left_out.is_empty() {
-            let names: Vec<&str> = left_out.iter().take(4).map(String::as_str).collect();
-            let more = if left_out.len() > 4 { format!(" and {} more", left_out.len() - 4) } else { String::new() };
-            notes.push(format!("columns left out: {}{more}", names.join(", ")));
-        }
         notes
     }
 
@@ -194,33 +195,28 @@ impl<'a> ModuliTable<'a> {
         named || (reading.shear && !names_letter(&modulus.text))
     }
 
-    /// How the numbers of each of the tables of a text are written, and what had to be decided.
-    pub(super) fn styles(tables: &[Self], text: &'a str) -> Result<(Vec<NumberStyle>, Vec<String>), ContentError> {
-        let signs = DecimalSigns::of(tables.iter().map(|table| &table.block), text);
-        let (mut styles, mut notes) = (Vec::new(), Vec::new());
-        for table in tables {
+    /// The sign before the decimals of a text with these tables.
+    pub(super) fn decimal(tables: &[Self], text: &'a str) -> Result<Decimal, ContentError> {
+        let blocks: Vec<&Block<'a>> = tables.iter().map(|table| &table.block).collect();
+        let used = tables.iter().flat_map(|table| {
             let others = [&table.temperature, &table.shift, &table.vertical, &table.other_frequency, &table.tangent];
-            let all = table.curves.iter().flat_map(Curve::columns).chain(others.into_iter().flatten());
-            let used: Vec<UsedColumn> = all.map(Column::used).collect();
-            let (style, decided) = table.block.style_with(text, signs, &used)?;
-            styles.push(style);
-            notes.extend(decided.into_iter().map(|note| note.text));
-        }
-        Ok((styles, notes))
+            table.curves.iter().flat_map(Curve::columns).chain(others.into_iter().flatten()).map(Column::used)
+        });
+        decimal_of(&blocks, text, &used.collect::<Vec<UsedColumn>>())
     }
 
     /// Adds the points of all rows; how many are left out because their loss is 0.
     pub(super) fn add_points(
         &self,
         text: &'a str,
-        mut style: NumberStyle,
+        decimal: Decimal,
         reading: &Reading<'_>,
         points: &mut Vec<MeasuredPoint>,
     ) -> Result<usize, ContentError> {
         let mut zeros = 0;
         for row in self.block.rows(text) {
             for curve in &self.curves {
-                match self.point(curve, &mut Numbers { row: &row, style: &mut style }, reading)? {
+                match self.point(curve, Numbers { row: &row, decimal }, reading)? {
                     Some(point) => points.push(point),
                     None if curve.modulus.is_empty(&row) => (),
                     None => zeros += 1,
@@ -234,7 +230,7 @@ impl<'a> ModuliTable<'a> {
     fn point(
         &self,
         curve: &Curve,
-        row: &mut Numbers<'_>,
+        row: Numbers<'_>,
         reading: &Reading<'_>,
     ) -> Result<Option<MeasuredPoint>, ContentError> {
         let has_many = self.curves.len() > 1;
@@ -262,16 +258,16 @@ impl<'a> ModuliTable<'a> {
         };
         let shift = self.shift.as_ref().map(|column| row.positive(column)).transpose()?;
         let vertical = self.vertical.as_ref().map(|column| row.positive(column)).transpose()?;
-        let set = self.set.as_ref().map(|column| row.number(column)).transpose()?.flatten();
+        let set = self.set.as_ref().and_then(|column| row.number(column));
         Ok(Some(MeasuredPoint { line: row.row.line, sample, temperature, shift, vertical, set }))
     }
 
     /// A frequency in Hz and an angular one must be the same.
-    fn check_other_frequency(&self, at: f64, row: &mut Numbers<'_>) -> Result<(), ContentError> {
+    fn check_other_frequency(&self, at: f64, row: Numbers<'_>) -> Result<(), ContentError> {
         let Some(column) = &self.other_frequency else { return Ok(()) };
         /// Share by which rounded columns may differ.
         const ROUNDING: f64 = 0.02;
-        match row.number(column)? {
+        match row.number(column) {
             Some(other) if (other / at - 1.0).abs() > ROUNDING => {
                 let expected =
                     format!("the same as the other column of frequencies, {at:.4e} rad/s; `ignore` leaves one out");
@@ -282,9 +278,9 @@ impl<'a> ModuliTable<'a> {
     }
 
     /// tan δ must be E''/E': if not, a unit is wrong or columns are mixed up.
-    fn check_tangent(&self, storage: f64, loss: f64, curve: &Curve, row: &mut Numbers<'_>) -> Result<(), ContentError> {
+    fn check_tangent(&self, storage: f64, loss: f64, curve: &Curve, row: Numbers<'_>) -> Result<(), ContentError> {
         let Some(column) = self.tangent.as_ref().filter(|_| self.curves.len() == 1) else { return Ok(()) };
-        let Some(tangent) = row.number(column)?.filter(|tangent| *tangent > 0.0) else { return Ok(()) };
+        let Some(tangent) = row.number(column).filter(|tangent| *tangent > 0.0) else { return Ok(()) };
         let ratio = loss / storage / tangent;
         // Rows may be rounded to a few digits; wrong units differ by a thousand.
         if (0.1..=10.0).contains(&ratio) {
@@ -301,20 +297,40 @@ impl<'a> ModuliTable<'a> {
     }
 }
 
+/// The key of a column's role.
+fn key_of(column: &Column) -> &'static str {
+    use Quantity::{
+        Complex, Frequency, Loss, LossTangent, Phase, Relaxation, SetTemperature, ShearComplex, ShearLoss,
+        ShearRelaxation, ShearStorage, Storage, Temperature, Time,
+    };
+    match column.quantity {
+        Frequency => "frequency",
+        Time => "time",
+        Storage | ShearStorage => "storage modulus",
+        Loss | ShearLoss => "loss modulus",
+        Complex | ShearComplex => "complex modulus",
+        LossTangent => "tan delta",
+        Phase => "phase angle",
+        Temperature | SetTemperature => "temperature",
+        Relaxation | ShearRelaxation => "relaxation modulus",
+        _ => "column",
+    }
+}
+
 /// Whether a heading says E or G.
 fn names_letter(text: &str) -> bool {
-    let words = words(text);
-    let marks = [
-        "e", "e'", "e''", "estar", "g", "g'", "g''", "gstar", "tensile", "young's", "shear", "estor", "eloss",
-        "erelax", "gstor", "gloss",
+    const MARKS: [&str; 16] = [
+        "e", "e'", "e''", "e*", "g", "g'", "g''", "g*", "tensile", "young's", "shear", "estor", "eloss", "erelax",
+        "gstor", "gloss",
     ];
-    words.iter().any(|word| marks.contains(&word.as_str()))
+    let text = plain(text).to_lowercase();
+    text.split([' ', '_', '(', ')', '[', ']', '|', ',', '/']).any(|word| MARKS.contains(&word))
 }
 
 /// Storage and loss modulus of a row; `None` where the loss is 0.
-fn response(modulus: f64, curve: &Curve, row: &mut Numbers<'_>) -> Result<Option<(f64, f64)>, ContentError> {
+fn response(modulus: f64, curve: &Curve, row: Numbers<'_>) -> Result<Option<(f64, f64)>, ContentError> {
     let Some(column) = &curve.loss else { return Ok(Some((modulus, 0.0))) };
-    if row.number(column)? == Some(0.0) {
+    if row.number(column) == Some(0.0) {
         return Ok(None);
     }
     let loss = row.positive(column)?;
@@ -337,29 +353,30 @@ fn response(modulus: f64, curve: &Curve, row: &mut Numbers<'_>) -> Result<Option
 }
 
 /// Reads the numbers of a row.
+#[derive(Clone, Copy)]
 struct Numbers<'r> {
     row: &'r Row<'r>,
-    style: &'r mut NumberStyle,
+    decimal: Decimal,
 }
 
 impl Numbers<'_> {
     /// The number in SI units, if the field is one.
-    fn number(&mut self, column: &Column) -> Result<Option<f64>, ContentError> {
-        column.number(self.row, self.style)
+    fn number(self, column: &Column) -> Option<f64> {
+        column.number(self.row, self.decimal)
     }
 
-    fn positive(&mut self, column: &Column) -> Result<f64, ContentError> {
-        column.read(self.row, self.style, POSITIVE)
+    fn positive(self, column: &Column) -> Result<f64, ContentError> {
+        column.read(self.row, self.decimal, POSITIVE)
     }
 
-    fn temperature(&mut self, column: &Column) -> Result<f64, ContentError> {
-        if !column.names_unit && self.number(column)?.is_some_and(|value| value < Wlf::COLDEST) {
+    fn temperature(self, column: &Column) -> Result<f64, ContentError> {
+        if !column.names_unit && self.number(column).is_some_and(|value| value < Wlf::COLDEST) {
             return Err(self.refuse(column, &format!("{}: in K it is too cold for rubber", with_unit(column, "°C"))));
         }
-        column.read(self.row, self.style, ABOVE_ZERO)
+        column.read(self.row, self.decimal, ABOVE_ZERO)
     }
 
-    fn refuse(&self, column: &Column, expected: &str) -> ContentError {
+    fn refuse(self, column: &Column, expected: &str) -> ContentError {
         column.refuse(self.row.line, column.field(self.row), expected)
     }
 }

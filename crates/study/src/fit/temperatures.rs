@@ -3,9 +3,11 @@
 use std::f64::consts::LN_10;
 use std::path::Path;
 
-use asperity::tables::{ABOVE_ZERO, Block, ContentError, Row, decode};
+use asperity::tables::{ABOVE_ZERO, ContentError, Dimension, FileKind, ReadTable, Role};
 
-use super::columns::{Column, Columns, Quantity};
+use asperity::scene::FileFormats as _;
+use asperity_formats::Instruments;
+
 use super::compound::{Compound, FitErrors};
 use super::error::FitError;
 use super::measured::MeasuredModuli;
@@ -327,9 +329,12 @@ fn factors_of(measured: &MeasuredModuli, isotherms: &[Isotherm]) -> Result<Vec<F
 
 /// Reads factors from a table: columns temperature and a_T.
 fn given(path: &Path, options: &FitOptions, isotherms: Vec<Isotherm>) -> Result<Shift, FitError> {
-    let bytes = files::bytes(path)?;
-    let in_file = |error: ContentError| FitError::Moduli { path: path.to_owned(), error };
-    let table = shift_table(&bytes, options, Quantity::ShiftFactor).map_err(in_file)?;
+    let table = shift_table(path)?;
+    if table.column("shift_factor").is_none() {
+        let error = ContentError::value(table.line, "columns", "no a_T", SHIFTS.expected);
+        return Err(FitError::Moduli { path: path.to_owned(), error });
+    }
+    let table = factors_in(&table, "shift_factor");
     let factor = |isotherm: &Isotherm| {
         let distance = |(kelvin, _): &&(f64, f64)| (kelvin - isotherm.temperature).abs();
         let nearest = table.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
@@ -348,14 +353,8 @@ fn given(path: &Path, options: &FitOptions, isotherms: Vec<Isotherm>) -> Result<
 }
 
 /// The b_T of all points from a table of shift factors; `None` where it has none.
-pub(super) fn given_factors(
-    path: &Path,
-    options: &FitOptions,
-    measured: &MeasuredModuli,
-) -> Result<Option<Vec<f64>>, FitError> {
-    let bytes = files::bytes(path)?;
-    let table = shift_table(&bytes, options, Quantity::VerticalFactor);
-    let table = table.map_err(|error| FitError::Moduli { path: path.to_owned(), error })?;
+pub(super) fn given_factors(path: &Path, measured: &MeasuredModuli) -> Result<Option<Vec<f64>>, FitError> {
+    let table = factors_in(&shift_table(path)?, "vertical_factor");
     let of_point = |point: &MeasuredPoint| {
         let distance = |(kelvin, _): &&(f64, f64)| (kelvin - point.temperature.unwrap_or(0.0)).abs();
         table.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).map(|(_, factor)| *factor)
@@ -363,21 +362,57 @@ pub(super) fn given_factors(
     Ok(measured.points.iter().map(of_point).collect())
 }
 
-/// Temperatures in K and their factors of a kind; none where there is no column of vertical ones.
-fn shift_table(bytes: &[u8], options: &FitOptions, kind: Quantity) -> Result<Vec<(f64, f64)>, ContentError> {
-    let text = decode(bytes)?;
-    let missing = |line| ContentError::value(Some(line), "", "", "columns temperature [°C] and a_T, or log a_T");
-    let blocks = Block::all(&text, false);
-    let block = blocks.iter().max_by_key(|block| block.rows).ok_or_else(|| missing(1))?;
-    let columns = Columns::read(block, &[], &options.units)?.ok_or_else(|| missing(block.first))?;
-    let of = |quantity| columns.all(&[quantity]);
-    if kind == Quantity::VerticalFactor && of(kind).is_empty() {
-        return Ok(Vec::new());
+const SHIFT_ROLES: [Role; 5] = [
+    Role::new("temperature", "T, t, temp, temperatures, temperatur", Dimension::Temperature)
+        .within(ABOVE_ZERO)
+        .with_unit(),
+    Role::new(
+        "shift_factor",
+        "a_T, shift factors, horizontal shift factor, shift, horizontal shift",
+        Dimension::Number,
+    )
+    .within(ABOVE_ZERO)
+    .optional(),
+    Role::new(
+        "log_shift_factor",
+        "log a_T, log10 a_T, lg a_T, log10(a_T), log(a_T), log shift factor",
+        Dimension::Number,
+    )
+    .optional(),
+    Role::new("vertical_factor", "b_T, vertical shift factor, vertical shift, vertical", Dimension::Number)
+        .within(ABOVE_ZERO)
+        .optional(),
+    Role::new("log_vertical_factor", "log b_T, log10 b_T, lg b_T, log10(b_T), log(b_T)", Dimension::Number).optional(),
+];
+/// The file of shift factors.
+pub const SHIFTS: FileKind = FileKind {
+    by_position: false,
+    one_of: &[&["shift_factor", "log_shift_factor", "vertical_factor", "log_vertical_factor"]],
+    ..FileKind::new(
+        "shift factors",
+        &SHIFT_ROLES,
+        "columns temperature [°C] and a_T, or log a_T; b_T where it has them",
+    )
+};
+
+/// The table of shift factors in a file, its logarithms taken back.
+fn shift_table(path: &Path) -> Result<ReadTable, FitError> {
+    let kind = FileKind { one_of: &[], ..SHIFTS };
+    let read = Instruments.table(&files::bytes(path)?, &kind, &[]);
+    let mut table = read.map_err(|error| FitError::Moduli { path: path.to_owned(), error })?;
+    for column in &mut table.columns {
+        let plain = match column.key {
+            "log_shift_factor" => "shift_factor",
+            "log_vertical_factor" => "vertical_factor",
+            _ => continue,
+        };
+        column.key = plain;
+        column.values.iter_mut().for_each(|value| *value = 10.0_f64.powf(*value));
     }
-    let (&[temperature], &[factor]) = (&of(Quantity::Temperature)[..], &of(kind)[..]) else {
-        return Err(missing(block.first));
-    };
-    let mut style = block.style();
-    let mut value = |column: &Column, row: &Row<'_>| column.read(row, &mut style, ABOVE_ZERO);
-    block.rows(&text).map(|row| Ok((value(temperature, &row)?, value(factor, &row)?))).collect()
+    Ok(table)
+}
+
+/// Temperatures in K and their factors of a kind; none where there is no column of these.
+fn factors_in(table: &ReadTable, key: &str) -> Vec<(f64, f64)> {
+    table.values("temperature").iter().copied().zip(table.values(key).iter().copied()).collect()
 }

@@ -88,7 +88,7 @@ fn of_columns(options: &FitOptions, measured: &MeasuredModuli) -> Result<Option<
     let own: Option<Vec<f64>> = measured.points.iter().map(|point| point.vertical).collect();
     let found = match (own, &options.shifts) {
         (Some(own), _) => Some(own),
-        (None, Some(path)) => given_factors(path, options, measured)?,
+        (None, Some(path)) => given_factors(path, measured)?,
         (None, None) => None,
     };
     let multiplies = options.vertical == Vertical::Multiply;

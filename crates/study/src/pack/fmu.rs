@@ -62,9 +62,9 @@ impl Fmu<'_> {
         let Self { definition, path, .. } = *self;
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut entries = vec![ArchiveEntry::new(format!("resources/{}", definition.file_name()), bytes(path)?)];
-        for file in definition.files() {
-            let carried = definition.carried(folder, file).map_err(Error::io("read", &folder.join(file)))?;
-            entries.push(ArchiveEntry::new(format!("resources/{}", archive_path(file)?), carried));
+        let carried = definition.carried(folder).map_err(|(path, error)| Error::io("read", &path)(error))?;
+        for (file, content) in carried {
+            entries.push(ArchiveEntry::new(format!("resources/{}", archive_path(&file)?), content));
         }
         Ok(entries)
     }

@@ -10,7 +10,7 @@ use crate::calibration::{Measured, Measurements, left_out_in_words};
 use crate::comparison::{NoFriction, swept_friction};
 use crate::csv;
 use crate::error::Error;
-use crate::files::{bytes, name_of};
+use crate::files::name_of;
 
 /// The column of the scenes' names.
 const SCENE: &str = "scene";
@@ -48,7 +48,7 @@ type Compared = (Measured, f64);
 /// Where the file is no such table, names scenes that are not ranked, or has no point at which two of them were measured.
 pub fn measured_ranking(plan: &RankPlan, found: &RankFound, path: &Path) -> Result<MeasuredRanking, Error> {
     let refused = |problem: String| Error::in_file(path, None, problem);
-    let (bytes, csv) = (bytes(path)?, csv::read(path)?);
+    let csv = csv::read(path)?;
     let column = csv.column(SCENE).map_err(Error::content(path))?;
     let labels = plan.labels();
     let mut lines: BTreeMap<usize, usize> = BTreeMap::new();
@@ -71,7 +71,7 @@ pub fn measured_ranking(plan: &RankPlan, found: &RankFound, path: &Path) -> Resu
         let Load::Pressure { area } = table.header.load else {
             return Err(refused("the ranking is over forces: expected one over pressures".to_owned()));
         };
-        let measurements = Measurements::parse(&bytes, area).map_err(Error::content(path))?;
+        let measurements = Measurements::read(path, area, &[])?;
         notes.extend(measurements.notes.iter().filter(|note| !notes.contains(*note)).cloned().collect::<Vec<_>>());
         for mut row in measurements.rows.into_iter().filter(|row| lines.get(&row.line) == Some(&scene)) {
             if let (None, [only]) = (row.point.temperature, &table.header.grid.temperatures[..]) {

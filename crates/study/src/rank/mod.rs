@@ -19,4 +19,4 @@ pub use picture::picture;
 pub use plan::{RankFound, RankPlan, RankScene};
 pub use ranking::{Band, Pair, QUANTILES, RankedPoint, RankedScene, Ranking, SURE};
 pub use table::table;
-pub use weights::Weights;
+pub use weights::{WEIGHTS, Weights};

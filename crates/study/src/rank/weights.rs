@@ -3,45 +3,32 @@
 use std::path::{Path, PathBuf};
 
 use asperity::element::{Load, OperatingPoint, some_of};
-use asperity::tables::{
-    ABOVE_ZERO, Choice, ContentError, Dimension, Format, NOT_NEGATIVE, Others, UnitRule, Wanted, Words, decode,
-};
+use asperity::tables::{ABOVE_ZERO, Dimension, FileKind, NOT_NEGATIVE, Others, ReadTable, Role};
 
 use crate::error::Error;
-use crate::files::{bytes, read_table};
+use crate::files::read_table;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Quantity {
-    Speed,
-    Pressure,
-    Force,
-    Temperature,
-    Weight,
-}
-
-const WEIGHTS: Format<Quantity, 4> = Format {
-    needs_names: true,
+const ROLES: [Role; 5] = [
+    Role::new("weight", "weights, w, share, part, gewicht", Dimension::Number).within(NOT_NEGATIVE),
+    Role::new("speed", "v, velocity, sliding speed, geschwindigkeit", Dimension::Speed).within(ABOVE_ZERO).optional(),
+    Role::new("pressure", "p, mean pressure, nominal pressure, contact pressure, druck", Dimension::Pressure)
+        .within(ABOVE_ZERO)
+        .optional(),
+    Role::new("force", "load, F, Fz, Fn, normal force, normal load, normalkraft, last", Dimension::Force)
+        .within(ABOVE_ZERO)
+        .optional(),
+    Role::new("temperature", "T, t, temp, rubber temperature, temperatur", Dimension::Temperature)
+        .within(ABOVE_ZERO)
+        .with_unit()
+        .optional(),
+];
+/// The file of weights.
+pub const WEIGHTS: FileKind = FileKind {
+    by_position: false,
     others: Others::Refused,
-    ..Format::new(
-        &[
-            Words::new(Quantity::Speed, Dimension::Speed, "speed velocity v geschwindigkeit", "sliding"),
-            Words::new(Quantity::Pressure, Dimension::Pressure, "pressure p druck", "mean nominal contact"),
-            Words::new(Quantity::Force, Dimension::Force, "force load fz fn normalkraft last", "normal"),
-            Words::new(Quantity::Temperature, Dimension::Temperature, "T temp temperature temperatur t", "rubber"),
-            Words::new(Quantity::Weight, Dimension::Number, "weight weights w gewicht share part", "of the"),
-        ],
-        [
-            Wanted::new(&[Quantity::Weight], "weight", "weights").within(NOT_NEGATIVE),
-            Wanted::new(&[Quantity::Speed], "speed", "speeds").optional().within(ABOVE_ZERO),
-            Wanted {
-                choice: Choice::FirstQuantity,
-                ..Wanted::new(&[Quantity::Pressure, Quantity::Force], "pressure", "loads").optional().within(ABOVE_ZERO)
-            },
-            Wanted {
-                unit: UnitRule::Named,
-                ..Wanted::new(&[Quantity::Temperature], "temperature", "temperatures").optional().within(ABOVE_ZERO)
-            },
-        ],
+    ..FileKind::new(
+        "weights",
+        &ROLES,
         "columns by their names with units: weight and, as far as it depends on them, speed [m/s], pressure [bar] or force \
          [N], temperature [°C]",
     )
@@ -72,8 +59,8 @@ impl Weights {
     /// # Errors
     /// Where it is no such table.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        let (rows, _) = read_table(&bytes(path)?, parse).map_err(Error::content(path))?;
-        Ok(Self { path: Some(path.to_owned()), rows })
+        let table = read_table(path, &WEIGHTS, &[])?;
+        Ok(Self { path: Some(path.to_owned()), rows: rows(&table) })
     }
 
     /// The weights of `points`, 1 of each without a table.
@@ -108,20 +95,19 @@ impl Weights {
     }
 }
 
-fn parse(bytes: &[u8]) -> Result<Vec<Weight>, ContentError> {
-    let text = decode(bytes)?;
-    let table = WEIGHTS.read(&text)?;
-    let has = |place: usize| table.columns[place].is_some();
-    let is_force = table.columns[2].as_ref().is_some_and(|column| column.quantity == Quantity::Force);
-    let row = |(&[weight, speed, load, kelvin], &line): (&[f64; 4], &usize)| Weight {
-        line,
-        weight,
-        speed: has(1).then_some(speed),
-        load: has(2).then_some(load),
+/// The rows of a table; of a pressure beside a force, the pressure.
+fn rows(table: &ReadTable) -> Vec<Weight> {
+    let is_force = table.column("pressure").is_none();
+    let value = |key: &str, row: usize| table.values(key).get(row).copied();
+    let row = |i: usize| Weight {
+        line: table.lines[i],
+        weight: table.values("weight")[i],
+        speed: value("speed", i),
+        load: value(if is_force { "force" } else { "pressure" }, i),
         is_force,
-        temperature: has(3).then_some(kelvin),
+        temperature: value("temperature", i),
     };
-    Ok(table.rows.iter().zip(&table.lines).map(row).collect())
+    (0..table.lines.len()).map(row).collect()
 }
 
 impl Weight {
@@ -151,6 +137,9 @@ impl Weight {
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
+    use asperity::scene::FileFormats as _;
+    use asperity_formats::Instruments;
+
     use super::*;
 
     const PASCAL: Load = Load::Pressure { area: 1.0 };
@@ -161,8 +150,8 @@ mod tests {
     }
 
     fn weights(text: &str) -> Result<Vec<f64>, String> {
-        let rows = parse(text.as_bytes()).map_err(|error| error.to_string())?;
-        let weights = Weights { path: Some("w.csv".into()), rows };
+        let table = Instruments.table(text.as_bytes(), &WEIGHTS, &[]).map_err(|error| error.to_string())?;
+        let weights = Weights { path: Some("w.csv".into()), rows: rows(&table) };
         weights.of(&points(), PASCAL).map_err(|error| error.to_string())
     }
 

@@ -120,7 +120,7 @@ fn fitted_numbers_are_read_from_their_file() {
     };
     let scene = read(&text(["1.000002e6", "300"], "material.wlf.temperature"), "").unwrap();
     let covariance = uncertainty(&scene).covariance.unwrap();
-    assert_eq!((scene.files, covariance.file), (vec![PathBuf::from("fit.csv")], PathBuf::from("fit.csv")));
+    assert_eq!((&scene.files[0].path, &covariance.file), (&PathBuf::from("fit.csv"), &PathBuf::from("fit.csv")));
     let numbers: Vec<(f64, Scale)> = covariance.numbers.iter().map(|number| (number.value, number.scale)).collect();
     assert_eq!(numbers, [(1e6, Scale::Log), (293.15, Scale::Linear)]);
     let said: Vec<&String> = scene.warnings.iter().filter(|warning| warning.contains("fit.csv")).collect();

@@ -1,9 +1,11 @@
 //! Heights over a grid, and the line along x that is taken of them.
 
-use super::options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, Tilt};
-use super::{MeasuredSurface, sentinels};
-use crate::scene::{HeightMap, MOST_HEIGHTS, MapError, peak_to_valley};
-use crate::tables::{ContentError, ReadingNote, Unit};
+use asperity::scene::{
+    HeightMap, LengthUnit, MOST_HEIGHTS, MapError, Missing, ProfileOptions, Tilt, line_note, peak_to_valley,
+};
+use asperity::tables::{ContentError, ReadingNote, Unit};
+
+use super::{MeasuredPoints, MeasuredSurface, sentinels};
 
 /// An areal measurement: lines along x, one after the other along y.
 #[derive(Debug)]
@@ -50,13 +52,65 @@ impl Areal {
         Self { kind, x, y, heights, x_unit: None, y_unit: None, unit: None, is_depth: false, notes: Vec::new() }
     }
 
+    /// A matrix, whose first row and column may be positions: they rise evenly but for the corner. Those that count points
+    /// are left out for the given spacing; others are it, or must agree with it.
+    pub(super) fn of_matrix(columns: usize, heights: Vec<f64>, options: &ProfileOptions) -> Result<Self, ContentError> {
+        const KIND: &str = "a matrix of heights";
+        let rows = heights.len() / columns;
+        let x: Vec<f64> = heights[1..columns].to_vec();
+        let y: Vec<f64> = heights.iter().skip(columns).step_by(columns).copied().collect();
+        let given = <[f64; 2]>::try_from(&options.spacing[..]).ok();
+        if !(rises(&x) && rises(&y)) {
+            let expected = "the distances along x and y in m, spacing = [DX, DY] (--spacing DX,DY)";
+            let spacing = given.ok_or_else(|| ContentError::value(None, "spacing", "not given", expected))?;
+            return Ok(Self::even(KIND, [columns, rows], spacing, heights));
+        }
+        let inner: Vec<f64> = heights.chunks_exact(columns).skip(1).flat_map(|row| row[1..].iter().copied()).collect();
+        let counts = |positions: &[f64]| positions.windows(2).all(|pair| pair[1] - pair[0] == 1.0);
+        let text = "its first row and column are positions".to_owned();
+        let note = ReadingNote { text, assumed: true };
+        let unit = options.x_unit.map(LengthUnit::unit);
+        let axes =
+            Self { x_unit: unit, y_unit: unit, notes: vec![note], ..Self::at(KIND, x.clone(), y.clone(), inner) };
+        let Some(spacing) = given else {
+            let expected = "the unit of its first row and column, which are positions: x_unit (--x-unit), or unit";
+            return unit.map(|_| axes).ok_or_else(|| ContentError::value(None, "x_unit", "not given", expected));
+        };
+        if counts(&x) && counts(&y) {
+            return Ok(axes.evenly(spacing));
+        }
+        let in_metres = |positions: &[f64]| unit.unwrap_or(Unit::ONE).to_si(positions[1] - positions[0]);
+        let steps = [in_metres(&x), in_metres(&y)];
+        let agrees = |axis: usize| (steps[axis] / spacing[axis] - 1.0).abs() < EVEN;
+        if agrees(0) && agrees(1) {
+            return Ok(axes.evenly(spacing));
+        }
+        let given = format!("{spacing:?} m");
+        let expected = format!(
+            "{steps:?} m, the steps of the matrix's first row and column, which rise evenly and are positions; x_unit \
+             (--x-unit) says in which unit these are"
+        );
+        Err(ContentError::value(None, "spacing", &given, &expected))
+    }
+
+    /// The same heights at an even spacing, m.
+    fn evenly(self, spacing: [f64; 2]) -> Self {
+        let even = Self::even(self.kind, self.size(), spacing, self.heights);
+        Self { notes: self.notes, ..even }
+    }
+
+    /// How many points there are along x, and lines along y.
+    pub(super) fn size(&self) -> [usize; 2] {
+        [self.x.len(), self.y.len()]
+    }
+
     /// Points on a grid in any order of lines; each line with all its points, one after the other along x or along y.
     pub(super) fn of_points(raw: MeasuredPoints, y: &[f64], y_unit: Option<Unit>) -> Result<Self, ContentError> {
         let (x_values, y_values) = (sorted(&raw.x), sorted(y));
         if x_values.len() * y_values.len() != raw.x.len() {
             let given =
                 format!("{} points with {} values of x and {} of y", raw.x.len(), x_values.len(), y_values.len());
-            let expected = "a grid with a height at each x and y; or columns = [\"x\", \"z\"] of one line";
+            let expected = "a grid with a height at each x and y; or columns = { x = \"x\", z = \"z\" } of one line";
             return Err(ContentError::value(raw.lines.first().copied(), "points", &given, expected));
         }
         let mut heights = vec![f64::NAN; raw.x.len()];
@@ -231,11 +285,17 @@ fn fill_evenly(heights: &mut [f64]) -> bool {
     true
 }
 
-/// Says which line was taken.
-pub fn line_note(kind: &str, line: usize, lines: usize, is_chosen: bool) -> ReadingNote {
-    let assumed = lines > 1 && !is_chosen;
-    let which = if assumed { ", the middle one: line takes another" } else { "" };
-    ReadingNote { text: format!("{kind}: line {line} of {lines} along x{which}"), assumed }
+/// Whether numbers rise by even steps, as positions do.
+pub(super) fn rises(numbers: &[f64]) -> bool {
+    numbers.len() > 2
+        && numbers.iter().all(|number| number.is_finite())
+        && even_step(numbers).is_some_and(|step| step > 0.0)
+}
+
+/// Several lines of a scan behind each other, whose grid is not known.
+pub(super) fn refuse_lines(line: Option<usize>, given: &str) -> ContentError {
+    let expected = "one line of a scan: a file for each; or columns x, y, z, or a matrix of heights";
+    ContentError::value(line, "lines of a scan", given, expected)
 }
 
 /// The values, each once, in order.

@@ -2,8 +2,9 @@
 
 use std::borrow::Cow;
 
-use super::numbers::{is_missing, number};
-use super::text::{fields, unquoted};
+use asperity::tables::{fields, unquoted};
+
+use super::numbers::{is_missing, is_number};
 
 /// A line of a text, with its number from 1.
 pub type Line<'a> = (usize, &'a str);
@@ -24,27 +25,34 @@ impl Separator {
     pub fn split(self, line: &str) -> Vec<Cow<'_, str>> {
         match self {
             Self::Letter(letter) => fields(line, letter).collect(),
-            Self::Blanks => line.split_whitespace().map(unquoted).collect(),
+            Self::Blanks => words(line).map(unquoted).collect(),
         }
     }
+}
 
-    /// Whether a comma in a number stands before its decimals.
-    pub fn allows_decimal_comma(self) -> bool {
-        self != Self::Letter(',')
-    }
+/// What stands between blanks and tabs; other blanks, U+00A0 and its like, part thousands.
+fn words(line: &str) -> impl Iterator<Item = &str> {
+    line.split([' ', '\t', '\r', '\n']).filter(|word| !word.is_empty())
 }
 
 /// What a line is.
 pub(super) enum Kind {
     Blank,
     Comment,
-    /// `gaps`: some of its fields are empty.
-    Data {
-        separator: Separator,
-        columns: usize,
-        gaps: bool,
-    },
+    Data(Form),
     Other,
+}
+
+/// How a row of numbers is parted.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Form {
+    pub(super) separator: Separator,
+    /// Its fields.
+    pub(super) width: usize,
+    /// Its fields up to the last that is not empty.
+    pub(super) columns: usize,
+    /// Whether some of these are empty.
+    pub(super) gaps: bool,
 }
 
 /// Without blanks around it; but a tab at the end may stand before an empty column.
@@ -91,12 +99,12 @@ fn plain_decimals(line: &str, letter: char) -> Option<usize> {
     }
 }
 
-/// What a line is; one that can belong to the open block is tried with the separator and the columns of that first.
+/// What a line is; one that can belong to the open block is tried with the separator and the width of that first.
 pub(super) fn kind(line: &str, open: Option<(Separator, usize)>) -> Kind {
-    if let Some((Separator::Letter(letter), columns)) = open
-        && plain_decimals(line, letter) == Some(columns)
+    if let Some((Separator::Letter(letter), width)) = open
+        && plain_decimals(line, letter) == Some(width)
     {
-        return Kind::Data { separator: Separator::Letter(letter), columns, gaps: false };
+        return Kind::Data(Form { separator: Separator::Letter(letter), width, columns: width, gaps: false });
     }
     let bare = line.trim();
     if bare.is_empty() {
@@ -105,13 +113,13 @@ pub(super) fn kind(line: &str, open: Option<(Separator, usize)>) -> Kind {
     if is_comment(bare) {
         return Kind::Comment;
     }
-    if let Some((separator, columns)) = open {
+    if let Some((separator, width)) = open {
         let row = Shape::read(line, separator);
         // The last fields of a row may be left out. What begins with a number is a row, though words stand in it.
-        let ragged = matches!(separator, Separator::Letter(_)) && (2..columns).contains(&row.columns);
-        let fits = row.columns == columns || (ragged && row.is_data());
+        let ragged = matches!(separator, Separator::Letter(_)) && row.width > 1 && row.columns <= width;
+        let fits = row.width == width || (ragged && row.is_data());
         if fits && (row.is_data() || (row.begins_with_number && row.columns > 1)) {
-            return Kind::Data { separator, columns, gaps: row.has_gaps() };
+            return Kind::Data(Form { width, ..row.form(separator) });
         }
     }
     let rows = || {
@@ -124,12 +132,13 @@ pub(super) fn kind(line: &str, open: Option<(Separator, usize)>) -> Kind {
     // Numbers alone first: `0,5 1,5` are two, and not 0, `5 1` and 5.
     let found =
         rows().find(|(_, row)| row.is_data() && row.words == 0).or_else(|| rows().find(|(_, row)| row.is_data()));
-    found.map_or(Kind::Other, |(separator, row)| Kind::Data { separator, columns: row.columns, gaps: row.has_gaps() })
+    found.map_or(Kind::Other, |(separator, row)| Kind::Data(row.form(separator)))
 }
 
 /// What the fields of a line are.
 #[derive(Clone, Copy, Debug, Default)]
 struct Shape {
+    width: usize,
     columns: usize,
     numbers: usize,
     words: usize,
@@ -138,27 +147,29 @@ struct Shape {
 
 impl Shape {
     fn read(line: &str, separator: Separator) -> Self {
-        let decimal_comma = separator.allows_decimal_comma();
-        let (mut row, mut count, mut last) = (Self::default(), 0, 0);
+        let mut row = Self::default();
         let mut add = |field: &str| {
-            count += 1;
+            row.width += 1;
             if !field.is_empty() {
-                last = count;
+                row.columns = row.width;
             }
-            if number(field, decimal_comma).is_some() {
+            if is_number(field) {
                 row.numbers += 1;
-                row.begins_with_number |= count == 1;
+                row.begins_with_number |= row.width == 1;
             } else if !is_missing(field) {
                 row.words += 1;
             }
         };
         match separator {
             Separator::Letter(letter) => fields(line, letter).for_each(|field| add(&field)),
-            Separator::Blanks => line.split_whitespace().for_each(|field| add(&unquoted(field))),
+            Separator::Blanks => words(line).for_each(|field| add(&unquoted(field))),
         }
-        // `x;z;` has two columns, and `x;` has a height that is missing.
-        row.columns = last.max(count.min(2));
         row
+    }
+
+    fn form(&self, separator: Separator) -> Form {
+        let gaps = self.numbers + self.words < self.columns;
+        Form { separator, width: self.width, columns: self.columns, gaps }
     }
 
     /// Numbers alone, more numbers than words, or a number and behind it a word that may be a mistake.
@@ -166,10 +177,6 @@ impl Shape {
         let mixed = self.numbers >= 2 && self.numbers > self.words;
         let mistaken = self.begins_with_number && self.words == 1 && self.columns == 2;
         self.numbers > 0 && (self.words == 0 || mixed || mistaken)
-    }
-
-    fn has_gaps(&self) -> bool {
-        self.numbers + self.words < self.columns
     }
 }
 

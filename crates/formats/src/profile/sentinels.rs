@@ -1,7 +1,9 @@
 //! Numbers that stand for a height that was not measured: -9999, 1e38 and the like.
 
-use super::options::{MeasuredPoints, Missing};
-use crate::tables::{ContentError, ReadingNote};
+use asperity::scene::Missing;
+use asperity::tables::{ContentError, ReadingNote};
+
+use super::MeasuredPoints;
 
 /// Numbers that instruments are known to write so, beside those of nines and the largest; others are told by standing
 /// there more than once.

@@ -3,7 +3,9 @@
 //! Their numbers have no units: times are taken in s, and E_0 stands in a comment, with its unit.
 
 use super::{ModulusKind, WrittenSeries, WrittenTerm, note};
-use crate::tables::{ContentError, Line, POSITIVE, ReadingNote, number, shortened};
+use asperity::tables::{ContentError, POSITIVE, ReadingNote, shortened};
+
+use crate::text::{Decimal, Line};
 
 /// The series in the cards of a text; `None` where there are none.
 pub(super) fn read(text: &str) -> Option<Result<WrittenSeries<'_>, ContentError>> {
@@ -24,7 +26,7 @@ pub(super) fn read(text: &str) -> Option<Result<WrittenSeries<'_>, ContentError>
         (None, None) => return None,
     };
     let name = if abaqus.is_some() { "Abaqus" } else { "Ansys" };
-    let mut notes = vec![note("relaxation times in s are assumed", true)];
+    let mut notes = vec![note(format!("a card of {name}; relaxation times in s are assumed"), true)];
     notes.extend(ignored);
     notes.extend(of_ansys(&["PRONY", "BULK"]).next().map(|(line, text)| {
         note(format!("line {line} ({text}) is not taken: the model's Poisson's ratio does not relax"), true)
@@ -32,7 +34,7 @@ pub(super) fn read(text: &str) -> Option<Result<WrittenSeries<'_>, ContentError>
     Some(terms.map(|terms| WrittenSeries {
         terms,
         kind: ModulusKind::Relative,
-        modulus_note: note(format!("a card of {name}"), false),
+        names_unit: true,
         line: Some(line),
         header: lines().map(|(number, line)| (number, line.trim_start_matches(['*', '!', '#', '/', ' ']))).collect(),
         comment,
@@ -126,7 +128,7 @@ fn ansys_terms<'a>(lines: impl Iterator<Item = Line<'a>>) -> Result<Vec<WrittenT
 }
 
 fn share(line: usize, field: &str) -> Result<f64, ContentError> {
-    let found = number(field, false).filter(|share| (0.0..=1.0).contains(share));
+    let found = Decimal::Point.read(field).filter(|share| (0.0..=1.0).contains(share));
     found.ok_or_else(|| {
         ContentError::value(Some(line), "modulus", &format!("\"{field}\""), "a share of E_0, from 0 to 1")
     })
@@ -134,5 +136,5 @@ fn share(line: usize, field: &str) -> Result<f64, ContentError> {
 
 fn seconds(line: usize, field: &str) -> Result<f64, ContentError> {
     let error = || ContentError::value(Some(line), "relaxation_time", &format!("\"{field}\""), &POSITIVE.to_string());
-    number(field, false).filter(|time| POSITIVE.holds(*time)).ok_or_else(error)
+    Decimal::Point.read(field).filter(|time| POSITIVE.holds(*time)).ok_or_else(error)
 }

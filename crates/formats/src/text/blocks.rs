@@ -1,15 +1,17 @@
 //! Where the tables stand in a text: runs of lines of numbers, and the lines above them.
 
-use super::lines::{Kind, Line, Separator, is_comment, kind, trimmed, without_sign};
-use super::numbers::NumberStyle;
-use super::text::Row;
+use asperity::tables::Row;
+
+use super::lines::{Form, Kind, Line, Separator, is_comment, kind, trimmed, without_sign};
 
 /// A run of lines of numbers with the same number of fields, and what stands above it.
 #[derive(Clone, Debug)]
 pub struct Block<'a> {
     /// Parts its fields.
     pub separator: Separator,
-    /// Fields of a line.
+    /// Fields of a line, empty ones at its end among them.
+    pub width: usize,
+    /// Columns that hold something: fields up to the last that is not empty in some row.
     pub columns: usize,
     /// The lines between the block before it and its first row, blank ones left out; comments without their sign.
     pub above: Vec<Line<'a>>,
@@ -21,7 +23,7 @@ pub struct Block<'a> {
     pub rows: usize,
     /// Where its first row begins in the text, in bytes.
     pub start: usize,
-    /// Some fields of its first row are empty.
+    /// Some fields of its first row are empty before the last that is not.
     gaps: bool,
     /// The lines above that are comments.
     pub(super) comments: Vec<usize>,
@@ -39,12 +41,13 @@ struct Blocks<'a> {
 }
 
 impl<'a> Blocks<'a> {
-    /// Adds a row to the last block or to a new one: its line, where that begins, its separator and columns.
-    fn add_row(&mut self, (line, start): (usize, usize), form: (Separator, usize), gaps: bool) {
+    /// Adds a row, its line and where that begins, to the last block or to a new one.
+    fn add_row(&mut self, (line, start): (usize, usize), form: Form) {
         let is_open = self.is_open;
-        let goes_on = |block: &&mut Block<'_>| is_open && (block.separator, block.columns) == form;
+        let goes_on =
+            |block: &&mut Block<'_>| is_open && (block.separator, block.width) == (form.separator, form.width);
         if let Some(block) = self.blocks.last_mut().filter(goes_on) {
-            (block.last, block.rows) = (line, block.rows + 1);
+            (block.last, block.rows, block.columns) = (line, block.rows + 1, block.columns.max(form.columns));
             self.above.clear();
             return;
         }
@@ -54,9 +57,10 @@ impl<'a> Blocks<'a> {
             let text = trimmed(self.text[row.start..].lines().next().unwrap_or_default());
             above = row.above.into_iter().chain([(row.first, text)]).chain(above).collect();
         }
-        let (separator, columns) = form;
+        let Form { separator, width, columns, gaps } = form;
         let comments = std::mem::take(&mut self.comments);
-        self.blocks.push(Block { separator, columns, above, first: line, last: line, rows: 1, start, gaps, comments });
+        let (first, last, rows) = (line, line, 1);
+        self.blocks.push(Block { separator, width, columns, above, first, last, rows, start, gaps, comments });
         self.is_open = true;
     }
 }
@@ -68,17 +72,15 @@ impl<'a> Block<'a> {
         let mut start = 0;
         for (number, line) in (1..).zip(text.split_inclusive('\n')) {
             let bare = trimmed(line);
-            match kind(
-                bare,
-                found.blocks.last().filter(|_| found.is_open).map(|block| (block.separator, block.columns)),
-            ) {
+            match kind(bare, found.blocks.last().filter(|_| found.is_open).map(|block| (block.separator, block.width)))
+            {
                 Kind::Blank => (),
                 Kind::Comment => {
                     found.is_open &= !comments_part;
                     found.comments.push(number);
                     found.above.push((number, without_sign(bare)));
                 }
-                Kind::Data { separator, columns, gaps } => found.add_row((number, start), (separator, columns), gaps),
+                Kind::Data(form) => found.add_row((number, start), form),
                 Kind::Other => {
                     found.is_open = false;
                     found.above.push((number, bare));
@@ -94,20 +96,15 @@ impl<'a> Block<'a> {
         Self { above: lines.iter().chain(&self.above).copied().collect(), ..self.clone() }
     }
 
-    /// The block as one column of numbers with decimal commas.
-    pub fn as_column(&self) -> Self {
-        Self { separator: Separator::Blanks, columns: 1, ..self.clone() }
+    /// The block with other lines above it.
+    pub fn under(&self, above: Vec<Line<'a>>) -> Self {
+        Self { above, ..self.clone() }
     }
 
     /// The rows of the block, from its first to its last.
     pub fn rows(&self, text: &'a str) -> impl Iterator<Item = Row<'a>> {
         let separator = self.separator;
         self.lines(text).map(move |(line, row)| Row { line, fields: separator.split(row) })
-    }
-
-    /// How its numbers are written, as far as the separator says.
-    pub fn style(&self) -> NumberStyle {
-        NumberStyle::new(self.separator.allows_decimal_comma())
     }
 
     /// The lines behind the block that are neither blank nor comments.

@@ -1,9 +1,9 @@
-//! How a profile file is to be read, and the points that come out of it.
+//! How a profile file is to be read.
 
 use std::str::FromStr;
 
 use crate::scene::values::{Word, words};
-use crate::tables::{ContentError, ReadingNote, Unit};
+use crate::tables::Unit;
 
 /// How a file is to be read. What is not given is as the file says, or else as the defaults are.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,8 +20,9 @@ pub struct ProfileOptions {
     pub depth: Option<Depth>,
     /// What a third column means; `None`: what its name in the header says.
     pub third_column: Option<ThirdColumn>,
-    /// The columns of x and z, by their names or numbers from 1, or of z alone; none: by their names in the file.
-    pub columns: Vec<String>,
+    /// The columns of x, y and z, each by its axis and its name or number from 1; those left out: by their names in the
+    /// file.
+    pub columns: Vec<(String, String)>,
     /// The distance of points along x, and of lines along y, m, of a file without them; none where the file has them.
     pub spacing: Vec<f64>,
     /// The line of an areal measurement, from 1; `None`: the middle one.
@@ -125,58 +126,21 @@ option_words!(Depth: "up" Up, "down" Down);
 option_words!(ThirdColumn: "invalid" Invalid, "valid" Valid, "ignore" Ignore);
 
 impl LengthUnit {
-    pub(super) fn unit(self) -> Unit {
+    /// The unit itself.
+    pub fn unit(self) -> Unit {
         Unit::parse(self.as_word()).unwrap_or(Unit::ONE)
     }
 }
 
-/// Points as they stand in a file.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct MeasuredPoints {
-    /// Positions.
-    pub x: Vec<f64>,
-    /// Heights; NaN where one is missing.
-    pub z: Vec<f64>,
-    /// The lines of the points in the file; none where it has no lines.
-    pub lines: Vec<usize>,
-    /// The units of x and z that the file names.
-    pub units: [Option<Unit>; 2],
-    /// Whether x follows from a spacing, which is in m whatever the units are.
-    pub is_spaced: bool,
-    /// Whether they grow downwards, as far as the file tells.
-    pub is_depth: bool,
-    /// What may not be meant in them.
-    pub warnings: Vec<String>,
-    /// How they were read.
-    pub notes: Vec<ReadingNote>,
-}
-
 impl ProfileOptions {
+    /// The columns of a list, x and z, or z alone, by their axes.
+    pub fn axes(names: &[String]) -> Vec<(String, String)> {
+        let axes: &[&str] = if names.len() == 1 { &["z"] } else { &["x", "z"] };
+        axes.iter().map(|axis| (*axis).to_owned()).zip(names.iter().cloned()).collect()
+    }
+
     /// Whether numbers of a file are depths, where the file itself says that they are or not.
-    pub(super) fn turns_over(&self, is_depth: bool) -> bool {
+    pub fn turns_over(&self, is_depth: bool) -> bool {
         self.depth.map_or(is_depth, |depth| depth == Depth::Down)
-    }
-}
-
-impl MeasuredPoints {
-    /// None so far, with memory for up to `most`.
-    pub(super) fn with_capacity(most: usize) -> Self {
-        let numbers = || Vec::with_capacity(most);
-        Self { x: numbers(), z: numbers(), lines: Vec::with_capacity(most), ..Self::default() }
-    }
-
-    /// Adds a point in a line of the file.
-    pub fn push(&mut self, line: usize, x: f64, z: f64) {
-        self.x.push(x);
-        self.z.push(z);
-        self.lines.push(line);
-    }
-
-    /// Refuses point `i`, by its line or else by its number from 1.
-    pub fn refuse(&self, i: usize, axis: &str, given: &str, expected: &str) -> ContentError {
-        match self.lines.get(i) {
-            Some(&line) => ContentError::value(Some(line), axis, given, expected),
-            None => ContentError::value(None, &format!("{axis}[{}]", i + 1), given, expected),
-        }
     }
 }

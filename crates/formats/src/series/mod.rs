@@ -2,38 +2,108 @@
 //! table, or as cards of Abaqus and Ansys.
 
 mod cards;
-mod table;
 
-use super::PronyTerm;
-use super::keys;
-use crate::tables::{ContentError, Dimension, Line, ReadingNote, Unit, decode, number, plain, words};
+use asperity::scene::ElasticConstants;
+use asperity::tables::{
+    ContentError, Dimension, FileKind, NOT_NEGATIVE, POSITIVE, ReadColumn, ReadTable, ReadingNote, Role, Unit,
+    UnitRule, decode,
+};
 
-/// What relates the moduli of a file to those of the scene.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct ElasticConstants {
-    pub(super) poisson_ratio: f64,
-    /// E_∞, Pa.
-    pub(super) equilibrium_modulus: f64,
+use crate::text::{GivenColumns, Line, number, plain, read};
+
+const ROLES: [Role; 5] = [
+    Role::new(
+        "relaxation_time",
+        "relaxation times, relaxation, time, times, t, tau, τ, tau i, tau j, tau k, tau n, τi, τj, t i, tau1, tau 1, rel \
+         time, time constant, relaxationszeit, zeit",
+        Dimension::Time,
+    )
+    .within(POSITIVE),
+    Role::new(
+        "modulus",
+        "moduli, E, E_i, E_j, E_k, E_n, E1, young's modulus, youngs modulus, tensile modulus, maxwell modulus, relaxation \
+         modulus, stiffness, spring stiffness, relaxation strength, modul",
+        Dimension::Pressure,
+    )
+    .within(NOT_NEGATIVE)
+    .optional(),
+    Role::new(
+        "shear_modulus",
+        "shear moduli, G, G_i, G_j, G_k, G_n, shear relaxation modulus",
+        Dimension::Pressure,
+    )
+    .within(NOT_NEGATIVE)
+    .optional(),
+    Role::new(
+        "relative_modulus",
+        "relative moduli, rel mod, rel modulus, normalised modulus, normalized modulus, relative shear modulus, prony \
+         ratio, shear prony ratio, g, g_i, g_j, g_k, g_n, g_p, g_i prony, g i p, e_i/e_0, E/E0, g/g0, G/G0, alpha, alpha i, α, α_i",
+        Dimension::Number,
+    )
+    .within(NOT_NEGATIVE)
+    .optional(),
+    Role {
+        unit: UnitRule::Ignored,
+        ..Role::new("bulk_modulus", "k, k_i, k_j, k_n, k_p, k i prony, bulk, bulk moduli, relative bulk modulus, bulk prony ratio", Dimension::Number)
+            .within(NOT_NEGATIVE)
+            .optional()
+    },
+];
+/// What people write of a series.
+pub const SERIES: FileKind = FileKind {
+    one_of: &[&["modulus", "shear_modulus", "relative_modulus"]],
+    ..FileKind::new(
+        "a Prony series",
+        &ROLES,
+        "a relaxation time and a modulus: relaxation_time [s], modulus [Pa]; tau_i, E_i, G_i, or relative to E_0: g_i, \
+         rel_mod",
+    )
+};
+
+/// Reads a series from the bytes of a file: cards, or columns found by their names, with units; without names a
+/// relaxation time in s and a modulus in Pa. The table has moduli of tension, in Pa.
+pub(crate) fn read_series(
+    bytes: &[u8],
+    elastic: ElasticConstants,
+    given: &GivenColumns,
+) -> Result<ReadTable, ContentError> {
+    let text = decode(bytes)?;
+    let written = match cards::read(&text) {
+        Some(written) => written?,
+        None => table(&text, given)?,
+    };
+    written.convert(elastic)
 }
 
-/// A series, and how it was read.
-#[derive(Debug)]
-pub(super) struct PronySeries {
-    pub(super) terms: Vec<PronyTerm>,
-    pub(super) notes: Vec<ReadingNote>,
-}
-
-impl PronySeries {
-    /// Reads a series from the bytes of a file: cards, or columns found by their names, with units; without names a
-    /// relaxation time in s and a modulus in Pa.
-    pub(super) fn parse(bytes: &[u8], elastic: ElasticConstants) -> Result<Self, ContentError> {
-        let text = decode(bytes)?;
-        let written = match cards::read(&text) {
-            Some(written) => written?,
-            None => table::read(&text)?,
-        };
-        written.convert(elastic)
-    }
+/// Reads the only table of a text.
+fn table<'a>(text: &'a str, given: &GivenColumns) -> Result<WrittenSeries<'a>, ContentError> {
+    let (mut table, header) = read(text, &SERIES, given)?;
+    let keys = [
+        ("modulus", ModulusKind::Tension),
+        ("shear_modulus", ModulusKind::Shear),
+        ("relative_modulus", ModulusKind::Relative),
+    ];
+    let (column, kind) = keys
+        .iter()
+        .find_map(|(key, kind)| Some((table.column(key)?, *kind)))
+        .unwrap_or((&table.columns[0], ModulusKind::Tension));
+    let (times, bulk) = (table.values("relaxation_time"), table.column("bulk_modulus"));
+    let term = |i: usize| WrittenTerm {
+        line: table.lines[i],
+        time: times[i],
+        modulus: column.values[i],
+        bulk: bulk.map(|bulk| bulk.values[i]),
+    };
+    let names_unit = column.names_unit;
+    Ok(WrittenSeries {
+        terms: (0..times.len()).map(term).collect(),
+        kind,
+        names_unit,
+        line: table.line,
+        header,
+        comment: "#",
+        notes: std::mem::take(&mut table.notes),
+    })
 }
 
 /// What the moduli of a file are.
@@ -62,8 +132,8 @@ struct WrittenTerm {
 struct WrittenSeries<'a> {
     terms: Vec<WrittenTerm>,
     kind: ModulusKind,
-    /// How the moduli were read; assumed where the file does not say that they are in Pa.
-    modulus_note: ReadingNote,
+    /// Whether the file says in which unit they are.
+    names_unit: bool,
     /// The line of its names.
     line: Option<usize>,
     /// Lines that may hold E_0, without the signs of comments.
@@ -79,12 +149,11 @@ fn note(text: impl Into<String>, assumed: bool) -> ReadingNote {
 
 impl WrittenSeries<'_> {
     /// The terms: moduli of tension in Pa.
-    fn convert(mut self, elastic: ElasticConstants) -> Result<PronySeries, ContentError> {
+    fn convert(mut self, elastic: ElasticConstants) -> Result<ReadTable, ContentError> {
         let sum: f64 = self.terms.iter().map(|term| term.modulus).sum();
-        if self.kind != ModulusKind::Relative && self.modulus_note.assumed {
+        if self.kind != ModulusKind::Relative && !self.names_unit {
             self.check_assumed_unit(sum, elastic)?;
         }
-        self.notes.push(self.modulus_note.clone());
         let factor = match self.kind {
             ModulusKind::Relative => self.instantaneous_modulus(sum, elastic)?,
             ModulusKind::Shear => {
@@ -98,14 +167,21 @@ impl WrittenSeries<'_> {
             let text = "bulk moduli (k_i) are not used: the model's Poisson's ratio does not relax";
             self.notes.push(note(text, true));
         }
-        let range = keys::range_of("material.prony.modulus");
-        let term = |term: &WrittenTerm| {
+        let mut columns: Vec<ReadColumn> = Vec::new();
+        for (index, role) in asperity::scene::SERIES.roles.iter().enumerate() {
+            columns.push(ReadColumn::new(role, index, Unit::si(role.dimension)));
+        }
+        for term in &self.terms {
             let modulus = term.modulus * factor;
-            let given = format!("{modulus:?} Pa");
-            let error = || ContentError::value(Some(term.line), "modulus", &given, &range.to_string());
-            if range.holds(modulus) { Ok(PronyTerm { relaxation_time: term.time, modulus }) } else { Err(error()) }
-        };
-        Ok(PronySeries { terms: self.terms.iter().map(term).collect::<Result<_, _>>()?, notes: self.notes })
+            if !NOT_NEGATIVE.holds(modulus) {
+                let given = format!("{modulus:?} Pa");
+                return Err(ContentError::value(Some(term.line), "modulus", &given, &NOT_NEGATIVE.to_string()));
+            }
+            columns[0].values.push(term.time);
+            columns[1].values.push(modulus);
+        }
+        let lines = self.terms.iter().map(|term| term.line).collect();
+        Ok(ReadTable { columns, lines, notes: self.notes, line: self.line })
     }
 
     /// Moduli without a unit may be relative to an E_0 of the header. Others that look relative, or are no share of the
@@ -116,7 +192,7 @@ impl WrittenSeries<'_> {
         let is_relative = sum > 0.0 && sum <= 1.0;
         if is_relative && self.header.iter().any(|&line| Setting::read(line).is_some()) {
             self.kind = ModulusKind::Relative;
-            self.modulus_note = note("moduli without a unit are taken as relative, for an E_0 is given", true);
+            self.notes.push(note("moduli without a unit are taken as relative, for an E_0 is given", true));
             return Ok(());
         }
         if !is_relative && sum >= LEAST * elastic.equilibrium_modulus {
@@ -182,16 +258,15 @@ struct Setting {
 
 impl Setting {
     fn read((line, text): Line<'_>) -> Option<Self> {
-        const TENSION: [&str; 7] =
-            ["e0", "e 0", "instantaneous modulus", "glassy modulus", "einst", "e inst", "e glassy"];
-        const SHEAR: [&str; 3] = ["g0", "g 0", "instantaneous shear modulus"];
+        const TENSION: [&str; 5] = ["e0", "instantaneousmodulus", "glassymodulus", "einst", "eglassy"];
+        const SHEAR: [&str; 2] = ["g0", "instantaneousshearmodulus"];
         let text = plain(text);
         let (name, value) = text.split_once(['=', ':', ';', ',', '\t'])?;
         let (bare, bracketed) = match name.rsplit_once(['[', '(']) {
             Some((bare, unit)) => (bare, Unit::parse(unit)),
             None => (name, None),
         };
-        let bare = words(bare).join(" ");
+        let bare: String = bare.to_lowercase().chars().filter(|letter| letter.is_alphanumeric()).collect();
         let is_shear = SHEAR.contains(&bare.as_str());
         if !is_shear && !TENSION.contains(&bare.as_str()) {
             return None;
@@ -204,7 +279,7 @@ impl Setting {
             line,
             name: name.trim().to_owned(),
             is_shear,
-            value: number(digits.trim(), true)?,
+            value: number(digits.trim())?,
             unit: unit.filter(|unit| unit.dimension == Dimension::Pressure),
         })
     }
@@ -216,14 +291,13 @@ mod tests {
 
     const ELASTIC: ElasticConstants = ElasticConstants { poisson_ratio: 0.5, equilibrium_modulus: 4e6 };
 
-    fn read(text: &str) -> Result<Vec<PronyTerm>, (Option<usize>, String)> {
-        let series = PronySeries::parse(text.as_bytes(), ELASTIC);
-        series.map(|series| series.terms).map_err(|error| (error.line, error.to_string()))
-    }
-
-    fn assumptions(text: &str) -> usize {
-        let series = PronySeries::parse(text.as_bytes(), ELASTIC);
-        series.map_or(99, |series| series.notes.iter().filter(|note| note.assumed).count())
+    fn read(text: &str) -> Result<Vec<[f64; 2]>, (Option<usize>, String)> {
+        let series = read_series(text.as_bytes(), ELASTIC, &[]);
+        let rows = |table: ReadTable| {
+            let rows = table.values("relaxation_time").iter().zip(table.values("modulus"));
+            rows.map(|(&time, &modulus)| [time, modulus]).collect()
+        };
+        series.map(rows).map_err(|error| (error.line, error.key))
     }
 
     #[test]
@@ -249,10 +323,9 @@ mod tests {
             for (term, (time, modulus)) in found.iter().zip([(1e-3, 2e6), (10.0, 5e5)]) {
                 // Rounding of the conversions.
                 let close = |value: f64, wanted: f64| (value / wanted - 1.0).abs() < 1e-15;
-                assert!(close(term.relaxation_time, time) && close(term.modulus, modulus), "{text:?}: {found:?}");
+                assert!(close(term[0], time) && close(term[1], modulus), "{text:?}: {found:?}");
             }
         }
-        assert_eq!(texts.map(assumptions), [2, 2, 0, 2, 0, 0, 0, 0, 2, 2, 3, 2, 3]);
     }
 
     /// A compound of E_0 = 10 MPa, as Abaqus' and Ansys' cards have it.
@@ -266,36 +339,25 @@ mod tests {
         ];
         for text in texts {
             let found = read(text).unwrap_or_else(|error| unreachable!("{text:?}: {error:?}"));
-            let expected =
-                [(1e-3, 2e6), (10.0, 5e5)].map(|(relaxation_time, modulus)| PronyTerm { relaxation_time, modulus });
+            let expected = [(1e-3, 2e6), (10.0, 5e5)].map(|(time, modulus)| [time, modulus]);
             assert_eq!(found, expected, "{text:?}");
         }
-        let refused = [
-            ("*Viscoelastic, time=PRONY\n0.2,0,1\n", 1, "E0 = not given: expected E_0 with its unit"),
-            (
-                "*Viscoelastic, time=CREEP TEST DATA\n0.2,0,1\n",
-                1,
-                "card = \"*Viscoelastic, time=CREEP TEST DATA\": expected",
-            ),
-            ("**E0=1MPa\n*Viscoelastic, time=PRONY\n0.2,1\n", 3, "columns = 2: expected three: g, k, tau"),
-            ("**E0=1MPa\n*Viscoelastic, time=PRONY\n2,0,1\n", 3, "modulus = \"2\": expected a share of E_0"),
-            ("!E0=1MPa\nTB,PRONY,1,1,2,SHEAR\nTBDATA,1,0.2\n", 3, "constants = 1: expected shares and times by turns"),
-            ("!E0=1MPa\nTB,PRONY,1,1,2,SHEAR\nTBDATA,3,0.2,1\n", 3, "TBDATA = 3: expected constants from 1 on"),
+        for (text, line, key) in [
+            ("*Viscoelastic, time=PRONY\n0.2,0,1\n", 1, "E0"),
+            ("*Viscoelastic, time=CREEP TEST DATA\n0.2,0,1\n", 1, "card"),
+            ("**E0=1MPa\n*Viscoelastic, time=PRONY\n0.2,1\n", 3, "columns"),
+            ("**E0=1MPa\n*Viscoelastic, time=PRONY\n2,0,1\n", 3, "modulus"),
+            ("!E0=1MPa\nTB,PRONY,1,1,2,SHEAR\nTBDATA,1,0.2\n", 3, "constants"),
+            ("!E0=1MPa\nTB,PRONY,1,1,2,SHEAR\nTBDATA,3,0.2,1\n", 3, "TBDATA"),
             (
                 "**E0=1MPa\n*Material, name=A\n*Viscoelastic, time=PRONY\n0.2,0,1\n*Material, name=B\n\
                  *Viscoelastic, time=PRONY\n0.3,0,1\n",
                 6,
-                "card = \"*Viscoelastic, time=PRONY\", a second one beside that of line 3: expected the series of one material",
+                "card",
             ),
-            (
-                "!E0=1MPa\nTB,PRONY,1,1,1,SHEAR\nTBDATA,1,0.2,1\nTB,PRONY,2,1,1,SHEAR\nTBDATA,1,0.3,1\n",
-                4,
-                "card = \"TB,PRONY,2,1,1,SHEAR\", a second one beside that of line 2: expected the series of one material",
-            ),
-        ];
-        for (text, line, message) in refused {
-            let (found, error) = read(text).err().unwrap_or_default();
-            assert!(found == Some(line) && error.starts_with(message), "{text:?}: {found:?} {error}");
+            ("!E0=1MPa\nTB,PRONY,1,1,1,SHEAR\nTBDATA,1,0.2,1\nTB,PRONY,2,1,1,SHEAR\nTBDATA,1,0.3,1\n", 4, "card"),
+        ] {
+            assert_eq!(read(text), Err((Some(line), key.to_owned())), "{text}");
         }
     }
 
@@ -303,7 +365,7 @@ mod tests {
     #[test]
     fn what_of_cards_is_not_taken_is_said() {
         let said = |text: &str| {
-            let series = PronySeries::parse(text.as_bytes(), ELASTIC).unwrap_or_else(|error| unreachable!("{error}"));
+            let series = read_series(text.as_bytes(), ELASTIC, &[]).unwrap_or_else(|error| unreachable!("{error}"));
             let notes = series.notes.into_iter().filter(|note| note.assumed).map(|note| note.text);
             notes.filter(|text| text.contains("not taken")).collect::<Vec<_>>()
         };
@@ -323,36 +385,26 @@ mod tests {
 
     #[test]
     fn refuses_what_is_no_series() {
-        let cases = [
-            ("", 1, "rows = 0: expected at least one row of numbers: a relaxation time and a modulus"),
-            ("tau,E\n", 1, "rows = 0: expected at least one row of numbers: a relaxation time and a modulus"),
-            ("tau,E\n1,2\n0,3\n", 3, "column 1 (tau) = \"0\": expected a number from 1e-30 to 1e30"),
-            ("1,2\n2,-3\n", 2, "column 2 (modulus) = \"-3\": expected 0 or a number from 1e-30 to 1e30"),
-            ("1,2,3\n", 1, "columns = 3: expected a relaxation time and a modulus"),
-            (
-                "tau [fortnights],E [Pa]\n1,2\n",
-                1,
-                "unit of column 1 (tau [fortnights]) = \"fortnights\": expected one of s, ms",
-            ),
-            ("tau [s],E [mPa]\n1,2\n", 1, "unit of column 2 (E [mPa]) = \"mPa\": expected one of Pa, kPa"),
-            ("a,b\n1,2\n", 1, "columns = \"a, b\": expected a relaxation time and a modulus"),
-            (
-                "g_i,k_i,tau_i\n0.5,0,1\n",
-                1,
-                "E0 = not given: expected E_0 with its unit, to which relative moduli refer",
-            ),
-            ("# E0 = 64\n# rel_mod, rel_time\n0.5,1\n", 1, "E0 = 64: expected a unit: one of Pa"),
-            ("g,tau\n0.5,1\n0.6,2\n", 1, "relative moduli = a sum of 1.1: expected relative moduli"),
-            ("1e-3,0.4\n1,0.5\n", 1, "modulus = at most 0.9 in all, without a unit: expected moduli in Pa"),
-            ("tau,E\n1e-3,30\n1,20\n", 1, "modulus = at most 50 in all, without a unit: expected moduli in Pa"),
-            ("# times in ms\ntau,E [MPa]\n1,2\n", 1, "unit = \"times in ms\": expected the unit beside the name"),
-            ("# units: ms, MPa\n1,2\n", 1, "unit = \"units: ms, MPa\": expected the unit beside the name"),
-            ("tau;E\n1,5;2e6\n2.5;1e6\n", 3, "column 1 (tau) = \"2.5\": expected numbers with decimal points or"),
-            ("1\0,2\n", 1, "bytes that are zero: expected text in UTF-8, UTF-16 or Latin-1"),
-        ];
-        for (text, line, message) in cases {
-            let (found, error) = read(text).err().unwrap_or_default();
-            assert!(found == Some(line) && error.starts_with(message), "{text:?}: {found:?} {error}");
+        for (text, line, key) in [
+            ("", 1, "rows"),
+            ("tau,E\n", 1, "rows"),
+            ("tau,E\n1,2\n0,3\n", 3, "column 1 \"tau\""),
+            ("1,2\n2,-3\n", 2, "column 2"),
+            ("1,2,3\n", 1, "columns"),
+            ("tau [fortnights],E [Pa]\n1,2\n", 1, "unit of column 1 \"tau [fortnights]\""),
+            ("tau [s],E [mPa]\n1,2\n", 1, "unit of column 2 \"E [mPa]\""),
+            ("a,b\n1,2\n", 1, "columns"),
+            ("g_i,k_i,tau_i\n0.5,0,1\n", 1, "E0"),
+            ("# E0 = 64\n# rel_mod, rel_time\n0.5,1\n", 1, "E0"),
+            ("g,tau\n0.5,1\n0.6,2\n", 1, "relative moduli"),
+            ("1e-3,0.4\n1,0.5\n", 1, "modulus"),
+            ("tau,E\n1e-3,30\n1,20\n", 1, "modulus"),
+            ("# times in ms\ntau,E [MPa]\n1,2\n", 1, "unit"),
+            ("tau;E\n1,5;2e6\n2.5;1e6\n", 3, "column 1 \"tau\""),
+            ("\"tau [s]\",\"E [Pa]\"\n\"1\",0,2e6\n\"2\",1,1e6\n", 1, "columns"),
+            ("1\0,2\n", 1, ""),
+        ] {
+            assert_eq!(read(text), Err((Some(line), key.to_owned())), "{text}");
         }
     }
 }
