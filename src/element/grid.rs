@@ -100,7 +100,7 @@ impl OperatingPoint {
             let number = number.filter(|&number| number >= SMALLEST && is_possible(number));
             number.ok_or_else(|| table.cell_error(row, name, unit, "a number above 0"))
         };
-        let has_temperature = table.number(row, "temperature", "K")? != None;
+        let has_temperature = table.number(row, "temperature", "K")?.is_some();
         Ok(Self {
             speed: positive("speed", "m/s")?,
             load: positive(load.name(), load.unit())?,

@@ -169,7 +169,7 @@ impl FileKind {
         let has = |key: &str| table.column(key).is_some();
         let lacks = |role: &Role| role.presence == Presence::Required && !has(role.key);
         let lacks_all = |keys: &&[&str]| !keys.iter().any(|key| has(key));
-        if self.roles.iter().any(lacks) || self.one_of.iter().any(|keys| lacks_all(keys)) {
+        if self.roles.iter().any(lacks) || self.one_of.iter().any(lacks_all) {
             let found: Vec<&str> = table.columns.iter().map(|column| column.key).collect();
             return Err(ContentError::value(table.line, "columns", &found.join(", "), self.expected));
         }
