@@ -17,11 +17,11 @@
 //! | [`scene`] | math, tables | a scene as data: reading TOML, profiles and materials; parameters; checks and warnings |
 //! | [`model`] | math, scene | the mechanical model: links and their forces, contact laws, state, energies, stiffness scales, reduction |
 //! | `integrator` | math, model | implicit Runge-Kutta steps, with modes held or set-valued friction: stages, dense output, error, sensitivities |
-//! | `contact` | math, scene, model, integrator | the rules of mode changes and the impact, event location, the end-of-step correction |
-//! | [`outputs`] | math, scene, model, integrator | the table of the outputs: names, units, values, derivatives, dependencies |
-//! | [`simulation`] | math, scene, model, integrator, contact, outputs | a run: its state, the steps of both methods and their lengths, local regions, the reference run |
-//! | [`element`] | math, table, scene, model, outputs, simulation | a point-contact element: the forces of a layer, looked up in a table of a sweep |
-//! | [`patch`] | math, table, scene, model, outputs, element | a contact patch: many point-contact elements on a rigid face, in three dimensions |
+//! | `contact` | integrator, math, model, scene | the rules of mode changes and the impact, event location, the end-of-step correction |
+//! | [`outputs`] | integrator, model, scene | the table of the outputs: names, units, values, derivatives, dependencies |
+//! | [`simulation`] | contact, integrator, math, model, outputs, scene | a run: its state, the steps of both methods and their lengths, local regions, the reference run |
+//! | [`element`] | math, model, outputs, scene, simulation, table | a point-contact element: the forces of a layer, looked up in a table of a sweep |
+//! | [`patch`] | element, math, model, outputs, scene, table, tables | a contact patch: many point-contact elements on a rigid face, in three dimensions |
 //!
 //! # Use
 //!

@@ -28,9 +28,9 @@
 //! | `contact` | cli, files, npz, picture, terminal | `contact` |
 //! | `sweep` | cli, files, interrupt, output, picture, table_file, terminal | `sweep` |
 //! | `rank` | cli, files, picture, terminal | `rank` |
-//! | `converge` | cli, draft, files, interrupt, output, picture, resumable_table, terminal | `converge` |
+//! | `converge` | cli, draft, files, interrupt, picture, resumable_table, terminal | `converge` |
 //! | `fit` | cli, files, picture, terminal | `fit` |
-//! | `calibrate` | cli, files, interrupt, measured_friction, output, picture, resumable_table, terminal | `calibrate` |
+//! | `calibrate` | cli, files, interrupt, measured_friction, picture, resumable_table, terminal | `calibrate` |
 //! | `compare` | cli, files, measured_friction, picture, terminal | `compare` |
 //! | `material` | cli, files, picture, terminal | `material` |
 //! | `surface` | cli, files, picture, terminal | `surface` |

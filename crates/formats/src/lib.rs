@@ -8,7 +8,7 @@
 //! | `text` | | tables of text: dialects, names, units, numbers, and the table of a kind |
 //! | [`profile`] | text | lines of x and z, matrices, points on a grid, and what is done to them before they are a surface |
 //! | `series`, `spectrum` | text | Prony series and cards of them, power spectra |
-//! | `instruments` | profile | SDF, SUR, OpenCRG, text of Gwyddion; formats that are known and not read |
+//! | `instruments` | profile, text | SDF, SUR, OpenCRG, text of Gwyddion; formats that are known and not read |
 //! | `x3p` | profile | ISO 5436-2 (ISO 25178-72) |
 //! | [`workbook`] | | sheets as text |
 
