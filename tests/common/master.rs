@@ -80,7 +80,7 @@ impl Folder {
     pub fn with_scene(name: &str, scene: &str) -> Self {
         let folder = Self::new(name);
         fs::write(folder.scene_file(), scene).unwrap();
-        fs::write(folder.path().join("profile.csv"), "0,0\n1e-4,1e-6\n2e-4,0\n").unwrap();
+        fs::write(folder.path().join("profile.csv"), "x,z\n0,0\n1e-4,1e-6\n2e-4,0\n").unwrap();
         folder
     }
 

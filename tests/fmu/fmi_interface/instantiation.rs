@@ -166,7 +166,7 @@ fn the_guid_follows_whatever_would_run_differently() {
     let first = folder.description().0;
     assert_eq!(folder.description().0, first);
     assert_eq!(Folder::with_scene(" elsewhere", SCENE).description().0, first);
-    fs::write(folder.path().join("profile.csv"), "0,0\n1e-4,2e-6\n2e-4,0\n").unwrap();
+    fs::write(folder.path().join("profile.csv"), "x,z\n0,0\n1e-4,2e-6\n2e-4,0\n").unwrap();
     assert_ne!(folder.description().0, first);
     assert_ne!(Folder::with_scene("", &SCENE.replace("0.3", "0.4")).description().0, first);
 }
