@@ -32,7 +32,7 @@ const OF_A_SCENE: [&str; 15] = [
 ];
 
 #[derive(Debug, Args)]
-#[command(group(ArgGroup::new("scene_or_merge").required(true)))]
+#[command(group(ArgGroup::new("input").required(true)))]
 #[command(group(ArgGroup::new("speeds_or_merge").required(true).args(["speeds", "merge"])))]
 #[command(after_help = example!(
     "asperity sweep scenes/road/road.toml --speeds 1e-4..10/11 --pressures 3bar \\\n      --temperatures 5°C,20°C,40°C -o friction.csv"
