@@ -8,7 +8,7 @@ use std::{io, slice};
 use super::error::{Error, InputOutOfRange, RestoreError};
 use super::inputs::{CommunicationStep, InputKind, InputScales, Inputs, MAX_INPUTS};
 use super::log::{Category, Message};
-use super::model::{Experiment, FmuModel, FmuRun, RunRecord, RunState};
+use super::model::{CarriedFile, Experiment, FmuModel, FmuRun, RunRecord, RunState};
 use super::resources::SCENE_FILE;
 use super::variables::VariableRef;
 use asperity::model::{FlashKernel, Reduction, Replacement};
@@ -32,7 +32,7 @@ impl FmuModel for Arc<Scene> {
         SCENE_FILE
     }
 
-    fn carried(&self, folder: &FilePath) -> Result<Vec<(PathBuf, Vec<u8>)>, (PathBuf, io::Error)> {
+    fn carried(&self, folder: &FilePath) -> Result<Vec<CarriedFile>, (PathBuf, io::Error)> {
         let content = |file: &SceneFile| match file.carried(folder) {
             Ok(bytes) => Ok((file.carried_name.clone(), bytes)),
             Err(error) => Err((folder.join(&file.path), error)),

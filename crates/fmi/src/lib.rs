@@ -53,7 +53,7 @@ pub use exports::*;
 pub use inputs::{CommunicationStep, InputScales, Inputs, ProvisionalStep};
 pub use layer::{layer_motion, layer_scales, layer_start};
 pub use log::Category;
-pub use model::{Experiment, FmuModel};
+pub use model::{CarriedFile, Experiment, FmuModel};
 pub use resources::{PATCH_FILE, SCENE_FILE, TABLE_FILE};
 pub use variables::{Kind, Role, VariableRef, VariableTable};
 

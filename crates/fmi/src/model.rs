@@ -16,6 +16,9 @@ use asperity::patch::PatchState;
 use asperity::scene::{self, Extrapolation, FmuOptions, IntegerType, Parameter, ParameterError, Value};
 use asperity::simulation::SimulationState;
 
+/// A file that an FMU carries: its path relative to the definition's own, and what is in it.
+pub type CarriedFile = (PathBuf, Vec<u8>);
+
 /// What an FMU simulates, with its parameters as they are set.
 pub trait FmuModel: Debug {
     /// The model's name.
@@ -37,7 +40,7 @@ pub trait FmuModel: Debug {
     ///
     /// # Errors
     /// Where a file cannot be read, with its path.
-    fn carried(&self, _folder: &Path) -> Result<Vec<(PathBuf, Vec<u8>)>, (PathBuf, io::Error)> {
+    fn carried(&self, _folder: &Path) -> Result<Vec<CarriedFile>, (PathBuf, io::Error)> {
         Ok(Vec::new())
     }
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::{Error, InputOutOfRange, RestoreError};
 use super::inputs::{CommunicationStep, InputKind, InputScales, Inputs, MAX_INPUTS};
-use super::model::{Experiment, FmuModel, FmuRun, RunState};
+use super::model::{CarriedFile, Experiment, FmuModel, FmuRun, RunState};
 use super::resources::PATCH_FILE;
 use super::variables::VariableRef;
 use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchRun, PatchStart, PatchVariable, Pose};
@@ -43,7 +43,7 @@ impl FmuModel for Patch {
         PATCH_FILE
     }
 
-    fn carried(&self, folder: &Path) -> Result<Vec<(PathBuf, Vec<u8>)>, (PathBuf, io::Error)> {
+    fn carried(&self, folder: &Path) -> Result<Vec<CarriedFile>, (PathBuf, io::Error)> {
         let content = |file: &PathBuf| match self.carried(folder, file) {
             Ok(bytes) => Ok((file.clone(), bytes)),
             Err(error) => Err((folder.join(file), error)),

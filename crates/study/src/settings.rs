@@ -39,7 +39,10 @@ fn set(table: &mut dyn TableLike, path: &str, value: Value) -> Option<()> {
         (Item::Value(Value::Array(list)), Some(rest)) => {
             set(list.get_mut(element)?.as_inline_table_mut()?, rest, value)
         }
-        (Item::Value(Value::Array(list)), None) if element < list.len() => Some(drop(list.replace(element, value))),
+        (Item::Value(Value::Array(list)), None) if element < list.len() => {
+            list.replace(element, value);
+            Some(())
+        }
         _ => None,
     }
 }

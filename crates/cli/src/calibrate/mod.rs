@@ -189,7 +189,7 @@ fn drawn(
         ModelCurves { name: "after", stroke: Stroke::Solid, points: after },
     ];
     let rows = &calibration.measurements.rows;
-    Ok(picture::write(&calibration::picture(&free.scene().name, &grid, rows, &curves), path)?)
+    picture::write(&calibration::picture(&free.scene().name, &grid, rows, &curves), path)
 }
 
 fn candidates(command: &Calibrate) -> CandidateOptions {

@@ -92,7 +92,7 @@ fn run(study: &ConvergenceStudy, runs: Vec<RunRow>, table: &ResumableTable, outp
     });
     bar.finish_and_clear();
     findings.map_err(|ended| match ended {
-        Ended::Refused(error) => error.into(),
+        Ended::Refused(error) => error,
         Ended::Stopped(error) => error,
     })
 }

@@ -40,7 +40,7 @@ fn merge(command: &Sweep, output: &PathBuf) -> Result<(), Error> {
     check_outputs([output].into_iter().chain(&picture), taken)?;
     let tables = command.merge.iter().map(|path| SweepTable::read(path)).collect::<Result<Vec<_>, _>>()?;
     let (header, first) = (&tables[0].header, command.merge[0].display());
-    for (path, table) in command.merge.iter().zip(&tables).filter(|(_, table)| table.header != *header) {
+    if let Some((path, table)) = command.merge.iter().zip(&tables).find(|(_, table)| table.header != *header) {
         let found = [header, &table.header].map(SweepHeader::fingerprint);
         let difference = if found[0] == found[1] {
             "they have different points".to_owned()

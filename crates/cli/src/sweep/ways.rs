@@ -24,7 +24,7 @@ pub(super) fn sweep(
         SweepPlan::new(scene.clone(), &SweepOptions { sliding, ..options.clone() }, None)
     };
     let plans = ways.iter().map(plan).collect::<Result<Vec<_>, _>>()?;
-    plans.iter().take(1).filter_map(SweepPlan::warning).for_each(|warning| warn(warning));
+    plans.iter().take(1).filter_map(SweepPlan::warning).for_each(warn);
     let bar = terminal::bar((plans.len() * plans.first().map_or(0, |plan| plan.header().grid.count())) as u64);
     let tables: Vec<SweepTable> = plans.iter().map(|plan| plan.table(&Stop::default(), || bar.inc(1))).collect();
     bar.finish_and_clear();

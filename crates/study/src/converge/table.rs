@@ -275,7 +275,7 @@ mod tests {
             for change in [None, Some(pair(-0.5, 0.25))] {
                 let text = header.text(None) + &run.line(change) + "64,1\n" + &run.line(change);
                 let done = header.runs_done(&text, Path::new("t.csv")).unwrap();
-                assert_eq!(done.runs, [run.clone()]);
+                assert_eq!(done.runs, std::slice::from_ref(&run));
                 // One of two fields, and one that is there already.
                 assert_eq!(done.corrupt.len(), 2);
             }

@@ -88,6 +88,9 @@ pub enum Colours {
 /// A panel's quantity with its unit, of one of its axes.
 pub type Of<'a> = (&'a str, &'a str);
 
+/// The title of a panel, and what it shows.
+type TitledMarks = (String, Vec<Mark>);
+
 impl Picture {
     /// Rows below each other, without a title.
     pub fn of(rows: Vec<Row>) -> Self {
@@ -126,10 +129,10 @@ impl Picture {
 
     /// Rows of panels side by side: the horizontal axes are the same logarithmic one, the vertical ones the same linear one
     /// of a number along each row. The titles of the first row's panels stand for those below them too.
-    pub fn side_by_side(x: Of<'_>, rows: Vec<(&str, Vec<(String, Vec<Mark>)>)>) -> Self {
+    pub fn side_by_side(x: Of<'_>, rows: Vec<(&str, Vec<TitledMarks>)>) -> Self {
         let all = rows.iter().flat_map(|(_, panels)| panels).flat_map(|(_, marks)| xs(marks));
         let x = Axis::logarithmic(x, all.collect::<Vec<_>>());
-        let row = |(number, (quantity, panels)): (usize, (&str, Vec<(String, Vec<Mark>)>))| {
+        let row = |(number, (quantity, panels)): (usize, (&str, Vec<TitledMarks>))| {
             let y = panels.iter().flat_map(|(_, marks)| ys(marks)).collect::<Vec<_>>();
             let y = Axis::linear((quantity, ""), y, Fit::Round);
             let width = if panels.len() == 1 { 694.0 } else { 354.0 };

@@ -65,7 +65,7 @@ impl RankPlan {
         }
         let entry = |(scene, label): (RankScene, String)| -> Result<Entry, Error> {
             let RankScene { scene, file } = scene;
-            let refused = |error| Error::from(error).context(&label);
+            let refused = |error: Error| error.context(&label);
             let plan = SweepPlan::new(scene.clone(), &options, None).map_err(refused)?;
             let is_known = Uncertainty::of(&scene)?.0.is_empty();
             let uncertain = (!is_known).then(|| UncertainScene::new(scene)).transpose()?;

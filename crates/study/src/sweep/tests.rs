@@ -205,7 +205,7 @@ fn a_drawn_temperature_moves_all_temperatures() {
     assert!(
         there.rows.iter().all(|row| spread(row) > 1.005),
         "{:?}",
-        there.rows.iter().map(|row| spread(row)).collect::<Vec<_>>()
+        there.rows.iter().map(spread).collect::<Vec<_>>()
     );
 }
 
