@@ -28,7 +28,7 @@ fn find(study: &ConvergenceStudy, task: &Task) -> Result<Option<Findings>, Error
     match found {
         Ok(findings) => Ok(Some(findings)),
         Err(Ended::Stopped(())) => Ok(None),
-        Err(Ended::Refused(error)) => Err(error.into()),
+        Err(Ended::Refused(error)) => Err(error),
     }
 }
 
