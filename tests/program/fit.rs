@@ -356,7 +356,7 @@ fn what_is_read_is_not_written_over_and_what_is_wrong_is_refused() {
     fs::write(&data, "f [Hz],E' [MPa],E'' [MPa]\n1,2,-3\n").unwrap();
     let message = refused(&output, &[]);
     assert!(
-        message.contains("dma.csv:2: column 3 (E'' [MPa]) = \"-3\": expected a number from 1e-30 to 1e30 in Pa"),
+        message.contains("dma.csv:2: column 3 \"E'' [MPa]\" = \"-3\": expected a number from 1e-30 to 1e30 in Pa"),
         "{message}"
     );
     assert!(!output.exists());

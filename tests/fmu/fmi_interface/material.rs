@@ -83,7 +83,8 @@ fn another_compound_beside_the_scene_is_another_fmu() {
     let text = rubber().wlf([7.52, 119.75, 293.15], 293.15).set("material.prony", "compound.csv").text();
     let folder = Folder::with_scene("compound", &text);
     let guid = |compound: &str| {
-        fs::write(folder.path().join("compound.csv"), compound).unwrap();
+        let series = format!("relaxation_time [s],modulus [Pa]\n{compound}\n");
+        fs::write(folder.path().join("compound.csv"), series).unwrap();
         folder.description().0
     };
     assert_ne!(guid("1e-4,5e6"), guid("1e-4,5.1e6"));
