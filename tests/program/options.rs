@@ -186,7 +186,7 @@ fn a_setting_that_is_refused_says_which_keys_there_are() {
         ("fmu.outputs=['force']", "--set: fmu.outputs[1] = \"force\": expected one of \"forces\""),
         ("solver.method=steps", "--set: solver.method = \"steps\": expected one of"),
         ("layer.masses=1.5", "--set: layer.masses = 1.5: expected a whole number"),
-        ("excitation[9].duration=1", "--set: excitation[9].duration: excitation has 2 elements, counted from 1"),
+        ("excitation[9].duration=1", "--set: excitation[9].duration = 1: expected one of the 2 elements of excitation"),
         ("surface.kind=flat", "--set: surface.amplitude: unknown; allowed: kind"),
     ] {
         let message = refused(setting);
@@ -296,10 +296,10 @@ fn a_plot_has_a_chart_a_unit_and_draws_the_rows_asked_for() {
     for title in ["friction\n", "P_friction [W] in mW\n", "speed in m/s\n"] {
         assert!(text.contains(title), "{title}: {text}");
     }
-    // A disc and its edge for each of two rows in two charts, and in two legends.
-    assert_eq!(markers(&text), 2 * (2 * 2 + 2));
-    assert_eq!(markers(&drawn(&["--y", "friction", "--where", "status=steady", "--where", "pressure=200000"])), 2 * 3);
-    assert_eq!(markers(&drawn(&["--y", "friction", "--log", "x,y"])), 2 * 5);
+    // A disc for each of two rows in two charts, and in two legends.
+    assert_eq!(markers(&text), 2 * 2 + 2);
+    assert_eq!(markers(&drawn(&["--y", "friction", "--where", "status=steady", "--where", "pressure=200000"])), 3);
+    assert_eq!(markers(&drawn(&["--y", "friction", "--log", "x,y"])), 5);
     let refused = |options: &[&str]| String::from_utf8(plot(options).output().unwrap().stderr).unwrap();
     let message = refused(&["--y", "friction", "--where", "pressure=3e5"]);
     assert!(message.contains("no row with pressure = 3e5; its pressure has the values 100000, 200000"), "{message}");
