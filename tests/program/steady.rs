@@ -244,7 +244,7 @@ fn a_contact_of_a_map_is_drawn_as_maps() {
     let contact = |options: &[&str], picture: &str, data: &str| {
         let mut command = asperity();
         command.arg("contact").arg(&scene).args(["--pressure", "3e5", "--speed", "0.1"]).args(options);
-        run(command.arg("-o").arg(file(picture)).arg("--data").arg(file(data)))
+        run(command.arg("-o").arg(file(picture)).arg("--write").arg(file(data)))
     };
     let _ = contact(&[], "contact.svg", "contact.csv");
     let _ = contact(&[], "contact.png", "contact.npz");
