@@ -148,7 +148,7 @@ fn a_table_cut_off_is_completed() {
     assert_eq!(fs::read_to_string(&path).unwrap(), whole);
     // Another pressure is another study.
     let other = ["--pressure", "3e5", "--speed", "0.1"];
-    assert!(refused(&scene, &path, &other, 1).contains("fingerprint"));
+    assert!(refused(&scene, &path, &other, 1).contains("is the table of another converge: its fingerprint is"));
     study(&scene, &path, &[&FULL[..], &["--force"]].concat(), 0);
     assert_eq!(without_times(&fs::read_to_string(&path).unwrap()), without_times(&whole));
 }

@@ -5,11 +5,12 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Stdout, Write};
 use std::path::{Path, PathBuf};
 
+use asperity_study::Error;
 use asperity_study::files;
 use tempfile::{Builder, NamedTempFile, TempDir};
 
 use super::interrupt::Leftover;
-use super::output::{FileError, STANDARD_OUTPUT, is_standard_output, is_stream, unwritten};
+use super::output::{STANDARD_OUTPUT, is_standard_output, is_stream, unwritten};
 
 /// An output as it is being written. It takes its place when it is [finished](Self::finish); where the run ends before,
 /// whatever was there is still there.
@@ -37,19 +38,19 @@ impl Draft {
     ///
     /// # Errors
     /// Where it could not be written: there is no such folder, no permission, or a folder has the name.
-    pub(crate) fn create(path: &Path) -> Result<Self, FileError> {
+    pub(crate) fn create(path: &Path) -> Result<Self, Error> {
         let target = Target::new(path).map_err(unwritten(path))?;
         Ok(Self { path: path.to_owned(), file: BufWriter::new(target) })
     }
 
     /// Checks that the output at `path` can be written; a pipe is not opened, for its reader would see it end.
-    pub(crate) fn check(path: &Path) -> Result<(), FileError> {
+    pub(crate) fn check(path: &Path) -> Result<(), Error> {
         let is_stream = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
         if is_stream { Ok(()) } else { Self::create(path).map(drop) }
     }
 
     /// Puts the output in its place.
-    pub(crate) fn finish(self) -> Result<(), FileError> {
+    pub(crate) fn finish(self) -> Result<(), Error> {
         let target = self.file.into_inner().map_err(io::IntoInnerError::into_error);
         target.and_then(Target::finish).map_err(unwritten(&self.path))
     }
@@ -161,13 +162,13 @@ fn permissions(before: Option<&fs::Metadata>) -> fs::Permissions {
 }
 
 /// Writes a file at once: what is at `path` is the one before or this one, whole.
-pub(crate) fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), FileError> {
+pub(crate) fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), Error> {
     let mut draft = Draft::create(path)?;
     draft.write_all(content.as_ref()).map_err(unwritten(path))?;
     draft.finish()
 }
 
-pub(crate) fn print(text: &str) -> Result<(), FileError> {
+pub(crate) fn print(text: &str) -> Result<(), Error> {
     write(Path::new(STANDARD_OUTPUT), text)
 }
 
@@ -180,17 +181,17 @@ pub(crate) struct TablePlace {
 }
 
 impl TablePlace {
-    pub(crate) fn new(output: &Path) -> Result<Self, FileError> {
+    pub(crate) fn new(output: &Path) -> Result<Self, Error> {
         if !is_stream(output) {
             return Ok(Self { path: output.to_owned(), stream: None });
         }
-        let folder = tempfile::tempdir().map_err(FileError::io("write", &std::env::temp_dir()))?;
+        let folder = tempfile::tempdir().map_err(Error::io("write", &std::env::temp_dir()))?;
         let leftover = Leftover::new(folder.path());
         Ok(Self { path: folder.path().join("table.csv"), stream: Some((output.to_owned(), folder, leftover)) })
     }
 
     /// Writes the whole table where it is for a stream.
-    pub(crate) fn finish(self) -> Result<(), FileError> {
+    pub(crate) fn finish(self) -> Result<(), Error> {
         match &self.stream {
             Some((output, ..)) => write(output, files::bytes(&self.path)?),
             None => Ok(()),

@@ -9,10 +9,10 @@ use asperity::scene::{Scene, Setting};
 
 use super::draft::Draft;
 pub(crate) use super::draft::{print, write};
-pub(crate) use super::output::FileError;
 use super::output::of_set;
 pub(crate) use super::output::{is_standard_output, is_stream, named, not_drawn, overwrites};
 use super::terminal::{LabelledLine, labelled, note, warn};
+use asperity_study::Error;
 use asperity_study::files;
 pub(crate) use asperity_study::files::name_of;
 
@@ -23,7 +23,7 @@ pub(crate) fn picture_beside(table: &Path, named: Option<&PathBuf>) -> Option<Pa
 }
 
 /// Reads a scene, its keys overridden by `--set`, and prints its warnings and what was assumed in reading its tables.
-pub(crate) fn load(path: &Path, set: &[Setting]) -> Result<Scene, FileError> {
+pub(crate) fn load(path: &Path, set: &[Setting]) -> Result<Scene, Error> {
     let scene = files::load_scene(path, set).map_err(of_set)?;
     scene.warnings.iter().for_each(|warning| warn(warning));
     print_assumptions(&scene);
@@ -44,7 +44,7 @@ pub(crate) fn load_without_run(
     path: &Path,
     set: &[Setting],
     layer_slides: impl FnOnce(&Scene) -> bool,
-) -> Result<Scene, FileError> {
+) -> Result<Scene, Error> {
     let scene = files::load_scene(path, set).map_err(of_set)?;
     let mut unused = Vec::from_iter(scene.short_profile());
     if !layer_slides(&scene) {
@@ -66,12 +66,12 @@ pub(crate) fn table_lines(scene: &Scene) -> Vec<LabelledLine> {
 }
 
 /// Reads a patch, its keys overridden by `--set`.
-pub(crate) fn load_patch(path: &Path, set: &[Setting]) -> Result<Patch, FileError> {
+pub(crate) fn load_patch(path: &Path, set: &[Setting]) -> Result<Patch, Error> {
     files::load_patch(path, set).map_err(of_set)
 }
 
 /// Refuses an output that would overwrite one of `others`, by whatever name.
-pub(crate) fn check_output(output: &Path, others: &[PathBuf]) -> Result<(), FileError> {
+pub(crate) fn check_output(output: &Path, others: &[PathBuf]) -> Result<(), Error> {
     let same = |other: &PathBuf| {
         let is_there = || same_file::is_same_file(output, other).unwrap_or(false);
         other == output || is_there() || (place(output).is_some() && place(output) == place(other))
@@ -90,7 +90,7 @@ fn place(path: &Path) -> Option<PathBuf> {
 pub(crate) fn check_outputs<'a>(
     outputs: impl IntoIterator<Item = &'a PathBuf>,
     mut taken: Vec<PathBuf>,
-) -> Result<(), FileError> {
+) -> Result<(), Error> {
     outputs.into_iter().try_for_each(|output| {
         check_output(output, &taken)?;
         Draft::check(output)?;
@@ -99,14 +99,14 @@ pub(crate) fn check_outputs<'a>(
     })
 }
 
-pub(crate) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Error> {
     files::bytes(path)
 }
 
 /// Prints what is said of `outputs`: to standard error where one of them has standard output for itself.
-pub(crate) fn print_beside<'a>(outputs: impl IntoIterator<Item = &'a PathBuf>, text: &str) -> Result<(), FileError> {
+pub(crate) fn print_beside<'a>(outputs: impl IntoIterator<Item = &'a PathBuf>, text: &str) -> Result<(), Error> {
     if outputs.into_iter().any(|output| is_standard_output(output)) {
-        return io::stderr().write_all(text.as_bytes()).map_err(FileError::io("write", Path::new("standard error")));
+        return io::stderr().write_all(text.as_bytes()).map_err(Error::io("write", Path::new("standard error")));
     }
     print(text)
 }

@@ -3,6 +3,7 @@
 use std::f64::consts::LN_10;
 use std::path::{Path, PathBuf};
 
+use asperity_study::Error;
 use asperity_study::decimals::{percent, plain, short};
 use asperity_study::fit::{
     Consistency, DecadeConsistency, FitOptions, FittedModuli, RelativeError, ShiftedCurve, Test, Vertical, Weight,
@@ -10,7 +11,7 @@ use asperity_study::fit::{
 };
 
 use super::cli::{Fit, FitVertical, FitWeight};
-use super::files::{self, FileError, check_outputs, name_of, named, picture_beside, print_beside};
+use super::files::{self, check_outputs, name_of, named, picture_beside, print_beside};
 use super::picture;
 use super::terminal::{LabelledLine, lines, note, warn, with_flags};
 use super::{NOT_REACHED, SUCCESS};
@@ -19,7 +20,7 @@ use super::{NOT_REACHED, SUCCESS};
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum FitError {
     #[error(transparent)]
-    File(#[from] FileError),
+    File(#[from] Error),
     #[error(transparent)]
     Fit(#[from] asperity_study::fit::FitError),
     #[error("--expansion: expected --vertical density beside it")]

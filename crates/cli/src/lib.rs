@@ -14,7 +14,6 @@
 //! | `draft` | interrupt, output | files that take their places whole |
 //! | `files` | draft, output, terminal | scenes and other files that commands read and write |
 //! | `lock` | interrupt, output, terminal | a table that one process writes at a time |
-//! | `resumable_table` | files, lock | tables that a stopped command goes on with |
 //! | `table_file` | draft, files, lock, output, terminal | tables that a stopped command goes on with, which add rows |
 //! | `result_file` | draft, files | results of runs, row by row |
 //! | `cli` | files | the command line: commands and their options |
@@ -28,9 +27,9 @@
 //! | `contact` | cli, files, npz, picture, terminal | `contact` |
 //! | `sweep` | cli, files, interrupt, output, picture, table_file, terminal | `sweep` |
 //! | `rank` | cli, files, picture, terminal | `rank` |
-//! | `converge` | cli, draft, files, interrupt, picture, resumable_table, terminal | `converge` |
+//! | `converge` | cli, files, interrupt, picture, table_file, terminal | `converge` |
 //! | `fit` | cli, files, picture, terminal | `fit` |
-//! | `calibrate` | cli, files, interrupt, measured_friction, picture, resumable_table, terminal | `calibrate` |
+//! | `calibrate` | cli, files, interrupt, measured_friction, picture, table_file, terminal | `calibrate` |
 //! | `compare` | cli, files, measured_friction, picture, terminal | `compare` |
 //! | `material` | cli, files, picture, terminal | `material` |
 //! | `surface` | cli, files, picture, terminal | `surface` |
@@ -62,7 +61,6 @@ mod rank;
 mod reference;
 mod report;
 mod result_file;
-mod resumable_table;
 mod simulate;
 mod surface;
 mod sweep;

@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 
 use same_file::Handle;
 
+use asperity_study::Error;
+
 use super::interrupt::{Leftover, command_line};
-use super::output::FileError;
 use super::terminal::warn;
 
 /// Held while a table is written. It is a file beside the table, with the holder's name in it, for the table itself is
@@ -25,12 +26,12 @@ impl TableLock {
     ///
     /// # Errors
     /// Where another process has it, with its holder.
-    pub(crate) fn take(path: &Path) -> Result<Self, FileError> {
+    pub(crate) fn take(path: &Path) -> Result<Self, Error> {
         let mut name = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()).into_os_string();
         name.push(".lock");
         let lock = PathBuf::from(name);
         loop {
-            match attempt(&lock).map_err(FileError::io("write", path))? {
+            match attempt(&lock).map_err(Error::io("write", path))? {
                 Attempt::Locked(file) => return Ok(Self { _leftover: Leftover::new(&lock), path: lock, _file: file }),
                 Attempt::HeldBy(holder) => return Err(locked(path, &holder)),
                 // The holder of before removed it meanwhile.
@@ -47,9 +48,9 @@ impl Drop for TableLock {
     }
 }
 
-fn locked(path: &Path, holder: &str) -> FileError {
+fn locked(path: &Path, holder: &str) -> Error {
     let path = path.display();
-    FileError::value(format!("cannot write {path}: {holder} writes it; wait for that, or name another -o"))
+    Error::value(format!("cannot write {path}: {holder} writes it; wait for that, or name another -o"))
 }
 
 enum Attempt {

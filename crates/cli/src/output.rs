@@ -30,9 +30,6 @@ pub(crate) fn named(path: &Path) -> String {
     if is_standard_output(path) { "standard output".into() } else { path.display().to_string() }
 }
 
-/// The errors of files are the study's.
-pub(crate) type FileError = Error;
-
 /// For `map_err`: an output cannot be written.
 pub(crate) fn unwritten(path: &Path) -> impl FnOnce(io::Error) -> Error + use<> {
     Error::io("write", Path::new(&named(path)))

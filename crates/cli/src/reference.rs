@@ -6,21 +6,22 @@ use std::fs;
 use asperity::outputs::{OutputEntry, catalogue};
 use asperity::patch::{self, PatchKind, PatchOutputEntry};
 use asperity::scene::{Absent, KeyEntry, Unit, patch_keys, scene_keys};
+use asperity_study::Error;
 use clap::{Arg, Command, CommandFactory as _};
 
 use super::cli::Arguments;
 use super::cli::{Completions, Manual};
-use super::files::{FileError, print};
+use super::files::print;
 
 const NAME: &str = "asperity";
 
 /// `asperity reference`: prints docs/reference.md.
-pub(super) fn reference() -> Result<(), FileError> {
+pub(super) fn reference() -> Result<(), Error> {
     print(&page())
 }
 
 /// `asperity completions SHELL`.
-pub(super) fn completions(command: &Completions) -> Result<(), FileError> {
+pub(super) fn completions(command: &Completions) -> Result<(), Error> {
     let mut script = Vec::new();
     clap_complete::generate(command.shell, &mut Arguments::command(), NAME, &mut script);
     print(&String::from_utf8_lossy(&script))

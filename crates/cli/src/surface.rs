@@ -4,13 +4,14 @@ use std::path::PathBuf;
 
 use asperity::scene::{self, PowerLaw, RoughnessSpectrum};
 use asperity_formats::Instruments;
+use asperity_study::Error;
 use asperity_study::surface::{
     FinerWaves, MadePeriodic, MapAnalysis, Removed, SurfaceAnalysis, SurfaceOptions, TreatedSurface, matrix,
     profile_columns, spectrum_columns,
 };
 
 use super::cli::{Reading, Surface};
-use super::files::{self, FileError, check_outputs, ends_in, load_without_run, name_of, named, print_beside};
+use super::files::{self, check_outputs, ends_in, load_without_run, name_of, named, print_beside};
 use super::picture;
 use super::terminal::{LabelledLine, lines, note, warn};
 
@@ -18,7 +19,7 @@ use super::terminal::{LabelledLine, lines, note, warn};
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum SurfaceError {
     #[error(transparent)]
-    File(#[from] FileError),
+    File(#[from] Error),
     #[error("{}: a scene defines how its surface is read; these options are for profiles only", .path.display())]
     SceneHasOptions { path: PathBuf },
     #[error("{}: {error}", .path.display())]
@@ -126,7 +127,7 @@ fn read(command: &Surface) -> Result<(scene::Surface, Vec<PathBuf>), SurfaceErro
         let files = scene.sources(path);
         return Ok((scene.surface, files));
     }
-    let loaded = scene::Surface::load(path, &command.reading.options(), &Instruments).map_err(FileError::from)?;
+    let loaded = scene::Surface::load(path, &command.reading.options(), &Instruments).map_err(Error::from)?;
     loaded.warnings.iter().for_each(|warning| warn(warning));
     loaded.notes.iter().for_each(|read| note(&read.text));
     Ok((loaded.surface, vec![path.clone()]))

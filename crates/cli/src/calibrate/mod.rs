@@ -21,7 +21,7 @@ use super::cli::Calibrate;
 use super::files::{self, check_outputs, is_standard_output, load_without_run, name_of, picture_beside, print_beside};
 use super::interrupt::Farewell;
 use super::picture;
-use super::resumable_table::ResumableTable;
+use super::table_file::TableFile;
 use super::terminal::{self, note, warn};
 use super::{NOT_REACHED, SUCCESS};
 
@@ -82,8 +82,10 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, Error> {
     let outputs = Outputs::new(command, free.scene())?;
     let (kept, known) = match &outputs.table {
         Some(table) => {
-            let opened = kept_points(table, &free, command.force)?;
-            (Some(opened.0), opened.1)
+            let points = PointsTable::new(&free.fingerprint()?, free.parameters());
+            let read = |table: &_| Ok(points.points(table));
+            let (file, known) = TableFile::open(table, points.empty(), command.force, read)?;
+            (Some(file), known)
         }
         None => (None, Vec::new()),
     };
@@ -93,7 +95,7 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, Error> {
     let failed = Mutex::new(None);
     let found = |task: &Task, outcome: &Outcome| {
         bar.inc(1);
-        match kept.as_ref().map_or(Ok(()), |kept| kept.add(&PointsTable::line(task, outcome))) {
+        match kept.as_ref().map_or(Ok(()), |kept| kept.add(&PointsTable::cells(task, outcome))) {
             Ok(()) => ControlFlow::Continue(()),
             Err(error) => {
                 failed.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
@@ -120,25 +122,6 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, Error> {
         Some(error) => Err(error),
         None => done,
     }
-}
-
-/// Begins the table of points at `path` or, unless it is to be replaced, continues the one that is there; and the points that
-/// it has.
-fn kept_points(
-    path: &Path,
-    free: &FreeScene<'_>,
-    replace: bool,
-) -> Result<(ResumableTable, Vec<(Task, Outcome)>), Error> {
-    let points = PointsTable::new(&free.fingerprint()?, free.parameters());
-    let read = |text: &str| {
-        let other = "is of another calibration: of another scene, other parameters, method or version";
-        let advice = "name another -o, or give --force to replace it";
-        let refused = || Error::value(format!("{} {other}; {advice}", path.display()));
-        let (known, damaged) = points.read(text, path).ok_or_else(refused)?;
-        damaged.iter().for_each(|error| warn(&format!("{error}; its point is found again")));
-        Ok(known)
-    };
-    ResumableTable::open(path, &points.head(), replace, read, |(task, outcome)| PointsTable::line(task, outcome))
 }
 
 /// Writes the scene and, where it is told and has a place, the covariance, which the scene then names; whether it did.

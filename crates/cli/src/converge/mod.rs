@@ -8,17 +8,14 @@ use std::time::Duration;
 
 use asperity_study::Error;
 use asperity_study::contact::SteadyState;
-use asperity_study::converge::{
-    self, ConvergenceOptions, ConvergenceStudy, Ended, Findings, Round, RunRow, StudyHeader,
-};
+use asperity_study::converge::{self, ConvergenceOptions, ConvergenceStudy, Ended, Findings, Round, RunRow};
 use asperity_study::sweep::SlidingOptions;
 
 use super::cli::Converge;
-use super::draft::TablePlace;
-use super::files::{check_outputs, default_output, load_without_run, picture_beside, print_beside, write};
+use super::files::{check_outputs, default_output, load_without_run, picture_beside, print_beside};
 use super::interrupt::Farewell;
 use super::picture;
-use super::resumable_table::ResumableTable;
+use super::table_file::TableFile;
 use super::terminal::{self, warn};
 use super::{NOT_REACHED, SUCCESS};
 
@@ -34,31 +31,19 @@ pub(crate) fn converge(command: &Converge) -> Result<u8, Error> {
     let output = command.output.clone().unwrap_or_else(|| default_output(&command.scene, "converge.csv"));
     let picture = picture_beside(&output, command.plot.as_ref());
     check_outputs([&output].into_iter().chain(&picture), scene.sources(&command.scene))?;
-    let place = TablePlace::new(&output)?;
     let header = study.header();
-    let read = |text: &str| runs_done(header, text, &place.path);
-    let head = header.text(None);
-    let (table, runs) = ResumableTable::open(&place.path, &head, command.force, read, |run| run.line(None))?;
-    let findings = run(&study, runs, &table, &output)?;
+    let (file, runs) = TableFile::open(&output, &header.table(None), command.force, |table| Ok(header.runs(table)))?;
+    let findings = run(&study, runs, &file, &output)?;
     // With the verdict and the changes of the values, which rows that were added do not have.
-    let lines: String = findings.changes().iter().map(|(run, change)| run.line(*change)).collect();
-    write(&place.path, header.text(Some(&findings.verdict.sentence())) + &lines)?;
+    let mut table = header.table(Some(&findings.verdict.sentence()));
+    findings.changes().iter().for_each(|(run, change)| table.push(run.cells(*change)));
+    file.finish(&table)?;
     let rows = summary::table(&findings.changes(), study.parts());
     print_beside([&output], &format!("{rows}\n{}", summary::judgement(&study, &findings)))?;
-    drop(table);
-    place.finish()?;
     if let Some(path) = &picture {
         picture::write(&converge::picture(&scene.name, &findings.runs), path)?;
     }
     Ok(if findings.verdict.is_converged() { SUCCESS } else { NOT_REACHED })
-}
-
-/// The runs of the table at `path`, which is the `text`, without the corrupt rows, which are named.
-fn runs_done(header: &StudyHeader, text: &str, path: &Path) -> Result<Vec<RunRow>, Error> {
-    let advice = "name another -o, or give --force to replace it";
-    let done = header.runs_done(text, path).map_err(|error| Error::value(format!("{error}; {advice}")))?;
-    done.corrupt.iter().for_each(|error| warn(&format!("{error}; the run is made again")));
-    Ok(done.runs)
 }
 
 fn options(command: &Converge) -> ConvergenceOptions {
@@ -68,7 +53,7 @@ fn options(command: &Converge) -> ConvergenceOptions {
 }
 
 /// Makes what is missing beside `runs` and shows how far it is.
-fn run(study: &ConvergenceStudy, runs: Vec<RunRow>, table: &ResumableTable, output: &Path) -> Result<Findings, Error> {
+fn run(study: &ConvergenceStudy, runs: Vec<RunRow>, file: &TableFile, output: &Path) -> Result<Findings, Error> {
     let bar = terminal::bar(0);
     bar.enable_steady_tick(Duration::from_secs(1));
     let done = bar.clone();
@@ -84,7 +69,7 @@ fn run(study: &ConvergenceStudy, runs: Vec<RunRow>, table: &ResumableTable, outp
         bar.set_message(format!("now with {} {}", counts.join(", "), study.parts().name()));
     };
     let findings = study.run(runs, begun, |run| {
-        if let Err(error) = table.add(&run.line(None)) {
+        if let Err(error) = file.add(&run.cells(None)) {
             return ControlFlow::Break(error);
         }
         bar.inc(1);

@@ -5,18 +5,18 @@ use std::path::Path;
 use asperity::outputs;
 use asperity::patch;
 use asperity::tables::{ContentError, Csv, Row};
+use asperity_study::Error;
 use asperity_study::csv::{self, CsvError};
 use asperity_study::picture::{Mark, Point};
 
 use crate::cli::{Condition, Plot, PlotAxis};
-use crate::files::FileError;
 use crate::terminal::warn;
 
 /// `asperity plot` failed.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum PlotError {
     #[error(transparent)]
-    File(#[from] FileError),
+    File(#[from] Error),
     #[error(transparent)]
     ResultFile(#[from] CsvError),
     #[error("--labels: expected {files}, one name for each file, found {labels}")]

@@ -6,11 +6,12 @@ mod scene_report;
 
 use std::path::{Path, PathBuf};
 
+use asperity_study::Error;
 use asperity_study::csv::CsvError;
 use asperity_study::report::{self, Judgement, judgement_picture, judgements_table};
 
 use super::cli::Report;
-use super::files::{FileError, write};
+use super::files::write;
 use folder::{INDEX, JUDGEMENTS, ReportFolder};
 use page::SceneJudgements;
 use scene_report::WrittenReport;
@@ -19,7 +20,7 @@ use scene_report::WrittenReport;
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum ReportError {
     #[error(transparent)]
-    File(#[from] FileError),
+    File(#[from] Error),
     #[error(transparent)]
     Peers(#[from] CsvError),
     #[error("{}: {source}", .scene.display())]
@@ -64,14 +65,14 @@ fn report_all(command: &Report) -> Result<(), ReportError> {
 }
 
 /// Writes the page of several scenes.
-fn write_overview(folder: &ReportFolder, names: &[String], judgements: &[Vec<Judgement>]) -> Result<(), FileError> {
+fn write_overview(folder: &ReportFolder, names: &[String], judgements: &[Vec<Judgement>]) -> Result<(), Error> {
     let scenes = names.iter().zip(judgements).map(|(name, judgements)| (name.as_str(), judgements.as_slice()));
     let section = write_judgements(folder, &scenes.collect::<Vec<_>>())?;
     folder.write(INDEX, page::overview(names, section))
 }
 
 /// Writes the table and the picture of errors over the tolerance, and returns the section.
-fn write_judgements(folder: &ReportFolder, scenes: &[SceneJudgements<'_>]) -> Result<String, FileError> {
+fn write_judgements(folder: &ReportFolder, scenes: &[SceneJudgements<'_>]) -> Result<String, Error> {
     write(&folder.file(JUDGEMENTS, "csv"), judgements_table(scenes.iter().copied()))?;
     let picture = folder.draw(JUDGEMENTS, &judgement_picture(scenes.iter().flat_map(|(_, runs)| runs.iter())))?;
     page::judgements(scenes, &picture).map_err(folder.error())

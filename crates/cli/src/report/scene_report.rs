@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::scene::Scene;
 
+use asperity_study::Error;
 use asperity_study::report::{
     Judgement, Peers, ReportOptions, SceneReport, communication_picture, communication_table, errors_table, read_peers,
     robustness_table, tolerance_picture,
@@ -12,7 +13,7 @@ use asperity_study::report::{
 use super::folder::{COMMUNICATION, ERRORS, INDEX, JUDGEMENTS, ReportFolder, STRESS};
 use super::{ReportError, page, stem, write_judgements};
 use crate::cli::Report;
-use crate::files::{FileError, load, write};
+use crate::files::{load, write};
 use crate::terminal::{Bars, warn};
 
 /// A scene that can be run, its folder and its peers.
@@ -63,7 +64,7 @@ impl<'a> WrittenReport<'a> {
         Ok(results.judgements)
     }
 
-    fn write(&self, results: &SceneReport) -> Result<(), FileError> {
+    fn write(&self, results: &SceneReport) -> Result<(), Error> {
         let Self { command, scene, folder, peers, .. } = self;
         let SceneReport { reference, tolerances, communication, robustness, judgements } = results;
         // This program's runs, then whole processes, its own and the peers'.

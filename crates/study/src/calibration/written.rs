@@ -5,8 +5,6 @@
 //!
 //! The table beside a calibration's output: the points that were found, so that nothing is found twice.
 
-use std::path::Path;
-
 use asperity::element::{OperatingPoint, PointStatus};
 use asperity::scene::Setting;
 use asperity::table::{Cell, Column, Header, Table, TableError};
@@ -211,9 +209,6 @@ pub struct PointsTable {
     parameters: usize,
 }
 
-/// The points of a table, and what is wrong with the rows that are damaged.
-type KnownPoints = (Vec<(Task, Outcome)>, Vec<TableError>);
-
 impl PointsTable {
     /// That of these parameters in the calibration of a fingerprint.
     pub fn new(fingerprint: &str, parameters: &[FreeParameter]) -> Self {
@@ -226,35 +221,26 @@ impl PointsTable {
         Self { table, parameters: parameters.len() }
     }
 
-    /// The lines before the rows.
-    pub fn head(&self) -> String {
-        self.table.head()
+    /// The table without rows.
+    pub fn empty(&self) -> &Table {
+        &self.table
     }
 
-    /// The line of a point.
-    pub fn line(task: &Task, outcome: &Outcome) -> String {
+    /// The cells of a point.
+    pub fn cells(task: &Task, outcome: &Outcome) -> Vec<Cell> {
         let OperatingPoint { speed, load, temperature, way } = task.point;
         let values = task.parameters.iter().copied().map(Cell::from);
         let point = [Some(speed), Some(load), temperature, way].map(Cell::from);
         let status = Cell::from(PointStatus::new(outcome.as_ref().err()).text());
         let parts =
             outcome.as_ref().map_or([None; 4], |parts| [parts.profile, parts.fine, parts.shear, parts.area].map(Some));
-        let cells = values.chain(point).chain([status]).chain(parts.map(Cell::from));
-        Table::line(&cells.collect::<Vec<_>>())
+        values.chain(point).chain([status]).chain(parts.map(Cell::from)).collect()
     }
 
-    /// The points of the `text` of a table at `path` that was begun; `None` where it is that of another calibration.
-    pub fn read(&self, text: &str, path: &Path) -> Option<KnownPoints> {
-        let (table, mut damaged) =
-            self.table.begun(text, path).ok().filter(|(table, _)| table.header == self.table.header)?;
-        let mut points = Vec::new();
-        for row in 0..table.len() {
-            match self.point(&table, row) {
-                Some(point) => points.push(point),
-                None => damaged.push(table.error_in(row, "expected a whole point")),
-            }
-        }
-        Some((points, damaged))
+    /// The points of such a table; the error of a row that is damaged.
+    pub fn points(&self, table: &Table) -> Vec<Result<(Task, Outcome), TableError>> {
+        let point = |row| self.point(table, row).ok_or_else(|| table.error_in(row, "expected a whole point"));
+        (0..table.len()).map(point).collect()
     }
 
     fn point(&self, table: &Table, row: usize) -> Option<(Task, Outcome)> {
@@ -283,6 +269,8 @@ impl PointsTable {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
 
     #[test]
@@ -329,13 +317,12 @@ mod tests {
         for (task, outcome) in
             [(task(Some(293.15)), Ok(parts)), (task(None), Err(NoSliding::new("no, \"never\" steady")))]
         {
-            let line = PointsTable::line(&task, &outcome);
-            let text = table.head() + &line + &line[1 + line.find(',').unwrap_or_default()..];
-            let (points, damaged) = table.read(&text, Path::new("points.csv")).unwrap();
-            assert_eq!((points, damaged.len()), (vec![(task, outcome)], 1));
-            assert!(
-                PointsTable::new("g", &[parameter("a.b"), parameter("c[1].d")]).read(&text, Path::new("")).is_none()
-            );
+            let line = Table::line(&PointsTable::cells(&task, &outcome));
+            let text = table.empty().head() + &line + &line[1 + line.find(',').unwrap_or_default()..];
+            let (begun, damaged) = table.empty().begun(&text, Path::new("points.csv")).unwrap();
+            assert_eq!((table.points(&begun), damaged.len()), (vec![Ok((task, outcome))], 1));
+            let other = PointsTable::new("g", &[parameter("a.b"), parameter("c[1].d")]);
+            assert!(other.empty().begun(&text, Path::new("")).is_err());
         }
     }
 }

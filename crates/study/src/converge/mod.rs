@@ -9,5 +9,5 @@ mod variants;
 pub use picture::picture;
 pub use plan::{LargestOpen, Open, Pair, Source, Verdict, percent};
 pub use study::{ConvergenceOptions, ConvergenceStudy, Ended, Findings, Round};
-pub use table::{Measured, RunRow, RunsDone, StudyHeader};
+pub use table::{Measured, RunRow, StudyHeader};
 pub use variants::{Dimensions, Parts, Variant};

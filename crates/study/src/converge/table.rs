@@ -1,13 +1,10 @@
 //! The table of a study: rows are added as their runs are done and not computed again.
 
-use std::path::Path;
-
 use asperity::element::PointStatus;
 use asperity::table::{Cell, Column, Header, Table, TableError};
 
 use super::plan::Pair;
 use super::variants::{Dimensions, Parts, Variant};
-use crate::error::Error;
 use crate::steady::persson::Theory;
 
 /// The kind of the table; its number grows when readers have to know of a change.
@@ -78,8 +75,8 @@ impl RunRow {
         self.measured.map(|measured| measured.mean)
     }
 
-    /// The row's line, its end included; `change` is that of the values from another run to this one.
-    pub fn line(&self, change: Option<Pair>) -> String {
+    /// The row's cells; `change` is that of the values from another run to this one.
+    pub fn cells(&self, change: Option<Pair>) -> Vec<Cell> {
         let Dimensions { count, spacing, seed, split: longest } = self.dimensions;
         let measured = self.measured.as_ref();
         let of = |value: fn(&Pair) -> f64| {
@@ -108,7 +105,7 @@ impl RunRow {
         let values = [&friction[..], &[measured.map(|run| run.hysteresis)], &area].concat();
         let theories = self.theories.iter().flat_map(|theory| theory.values().map(Some));
         let numbers = values.into_iter().chain(theories).chain([Some(self.run_time)]).map(Cell::from);
-        Table::line(&dimensions.into_iter().chain(numbers).collect::<Vec<_>>())
+        dimensions.into_iter().chain(numbers).collect()
     }
 
     /// The run of a row; `None` where a field is not what it should be.
@@ -176,23 +173,9 @@ pub struct StudyHeader {
     pub error: f64,
 }
 
-/// The runs of a table that was begun.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RunsDone {
-    /// The runs.
-    pub runs: Vec<RunRow>,
-    /// What is wrong with the rows that are none of the study.
-    pub corrupt: Vec<TableError>,
-}
-
 impl StudyHeader {
-    /// The lines of the header, the names of the columns included; once there is one, the verdict.
-    pub fn text(&self, verdict: Option<&str>) -> String {
-        self.table(verdict).head()
-    }
-
-    /// The table without rows.
-    fn table(&self, verdict: Option<&str>) -> Table {
+    /// The table without rows; once there is one, with the verdict.
+    pub fn table(&self, verdict: Option<&str>) -> Table {
         let mut header = Header::new(KIND)
             .with("scene", &self.scene)
             .with("fingerprint", &self.fingerprint)
@@ -211,32 +194,23 @@ impl StudyHeader {
         Table::new(header.with_some("verdict", verdict), COLUMNS.map(column))
     }
 
-    /// The runs in the `text` of the table at `path`, which is one of the study.
-    ///
-    /// # Errors
-    /// Where it is not that.
-    pub fn runs_done(&self, text: &str, path: &Path) -> Result<RunsDone, Error> {
-        let not_a_table = |error: TableError| Error::value(error).context("not the table of a study");
-        let (table, mut corrupt) = self.table(None).begun(text, path).map_err(not_a_table)?;
-        table.header.check_kind(KIND).map_err(not_a_table)?;
-        if table.header.text_of("fingerprint") != Some(&self.fingerprint) {
-            let other = "is the table of another study: of another scene, pressure, speed, error or distance";
-            return Err(Error::value(format!("{} {other}", path.display())));
-        }
-        let mut runs: Vec<RunRow> = Vec::new();
-        for row in 0..table.len() {
-            let is_new = |run: &RunRow| runs.iter().all(|other| other.variant != run.variant);
-            match RunRow::read(&table, row, self.parts).filter(is_new) {
-                Some(run) => runs.push(run),
-                None => corrupt.push(table.error_in(row, "not a row of this study")),
-            }
-        }
-        Ok(RunsDone { runs, corrupt })
+    /// The runs of a table of the study; the error of a row that is none of it, or that is there already.
+    pub fn runs(&self, table: &Table) -> Vec<Result<RunRow, TableError>> {
+        let mut variants = Vec::new();
+        let run = |row: usize| {
+            let new = RunRow::read(table, row, self.parts).filter(|run| !variants.contains(&run.variant));
+            let run = new.ok_or_else(|| table.error_in(row, "not a row of this study"))?;
+            variants.push(run.variant);
+            Ok(run)
+        };
+        (0..table.len()).map(run).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
 
     fn run(status: PointStatus, measured: Option<Measured>) -> RunRow {
@@ -273,14 +247,16 @@ mod tests {
         };
         for run in [steady.clone(), failed, RunRow { dimensions: seedless, fit_rms: None, ..steady }] {
             for change in [None, Some(pair(-0.5, 0.25))] {
-                let text = header.text(None) + &run.line(change) + "64,1\n" + &run.line(change);
-                let done = header.runs_done(&text, Path::new("t.csv")).unwrap();
-                assert_eq!(done.runs, std::slice::from_ref(&run));
+                let (head, line) = (header.table(None).head(), Table::line(&run.cells(change)));
+                let text = format!("{head}{line}64,1\n{line}");
+                let (table, corrupt) = header.table(None).begun(&text, Path::new("t.csv")).unwrap();
+                let runs = header.runs(&table);
                 // One of two fields, and one that is there already.
-                assert_eq!(done.corrupt.len(), 2);
+                assert_eq!((runs.len(), corrupt.len()), (2, 1));
+                assert_eq!((runs[0].as_ref(), runs[1].is_err()), (Ok(&run), true));
             }
         }
         let other = StudyHeader { fingerprint: "g".into(), ..header.clone() };
-        assert!(other.runs_done(&header.text(None), Path::new("t.csv")).is_err());
+        assert!(other.table(None).begun(&header.table(None).head(), Path::new("t.csv")).is_err());
     }
 }
