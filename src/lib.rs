@@ -12,8 +12,8 @@
 //! | module | uses | contents |
 //! |---|---|---|
 //! | [`math`] | | splines, tridiagonal systems, roots, Fourier sums and other numerical methods |
-//! | [`tables`] | | tables of text as people and instruments write them: dialect, headings, units, the columns that a client wants |
-//! | [`table`] | | tables as the project writes them: a header of keys and values, columns with units, rows |
+//! | [`tables`] | | what readers of files share: fields, units, ranges, errors; kinds of files with columns, in their canonical form |
+//! | [`table`] | tables | tables as the project writes them: a header of keys and values, columns with units, rows |
 //! | [`scene`] | math, tables | a scene as data: reading TOML, profiles and materials; parameters; checks and warnings |
 //! | [`model`] | math, scene | the mechanical model: links and their forces, contact laws, state, energies, stiffness scales, reduction |
 //! | `integrator` | math, model | implicit Runge-Kutta steps, with modes held or set-valued friction: stages, dense output, error, sensitivities |

@@ -64,14 +64,13 @@ pub(crate) fn converge<'py>(
 
 fn as_dictionary<'py>(py: Python<'py>, study: &ConvergenceStudy, findings: &Findings) -> PyResult<Bound<'py, PyDict>> {
     let verdict = &findings.verdict;
-    let rows: String = findings.changes().iter().map(|(run, change)| run.line(*change)).collect();
     let (found, open) = (PyDict::new(py), PyDict::new(py));
     for one in &verdict.open {
         open.set_item(one.source.name(), one.shares.map(|pair| (pair.friction, pair.area)))?;
     }
     let ladder = findings.ladder();
     let coarsest = verdict.coarsest.map(|halvings| Some(ladder.get(halvings?)?.dimensions.spacing));
-    found.set_item("text", study.header().text(Some(&verdict.sentence())) + &rows)?;
+    found.set_item("text", study.table(findings).text())?;
     found.set_item("parts", study.parts().name())?;
     found.set_item("is_converged", verdict.is_converged())?;
     found.set_item("verdict", verdict.sentence())?;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::TableError;
-use super::text::{number, parsed};
+use super::numbers::{number, parsed};
 
 /// The values by their keys, in order, each as text, a number or numbers with their unit, or a whole number. They are
 /// kept as files have them, and checked by who asks for them.

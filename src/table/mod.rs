@@ -6,13 +6,15 @@
 //! columns by name and unit, cells by their row, and errors say the file and the line.
 
 mod header;
-mod text;
+mod numbers;
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
+use crate::tables::{fields, quoted};
+
 pub use header::Header;
-pub use text::number;
-use text::{fields, quoted};
+pub use numbers::number;
 
 /// Why a table is refused: where, what was expected and what was found.
 ///
@@ -121,7 +123,7 @@ impl Cell {
     /// As it stands in a file, quotation marks apart.
     fn text(&self) -> String {
         match self {
-            Self::Number(number) => text::cell(*number),
+            Self::Number(number) => numbers::cell(*number),
             Self::Word(word) => word.clone(),
         }
     }
@@ -130,7 +132,7 @@ impl Cell {
     fn number(&self) -> Option<f64> {
         match self {
             Self::Number(number) => Some(*number),
-            Self::Word(word) => text::parsed(word),
+            Self::Word(word) => numbers::parsed(word),
         }
     }
 }
@@ -194,12 +196,13 @@ impl Table {
         let header = Header::parse(text, file);
         let filled = |(_, line): &(usize, &str)| !line.starts_with('#') && !line.trim().is_empty();
         let mut lines = (1..).zip(text.lines()).filter(filled);
-        let column = |heading: String| {
+        let column = |heading: Cow<'_, str>| {
             let parts = heading.strip_suffix(']').and_then(|text| text.rsplit_once(" ["));
-            parts.map_or_else(|| Column::words(heading.as_str(), ""), |(name, unit)| Column::words(name, unit))
+            parts.map_or_else(|| Column::words(&*heading, ""), |(name, unit)| Column::words(name, unit))
         };
-        let columns = lines.next().into_iter().flat_map(|(_, names)| fields(names)).map(column).collect::<Vec<_>>();
-        let cells = |line| fields(line).into_iter().map(Cell::Word).collect();
+        let columns =
+            lines.next().into_iter().flat_map(|(_, names)| fields(names, ',')).map(column).collect::<Vec<_>>();
+        let cells = |line| fields(line, ',').map(|field| Cell::Word(field.into_owned())).collect();
         (Self::new(header, columns), lines.map(move |(line, text)| Row { line, cells: cells(text) }))
     }
 

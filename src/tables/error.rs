@@ -46,24 +46,6 @@ impl ContentError {
     }
 }
 
-/// The bytes are no text: some are zero.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}: expected {}", Self::FOUND, Self::EXPECTED)]
-pub struct NotText;
-
-impl NotText {
-    /// What was found.
-    pub const FOUND: &str = "bytes that are zero";
-    /// What was expected.
-    pub const EXPECTED: &str = "text in UTF-8, UTF-16 or Latin-1";
-}
-
-impl From<NotText> for ContentError {
-    fn from(_: NotText) -> Self {
-        Self::value(Some(1), "", NotText::FOUND, NotText::EXPECTED)
-    }
-}
-
 /// What stands where, for messages: `key = given: `.
 pub fn assignment(key: &str, given: &str) -> String {
     match (key, given) {

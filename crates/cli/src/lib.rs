@@ -13,9 +13,9 @@
 //! | `interrupt` | output, terminal | what is left to do where the program is stopped |
 //! | `draft` | interrupt, output | files that take their places whole |
 //! | `files` | draft, output, terminal | scenes and other files that commands read and write |
-//! | `lock` | interrupt, output, terminal | a table that one process writes at a time |
+//! | `lock` | interrupt, terminal | a table that one process writes at a time |
 //! | `table_file` | draft, files, lock, output, terminal | tables that a stopped command goes on with, which add rows |
-//! | `result_file` | draft, files | results of runs, row by row |
+//! | `result_file` | draft | results of runs, row by row |
 //! | `cli` | files | the command line: commands and their options |
 //! | `picture` | files | draws pictures, as SVG or PNG |
 //! | `plot` | cli, files, picture, terminal | `plot` |

@@ -9,7 +9,7 @@
 //! | [`profile`] | text | lines of x and z, matrices, points on a grid, and what is done to them before they are a surface |
 //! | `series`, `spectrum` | text | Prony series and cards of them, power spectra |
 //! | `instruments` | profile, text | SDF, SUR, OpenCRG, text of Gwyddion; formats that are known and not read |
-//! | `x3p` | profile | ISO 5436-2 (ISO 25178-72) |
+//! | `x3p` | profile, text | ISO 5436-2 (ISO 25178-72) |
 //! | [`workbook`] | | sheets as text |
 
 mod instruments;
@@ -21,7 +21,7 @@ pub mod workbook;
 mod x3p;
 
 use asperity::scene::{Convention, ElasticConstants, FileFormats, LoadedProfile, ProfileOptions};
-use asperity::tables::{ContentError, FileKind, ReadTable, decode};
+use asperity::tables::{ContentError, FileKind, ReadTable};
 
 pub use series::SERIES;
 pub use spectrum::SPECTRUM;
@@ -42,7 +42,7 @@ impl FileFormats for Instruments {
     }
 
     fn table(&self, bytes: &[u8], kind: &FileKind, columns: &[(String, String)]) -> Result<ReadTable, ContentError> {
-        let read = |bytes: &[u8]| text::read(&decode(bytes)?, kind, columns).map(|(table, _)| table);
+        let read = |bytes: &[u8]| text::read(&text::decode(bytes)?, kind, columns).map(|(table, _)| table);
         in_text(bytes, read, |table| &mut table.notes)
     }
 

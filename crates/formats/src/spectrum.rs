@@ -4,8 +4,10 @@ use std::f64::consts::{PI, TAU};
 
 use asperity::scene::{self, Convention, LEAST_DENSITY, RoughnessSpectrum};
 use asperity::tables::{
-    CYCLES, ContentError, Dimension, FileKind, POSITIVE, ReadColumn, ReadTable, ReadingNote, Role, Unit, decode,
+    CYCLES, ContentError, Dimension, FileKind, POSITIVE, ReadColumn, ReadTable, ReadingNote, Role, Unit,
 };
+
+use crate::text::decode;
 
 use crate::text::{GivenColumns, read};
 

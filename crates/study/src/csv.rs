@@ -1,39 +1,61 @@
 //! Tables of text with a header: read with commas, semicolons or tabs between the fields, written with commas.
 
+use std::borrow::Cow;
 use std::fmt::{self, Display, Formatter};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use asperity::outputs::OutputType;
 use asperity::scene::Unit;
-use asperity::tables::{self, ContentError, Csv, decode};
+use asperity::tables::{ContentError, fields, quoted};
+use asperity_formats::text::{Row, decode};
 
 use crate::decimals::file_decimal;
 use crate::error::Error;
 use crate::files::bytes;
 
-/// A table cannot be read.
-#[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say what they are")]
-pub enum CsvError {
-    #[error(transparent)]
-    File(#[from] Error),
-    #[error("{}", .error.within(.path))]
-    Content { path: PathBuf, error: ContentError },
+/// A file that begins with the names of its columns, its fields as text.
+#[derive(Clone, Debug, Default)]
+pub struct Csv {
+    /// The names of the columns.
+    pub names: Vec<String>,
+    /// The rows, each with as many fields.
+    pub rows: Vec<Row<'static>>,
+    /// The line of the names.
+    pub line: usize,
 }
 
-impl From<CsvError> for Error {
-    fn from(error: CsvError) -> Self {
-        match error {
-            CsvError::File(error) => error,
-            CsvError::Content { path, error } => Self::content(&path)(error),
-        }
+impl Csv {
+    /// The file in a text; see [`rows`] for the separator.
+    ///
+    /// # Errors
+    /// [`ContentError`] where a row has more or fewer fields than there are names.
+    pub fn parse(text: &str, separator: Option<char>) -> Result<Self, ContentError> {
+        let mut rows = rows(text, separator).map(Row::into_owned);
+        let Some(head) = rows.next() else { return Ok(Self::default()) };
+        let names: Vec<String> = head.fields.into_iter().map(Cow::into_owned).collect();
+        let whole = |row: Row<'static>| match row.fields.len() {
+            found if found == names.len() => Ok(row),
+            found => {
+                let expected = format!("{}, as in line {}, that of the names", names.len(), head.line);
+                Err(ContentError::value(Some(row.line), "fields", &found.to_string(), &expected))
+            }
+        };
+        let rows = rows.map(whole).collect::<Result<_, _>>()?;
+        Ok(Self { names, rows, line: head.line })
     }
-}
 
-impl CsvError {
-    /// What is wrong in the content of the file at `path`.
-    pub fn content(path: &Path, error: impl Into<ContentError>) -> Self {
-        Self::Content { path: path.to_owned(), error: error.into() }
+    /// The place of the column `name`; the unit of a name such as `speed [m/s]` may be left out.
+    ///
+    /// # Errors
+    /// [`ContentError`] with the names that there are.
+    pub fn column(&self, name: &str) -> Result<usize, ContentError> {
+        let without_unit = |header: &str| header.split_once(" [").is_some_and(|(start, _)| start == name);
+        let named = self.names.iter().position(|other| other == name);
+        let named = named.or_else(|| self.names.iter().position(|other| without_unit(other)));
+        named.ok_or_else(|| {
+            let line = (self.line > 0).then_some(self.line);
+            ContentError::value(line, "columns", &self.names.join(", "), &format!("{name} among them"))
+        })
     }
 }
 
@@ -41,15 +63,25 @@ impl CsvError {
 ///
 /// # Errors
 /// Where it cannot be read, or a line has not as many fields as the first.
-pub fn read(path: &Path) -> Result<Csv, CsvError> {
+pub fn read(path: &Path) -> Result<Csv, Error> {
     let bytes = bytes(path)?;
     let parsed = decode(&bytes).map_err(ContentError::from).and_then(|text| Csv::parse(&text, None));
-    parsed.map_err(|error| CsvError::content(path, error))
+    parsed.map_err(Error::content(path))
+}
+
+/// The lines that are neither blank nor comments (`# …`), as rows: their fields are separated by `separator` or, where
+/// none is given, by the first of semicolon, tab and comma that is in the first row outside quotation marks.
+fn rows(text: &str, separator: Option<char>) -> impl Iterator<Item = Row<'_>> {
+    let filled = || (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
+    let parts = |sign: char| filled().next().is_some_and(|(_, line)| fields(line, sign).nth(1).is_some());
+    let found = || [';', '\t', ','].into_iter().find(|&sign| parts(sign));
+    let separator = separator.or_else(found).unwrap_or(',');
+    filled().map(move |(line, text)| Row { line, fields: fields(text, separator).collect() })
 }
 
 /// The fields as a line without its end.
 pub fn line<T: AsRef<str>>(fields: impl IntoIterator<Item = T>) -> String {
-    let fields: Vec<String> = fields.into_iter().map(|field| tables::quoted(field.as_ref())).collect();
+    let fields: Vec<String> = fields.into_iter().map(|field| quoted(field.as_ref())).collect();
     fields.join(",")
 }
 
@@ -119,6 +151,16 @@ mod tests {
             assert_eq!((file.column("F_x").unwrap(), &file.rows[0].fields[1][..]), (1, "1"), "{text}");
         }
         std::fs::remove_file(path).unwrap();
+    }
+
+    #[test]
+    fn rows_have_their_lines_and_the_separator_of_the_first() {
+        let text = "# by hand\n\na;b,c\r\n1;2\n \n# end\n3,5;4\n";
+        let found: Vec<(usize, Vec<Cow<'_, str>>)> = rows(text, None).map(|row| (row.line, row.fields)).collect();
+        let row = |line, fields: [&'static str; 2]| (line, fields.map(Cow::from).to_vec());
+        assert_eq!(found, [row(3, ["a", "b,c"]), row(4, ["1", "2"]), row(7, ["3,5", "4"])]);
+        let by_commas: Vec<_> = rows(text, Some(',')).map(|row| row.fields.len()).collect();
+        assert_eq!(by_commas, [2, 1, 2]);
     }
 
     #[test]

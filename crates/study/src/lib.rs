@@ -44,7 +44,7 @@
 //! | [`pack`] | decimals, error, files, html, picture, robustness, runner, summary, sweep | scenes, tables and patches as FMUs |
 //! | [`motion`] | error, files | the motion that a patch is moved along |
 //! | [`check`] | csv, decimals, error, picture, progress, runner, summary, sweep | elements and patches against what was swept |
-//! | [`report`] | csv, decimals, picture, progress, robustness, runner | what the runs of a scene cost and how accurate they are |
+//! | [`report`] | csv, decimals, error, picture, progress, robustness, runner | what the runs of a scene cost and how accurate they are |
 
 pub mod calibration;
 pub mod check;

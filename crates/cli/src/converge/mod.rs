@@ -34,10 +34,7 @@ pub(crate) fn converge(command: &Converge) -> Result<u8, Error> {
     let header = study.header();
     let (file, runs) = TableFile::open(&output, &header.table(None), command.force, |table| Ok(header.runs(table)))?;
     let findings = run(&study, runs, &file, &output)?;
-    // With the verdict and the changes of the values, which rows that were added do not have.
-    let mut table = header.table(Some(&findings.verdict.sentence()));
-    findings.changes().iter().for_each(|(run, change)| table.push(run.cells(*change)));
-    file.finish(&table)?;
+    file.finish(&study.table(&findings))?;
     let rows = summary::table(&findings.changes(), study.parts());
     print_beside([&output], &format!("{rows}\n{}", summary::judgement(&study, &findings)))?;
     if let Some(path) = &picture {

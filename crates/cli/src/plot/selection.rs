@@ -4,9 +4,10 @@ use std::path::Path;
 
 use asperity::outputs;
 use asperity::patch;
-use asperity::tables::{ContentError, Csv, Row};
+use asperity::tables::ContentError;
+use asperity_formats::text::Row;
 use asperity_study::Error;
-use asperity_study::csv::{self, CsvError};
+use asperity_study::csv::{self, Csv};
 use asperity_study::picture::{Mark, Point};
 
 use crate::cli::{Condition, Plot, PlotAxis};
@@ -17,8 +18,6 @@ use crate::terminal::warn;
 pub(crate) enum PlotError {
     #[error(transparent)]
     File(#[from] Error),
-    #[error(transparent)]
-    ResultFile(#[from] CsvError),
     #[error("--labels: expected {files}, one name for each file, found {labels}")]
     Labels { labels: usize, files: usize },
     #[error("--where: {file} has no row with {condition}; its {column} has the values {values}")]
@@ -50,10 +49,10 @@ impl<'a> Selection<'a> {
         let mut rows: Vec<usize> = (0..file.rows.len()).collect();
         if rows.is_empty() {
             let expected = "a line with the columns' names and rows of numbers below it";
-            return Err(CsvError::content(path, ContentError::value(None, "rows", "0", expected)).into());
+            return Err(Error::content(path)(ContentError::value(None, "rows", "0", expected)).into());
         }
         for condition in &command.conditions {
-            let column = file.column(&condition.column).map_err(|error| CsvError::content(path, error))?;
+            let column = file.column(&condition.column).map_err(Error::content(path))?;
             let holds = |row: usize| condition.holds_for(&file.rows[row].fields[column]);
             if !(0..file.rows.len()).any(holds) {
                 return Err(no_such_row(&file, path, condition, column));
@@ -68,7 +67,7 @@ impl<'a> Selection<'a> {
     }
 
     fn refuse(&self, error: ContentError) -> PlotError {
-        CsvError::content(self.path, error).into()
+        Error::content(self.path)(error).into()
     }
 
     fn column(&self, name: &str) -> Result<usize, PlotError> {

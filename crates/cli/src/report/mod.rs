@@ -7,7 +7,6 @@ mod scene_report;
 use std::path::{Path, PathBuf};
 
 use asperity_study::Error;
-use asperity_study::csv::CsvError;
 use asperity_study::report::{self, Judgement, judgement_picture, judgements_table};
 
 use super::cli::Report;
@@ -21,8 +20,6 @@ use scene_report::WrittenReport;
 pub(crate) enum ReportError {
     #[error(transparent)]
     File(#[from] Error),
-    #[error(transparent)]
-    Peers(#[from] CsvError),
     #[error("{}: {source}", .scene.display())]
     Scene { scene: PathBuf, source: report::ReportError },
     #[error("two scenes have the same folder: {}", .0.display())]

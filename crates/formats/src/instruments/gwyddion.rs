@@ -1,7 +1,9 @@
 //! The text of a Gwyddion field: a matrix of heights below comments with its size.
 
 use super::{Areal, check_size, check_step, length_unit};
-use asperity::tables::{ContentError, decode};
+use asperity::tables::ContentError;
+
+use crate::text::decode;
 
 use crate::text::{is_missing, number};
 

@@ -13,7 +13,9 @@ use asperity::scene::{
     Coordinate, Depth, HeightMap, LengthUnit, LoadedProfile, MapError, Missing, ProfileOptions, Surface, Tilt,
     check_points, remove_tilt,
 };
-use asperity::tables::{ContentError, ReadingNote, Unit, decode};
+use asperity::tables::{ContentError, ReadingNote, Unit};
+
+use crate::text::decode;
 
 pub use grid::Areal;
 use text::Content;

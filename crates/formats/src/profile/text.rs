@@ -391,7 +391,7 @@ impl<'a> Table<'_, 'a> {
     fn check_lines(&self, places: &Places, decimal: Decimal) -> Result<(), ContentError> {
         let is_other = |index: &usize| *index != places.z && places.mark.is_none_or(|(mark, _)| mark != *index);
         for index in (0..self.block.columns).filter(is_other) {
-            let number = |row: asperity::tables::Row<'_>| decimal.read(row.fields.get(index)?);
+            let number = |row: crate::text::Row<'_>| decimal.read(row.fields.get(index)?);
             let numbers: Option<Vec<f64>> = self.block.rows(self.text).map(number).collect();
             if let Some(period) = numbers.as_deref().and_then(period_of_lines) {
                 let given = format!("{} tells lines of {period} points each", self.label(index));

@@ -5,9 +5,10 @@ mod cards;
 
 use asperity::scene::ElasticConstants;
 use asperity::tables::{
-    ContentError, Dimension, FileKind, NOT_NEGATIVE, POSITIVE, ReadColumn, ReadTable, ReadingNote, Role, Unit,
-    UnitRule, decode,
+    ContentError, Dimension, FileKind, NOT_NEGATIVE, POSITIVE, ReadColumn, ReadTable, ReadingNote, Role, Unit, UnitRule,
 };
+
+use crate::text::decode;
 
 use crate::text::{GivenColumns, Line, number, plain, read};
 

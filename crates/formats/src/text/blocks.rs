@@ -1,8 +1,6 @@
 //! Where the tables stand in a text: runs of lines of numbers, and the lines above them.
 
-use asperity::tables::Row;
-
-use super::lines::{Form, Kind, Line, Separator, is_comment, kind, trimmed, without_sign};
+use super::lines::{Form, Kind, Line, Row, Separator, is_comment, kind, trimmed, without_sign};
 
 /// A run of lines of numbers with the same number of fields, and what stands above it.
 #[derive(Clone, Debug)]

@@ -9,6 +9,22 @@ use super::numbers::{is_missing, is_number};
 /// A line of a text, with its number from 1.
 pub type Line<'a> = (usize, &'a str);
 
+/// A row of a table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Row<'a> {
+    /// Its line in the file, counted from 1.
+    pub line: usize,
+    /// Its fields.
+    pub fields: Vec<Cow<'a, str>>,
+}
+
+impl Row<'_> {
+    /// The row, whose fields are its own.
+    pub fn into_owned(self) -> Row<'static> {
+        Row { line: self.line, fields: self.fields.into_iter().map(|field| Cow::Owned(field.into_owned())).collect() }
+    }
+}
+
 /// What parts the fields of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Separator {

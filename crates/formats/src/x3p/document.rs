@@ -10,7 +10,9 @@ use quick_xml::events::{BytesStart, Event};
 use zip::ZipArchive;
 use zip::read::ZipFile;
 
-use asperity::tables::{ANY, ContentError, NotText, decode};
+use asperity::tables::{ANY, ContentError};
+
+use crate::text::{NotText, decode};
 
 /// The longest document, bytes: heights inline of some million points.
 const LONGEST_MAIN: u64 = 1 << 27;

@@ -7,6 +7,7 @@ use std::path::Path;
 
 use asperity::element::{Load, OperatingPoint, PointStatus};
 use asperity::scene::{LinkKind, Scene};
+use asperity::table::Table;
 use cpu_time::ThreadTime;
 use rayon::prelude::*;
 
@@ -145,6 +146,13 @@ impl ConvergenceStudy {
     /// The header of the table.
     pub fn header(&self) -> &StudyHeader {
         &self.header
+    }
+
+    /// The whole table: the runs, with the verdict and the changes of the values, which rows that were added do not have.
+    pub fn table(&self, findings: &Findings) -> Table {
+        let mut table = self.header.table(Some(&findings.verdict.sentence()));
+        findings.changes().iter().for_each(|(run, change)| table.push(run.cells(*change)));
+        table
     }
 
     /// What to look at before the runs are made: a pressure that presses the layer harder than its links stand for.

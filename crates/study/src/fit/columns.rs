@@ -1,7 +1,7 @@
 //! The columns of tables of moduli: quantities by their names, and what a block of a table has.
 
-use asperity::tables::{ContentError, Dimension, NumberRange, Role, Row, Unit, shortened};
-use asperity_formats::text::{Block, Decimal, Head, UsedColumn, chosen, find, is_missing, plain, unit_beside};
+use asperity::tables::{ContentError, Dimension, NumberRange, Role, Unit, shortened};
+use asperity_formats::text::{Block, Decimal, Head, Row, UsedColumn, chosen, find, is_missing, plain, unit_beside};
 
 use super::heading::{Condition, without_condition, without_logarithm};
 use super::reading::{GivenUnits, Reading};

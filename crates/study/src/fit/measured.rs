@@ -1,8 +1,9 @@
 //! Tables of measured moduli, as people and instruments write them: what each row says, in SI units.
 
 use asperity::scene::Wlf;
-use asperity::tables::{ContentError, decode, shortened};
+use asperity::tables::{ContentError, shortened};
 use asperity_formats::text::Block;
+use asperity_formats::text::decode;
 
 use super::columns::EXPECTED;
 use super::reading::{MeasuredPoint, Reading};

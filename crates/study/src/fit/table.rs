@@ -3,8 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use asperity::scene::Wlf;
-use asperity::tables::{ABOVE_ZERO, ContentError, POSITIVE, Row, shortened};
-use asperity_formats::text::{Block, Decimal, Line, UsedColumn, decimal_of, left_out_words, plain};
+use asperity::tables::{ABOVE_ZERO, ContentError, POSITIVE, shortened};
+use asperity_formats::text::{Block, Decimal, Line, Row, UsedColumn, decimal_of, left_out_words, plain};
 
 use super::columns::{self, Column, Columns, Quantity, with_unit};
 use super::curves::{Chosen, Curve, twin};

@@ -1,6 +1,5 @@
-use asperity::tables::Csv;
-
 use super::*;
+use crate::csv::Csv;
 use crate::files::parse_scene;
 use crate::progress::Stop;
 use crate::sweep::SweepOptions;

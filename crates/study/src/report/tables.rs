@@ -14,8 +14,9 @@ use super::reference::Reference;
 use super::robustness::Robustness;
 use super::tolerances::{NoFigures, Timed, ToleranceRow};
 use super::trace::{Errors, OF_ALL_SCENES, QUANTITIES};
-use crate::csv::{self, CsvError, text};
+use crate::csv::{self, text};
 use crate::decimals::real;
+use crate::error::Error;
 
 /// The columns of errors and run times: errors over the largest value, processor time in s. Tables of other programs
 /// have these columns.
@@ -172,9 +173,9 @@ pub struct Peers {
 ///
 /// # Errors
 /// Where the file cannot be read, a column is missing, or a field is no number.
-pub fn read_peers(path: &Path, names: &[&str]) -> Result<Peers, CsvError> {
+pub fn read_peers(path: &Path, names: &[&str]) -> Result<Peers, Error> {
     let file = csv::read(path)?;
-    let refuse = |error| CsvError::content(path, error);
+    let refuse = |error| Error::content(path)(error);
     let mut columns = [0; MEASURED.len()];
     for (column, name) in columns.iter_mut().zip(MEASURED) {
         *column = file.column(name).map_err(refuse)?;

@@ -5,7 +5,8 @@
 
 use std::path::PathBuf;
 
-use asperity::tables::{ContentError, LARGEST, decode, fields};
+use asperity::tables::{ContentError, LARGEST, fields};
+use asperity_formats::text::decode;
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Numbers of a scene that move together.
