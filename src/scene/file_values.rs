@@ -68,11 +68,10 @@ impl fmt::Display for Setting {
 #[derive(Clone)]
 pub struct FileValues {
     file: PathBuf,
-    /// The text of the file, for the places of its keys; nothing is read from it again.
-    text: Arc<str>,
+    /// The text of the file, for the places of its keys; nothing is read from it again. `None` once keys are set, as what
+    /// is wrong then need not be wrong in the file.
+    text: Option<Arc<str>>,
     pub(super) root: Table,
-    /// The keys that were set: they have no place in the file.
-    set: Vec<String>,
     pub(super) formats: &'static dyn FileFormats,
     pub(super) files: NamedFiles,
 }
@@ -113,8 +112,8 @@ impl NamedFiles {
 /// Of what was made in code.
 impl Default for FileValues {
     fn default() -> Self {
-        let (file, text, root, set) = (PathBuf::new(), "".into(), Table::new(), Vec::new());
-        Self { file, text, root, set, formats: &CanonicalFiles, files: NamedFiles::default() }
+        let (file, root, files) = (PathBuf::new(), Table::new(), NamedFiles::default());
+        Self { file, text: None, root, formats: &CanonicalFiles, files }
     }
 }
 
@@ -182,7 +181,7 @@ impl FileValues {
     /// The values of a `text` as if it were the content of `file`.
     pub(super) fn parse(text: &str, file: &Path, formats: &'static dyn FileFormats) -> Result<Self> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let values = Self { file: file.to_owned(), text: text.into(), formats, ..Self::default() };
+        let values = Self { file: file.to_owned(), text: Some(text.into()), formats, ..Self::default() };
         let root = text.parse().map_err(|error: toml::de::Error| {
             let location = values.place(error.span().map_or(0, |span| span.start));
             SceneError::new(location, "", Problem::Syntax { reason: error.message().trim().replace('\n', "; ") })
@@ -207,12 +206,25 @@ impl FileValues {
         parts.try_fold(at(&self.root, first)?, |value, part| at(value.as_table()?, part))
     }
 
+    /// What `read` makes of the values with keys set. What is wrong in the file without them is told as it is there.
+    ///
+    /// # Errors
+    /// Those of `read`, without a place where they come of what is set.
+    pub(super) fn with<T>(self, settings: &[Setting], read: impl Fn(Self, &[Setting]) -> Result<T>) -> Result<T> {
+        read(self.clone(), settings).map_err(|error| {
+            let is_set = settings.iter().any(|setting| is_below(error.key(), &setting.key));
+            let own = if is_set || settings.is_empty() { None } else { read(self, &[]).err() };
+            own.filter(|own| own.key() == error.key()).unwrap_or(error)
+        })
+    }
+
     /// Gives keys values, those in lists that are files left out: these lists with the settings in them.
     ///
     /// # Errors
     /// Where a key leads nowhere.
     pub(super) fn set_all(&mut self, settings: &[Setting]) -> Result<Vec<(String, Setting)>> {
         let mut in_files = Vec::new();
+        self.text = self.text.take().filter(|_| settings.is_empty());
         for setting in settings {
             let Setting { key, value } = setting;
             let refused = |expected: String| SceneError::new(Location::default(), key, Problem::value(value, expected));
@@ -220,7 +232,7 @@ impl FileValues {
                 "the path of a key, such as solver.relative_tolerance or layer.vertical.maxwell[1].stiffness";
             let parts = parts(key).ok_or_else(|| refused(expected.to_owned()))?;
             match set_below(&mut self.root, "", &parts, value) {
-                Ok(()) => self.set.push(key.clone()),
+                Ok(()) => (),
                 Err(Obstacle::NamedList(list)) => in_files.push((list, setting.clone())),
                 Err(Obstacle::Other(expected)) => return Err(refused(expected)),
             }
@@ -251,20 +263,15 @@ impl FileValues {
         self.error(path, Problem::Unknown { allowed, similar })
     }
 
-    /// Where the value at a path stands in the file, or the name of a table; where it is not there, what is around it. No
-    /// place of what was set.
+    /// Where the value at a path stands in the file, or the name of a table; where it is not there, what is around it. None
+    /// where keys are set.
     pub(super) fn location(&self, path: &str) -> Location {
-        let is_below = |set: &String| {
-            path.strip_prefix(set.as_str()).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
-        };
-        match self.set.iter().any(is_below) {
-            true => Location::default(),
-            false => self.place(self.span(path).offset),
-        }
+        self.place(self.span(path).offset)
     }
 
     fn place(&self, offset: usize) -> Location {
-        let before = self.text.as_bytes().iter().take(offset);
+        let Some(text) = &self.text else { return Location::default() };
+        let before = text.as_bytes().iter().take(offset);
         Location { file: self.file.clone(), line: Some(1 + before.filter(|&&byte| byte == b'\n').count()) }
     }
 
@@ -275,8 +282,8 @@ impl FileValues {
 
     /// The value at a path as it was written, on one line and cut where it is long.
     pub(super) fn given(&self, path: &str, value: &Value) -> String {
-        let written = self.span(path).whole.filter(|_| self.location(path) != Location::default());
-        let text = written.and_then(|span| self.text.get(span).map(str::to_owned)).unwrap_or_else(|| value.to_string());
+        let written = self.text.as_ref().and_then(|text| text.get(self.span(path).whole?));
+        let text = written.map_or_else(|| value.to_string(), str::to_owned);
         let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
         match line.char_indices().nth(GIVEN_LENGTH) {
             Some((end, _)) => format!("{}...", &line[..end]),
@@ -286,7 +293,8 @@ impl FileValues {
 
     fn span(&self, path: &str) -> Span {
         let mut span = Span::default();
-        let (Ok(document), Some(parts)) = (DeTable::parse(&self.text), parts(path)) else { return span };
+        let document = self.text.as_ref().and_then(|text| DeTable::parse(text).ok());
+        let (Some(document), Some(parts)) = (document, parts(path)) else { return span };
         let mut table = Some(document.get_ref());
         for part in parts {
             let found = table.and_then(|table| table.get_key_value(part.name));
@@ -317,6 +325,11 @@ impl Span {
         let whole = value.span();
         Self { offset: if value.get_ref().is_table() { name } else { whole.start }, whole: Some(whole) }
     }
+}
+
+/// Whether a path is that of a `key` or below it.
+fn is_below(path: &str, key: &str) -> bool {
+    path.strip_prefix(key).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
 fn at<'a>(table: &'a Table, part: PathPart<'_>) -> Option<&'a Value> {

@@ -48,14 +48,14 @@ impl Scene {
     /// values.
     ///
     /// # Errors
-    /// As for [`load`](Self::load); without file and line where it is the value of a key that is set.
+    /// As for [`load`](Self::load); without file and line where it comes of a key that is set.
     pub fn parse_with(
         text: &str,
         file: &FilePath,
         formats: &'static dyn FileFormats,
         settings: &[Setting],
     ) -> Result<Self> {
-        Self::of_values(FileValues::parse(text, file, formats)?, settings)
+        FileValues::parse(text, file, formats)?.with(settings, Self::of_values)
     }
 
     /// The scene with a key set to another value, elements of lists counted from 1: `with("friction.coulomb", 0.3)`. It is

@@ -47,22 +47,21 @@ impl PatchFile {
     /// As [`parse`](Self::parse), with the file of points in one of `formats`, and with keys set to other values.
     ///
     /// # Errors
-    /// As for [`load`](Self::load); without file and line where it is the value of a key that is set.
+    /// As for [`load`](Self::load); without file and line where it comes of a key that is set.
     pub fn parse_with(
         text: &str,
         file: &FilePath,
         formats: &'static dyn FileFormats,
         settings: &[Setting],
     ) -> Result<Self> {
-        let mut values = FileValues::parse(text, file, formats)?;
+        FileValues::parse(text, file, formats)?.with(settings, Self::of_values)
+    }
+
+    fn of_values(mut values: FileValues, settings: &[Setting]) -> Result<Self> {
         if let Some((_, Setting { key, value })) = values.set_all(settings)?.into_iter().next() {
             let problem = Problem::value(value, "a key of the patch file");
             return Err(SceneError::new(Location::default(), key, problem));
         }
-        Self::of_values(values)
-    }
-
-    fn of_values(values: FileValues) -> Result<Self> {
         let mut root = TableReader::root(Source { values: &values, form: Form::Direct, keys: PATCH_ROOT })?;
         let name = read_name(&root.required("name")?)?;
         let table_entry = root.required("table")?;
