@@ -361,35 +361,6 @@ mod tests {
     }
 
     #[test]
-    fn a_run_not_yet_under_way_is_restored_too() {
-        let scene = scene();
-        let mut first = Simulation::new(&scene, &Start { u: 3.0, w: -1e-6, w_rate: -0.1, ..Start::default() }).unwrap();
-        let mut second = Simulation::restore(&scene, &first.state()).unwrap();
-        assert_eq!((first.advance(&WAVE), second.advance(&WAVE)), (Ok(()), Ok(())));
-        assert_eq!(bits(&scene, &mut second), bits(&scene, &mut first));
-    }
-
-    /// What is saved is of the run alone, not of the workspace that it had: the profile under masses that have lifted
-    /// is not.
-    #[test]
-    fn runs_alike_are_saved_alike() {
-        let scene = scene();
-        let mut first = run(&scene);
-        let lift = Motion {
-            duration: 3e-5,
-            u: Path::default(),
-            w: Path { rate: 0.2, ..Path::default() },
-            ..Motion::default()
-        };
-        for _ in 0..20 {
-            let mut second = Simulation::restore(&scene, &first.state()).unwrap();
-            assert_eq!((first.advance(&lift), second.advance(&lift)), (Ok(()), Ok(())));
-            assert_eq!(first.state(), second.state());
-        }
-        assert!(first.run.context.state.layer.state.mode.iter().all(|&mode| mode == Mode::Free));
-    }
-
-    #[test]
     fn an_invalid_state_is_refused() {
         let scene = scene();
         let state = run(&scene).state();

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::common::{
-    Table, asperity, difference, drive, fmpy, interpolate, largest, library, library_along, masters_python, pack,
+    Table, asperity, difference, fmpy, interpolate, largest, library, masters_python, pack,
     python, root, run, scratch, simulate,
 };
-use asperity::scene::{OutputGroup, Scene};
+use asperity::scene::OutputGroup;
 
 const DEFAULT_SCENE: &str = "scenes/tread-block/tread-block.toml";
 
@@ -183,22 +183,6 @@ fn a_missing_library_is_named_with_the_way_to_build_it() {
     assert!(text.contains("nowhere/libasperity.so") && text.contains("cargo build"), "{text}");
 }
 
-/// The library's own results, to rounding: both take the same steps.
-#[test]
-fn driven_along_its_excitation_the_fmu_gives_what_the_library_gives() {
-    const TOLERANCE: f64 = 1e-9;
-    let folder = scratch("fmpy-library-along");
-    let path = root().join(DEFAULT_SCENE);
-    let motion = simulate(&path, &folder, &[]);
-    let driven = drive(&pack(&path, &folder), &folder.join("tread-block.csv"), &[]);
-    let scene = Scene::load(&path).unwrap();
-    let own = library_along(&scene, &motion);
-    for name in own.names() {
-        let (error, largest) = (difference(&driven.column(name), &own.column(name)), largest(&own.column(name)));
-        assert!(error <= TOLERANCE * largest, "{name}: {error:e} of {largest:e}");
-    }
-}
-
 /// `fmpy simulate` gives values alone, so that the FMU starts at rest and goes on as the motion came: of every kink it
 /// learns one step late. The forces jump there; the energy lost, which does not, comes closer as the step gets shorter.
 #[test]
@@ -221,9 +205,4 @@ fn command_line_error(fmu: &Path, motion: &Path, own: &Table, step: f64) -> f64 
     let (times, losses) = (own.column("time"), own.column("E_diss"));
     let wanted: Vec<f64> = found.column("time").iter().map(|&time| interpolate(&times, &losses, time)).collect();
     difference(&found.column("E_diss"), &wanted) / largest(&wanted)
-}
-
-#[test]
-fn the_library_is_where_the_script_looks_for_it() {
-    assert!(library().is_file());
 }

@@ -27,13 +27,3 @@ fn the_stiffer_the_harder_it_is_pressed_and_flat_in_the_end() {
         assert!((end / normal_force - 0.4).abs() < 0.03, "{end} N tangentially, {normal_force} N normally");
     }
 }
-
-#[test]
-fn pressing_ends_at_the_force() {
-    for (name, force) in [("low", 0.05), ("middle", 0.2), ("high", 0.6)] {
-        let scene = root().join(format!("scenes/figure-7/{name}.toml"));
-        let table = simulate(&scene, &scratch(&format!("figure-7-{name}-pressed")), &[]);
-        let reached = table.column("F_z")[ROWS];
-        assert!((reached - force).abs() < 1e-5 * force, "{name}: {reached} N instead of {force} N");
-    }
-}

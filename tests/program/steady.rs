@@ -57,33 +57,6 @@ fn a_table_is_that_of_an_independent_program() {
     }
 }
 
-/// The same bits however the points are shared out, and whichever were there.
-#[test]
-fn shards_and_resumption_give_the_same_bits() {
-    let folder = scratch("steady-shards");
-    let scene = reference("steady/steady-layer.toml");
-    let options = ["--speeds", "1e-3..3/4", "--pressures", "2e5,8e5"];
-    let whole = sweep(&scene, &folder.join("whole.csv"), &options);
-    let shards = [1, 2, 3].map(|i| {
-        let shard = folder.join(format!("{i}.csv"));
-        let of = format!("{i}/3");
-        let _ = sweep(&scene, &shard, &[&options[..], &["--shard", &of]].concat());
-        shard
-    });
-    let joined = folder.join("joined.csv");
-    run(asperity().args(["sweep", "--merge"]).args(&shards).arg("-o").arg(&joined));
-    assert_eq!(fs::read_to_string(&joined).unwrap(), whole);
-    let cut = whole.trim_end().rsplit_once('\n').unwrap().0.to_owned() + "\n";
-    fs::write(&joined, cut).unwrap();
-    assert_eq!(sweep(&scene, &joined, &options), whole);
-    // Other points are another sweep.
-    let message = refused(
-        &[&["sweep", scene.to_str().unwrap(), "-o", joined.to_str().unwrap(), "--points", "2048"][..], &options[..]]
-            .concat(),
-    );
-    assert!(message.contains("another sweep"), "{message}");
-}
-
 /// A profile with too few points for its waves is refined, and the table says to how many; full contact has no stiffness.
 #[test]
 fn a_coarse_profile_is_refined_and_full_contact_is_said() {

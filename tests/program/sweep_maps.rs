@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 
 use crate::common::scenes::SceneText;
-use crate::common::{Table, asperity, root, scratch};
+use crate::common::{asperity, root, scratch};
 
 const SPEEDS: &str = "1e-4..10/6";
 const TEMPERATURES: &str = "0°C,20°C,40°C";
@@ -65,41 +65,6 @@ fn friction_is_drawn_over_speed_and_temperature() {
     let done = asperity().arg("sweep").arg("-o").arg(&merged).arg("--merge").args(&shards).args(maps).output().unwrap();
     assert!(done.status.success(), "{}", said(&done.stderr));
     assert_eq!(fs::read_to_string(folder.join("m.svg")).unwrap(), svg);
-}
-
-/// The line of a level lies where a straight line between the table's points has it.
-#[test]
-fn a_contour_goes_where_the_table_has_its_value() {
-    let folder = scratch("sweep-map-contour");
-    let table = folder.join("t.csv");
-    let points = ["--speeds", "1e-4,1e-3", "--pressures", "1bar", "--temperatures", "30°C,40°C"];
-    let done = sweep(&road(), &table, &[&points[..], &["--over", "speed,temperature"]].concat());
-    assert!(done.status.success(), "{}", said(&done.stderr));
-    let rows = Table::read(&table);
-    // At 40 °C from the left to the right edge.
-    let friction: Vec<f64> = (2..4).map(|row| rows.number(row, "friction")).collect();
-    let svg = fs::read_to_string(folder.join("t.svg")).unwrap();
-    let image = svg.lines().find(|line| line.starts_with("<image")).unwrap();
-    let of = |name: &str| -> f64 {
-        let from = image.split_once(&format!(" {name}=\"")).unwrap().1;
-        from.split_once('"').unwrap().0.parse().unwrap()
-    };
-    let ends: Vec<(f64, f64)> = svg
-        .lines()
-        .filter_map(|line| line.split_once("<polyline")?.1.split_once("points=\"")?.1.split_once('"'))
-        .flat_map(|(points, _)| points.split_whitespace().map(str::to_owned).collect::<Vec<_>>())
-        .filter_map(|point| point.split_once(',').map(|(x, y)| (x.parse().unwrap(), y.parse().unwrap())))
-        .collect();
-    let levels = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1];
-    let is_drawn =
-        |level: &&f64| texts(&svg, &format!("{level:.1}")) > 0 && friction[0] < **level && **level < friction[1];
-    let drawn: Vec<&f64> = levels.iter().filter(is_drawn).collect();
-    assert!(!drawn.is_empty(), "{friction:?}");
-    for level in drawn {
-        let (x, y) = (of("x") + of("width") * (level - friction[0]) / (friction[1] - friction[0]), of("y"));
-        // Within a quarter of a pixel.
-        assert!(ends.iter().any(|end| (end.0 - x).abs() <= 0.25 && (end.1 - y).abs() <= 0.25), "{level}: ({x}, {y})");
-    }
 }
 
 #[test]

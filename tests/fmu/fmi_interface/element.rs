@@ -56,36 +56,6 @@ fn its_variables_have_the_names_of_a_layers() {
     assert!(fmu.message().contains("expected a number from 290.0 to 310.0"));
 }
 
-/// To and fro: the slope is the stiffness, the plateau the limit, whatever the steps.
-#[test]
-fn a_hysteresis_loop() {
-    let (v, p) = (0.1, 4e5);
-    let fmu = Fmu::of_table(&Grid::plain().text(), false);
-    let height = w(v, p);
-    assert_eq!((fmu.setup(0.0), fmu.enter(), fmu.set_real("w", height), fmu.exit()), (OK, OK, OK, OK));
-    let limit = friction(v, p, WARM) * p * AREA;
-    let mut time = 0.0;
-    let mut u = 0.0;
-    let mut go = |distance: f64, steps: i32| {
-        let h = distance.abs() / v / f64::from(steps);
-        for _ in 0..steps {
-            assert_eq!(step(&fmu, (time, h), (u, height), (v * distance.signum(), 0.0)), 0);
-            (time, u) = (time + h, u + v * distance.signum() * h);
-        }
-        (fmu.real("F_x"), fmu.real("E_diss"))
-    };
-    assert_relative("force", go(1e-5, 7).0, -stiffness(p) * 1e-5, 1e-8);
-    let (force, lost) = go(2e-3, 3);
-    assert_relative("force", force, -limit, 1e-8);
-    assert_relative("force", go(-1e-5, 2).0, -limit + stiffness(p) * 1e-5, 1e-8);
-    go(1e-5 - 2e-3, 1);
-    let (force, after) = go(2e-3, 1);
-    assert_relative("force", force, -limit, 1e-8);
-    assert_relative("loss", after - lost, 2.0 * limit * (2e-3 - 2.0 * limit / stiffness(p)), 1e-8);
-    assert_relative("force", fmu.real("F_z"), p * AREA, 1e-8);
-    assert_relative("friction", fmu.real("friction.coefficient"), friction(v, p, WARM), 1e-8);
-}
-
 #[test]
 fn motions_beyond_the_table_are_refused_and_leave_it_unchanged() {
     let fmu = pressed(4e5);

@@ -2,9 +2,8 @@
 
 use std::path::Path;
 use std::process::Command;
-use std::{fs, thread};
+use std::thread;
 
-use crate::common::scratch;
 use crate::fmu::fmi_interface::master::{EVERYTHING, Fmu, OK};
 
 /// Variable with the folder of a test in a process of its own; without it such a test does nothing.
@@ -16,35 +15,6 @@ pub fn run_alone(name: &str, folder: &Path) {
     command.args(["--exact", name, "--ignored", "--test-threads=1"]).env(FOLDER, folder);
     let text = crate::common::run(&mut command);
     assert!(text.contains("1 passed"), "{text}");
-}
-
-/// Pages of memory that this process holds.
-fn pages() -> u64 {
-    let text = fs::read_to_string("/proc/self/statm").unwrap();
-    text.split(' ').nth(1).unwrap().parse().unwrap()
-}
-
-#[test]
-#[cfg(target_os = "linux")]
-fn ten_thousand_instances_leave_memory_flat() {
-    run_alone("fmu::fmi_interface::many::ten_thousand_instances", &scratch("ten-thousand"));
-}
-
-#[test]
-#[ignore = "run by another test, in a process of its own"]
-fn ten_thousand_instances() {
-    let live = || {
-        let fmu = Fmu::running();
-        let state = fmu.state();
-        assert_eq!((fmu.set_real("w", -1e-6), fmu.step(0.0, 1e-7)), (OK, OK));
-        fmu.thaw(&fmu.serialised(state));
-        assert_eq!(fmu.step(0.0, 1e-7), OK);
-    };
-    (0..1_000).for_each(|_| live());
-    let before = pages();
-    (0..10_000).for_each(|_| live());
-    // One page in fifty instances would be seen; an instance holds several.
-    assert!(pages() <= before + 200, "{before} pages before, {} after", pages());
 }
 
 /// Steps into contact and along it with rates and states; all outputs.

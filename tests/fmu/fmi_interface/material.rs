@@ -1,9 +1,7 @@
 //! The material form through the FMU: its complex modulus as measured, and its temperature as a parameter.
 
-use std::f64::consts::TAU;
 use std::fs;
 
-use nalgebra::{DMatrix, DVector};
 
 use crate::common::scenes::SceneText;
 use crate::fmu::fmi_interface::master::*;
@@ -88,115 +86,4 @@ fn another_compound_beside_the_scene_is_another_fmu() {
         folder.description().0
     };
     assert_ne!(guid("1e-4,5e6"), guid("1e-4,5.1e6"));
-}
-
-/// A term in the middle of the frequencies and one beyond each end.
-const SMALL: [(f64, f64); 3] = [(1e-6, 9e6), (1e-3, 6e6), (1.0, 3e6)];
-
-/// (τ, E) of the compound shipped.
-fn compound() -> Vec<(f64, f64)> {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/tread-block-rubber/compound.csv");
-    let text = fs::read_to_string(path).unwrap();
-    let row = |line: &str| line.split_once(", ").and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
-    text.lines().filter_map(row).collect()
-}
-
-const MASSES: usize = 3;
-const EQUILIBRIUM: f64 = 4.44e6;
-
-/// Every mass sticks on a flat profile: no force along x, and friction.
-fn clamped(terms: &[(f64, f64)]) -> String {
-    let terms: Vec<_> = terms.iter().map(|&(tau, modulus)| (modulus, tau)).collect();
-    SceneText::rubber(MASSES, 1e-4, 1e-3, 1e-2)
-        .set("material.equilibrium_modulus", EQUILIBRIUM)
-        .prony(&terms)
-        .coulomb(0.5)
-        .relative(1e-8)
-        .outputs(&["forces", "contact"])
-        .text()
-}
-
-/// Steps a period. A straight line between them instead of the sine leaves at the points 2 Σ_m (1/(N m))² [K*(mNω) -
-/// K*] ≈ 3.3 (|K*(Nω)| - |K*|)/N², 1e-5 of |K*| for a modulus that trebles on the way.
-const STEPS: u32 = 1000;
-/// Periods before the fit, by which every element with τ up to a period has settled, ...
-const SETTLING: u32 = 16;
-/// ... and for the fit.
-const FITTED: u32 = 4;
-
-/// E' and E'' as F_z over w shows them at a frequency: w = -w_0 + â sin ωt, so F_z = F_0 - k A/H â |E*| sin(ωt + arg
-/// E*) (model.md, section 8 case 1). What elements slower than the run leave of the transient is a cubic within the
-/// fit.
-fn measured(terms: &[(f64, f64)], frequency: f64) -> (f64, f64) {
-    const PRESSED: f64 = 2e-5;
-    /// Small enough for the masses to stay down: â |E*| < w_0 E_∞.
-    const SWING: f64 = 1e-6;
-    let h = 1.0 / (frequency * f64::from(STEPS));
-    let w = |i: u32| -PRESSED + SWING * (TAU * f64::from(i % STEPS) / f64::from(STEPS)).sin();
-    let rate = |i: u32| (w(i + 1) - w(i)) / h;
-    let fmu = Fmu::initialising_with(&clamped(terms));
-    assert_eq!((fmu.set_real("w", w(0)), fmu.set_rate("w", rate(0)), fmu.exit()), (OK, OK, OK));
-    let (input, output) = (fmu.reference("w"), fmu.reference("F_z"));
-    let count = ((SETTLING + FITTED) * STEPS) as usize;
-    let mut forces = Vec::with_capacity(count);
-    for i in 0..(SETTLING + FITTED) * STEPS {
-        assert_eq!(fmu.set_reals(&[input], &[w(i)]), OK);
-        assert_eq!(fmu.set_rates(&[input], &[1], &[rate(i)]), OK);
-        assert_eq!(fmu.step(f64::from(i) * h, h), OK, "{:?}", fmu.messages());
-        let mut force = [0.0];
-        assert_eq!(fmu.get_reals(&[output], &mut force), OK);
-        forces.push(force[0]);
-    }
-    let mut sticking = [0];
-    assert_eq!(fmu.get_integers(&[fmu.reference("contact.sticking")], &mut sticking), OK);
-    assert_eq!(sticking[0] as usize, MASSES);
-    let fitted = &forces[(SETTLING * STEPS) as usize..];
-    let [sine, cosine] = swing(fitted);
-    let per_modulus = -(MASSES as f64) * (1e-4 * 1e-2 / 1e-3) * SWING;
-    (sine / per_modulus, cosine / per_modulus)
-}
-
-/// The parts along sin and cos of values at the ends of the steps from the start of a period, beside a cubic.
-fn swing(values: &[f64]) -> [f64; 2] {
-    let basis = |row: usize, column: usize| {
-        let (x, phase) = (row as f64 / values.len() as f64 - 0.5, TAU * (row + 1) as f64 / f64::from(STEPS));
-        match column {
-            0 => phase.sin(),
-            1 => phase.cos(),
-            power => x.powi(power as i32 - 2),
-        }
-    };
-    let matrix = DMatrix::from_fn(values.len(), 6, basis);
-    let right = matrix.transpose() * DVector::from_column_slice(values);
-    let solved = (matrix.transpose() * &matrix).lu().solve(&right).unwrap();
-    [solved[0], solved[1]]
-}
-
-/// E* = E_∞ + Σ E_j iωτ_j/(1 + iωτ_j) (2).
-fn formula(terms: &[(f64, f64)], omega: f64) -> (f64, f64) {
-    terms.iter().fold((EQUILIBRIUM, 0.0), |(storage, loss), &(tau, modulus)| {
-        let x = omega * tau;
-        (storage + modulus * x * x / (1.0 + x * x), loss + modulus * x / (1.0 + x * x))
-    })
-}
-
-fn assert_modulus(terms: &[(f64, f64)]) {
-    for frequency in [1.0, 10.0, 100.0, 1e3, 1e4] {
-        let (storage, loss) = measured(terms, frequency);
-        let expected = formula(terms, TAU * frequency);
-        let error = (storage - expected.0).hypot(loss - expected.1) / expected.0.hypot(expected.1);
-        assert!(error < 1e-4, "at {frequency} Hz {storage:e} + {loss:e} i, not {expected:?}: off by {error:e}");
-    }
-}
-
-#[test]
-fn the_complex_modulus_of_a_small_compound_as_measured() {
-    assert_modulus(&SMALL);
-}
-
-#[test]
-fn the_complex_modulus_of_the_compound_shipped_as_measured() {
-    let compound = compound();
-    assert_eq!(compound.len(), 16);
-    assert_modulus(&compound);
 }

@@ -318,53 +318,6 @@ fn uneven_steps(fmu: &Fmu, from: u32, to: u32) -> Vec<Vec<u64>> {
     rows
 }
 
-#[test]
-fn a_state_in_the_middle_goes_on_bit_for_bit() {
-    let fmu = Fmu::running_with(EVERYTHING);
-    uneven_steps(&fmu, 0, 7);
-    let (state, bytes) = (fmu.state(), fmu.frozen());
-    let first = uneven_steps(&fmu, 7, 14);
-    assert!(repeated(&fmu) >= 8, "{}", repeated(&fmu));
-    assert_eq!(fmu.set_state(state), OK);
-    assert_eq!(uneven_steps(&fmu, 7, 14), first);
-    let other = Fmu::of(EVERYTHING, false);
-    other.thaw(&bytes);
-    assert_eq!(other.frozen(), bytes);
-    assert_eq!(uneven_steps(&other, 7, 14), first);
-    // A state written over, and a reset.
-    let mut kept = fmu.state();
-    assert_eq!((fmu.set_state(state), fmu.get_state(&mut kept)), (OK, OK));
-    assert_eq!((fmu.reset(), fmu.set_state(kept)), (OK, OK));
-    assert_eq!(uneven_steps(&fmu, 7, 14), first);
-    assert_eq!((fmu.reset(), fmu.setup(0.0), fmu.enter(), fmu.exit()), (OK, OK, OK, OK));
-    uneven_steps(&fmu, 0, 7);
-    assert_eq!(uneven_steps(&fmu, 7, 14), first);
-}
-
-#[test]
-fn a_patchs_state_in_the_middle_goes_on_bit_for_bit() {
-    let (fmu, other) = (pad(), pad());
-    assert_eq!((fmu.setup(0.0), fmu.enter(), fmu.exit()), (OK, OK, OK));
-    let steps = |fmu: &Fmu, range: std::ops::Range<u32>| {
-        let step = |step: u32| {
-            let time = 1e-3 * f64::from(step);
-            move_pad(fmu, time, Given::Values);
-            assert_eq!(fmu.step(time, 1e-3), OK);
-            fmu.bits()
-        };
-        range.map(step).collect::<Vec<_>>()
-    };
-    // The step before the drag begins is the last one.
-    steps(&fmu, 0..11);
-    let (state, bytes) = (fmu.state(), fmu.frozen());
-    let first = steps(&fmu, 11..30);
-    assert_eq!(fmu.set_state(state), OK);
-    assert_eq!(steps(&fmu, 11..30), first);
-    other.thaw(&bytes);
-    assert_eq!(other.frozen(), bytes);
-    assert_eq!(steps(&other, 11..30), first);
-}
-
 /// A step that is discarded after the last one was done again leaves the prediction and what it was made from.
 #[test]
 fn a_discarded_step_leaves_the_prediction() {

@@ -5,7 +5,7 @@ use std::process::Output;
 
 use crate::common::{Table, asperity, root, scratch};
 
-fn spoken(arguments: &[&str], folder: &Path) -> Output {
+fn ended(arguments: &[&str], folder: &Path) -> Output {
     let output = asperity().args(arguments).current_dir(folder).output().unwrap();
     assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     output
@@ -28,9 +28,9 @@ fn scene(name: &str) -> PathBuf {
 /// The mean friction is the work along the way over that of the load, as the rows of the file have it.
 #[test]
 fn a_run_ends_with_its_result_in_a_few_lines() {
-    let folder = scratch("spoken-run");
+    let folder = scratch("summaries-run");
     let block = scene("tread-block/tread-block.toml");
-    let output = spoken(&["simulate", block.to_str().unwrap(), "-o", "out.csv", "--stats"], &folder);
+    let output = ended(&["simulate", block.to_str().unwrap(), "-o", "out.csv", "--stats"], &folder);
     let summary = text(&output.stdout);
     let table = Table::read(&folder.join("out.csv"));
     let [u, f_x, f_z] = ["u", "F_x", "F_z"].map(|name| table.column(name));
@@ -54,23 +54,23 @@ fn a_run_ends_with_its_result_in_a_few_lines() {
 
 #[test]
 fn the_group_solver_adds_the_estimated_error() {
-    let folder = scratch("spoken-error");
+    let folder = scratch("summaries-error");
     let block = scene("figure-7/high.toml").to_str().unwrap().to_owned();
     let outputs = "fmu.outputs=['forces', 'solver']";
-    let output = spoken(&["simulate", &block, "-o", "out.csv", "--set", outputs], &folder);
+    let output = ended(&["simulate", &block, "-o", "out.csv", "--set", outputs], &folder);
     assert!(line(text(&output.stdout), "Run").contains("estimated error"), "{}", text(&output.stdout));
 }
 
 #[test]
 fn quiet_runs_say_their_results_alone_and_results_on_standard_output_stay_alone() {
-    let folder = scratch("spoken-quiet");
+    let folder = scratch("summaries-quiet");
     let block = scene("tread-block/tread-block.toml").to_str().unwrap().to_owned();
-    let quiet = spoken(&["-q", "simulate", &block, "-o", "out.csv"], &folder);
+    let quiet = ended(&["-q", "simulate", &block, "-o", "out.csv"], &folder);
     assert!(text(&quiet.stdout).contains("Friction") && !text(&quiet.stdout).contains("Written"));
     assert_eq!(text(&quiet.stderr), "");
-    let quiet = spoken(&["-q", "material", &block, "-o", "moduli.csv"], &folder);
+    let quiet = ended(&["-q", "material", &block, "-o", "moduli.csv"], &folder);
     assert!(text(&quiet.stdout).contains("equilibrium") && !text(&quiet.stdout).contains("Written"));
-    let piped = spoken(&["simulate", &block, "-o", "-"], &folder);
+    let piped = ended(&["simulate", &block, "-o", "-"], &folder);
     assert_eq!(text(&piped.stdout), std::fs::read_to_string(folder.join("out.csv")).unwrap());
     assert!(text(&piped.stderr).contains("Friction"), "{}", text(&piped.stderr));
 }
@@ -78,22 +78,22 @@ fn quiet_runs_say_their_results_alone_and_results_on_standard_output_stay_alone(
 /// The tester's carriage sticks and slips, so that the method goes to and fro.
 #[test]
 fn switches_of_the_method_are_one_line_unless_all_are_asked_for() {
-    let folder = scratch("spoken-switches");
+    let folder = scratch("summaries-switches");
     let tester = scene("tester/tester.toml").to_str().unwrap().to_owned();
-    let brief = spoken(&["simulate", &tester, "-o", "out.csv"], &folder);
+    let brief = ended(&["simulate", &tester, "-o", "out.csv"], &folder);
     let notes: Vec<&str> = text(&brief.stderr).lines().filter(|line| line.contains("time-stepping")).collect();
     assert!(matches!(notes[..], [note] if note.contains("more switches (-v prints all)")), "{notes:?}");
-    let all = spoken(&["-v", "simulate", &tester, "-o", "out.csv"], &folder);
+    let all = ended(&["-v", "simulate", &tester, "-o", "out.csv"], &folder);
     let switches = text(&all.stderr).lines().filter(|line| line.contains("time-stepping from here on")).count();
     assert!(switches > 30, "{switches}");
 }
 
 #[test]
 fn a_sweep_ends_with_its_table() {
-    let folder = scratch("spoken-sweep");
+    let folder = scratch("summaries-sweep");
     let road = scene("road/road.toml").to_str().unwrap().to_owned();
     let loads = ["--speeds", "1 mm/s,1 m/s", "--pressures", "1 bar,3 bar"];
-    let output = spoken(&[&["sweep", &road, "-o", "table.csv"][..], &loads].concat(), &folder);
+    let output = ended(&[&["sweep", &road, "-o", "table.csv"][..], &loads].concat(), &folder);
     let table = Table::read(&folder.join("table.csv"));
     let printed: Vec<Vec<&str>> = text(&output.stdout).lines().map(|line| line.split_whitespace().collect()).collect();
     assert_eq!(printed[0], ["Friction", "293.15", "K", "100", "kPa", "300", "kPa"]);
@@ -112,14 +112,14 @@ fn a_sweep_ends_with_its_table() {
 
 #[test]
 fn columns_have_their_units_if_asked_for() {
-    let folder = scratch("spoken-units");
+    let folder = scratch("summaries-units");
     let block = scene("figure-7/high.toml").to_str().unwrap().to_owned();
-    spoken(&["simulate", &block, "-o", "plain.csv"], &folder);
-    spoken(&["simulate", &block, "-o", "units.csv", "--units"], &folder);
+    ended(&["simulate", &block, "-o", "plain.csv"], &folder);
+    ended(&["simulate", &block, "-o", "units.csv", "--units"], &folder);
     let [plain, units] = ["plain.csv", "units.csv"].map(|name| std::fs::read_to_string(folder.join(name)).unwrap());
     let ((plain_head, plain_rows), (head, rows)) = (plain.split_once('\n').unwrap(), units.split_once('\n').unwrap());
     assert!(plain_head.starts_with("time,u,w,F_x,F_z"), "{plain_head}");
     assert!(head.starts_with("time [s],u [m],w [m],F_x [N],F_z [N]"), "{head}");
     assert_eq!(rows, plain_rows);
-    spoken(&["plot", "units.csv", "plain.csv", "--y", "F_x", "-o", "x.svg"], &folder);
+    ended(&["plot", "units.csv", "plain.csv", "--y", "F_x", "-o", "x.svg"], &folder);
 }

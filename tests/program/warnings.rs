@@ -33,7 +33,7 @@ fn seal(folder: &Path, friction: &str) -> PathBuf {
 /// on their slopes (r + (r - 1)/μ², r = 1.00002) and what they lose, and a result.
 #[test]
 fn a_thickness_means_a_layer_and_springs_are_told() {
-    let folder = scratch("told-springs");
+    let folder = scratch("warnings-springs");
     seal(&folder, "coulomb = 0.2");
     let done = told(&["sweep", "seal.toml", "--speeds", "1mm/s,1m/s", "--pressures", "1MPa", "-o", "t.csv"], &folder);
     let (said, warned) = (text(&done.stdout), text(&done.stderr));
@@ -54,7 +54,7 @@ fn a_thickness_means_a_layer_and_springs_are_told() {
 /// At 0.3 Pa, meant as MPa, a single point touches, which is no contact.
 #[test]
 fn points_without_a_result_are_counted_and_named() {
-    let folder = scratch("told-points");
+    let folder = scratch("warnings-points");
     seal(&folder, "coulomb = 0.2");
     let data = |name: &str, rows: &str| fs::write(folder.join(name), format!("speed [m/s],pressure [Pa],mu\n{rows}"));
     data("none.csv", "0.1,1e-4,0.2\n1,1e-4,0.21\n").unwrap();
@@ -78,7 +78,7 @@ fn points_without_a_result_are_counted_and_named() {
 /// Shear on a profile that counts as smooth between its points.
 #[test]
 fn friction_that_no_rubber_has_is_told_with_the_key_that_is_missing() {
-    let folder = scratch("told-friction");
+    let folder = scratch("warnings-friction");
     seal(&folder, "shear_strength = 5e6");
     fs::write(folder.join("mu.csv"), "speed [m/s],pressure [Pa],mu\n0.1,1e6,0.2\n1,1e6,0.21\n").unwrap();
     for command in [
@@ -100,7 +100,7 @@ fn friction_that_no_rubber_has_is_told_with_the_key_that_is_missing() {
 /// carrier on nothing is nowhere at rest.
 #[test]
 fn start_values_from_which_no_run_begins_are_told() {
-    let folder = scratch("told-start");
+    let folder = scratch("warnings-start");
     let scene = |load: &str| {
         format!(
             "name = 'hung'\nlayer = {{ masses = 4, spacing = 1e-4, mass = 1e-7, initial = 'relaxed', \

@@ -95,7 +95,7 @@ const MOMENTS: u32 = 6;
 /// Whenever a command is killed, its output is the one of before or the new one, to the last byte.
 #[test]
 fn a_command_that_is_killed_leaves_the_old_file_or_the_new_one() {
-    let folder = scratch("lost-killed");
+    let folder = scratch("output-files-killed");
     for (name, arguments, others) in commands(&folder) {
         let output = folder.join(name);
         let changed = [arguments.clone(), others].concat();
@@ -118,7 +118,7 @@ fn a_command_that_is_killed_leaves_the_old_file_or_the_new_one() {
 /// A table that is continued keeps the rows that it had, and is completed to the same bytes.
 #[test]
 fn a_table_whose_command_is_killed_keeps_its_rows() {
-    let folder = scratch("lost-killed-table");
+    let folder = scratch("output-files-killed-table");
     let scene = written(folder.join("scene.toml"), FLAT);
     let table = folder.join("table.csv");
     let arguments = |speeds: &str| ["sweep", text(&scene), "--forces", "0.5,1,2", "--speeds", speeds].map(String::from);
@@ -145,7 +145,7 @@ fn a_table_whose_command_is_killed_keeps_its_rows() {
 /// A report, killed, has whole files alone.
 #[test]
 fn a_report_that_is_killed_has_whole_files() {
-    let folder = scratch("lost-killed-report");
+    let folder = scratch("output-files-killed-report");
     let scene = written(folder.join("scene.toml"), FLAT);
     let arguments =
         ["report", text(&scene), "--tolerances", "1e-2..1e-4", "--repeat", "1", "--stress", "0"].map(String::from);
@@ -172,7 +172,7 @@ fn a_report_that_is_killed_has_whole_files() {
 /// A run that cannot start, or is refused, touches nothing.
 #[test]
 fn a_run_that_does_not_start_leaves_what_was_there() {
-    let folder = scratch("lost-start");
+    let folder = scratch("output-files-start");
     let scene = written(folder.join("scene.toml"), FLAT);
     let output = written(folder.join("out.csv"), "precious\n");
     let arguments = ["simulate", text(&scene), "-o", text(&output)];
@@ -193,7 +193,7 @@ mod unix {
     /// By another name too: a link of either kind.
     #[test]
     fn no_output_takes_the_place_of_an_input_by_whatever_name() {
-        let folder = scratch("lost-inputs");
+        let folder = scratch("output-files-inputs");
         let flat = written(folder.join("flat.toml"), FLAT);
         let study = written(folder.join("study.csv"), "");
         for (name, arguments, _) in commands(&folder) {
@@ -213,7 +213,7 @@ mod unix {
         let sweep = ["sweep", text(&flat), "--speeds", "1", "--forces", "1", "--converged", text(&study)];
         let link = folder.join("link.csv");
         fs::hard_link(&study, &link).unwrap();
-        for others in [["-o", text(&link)], ["--plot", "../lost-inputs/flat.svg"]] {
+        for others in [["-o", text(&link)], ["--plot", "../output-files-inputs/flat.svg"]] {
             symlink(&flat, folder.join("flat.svg")).ok();
             let output = asperity().args(sweep).args(others).current_dir(&folder).output().unwrap();
             let message = String::from_utf8(output.stderr).unwrap();
@@ -226,7 +226,7 @@ mod unix {
             "-o",
             text(&folder.join("a.svg")),
             "--plot",
-            text(&folder.join("../lost-inputs/a.svg")),
+            text(&folder.join("../output-files-inputs/a.svg")),
         ]);
         assert!(message.contains("will not write"), "{message}");
     }
@@ -234,7 +234,7 @@ mod unix {
     /// A pipe waits for its writer, and a device has no end: neither is read.
     #[test]
     fn regular_files_alone_are_read() {
-        let folder = scratch("lost-regular");
+        let folder = scratch("output-files-regular");
         let pipe = folder.join("pipe.csv");
         run(Command::new("mkfifo").arg(&pipe));
         let scene = written(
@@ -264,7 +264,7 @@ mod unix {
     #[test]
     #[cfg(target_os = "linux")]
     fn a_write_error_ends_the_run_with_the_reason() {
-        let folder = scratch("lost-full");
+        let folder = scratch("output-files-full");
         for (_, arguments, _) in commands(&folder).into_iter().filter(|(name, ..)| name.ends_with("csv")) {
             // A picture needs its ending, so tables alone go to the device.
             let mut arguments: Vec<&str> = arguments.iter().map(String::as_str).chain(["-o"]).collect();
@@ -283,7 +283,7 @@ mod unix {
     /// A sweep that is interrupted says how to go on, and goes on.
     #[test]
     fn an_interrupted_sweep_says_how_to_go_on() {
-        let folder = scratch("lost-interrupted");
+        let folder = scratch("output-files-interrupted");
         let scene = written(folder.join("scene.toml"), FLAT);
         let table = folder.join("table.csv");
         let mut sweep = asperity();
@@ -322,7 +322,7 @@ mod unix {
 /// A second command on the same table is told who writes it.
 #[test]
 fn a_table_has_one_writer_at_a_time() {
-    let folder = scratch("lost-lock");
+    let folder = scratch("output-files-lock");
     let scene = written(folder.join("scene.toml"), FLAT);
     let table = folder.join("table.csv");
     let sweep = ["sweep", text(&scene), "-o", text(&table), "--speeds", "1", "--forces", "1"];
@@ -341,7 +341,7 @@ fn a_table_has_one_writer_at_a_time() {
 /// Rows that no sweep has written so are named and computed again; those that are whole are kept.
 #[test]
 fn corrupt_rows_are_named_and_computed_again() {
-    let folder = scratch("lost-corrupt");
+    let folder = scratch("output-files-corrupt");
     let scene = written(folder.join("scene.toml"), FLAT);
     let table = folder.join("table.csv");
     let sweep = || {
@@ -389,7 +389,7 @@ fn corrupt_rows_are_named_and_computed_again() {
 /// `--merge` adds to a table of the same sweep and takes the place of no other file.
 #[test]
 fn merged_tables_take_the_place_of_no_other_file() {
-    let folder = scratch("lost-merge");
+    let folder = scratch("output-files-merge");
     let scene = written(folder.join("scene.toml"), FLAT);
     let [table, shard, joined, other] =
         ["table.csv", "shard.csv", "joined.csv", "other.csv"].map(|name| folder.join(name));
@@ -419,7 +419,7 @@ fn merged_tables_take_the_place_of_no_other_file() {
 /// Rows of a study that are corrupt are made again.
 #[test]
 fn corrupt_rows_of_a_study_are_made_again() {
-    let folder = scratch("lost-study");
+    let folder = scratch("output-files-study");
     let scene = written(folder.join("scene.toml"), RUBBER);
     let table = folder.join("study.csv");
     let study = || {
@@ -436,6 +436,7 @@ fn corrupt_rows_of_a_study_are_made_again() {
     let last = whole.lines().last().unwrap();
     fs::write(&table, whole.replacen(last, &last[..last.len() - 30], 1)).unwrap();
     let message = String::from_utf8(study().stderr).unwrap();
-    assert!(message.contains("fields, expected 25; the run is made again"), "{message}");
+    let place = format!("study.csv:{}: ", whole.lines().count());
+    assert!(message.contains(&place) && message.contains("fields, expected 25"), "{message}");
     assert_eq!(numbers(&fs::read_to_string(&table).unwrap()), numbers(&whole));
 }
