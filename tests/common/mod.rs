@@ -44,6 +44,14 @@ pub fn run(command: &mut Command) -> String {
     text(&output.stdout)
 }
 
+/// Asserts that a message names each of these: keys, numbers, places, options, parted by bars.
+#[track_caller]
+pub fn assert_names(message: impl AsRef<str>, parts: &str) {
+    let message = message.as_ref();
+    let missing: Vec<&str> = parts.split('|').map(str::trim).filter(|part| !message.contains(part)).collect();
+    assert!(missing.is_empty(), "no {missing:?} in {message}");
+}
+
 /// Where cargo builds: the parent of the tests' scratch folder.
 pub fn target() -> &'static Path {
     Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap()

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::common::{
-    Table, asperity, difference, fmpy, interpolate, largest, library, masters_python, pack,
-    python, root, run, scratch, simulate,
+    Table, asperity, difference, fmpy, interpolate, largest, library, masters_python, pack, python, root, run, scratch,
+    simulate,
 };
 use asperity::scene::OutputGroup;
 

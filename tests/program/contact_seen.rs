@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::common::{Table, asperity, browser, python, root, run, scratch};
+use crate::common::{Table, asperity, assert_names, browser, python, root, run, scratch};
 
 /// A scene of some masses that stick and slip, with friction and a material.
 fn scene() -> PathBuf {
@@ -157,7 +157,7 @@ fn a_contact_is_drawn_at_its_time_which_is_a_row() {
         assert_eq!(column, before.column(name), "{name}");
     }
     let late = format!("{}=late.png", 1.1 * end);
-    assert!(failure(&mut simulate(&folder, &["--contact", &late])).contains("the run ends at t = "));
+    assert_names(failure(&mut simulate(&folder, &["--contact", &late])), "t = ");
     for (wrong, expected) in
         [("1e-3", "expected TIME=OUT.svg"), ("1e-3=a.pdf", "ends in .svg or .png"), ("x=a.png", "expected a time")]
     {

@@ -234,8 +234,7 @@ fn a_scene_that_is_no_file_no_text_or_has_no_tables() {
 #[test]
 fn temperatures_that_the_material_does_not_have() {
     let base = CARRIED_MATERIAL.replace("WLF", WLF);
-    let cold =
-        parsed(&format!("{base}input.temperature = true\n[[excitation]]\nduration = 1\ntemperature = 150"));
+    let cold = parsed(&format!("{base}input.temperature = true\n[[excitation]]\nduration = 1\ntemperature = 150"));
     assert!(cold.starts_with("8: excitation[1].temperature = 150.0: "), "{cold}");
     let without = format!("{}input.temperature = true", CARRIED_MATERIAL.replace(", WLF", ""));
     assert_eq!(parsed(&without), "5: input.temperature = true");

@@ -5,7 +5,7 @@ use std::io::{Cursor, Write as _};
 
 use zip::write::{SimpleFileOptions, ZipWriter};
 
-use crate::common::{asperity, run, scratch};
+use crate::common::{asperity, assert_names, run, scratch};
 use asperity::scene::Scene;
 
 /// A workbook with sheets of these names and rows, its fields parted by commas: numbers as such, words as text.
@@ -103,9 +103,9 @@ fn sheets_named_by_temperature_are_one_set_of_data() {
     let [cold, warm] = [rows(1.5), rows(1.0)];
     let (printed, notes) = fit(&[("-10 °C", &cold), ("T=25", &warm), ("Notes", "by hand")]);
     assert!(printed.contains("12 rows") && printed.contains("263.15 to 298.15 K"), "{printed}{notes}");
-    assert!(notes.contains("sheets by their names: -10 °C at 263.15 K, T=25 at 298.15 K"), "{notes}");
+    assert_names(&notes, "-10 °C at 263.15 K | T=25 at 298.15 K");
     let (_, refusal) = fit(&[("a", &cold), ("b", &warm)]);
     assert!(refusal.contains("in sheets named by their temperatures"), "{refusal}");
     let (_, refusal) = fit(&[("-10 °C", &cold), ("25 °C", "f [Hz],E' [MPa]\n1,2\n")]);
-    assert!(refusal.contains("sheet 25 °C: expected a column of the loss"), "{refusal}");
+    assert_names(&refusal, "sheet 25 °C | loss");
 }

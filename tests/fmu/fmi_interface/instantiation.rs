@@ -1,5 +1,6 @@
 //! Instantiation: its checks, and where the scene is found.
 
+use crate::common::assert_names;
 use std::ffi::CStr;
 use std::{fs, ptr};
 
@@ -115,7 +116,7 @@ fn an_invalid_scene_is_reported_with_the_readers_message() {
     };
     assert!(request.send().is_null());
     let text = messages.into_inner().unwrap()[0].text.clone();
-    assert!(text.contains("scene.toml:4: layer.masses = 0"), "{text}");
+    assert_names(&text, "scene.toml:4: layer.masses = 0");
 }
 
 #[test]

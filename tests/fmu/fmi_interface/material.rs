@@ -2,7 +2,6 @@
 
 use std::fs;
 
-
 use crate::common::scenes::SceneText;
 use crate::fmu::fmi_interface::master::*;
 

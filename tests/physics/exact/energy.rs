@@ -53,35 +53,17 @@ fn balance(friction: &str, relative: f64) -> (f64, Vec<f64>) {
 }
 
 /// Steps with an error of the tolerance each, some thousand of them between events that they all pass on.
-fn balances(friction: &str) {
-    let (coarse, _) = balance(friction, 1e-6);
-    let (fine, last) = balance(friction, 1e-9);
-    assert!(coarse <= 1e-4, "at 1e-6 the balance misses {coarse:e}");
-    assert!(fine <= 1e-7, "at 1e-9 the balance misses {fine:e}");
-    assert!(fine <= 0.02 * coarse, "from {coarse:e} only to {fine:e}");
-    if !friction.is_empty() {
-        assert!(last[3] > 0.01 * last[2], "friction takes its share: {last:?}");
+#[test]
+fn the_balance_closes_with_the_tolerance() {
+    let both = "friction = { coulomb = 0.2, shear_force = 1e-3 }";
+    for friction in ["", "friction.coulomb = 0.4", "friction.shear_force = 2e-3", both] {
+        let (coarse, _) = balance(friction, 1e-6);
+        let (fine, last) = balance(friction, 1e-9);
+        assert!(coarse <= 1e-4, "{friction}: at 1e-6 the balance misses {coarse:e}");
+        assert!(fine <= 1e-7, "{friction}: at 1e-9 the balance misses {fine:e}");
+        assert!(fine <= 0.02 * coarse, "{friction}: from {coarse:e} only to {fine:e}");
+        assert!(friction.is_empty() || last[3] > 0.01 * last[2], "{friction} takes its share: {last:?}");
     }
-}
-
-#[test]
-fn without_friction() {
-    balances("");
-}
-
-#[test]
-fn with_coulomb_friction() {
-    balances("friction.coulomb = 0.4");
-}
-
-#[test]
-fn with_adhesive_shear() {
-    balances("friction.shear_force = 2e-3");
-}
-
-#[test]
-fn with_both() {
-    balances("friction = { coulomb = 0.2, shear_force = 1e-3 }");
 }
 
 /// An element that starts undeformed has the energy ½ c_j e² and loses it in some τ_j, of which a step sees nothing if

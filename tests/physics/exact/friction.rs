@@ -111,14 +111,10 @@ fn swings(speed: f64, turns: usize) {
 }
 
 #[test]
-fn a_swinging_mass_that_stops_within_reach_sticks() {
-    swings(0.5, 0);
-}
-
-#[test]
-fn a_swinging_mass_reverses_until_it_sticks() {
-    swings(2.0, 1);
-    swings(7.0, 4);
+fn a_swinging_mass_reverses_until_it_stops_within_reach() {
+    for (speed, turns) in [(0.5, 0), (2.0, 1), (7.0, 4)] {
+        swings(speed, turns);
+    }
 }
 
 /// A sticking mass is pulled by f·t = c_x U t + d_x U; it breaks loose where that passes T, in its direction.

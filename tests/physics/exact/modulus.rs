@@ -68,40 +68,26 @@ fn vibrate(frequency: f64, relative: f64) -> Seen {
 /// With every mass sticking on a flat profile the vertical links stretch by e = -w. So w = -w_0 + â sin ωt gives, once
 /// the transient has died, F_z = k c w_0 - k â |K*| sin(ωt + arg K*), and a period loses π k â² Im K*, which the
 /// carrier puts in.
-fn follows_the_complex_stiffness(frequency: f64) {
+#[test]
+fn a_swing_follows_the_complex_stiffness() {
     // The Maxwell elements alone are integrated; an error of 1e-9 a step, some 100 steps a memory long, stays below.
     const ALLOWED: f64 = 1e-7;
-    let seen = vibrate(frequency, 1e-9);
-    let (storage, loss) = law().complex_stiffness(TAU * frequency);
-    let stiffness = storage.hypot(loss);
-    let energy = MASSES as f64 * PI * SWING * SWING;
-    assert_near("|K*|", seen.stiffness, stiffness, ALLOWED * stiffness);
-    assert_near("arg K*", seen.angle, loss.atan2(storage), ALLOWED);
-    let mean = MASSES as f64 * law().stiffness * PRESSED;
-    assert_near("mean F_z", seen.mean, mean, ALLOWED * mean);
-    // The energies are differences of sums over the whole transient: 3000 periods at 10 kHz.
-    assert_near("energy lost", seen.lost, energy * loss, ALLOWED * energy * stiffness);
-    assert_near("energy put in", seen.put_in, energy * loss, ALLOWED * energy * stiffness);
-}
-
-#[test]
-fn at_1_hz() {
-    follows_the_complex_stiffness(1.0);
-}
-
-#[test]
-fn at_100_hz() {
-    follows_the_complex_stiffness(100.0);
-}
-
-#[test]
-fn at_1_khz() {
-    follows_the_complex_stiffness(1.0e3);
-}
-
-#[test]
-fn at_10_khz() {
-    follows_the_complex_stiffness(1.0e4);
+    for frequency in [1.0, 100.0, 1.0e3, 1.0e4] {
+        let near = |what: &str, found, expected, allowed| {
+            assert_near(&format!("{what} at {frequency} Hz"), found, expected, allowed);
+        };
+        let seen = vibrate(frequency, 1e-9);
+        let (storage, loss) = law().complex_stiffness(TAU * frequency);
+        let stiffness = storage.hypot(loss);
+        let energy = MASSES as f64 * PI * SWING * SWING;
+        near("|K*|", seen.stiffness, stiffness, ALLOWED * stiffness);
+        near("arg K*", seen.angle, loss.atan2(storage), ALLOWED);
+        let mean = MASSES as f64 * law().stiffness * PRESSED;
+        near("mean F_z", seen.mean, mean, ALLOWED * mean);
+        // The energies are differences of sums over the whole transient: 3000 periods at 10 kHz.
+        near("energy lost", seen.lost, energy * loss, ALLOWED * energy * stiffness);
+        near("energy put in", seen.put_in, energy * loss, ALLOWED * energy * stiffness);
+    }
 }
 
 /// Without Maxwell elements nothing is left to integrate but the energies: the steps must see the carrier's sine all

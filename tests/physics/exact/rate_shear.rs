@@ -62,6 +62,13 @@ fn pressed(strength: &Strength, horizontal: &Law, u_rate: f64) -> Run {
 }
 
 /// At a steady speed all masses slip at it, whatever it is: |F_x| = μ F_z + k A τ_0 + k A τ_f(v), over twelve decades.
+#[test]
+fn slides_over_twelve_decades() {
+    for method in ["event", "step"] {
+        slides(method);
+    }
+}
+
 fn slides(method: &str) {
     let strength = Strength { creep: 1.0e-11, ..RUBBER };
     let scene = strength.on(uneven_layer()).tolerances(1e-6, 1e-11).method(method);
@@ -80,16 +87,6 @@ fn slides(method: &str) {
             assert_near("P_friction", run.get("P_diss"), drag * v.abs(), 1e-6 * drag * v.abs());
         }
     }
-}
-
-#[test]
-fn slides_over_twelve_decades_where_events_are_located() {
-    slides("event");
-}
-
-#[test]
-fn slides_over_twelve_decades_in_time_steps() {
-    slides("step");
 }
 
 /// A mass thrown with U that nothing pulls slides to rest: ∫ m dv/T long and ∫ m v dv/T far, from 0 to U, and all of ½
