@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use crate::common::{asperity, assert_names, run, scratch};
 
 /// Four masses on a plane: a point of a sweep takes some milliseconds.
-const FLAT: &str = "name = 'plane'
+pub(super) const FLAT: &str = "name = 'plane'
 layer = { masses = 4, spacing = 1e-4, mass = 1e-7, vertical = { stiffness = 2e3, damping = 3e-2 }, \
           horizontal = { stiffness = 5e3, damping = 3e-2 } }
 surface = { kind = 'flat' }
@@ -22,7 +22,7 @@ w_rate = -1e-3
 ";
 
 /// Rubber on a sinusoid, for studies of convergence.
-const RUBBER: &str = "name = 'rubber'
+pub(super) const RUBBER: &str = "name = 'rubber'
 layer = { foundation = 'springs', masses = 8, spacing = 2.5e-5, thickness = 1e-3, width = 1e-2 }
 material = { density = 1100, poisson_ratio = 0.49, equilibrium_modulus = 2e6, prony = [] }
 surface = { kind = 'sinusoid', amplitude = 1e-6, wavelength = 2e-4 }
@@ -49,7 +49,7 @@ fn refused(arguments: &[&str]) -> String {
     String::from_utf8(output.stderr).unwrap()
 }
 
-const MODULI: &str =
+pub(super) const MODULI: &str =
     "frequency [Hz],E' [Pa],E'' [Pa]\n0.1,1.1e6,2e5\n1,1.3e6,3e5\n10,1.6e6,4e5\n100,2e6,4e5\n1000,2.4e6,3e5\n";
 
 /// Every command that writes a file: its arguments before `-o`, and others that make it write another file.

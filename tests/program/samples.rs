@@ -47,10 +47,10 @@ fn text(path: &Path) -> String {
 }
 
 #[test]
-fn samples_are_written_in_parts_as_in_one() {
+fn samples_are_written_with_what_matters() {
     let folder = scratch("samples-parts");
     let scene = scene(&folder, SECTION);
-    let [whole, kept, merged] = ["whole.csv", "kept.csv", "merged.csv"].map(|name| folder.join(name));
+    let [whole, kept] = ["whole.csv", "kept.csv"].map(|name| folder.join(name));
     let said = sweep(&scene, &whole, &[&SAMPLES[..], &["--keep", kept.to_str().unwrap()]].concat());
     assert!(said.contains("Samples     16 of seed 3") && said.contains("Matters     "), "{said}");
     assert_names(&said, "the surface's seed");
@@ -60,18 +60,6 @@ fn samples_are_written_in_parts_as_in_one() {
         text(&folder.join("whole.matters.svg")).contains("<svg") && text(&folder.join("whole.svg")).contains("90 %")
     );
 
-    let shards = ["1/3", "2/3", "3/3"].map(|shard| {
-        let table = folder.join(format!("{}.csv", &shard[..1]));
-        sweep(&scene, &table, &[&SAMPLES[..], &["--shard", shard]].concat());
-        table
-    });
-    run(asperity().arg("sweep").arg("-o").arg(&merged).arg("--merge").args(&shards));
-    assert_eq!(text(&merged), text(&whole));
-    // Stopped after its first row, within the second.
-    let cut = text(&shards[0]).len() - 40;
-    fs::write(&merged, &text(&shards[0])[..cut]).unwrap();
-    sweep(&scene, &merged, &SAMPLES);
-    assert_eq!(text(&merged), text(&whole));
     // Other samples are another sweep.
     let other =
         asperity().arg("sweep").arg(&scene).arg("-o").arg(&whole).args(POINTS).args(["--samples", "8"]).output();

@@ -11,7 +11,7 @@ use crate::common::scenes::SceneText;
 use crate::common::{Table, asperity, assert_names, run, scratch};
 
 /// Four masses on a plane: full slip after some tenths of a millimetre.
-fn flat() -> SceneText {
+pub(super) fn flat() -> SceneText {
     SceneText::new(4, 1e-4, 1e-7)
         .set("name", "plane")
         .vertical((2e3, 3e-2, [(4e3, 50.0)]))
@@ -103,7 +103,6 @@ fn hysteresis_on_a_sinusoid() {
 
 const POINTS: [&str; 4] = ["--speeds", "0.1..1/3", "--forces", "0.5,2"];
 
-/// Cut off after any byte, a table is completed, the same to the last byte; points done are kept to the letter.
 /// A layer as long as the profile's period bears the same at every place, so w stands still under a load that is held: no
 /// search, and the same friction at the same w, within the errors that the tables give. Dashpots of minutes come to rest too.
 #[test]
@@ -143,6 +142,7 @@ fn a_load_held_is_that_of_a_displacement_found() {
     assert!(refused(&[&scene], &options).contains("[carrier.x]"));
 }
 
+/// Cut off after any byte, a table is completed, the same to the last byte; points done are kept to the letter.
 #[test]
 fn a_table_cut_off_anywhere_is_completed() {
     let folder = scratch("sweep-resume");

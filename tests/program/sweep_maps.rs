@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use crate::common::scenes::SceneText;
-use crate::common::{asperity, root, scratch};
+use crate::common::{asperity, assert_names, root, scratch};
+use crate::program::sweep::flat;
 
 const SPEEDS: &str = "1e-4..10/6";
 const TEMPERATURES: &str = "0°C,20°C,40°C";
@@ -71,47 +71,27 @@ fn friction_is_drawn_over_speed_and_temperature() {
 fn what_is_no_map_is_refused() {
     let folder = scratch("sweep-map-refused");
     let table = folder.join("t.csv");
-    let refused = |scene: &Path, options: &[&str], message: &str| {
+    let refused = |scene: &Path, options: &[&str], named: &str| {
         let done = sweep(scene, &table, options);
-        let said = said(&done.stderr);
-        assert!(!done.status.success() && said.contains(message), "{options:?}: {said}");
+        assert_names(said(&done.stderr), named);
+        assert!(!done.status.success(), "{options:?}");
         assert!(!table.exists(), "nothing is computed");
     };
     let points = |over: &'static str, temperatures: &'static str| {
         ["--speeds", SPEEDS, "--pressures", "1bar", "--temperatures", temperatures, "--over", over]
     };
-    refused(
-        &road(),
-        &points("speed,pressure", TEMPERATURES),
-        "of the pressure there is one: give more, as --pressures",
-    );
-    refused(&road(), &points("temperature,speed", "20°C"), "of the temperature there is one");
-    refused(&road(), &points("speed,speed", "20°C"), "expected two of speed, pressure (or force) and temperature");
-    refused(
-        &road(),
-        &points("speed,force", TEMPERATURES),
-        "the table is over pressure, not over force: --over speed,pressure",
-    );
-    let plane = SceneText::new(4, 1e-4, 1e-7)
-        .vertical((2e3, 3e-2, [(4e3, 50.0)]))
-        .horizontal((5e3, 3e-2))
-        .with("friction = { coulomb = 0.3 }")
-        .write(&folder);
+    refused(&road(), &points("speed,pressure", TEMPERATURES), "pressure there is one | --pressures");
+    refused(&road(), &points("temperature,speed", "20°C"), "temperature there is one");
+    refused(&road(), &points("speed,speed", "20°C"), "two of speed, pressure (or force) and temperature");
+    refused(&road(), &points("speed,force", TEMPERATURES), "--over speed,pressure");
+    let plane = flat().write(&folder);
     let forces = ["--speeds", "0.1,1", "--forces", "1,2", "--over"];
-    refused(
-        &plane,
-        &[&forces[..], &["speed,temperature"]].concat(),
-        "no material.wlf, so that there is one temperature",
-    );
+    refused(&plane, &[&forces[..], &["speed,temperature"]].concat(), "no material.wlf");
     let data = folder.join("measured.csv");
     fs::write(&data, "speed [m/s],pressure [bar],mu\n0.01,1,0.9\n").unwrap();
     let data = ["--data", data.to_str().unwrap()];
     refused(&plane, &[&forces[..], &["speed,force"], &data].concat(), "a table over forces");
-    refused(
-        &road(),
-        &[&points("speed,temperature", TEMPERATURES)[..], &data].concat(),
-        "no temperatures: expected a column",
-    );
+    refused(&road(), &[&points("speed,temperature", TEMPERATURES)[..], &data].concat(), "temperatures | column");
     refused(&road(), &[&["--speeds", SPEEDS, "--pressures", "1bar"][..], &data].concat(), "--over");
     let done = sweep(&road(), Path::new("-"), &points("speed,temperature", TEMPERATURES));
     assert!(said(&done.stderr).contains("name one by --plot"), "{}", said(&done.stderr));
