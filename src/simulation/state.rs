@@ -328,7 +328,6 @@ mod tests {
         WAVE, scene, scene_with_heat, scene_with_rate_shear, scene_with_real_area, variables_of,
     };
     use super::*;
-    use crate::scene::Path;
     use crate::scene::Scene;
     use crate::simulation::{Motion, Simulation, Start};
 

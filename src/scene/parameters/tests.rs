@@ -148,52 +148,30 @@ fn the_creep_speed_follows_the_reference_speed() {
 
 #[test]
 fn refuses_what_the_reader_refuses() {
+    let (any, positive, other) = ("-1e30 to 1e30", "a number from 1e-30 to 1e30", "0 or a number from 1e-30 to 1e30");
     let cases = [
-        ("layer.mass", "0", "layer.mass = 0.0: expected a number from 1e-30 to 1e30"),
-        ("layer.mass", "nan", "layer.mass = NaN: expected a number from 1e-30 to 1e30"),
-        ("layer.mass", "heavy", "layer.mass = heavy: expected a number from 1e-30 to 1e30"),
-        ("layer.clearance", "inf", "layer.clearance = inf: expected a number from -1e30 to 1e30"),
-        (
-            "layer.vertical.stiffness",
-            "-1",
-            "layer.vertical.stiffness = -1.0: expected 0 or a number from 1e-30 to 1e30",
-        ),
-        ("layer.lateral_x.damping", "-1", "layer.lateral_x.damping = -1.0: expected 0 or a number from 1e-30 to 1e30"),
-        (
-            "layer.vertical.maxwell[1].relaxation_time",
-            "0",
-            "layer.vertical.maxwell[1].relaxation_time = 0.0: expected a number from 1e-30 to 1e30",
-        ),
-        ("solver.relative_tolerance", "1", "solver.relative_tolerance = 1.0: expected a number from 1e-30 to 0.1"),
-        ("solver.absolute_tolerance", "0", "solver.absolute_tolerance = 0.0: expected a number from 1e-30 to 1e30"),
-        ("solver.max_steps", "0", "solver.max_steps = 0: expected a whole number from 1 to 2147483647"),
-        ("solver.max_steps", "3e9", "solver.max_steps = 3e9: expected a whole number from 1 to 2147483647"),
-        ("solver.method", "fast", "solver.method = \"fast\": expected one of \"event\", \"step\", \"auto\""),
-        (
-            "friction.rate_shear.force",
-            "-1",
-            "friction.rate_shear.force = -1.0: expected 0 or a number from 1e-30 to 1e30",
-        ),
-        (
-            "friction.rate_shear.reference_speed",
-            "0",
-            "friction.rate_shear.reference_speed = 0.0: expected a number from 1e-30 to 1e30",
-        ),
-        (
-            "friction.rate_shear.sharpness",
-            "-0.1",
-            "friction.rate_shear.sharpness = -0.1: expected 0 or a number from 1e-30 to 1e30",
-        ),
-        (
-            "friction.rate_shear.creep_speed",
-            "0",
-            "friction.rate_shear.creep_speed = 0.0: expected a number from 1e-30 to 1e30",
-        ),
-        ("layer.initial", "cold", "layer.initial = \"cold\": expected one of \"relaxed\", \"undeformed\""),
-        ("input.extrapolation", "no", "input.extrapolation = \"no\": expected one of \"linear\", \"hold\""),
+        ("layer.mass", "0", "0.0", positive),
+        ("layer.mass", "nan", "NaN", positive),
+        ("layer.mass", "heavy", "heavy", positive),
+        ("layer.clearance", "inf", "inf", any),
+        ("layer.vertical.stiffness", "-1", "-1.0", other),
+        ("layer.lateral_x.damping", "-1", "-1.0", other),
+        ("layer.vertical.maxwell[1].relaxation_time", "0", "0.0", positive),
+        ("solver.relative_tolerance", "1", "1.0", "1e-30 to 0.1"),
+        ("solver.absolute_tolerance", "0", "0.0", positive),
+        ("solver.max_steps", "0", "0", "1 to 2147483647"),
+        ("solver.max_steps", "3e9", "3e9", "1 to 2147483647"),
+        ("solver.method", "fast", "\"fast\"", "\"event\", \"step\", \"auto\""),
+        ("friction.rate_shear.force", "-1", "-1.0", other),
+        ("friction.rate_shear.reference_speed", "0", "0.0", positive),
+        ("friction.rate_shear.sharpness", "-0.1", "-0.1", other),
+        ("friction.rate_shear.creep_speed", "0", "0.0", positive),
+        ("layer.initial", "cold", "\"cold\"", "\"relaxed\", \"undeformed\""),
+        ("input.extrapolation", "no", "\"no\"", "\"linear\", \"hold\""),
     ];
-    for (name, text, message) in cases {
-        assert_eq!(refusal(&mut scene(), name, text), message);
+    for (name, text, given, allowed) in cases {
+        let message = refusal(&mut scene(), name, text);
+        assert!(message.starts_with(&format!("{name} = {given}: ")) && message.ends_with(allowed), "{message}");
     }
 }
 

@@ -279,31 +279,26 @@ fn a_patch_file_names_what_is_wrong() {
     let folder = root().join("tests/reference/patch");
     let error = |text: &str| Patch::parse(text, &folder.join("p.toml")).unwrap_err().to_string();
     let cases = [
-        ("radius = 0.3", "radius = -1.0", "p.toml:7: patch.radius = -1.0: expected a number from"),
-        ("length = 0.0144", "length = 1.0", "p.toml:8: patch.length = 1.0: expected a number < 0.94"),
-        ("nx = 6", "nx = 1000000", "p.toml:11: patch.ny = 2: expected nx ny up to 1000000"),
+        ("radius = 0.3", "radius = -1.0", "p.toml:7: patch.radius = -1.0:"),
+        ("length = 0.0144", "length = 1.0", "p.toml:8: patch.length = 1.0: | 0.94"),
+        ("nx = 6", "nx = 1000000", "p.toml:11: patch.ny = 2: | 1000000"),
         ("nx = 6", "nx = 6\nbacking = { normal = 1e9 }", "p.toml:11: patch.backing.shear: missing"),
         (
             "nx = 6",
             "nx = 6\nbacking = { height = 1e-3, modulus = 6e6, shear = 1e9 }",
-            "p.toml:11: patch.backing.shear: unknown; allowed: height, modulus",
+            "p.toml:11: patch.backing.shear: unknown | height, modulus",
         ),
         ("nx = 6", "nx = 6\nheat = { share = 0.3 }", "p.toml:11: patch.heat.conductivity: missing"),
-        ("nx = 6", "nz = 6", "p.toml:10: patch.nz: unknown; allowed: shape, radius"),
-        (
-            "path = \"block",
-            "temperature = 400.0\npath = \"block",
-            "p.toml:4: table.temperature = 400.0: expected a number from 283.15",
-        ),
+        ("nx = 6", "nz = 6", "p.toml:10: patch.nz: unknown | shape, radius"),
+        ("path = \"block", "temperature = 400.0\npath = \"block", "p.toml:4: table.temperature = 400.0: | 283.15"),
         ("path = \"block", "nominal_area = 1.0\npath = \"block", "p.toml:4: table.nominal_area = 1.0: expected none"),
-        ("\"tangent\"", "\"tangents\"", "p.toml:14: fmu.outputs[6] = \"tangents\": expected one of \"forces\""),
+        ("\"tangent\"", "\"tangents\"", "p.toml:14: fmu.outputs[6] = \"tangents\": | \"forces\""),
         ("shape = \"cylinder\"\nradius = 0.3", "shape = \"flat\"\nradius = 0.3", "p.toml:7: patch.radius: unknown"),
     ];
-    for (from, to, expected) in cases {
+    for (from, to, named) in cases {
         let text = WHEEL.replace(from, to);
         assert_ne!(text, WHEEL);
-        let found = error(&text);
-        assert!(found.contains(expected), "{found}\n{expected}");
+        assert_names(error(&text), named);
     }
     let points = "name = \"p\"\ntable = { path = \"block.table.csv\" }\npatch = { shape = \"points\", path = \"ring.points.csv\", transport = true }";
     assert!(error(points).contains("patch.transport: unknown"), "{}", error(points));

@@ -108,20 +108,6 @@ fn drag_is_the_loss_stiffness_over_three_decades_of_speed() {
     }
 }
 
-/// Im K* = c_1 x/(1 + x²), x = qvτ, of one Maxwell element is largest at v = 1/(qτ) and the same at x and 1/x.
-#[test]
-fn drag_of_one_element_is_largest_at_its_own_speed() {
-    let chain = one_element();
-    let drag = |x: f64| -chain.drag(x * BEST_SPEED)[1];
-    let largest = drag(1.0);
-    assert_near("largest drag", largest, 0.25 * Q * AMPLITUDE * AMPLITUDE * 1.5e3, ALLOWED * largest);
-    for x in [1.02, 1.2, 5.0] {
-        let (slower, faster) = (drag(1.0 / x), drag(x));
-        assert!(slower < largest && faster < largest, "x = {x}: {slower:e}, {faster:e}, at 1 {largest:e}");
-        assert_near(&format!("drag at x = {x} and 1/x"), faster, slower, 2.0 * ALLOWED * largest);
-    }
-}
-
 /// The lateral link between neighbours stretches by â [sin q(x + Δx) - sin qx], a swing of 2 â sin(qΔx/2): k - 1 such
 /// links lose π (2 â sin(qΔx/2))² Im K_lz* each.
 #[test]

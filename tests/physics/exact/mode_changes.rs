@@ -81,22 +81,18 @@ fn strikes(slope: f64, u_rate: f64, w_rate: f64, mode: i8) {
 }
 
 #[test]
-fn an_impact_that_slips_on() {
-    strikes(0.0, 0.03, -0.05, 1);
-    strikes(0.0, -0.03, -0.05, -1);
-}
-
-#[test]
-fn an_impact_that_sticks() {
-    strikes(0.0, 0.0149, -0.05, 2);
-    strikes(0.0, 0.0, -0.05, 2);
-}
-
-#[test]
-fn an_impact_on_a_slope() {
-    strikes(0.5, 0.06, -0.02, 1);
-    strikes(-0.5, -0.06, -0.02, -1);
-    strikes(0.25, 0.01, -0.05, 2);
+fn impacts_slip_on_or_stick() {
+    for (slope, u_rate, w_rate, mode) in [
+        (0.0, 0.03, -0.05, 1),
+        (0.0, -0.03, -0.05, -1),
+        (0.0, 0.0149, -0.05, 2),
+        (0.0, 0.0, -0.05, 2),
+        (0.5, 0.06, -0.02, 1),
+        (-0.5, -0.06, -0.02, -1),
+        (0.25, 0.01, -0.05, 2),
+    ] {
+        strikes(slope, u_rate, w_rate, mode);
+    }
 }
 
 /// A mass thrown down with V under a carrier at rest swings as ζ = -(V/ω_d) e^{-δt} sin ω_d t, δ = d/2m, ω_d² = c/m -

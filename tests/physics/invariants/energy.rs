@@ -27,10 +27,6 @@ fn allowed(case: &Case, record: &Record) -> f64 {
     ALLOWED.max(OF_EACH_STEP * steps) * Units::of(case).energy(largest_energy(case, record))
 }
 
-fn balances(method: Method, cases: u32) {
-    check(&format!("the energy balance by {method:?}"), cases, cases_by(method), balance);
-}
-
 fn balance(case: Case) -> Result<(), TestCaseError> {
     prop_assume!(case.has_a_time_of_its_own());
     let record = run(&case)?;
@@ -46,18 +42,10 @@ fn the_energy_balance_holds_under_a_body() {
 }
 
 #[test]
-fn the_energy_balance_holds_by_event() {
-    balances(Method::Event, 200);
-}
-
-#[test]
-fn the_energy_balance_holds_by_step() {
-    balances(Method::Step, 60);
-}
-
-#[test]
-fn the_energy_balance_holds_by_auto() {
-    balances(Method::Auto, 100);
+fn the_energy_balance_holds_by_every_method() {
+    for (method, cases) in [(Method::Event, 200), (Method::Step, 60), (Method::Auto, 100)] {
+        check(&format!("the energy balance by {method:?}"), cases, cases_by(method), balance);
+    }
 }
 
 /// Energy that is lost stays lost: no channel falls.

@@ -1,7 +1,7 @@
-//! Clones and failed calls: the same bits.
+//! Failed calls leave the same bits.
 
 use asperity::scene::{Path, Scene};
-use asperity::simulation::{ModeChange, Motion, Simulation, SimulationError, Start};
+use asperity::simulation::{Motion, Simulation, SimulationError, Start};
 
 use crate::common::runs::bits;
 use crate::physics::kernels::layer::{Layer, at_rate, link};
@@ -46,31 +46,6 @@ const DRAG: Motion = Motion {
     w: Path { rate: 0.0, amplitude: 0.0, frequency: 0.0 },
     ..Motion::REST
 };
-
-/// Everything that shows from outside, at the ends of `count` motions and within them.
-fn evolution(scene: &Scene, simulation: &mut Simulation, count: usize) -> (Vec<Vec<u64>>, Vec<ModeChange>) {
-    let mut rows = Vec::new();
-    for _ in 0..count {
-        let times = [0.0, 3.3e-5, 7.7e-5];
-        simulation.advance_observed(&DRAG, None, &times, |_, now| rows.push(bits(scene, now))).unwrap();
-        rows.push(bits(scene, &simulation.snapshot()));
-    }
-    (rows, simulation.take_mode_changes())
-}
-
-/// A clone goes on as its original does: outputs, steps and mode changes bit for bit, several times over.
-#[test]
-fn a_clone_goes_on_bit_for_bit() {
-    let scene = rattling(1_000_000);
-    let mut simulation = start(&scene);
-    simulation.advance(&PRESS).unwrap();
-    simulation.advance(&DRAG).unwrap();
-    let (mut first, mut second) = (simulation.clone(), simulation.clone());
-    let expected = evolution(&scene, &mut simulation, 20);
-    assert!(expected.1.len() > 20, "a lively run: {} mode changes", expected.1.len());
-    assert_eq!(evolution(&scene, &mut first, 20), expected);
-    assert_eq!(evolution(&scene, &mut second, 20), expected);
-}
 
 /// Whether a failed call leaves `simulation` as `before` was, now and from then on.
 fn check_untouched(scene: &Scene, mut simulation: Simulation, mut before: Simulation, motion: &Motion) {
