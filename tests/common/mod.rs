@@ -44,6 +44,13 @@ pub fn run(command: &mut Command) -> String {
     text(&output.stdout)
 }
 
+/// How a command ends: its status, and what it writes to standard output and standard error.
+pub fn ended(command: &mut Command) -> (i32, String, String) {
+    let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+}
+
 /// Asserts that a message names each of these: keys, numbers, places, options, parted by bars.
 #[track_caller]
 pub fn assert_names(message: impl AsRef<str>, parts: &str) {

@@ -5,7 +5,7 @@ use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use crate::common::{Table, asperity, assert_names, root, run, scratch};
+use crate::common::{Table, asperity, assert_names, ended, root, run, scratch};
 
 fn reference(name: &str) -> PathBuf {
     root().join("tests/reference").join(name)
@@ -18,9 +18,9 @@ fn sweep(scene: &Path, table: &Path, options: &[&str]) -> String {
 
 /// What a command that fails says.
 fn refused(arguments: &[&str]) -> String {
-    let output = asperity().args(arguments).output().unwrap();
-    assert!(!output.status.success(), "{arguments:?} should fail");
-    String::from_utf8_lossy(&output.stderr).into_owned()
+    let (status, _, message) = ended(asperity().args(arguments));
+    assert_ne!(status, 0, "{arguments:?} should fail");
+    message
 }
 
 const POINTS: [&str; 4] = ["--speeds", "1e-3,0.1,10", "--pressures", "5e4,3e5,1e6"];
@@ -32,10 +32,7 @@ fn a_table_is_that_of_an_independent_program() {
     let folder = scratch("steady-table");
     let table = folder.join("table.csv");
     let text = sweep(&reference("steady/steady-ridges.toml"), &table, &POINTS);
-    assert!(
-        text.contains("# method = steady, on 2048 points to a period of the profile (the profile's own)"),
-        "{text}"
-    );
+    assert_names(text, "# method = steady, on 2048 points | the profile's own");
     let (found, expected) = (Table::read(&table), Table::read(&reference("steady/steady-ridges.csv")));
     assert_eq!(found.len(), expected.len());
     let area = 2048.0 * 3.90625e-6 * 1e-2;
@@ -69,21 +66,14 @@ fn a_coarse_profile_is_refined_and_full_contact_is_said() {
     let scene = reference("half-plane/sine.toml");
     let scene = scene.to_str().unwrap();
     let table = folder.join("table.csv");
-    let output = asperity()
-        .args(["sweep", scene, "--speeds", "1", "--pressures", "2e4,2.8e5", "--set", &sine(6)])
-        .arg("-o")
-        .arg(&table)
-        .output()
-        .unwrap();
+    let loads = ["sweep", scene, "--speeds", "1", "--pressures", "2e4,2.8e5", "--set", &sine(6)];
     // Full contact is a result, but no law that an element could use.
-    assert!(output.status.success());
-    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    let (status, printed, warning) = ended(asperity().args(loads).arg("-o").arg(&table));
+    assert_eq!(status, 0);
     assert_names(&printed, "full contact | no stiffness");
-    let warning = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_names(&warning, "20 points");
     let text = fs::read_to_string(&table).unwrap();
-    let said = "# method = steady, on 16 points to a period of the profile (8 or more to its shortest wave; the profile has 6)";
-    assert!(text.contains(said), "{text}");
+    assert_names(text, "# method = steady, on 16 points | the profile has 6");
     let rows = Table::read(&table);
     assert_eq!(rows.text(1, "status"), "full contact");
     assert!(rows.text(1, "tangential_stiffness").is_empty() && rows.number(1, "separation") == 0.0);
@@ -191,19 +181,15 @@ fn a_map_is_solved_on_as_many_points_as_are_asked_for() {
         (text, rows.number(0, "friction"), rows.number(0, "contact_ratio"))
     };
     let (own, fine, coarse) = (row("128"), row("256"), row("100"));
-    assert!(own.0.contains("# method = steady, on the map's own 128 x 128 points"), "{}", own.0);
-    assert!(fine.0.contains("# method = steady, on 256 x 256 points by the waves of the map, which has 128 x 128"));
+    assert_names(&own.0, "# method = steady, on the map's own 128 x 128 points");
+    assert_names(&fine.0, "# method = steady, on 256 x 256 points | 128 x 128");
     // What half the spacing changes, and what is left out at fewer points.
     for (other, allowed) in [(fine, 0.02), (coarse, 0.05)] {
         assert!((other.1 / own.1 - 1.0).abs() < allowed && (other.2 / own.2 - 1.0).abs() < 2.5 * allowed);
     }
-    let few = refused(
-        &[
-            &["sweep", scene.to_str().unwrap(), "-o", "none.csv", "--speeds", "1", "--pressures", "2e5"][..],
-            &["--points", "8"],
-        ]
-        .concat(),
-    );
+    let few =
+        ["sweep", scene.to_str().unwrap(), "-o", "none.csv", "--speeds", "1", "--pressures", "2e5", "--points", "8"];
+    let few = refused(&few);
     assert_names(&few, "16 points | [8, 8]");
 }
 
@@ -300,7 +286,7 @@ fn an_element_of_solutions_is_checked_with_solutions() {
         run(command.arg("--check").arg(&scene).args(["--check-points", "4"]))
     };
     let said = pack(&["--table", table.to_str().unwrap()], "sine.fmu");
-    assert!(said.contains("4 of 4 points between the table's") && said.contains("which is another model"), "{said}");
+    assert_names(&said, "4 of 4 points | another model");
     let points = Table::read(&folder.join("sine-check/points.csv"));
     for name in ["F_x error", "F_z error", "P_diss error"] {
         // In the middles of cells as wide as a factor of two.

@@ -8,7 +8,7 @@ use asperity::model::FineFriction;
 use asperity::scene::Scene;
 
 use crate::common::scenes::SceneText;
-use crate::common::{Table, asperity, assert_names, run, scratch};
+use crate::common::{Table, asperity, assert_names, ended, run, scratch};
 
 /// Four masses on a plane: full slip after some tenths of a millimetre.
 pub(super) fn flat() -> SceneText {
@@ -32,9 +32,9 @@ fn sweep(scene: &Path, table: &Path, options: &[&str]) {
 
 /// The message of a sweep that fails.
 fn refused(arguments: &[&Path], options: &[&str]) -> String {
-    let output = asperity().arg("sweep").args(arguments).args(options).output().unwrap();
-    assert!(!output.status.success(), "{arguments:?} {options:?} should fail");
-    String::from_utf8_lossy(&output.stderr).into_owned()
+    let (status, _, message) = ended(asperity().arg("sweep").args(arguments).args(options));
+    assert_ne!(status, 0, "{arguments:?} {options:?} should fail");
+    message
 }
 
 /// On a plane at full slip |F_x| = μ F_z + k A τ_0, all of it adhesion, lost as friction; and at rest, all masses
