@@ -12,10 +12,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
-use asperity::outputs::variables;
-use asperity::scene::{self, Scene};
-use asperity::simulation::{Motion, Simulation, Start};
-
 pub use table::Table;
 
 /// The repository.
@@ -140,27 +136,6 @@ pub fn drive_with_jumps(fmu: &Path, motion: &Path, parameters: &[&str], jumps: &
     let jumps = jumps.iter().flat_map(|jump| ["--jump", jump]);
     run(command.args(parameters.iter().flat_map(|parameter| ["--set", parameter])).args(jumps));
     Table::read(&output)
-}
-
-/// What the library gives along the rows of `motion`, straight from one to the next.
-pub fn library_along(scene: &Scene, motion: &Table) -> Table {
-    let [time, u, w] = ["time", "u", "w"].map(|name| motion.column(name));
-    let rate = |values: &[f64], i: usize| (values[i + 1] - values[i]) / (time[i + 1] - time[i]);
-    let start = Start { u_rate: rate(&u, 0), w_rate: rate(&w, 0), ..Start::default() };
-    let mut simulation = Simulation::new(scene, &start).unwrap();
-    let variables = variables(scene);
-    let mut rows = vec![vec![0.0; variables.len()]];
-    simulation.evaluate(&variables, &mut rows[0]);
-    for i in 0..time.len() - 1 {
-        let path = |values: &[f64]| scene::Path { rate: rate(values, i), ..scene::Path::default() };
-        simulation
-            .advance(&Motion { duration: time[i + 1] - time[i], u: path(&u), w: path(&w), ..Motion::default() })
-            .unwrap();
-        let mut row = vec![0.0; variables.len()];
-        simulation.evaluate(&variables, &mut row);
-        rows.push(row);
-    }
-    Table::new(variables.into_iter().map(|variable| variable.name), rows)
 }
 
 /// What lies at `time` on the straight lines between `values` at `times`.

@@ -305,8 +305,8 @@ fn a_description_of_a_material_has_the_derived_links_and_the_shift() {
     assert_names(
         &text,
         "2 masses of 1e-6 kg | 0.001 m thick | 0.01 m wide | 1000 kg/m³ | ratio 0.25 | 400 K | 300 K | a_T = 1.0000e-1 | \
-         2 of c 2000 N/m, d 0.001 N s/m, n = 1: 5000 N/m at 1e-4 s | lateral_z   1 of c 80000 N/m | 10000 Pa: 0.01 N | \
-         until F_z = 10000 Pa",
+         vertical    2 of c 2000 N/m, d 0.001 N s/m, n = 1: 5000 N/m at 1e-4 s | lateral_z   1 of c 80000 N/m | \
+         10000 Pa: 0.01 N | until F_z = 10000 Pa",
     );
     let json = run(asperity().arg("describe").arg(&scene).arg("--json"));
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();

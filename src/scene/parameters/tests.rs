@@ -93,17 +93,19 @@ fn gives_values_units_and_descriptions() {
 
 #[test]
 fn sets_every_parameter() {
-    let mut scene = scene();
-    for parameter in scene.parameters() {
-        let other = match (parameter, scene.parameter(parameter)) {
-            (_, Value::Real(number)) => Value::Real(0.01 + 0.5 * number),
-            (_, Value::Integer(number)) => Value::Integer(number - 1),
-            (Parameter::INITIAL, _) => Value::Text("undeformed".into()),
-            (Parameter::EXTRAPOLATION, _) => Value::Text("hold".into()),
-            (_, text) => text,
-        };
-        scene.set_parameter(parameter, other.clone()).unwrap();
-        assert_eq!(scene.parameter(parameter), other, "{}", parameter.name());
+    let fine = [SELF_AFFINE, "rms_slope = 1.0, modulus = 1e7"].map(on_fine_roughness);
+    for mut scene in [scene(), rubber()].into_iter().chain(fine) {
+        for parameter in scene.parameters() {
+            let other = match (parameter, scene.parameter(parameter)) {
+                (_, Value::Real(number)) => Value::Real(0.01 + 0.5 * number),
+                (_, Value::Integer(number)) => Value::Integer(number - 1),
+                (Parameter::INITIAL, _) => Value::Text("undeformed".into()),
+                (Parameter::EXTRAPOLATION, _) => Value::Text("hold".into()),
+                (_, text) => text,
+            };
+            scene.set_parameter(parameter, other.clone()).unwrap();
+            assert_eq!(scene.parameter(parameter), other, "{}", parameter.name());
+        }
     }
 }
 
@@ -260,13 +262,7 @@ fn a_material_has_its_own_and_none_of_the_links() {
 }
 
 #[test]
-fn a_material_is_set_and_its_links_follow() {
-    let mut scene = rubber();
-    for parameter in scene.parameters() {
-        let Value::Real(number) = scene.parameter(parameter) else { continue };
-        scene.set_parameter(parameter, Value::Real(0.5 * number)).unwrap();
-        assert_eq!(scene.parameter(parameter), Value::Real(0.5 * number), "{}", parameter.name());
-    }
+fn links_follow_what_is_set_of_a_material() {
     let mut hot = rubber();
     let before = hot.link(crate::scene::LinkKind::Vertical).unwrap();
     hot.set_by_name("material.prony[1].modulus", "1e7").unwrap();
@@ -318,15 +314,7 @@ fn roughness_below_the_profile_has_its_numbers() {
 }
 
 #[test]
-fn numbers_of_roughness_below_the_profile_are_set() {
-    for fine in [SELF_AFFINE, "rms_slope = 1.0, modulus = 1e7"] {
-        let mut scene = on_fine_roughness(fine);
-        for parameter in scene.parameters() {
-            let Value::Real(number) = scene.parameter(parameter) else { continue };
-            scene.set_parameter(parameter, Value::Real(0.5 * number)).unwrap();
-            assert_eq!(scene.parameter(parameter), Value::Real(0.5 * number), "{}", parameter.name());
-        }
-    }
+fn the_gradient_follows_what_is_set_of_roughness_below_the_profile() {
     let mut scene = on_fine_roughness(SELF_AFFINE);
     assert_eq!(scene.parameter(Parameter::new("surface.fine.creep_speed")), Value::Real(1e-6));
     scene.set_by_name("surface.fine.rms_slope", "0.5").unwrap();

@@ -111,15 +111,6 @@ fn refused(fmu: &Fmu, bytes: &[u8]) -> String {
 }
 
 #[test]
-fn another_instance_continues_bit_for_bit() {
-    let (first, second) = (in_contact(), Fmu::of(EVERYTHING, false));
-    second.thaw(&first.frozen());
-    assert_eq!((second.real("layer.mass"), second.real("u"), second.bits()), (1.5e-7, 1e-6, first.bits()));
-    assert_eq!(three_steps(&second, 1e-5), three_steps(&first, 1e-5));
-    assert_eq!(second.frozen(), first.frozen());
-}
-
-#[test]
 fn another_process_continues_bit_for_bit() {
     let (fmu, folder) = (in_contact(), scratch("serialised"));
     fs::write(folder.join("state"), fmu.frozen()).unwrap();
