@@ -1,8 +1,8 @@
 //! Steps that fail: the status, the message and the state after it.
 
-use crate::common::assert_names;
 use asperity_fmi::{Kind, Role, VariableRef};
 
+use crate::common::assert_names;
 use crate::fmu::fmi_interface::master::{DISCARD, ERROR, EVERYTHING, Fmu, Message, OK};
 
 /// The outputs and the time, which a failed step must not change.

@@ -145,9 +145,8 @@ fn a_stack_of_64_kib_is_enough() {
 mod memory {
     use std::process::Command;
 
-    use asperity_fmi::bindings::fmi2Type_fmi2CoSimulation;
-
-    use crate::fmu::fmi_interface::master::{Folder, Messages, Request, SCENE, callbacks};
+    use crate::fmu::fmi_interface::instantiation::asked;
+    use crate::fmu::fmi_interface::master::{Folder, SCENE};
 
     /// What each of the tests below runs in a process of its own.
     const LIMITED: &str = "ASPERITY_TEST_LIMITED";
@@ -170,18 +169,8 @@ mod memory {
             return limited(NAME, 2048);
         }
         let folder = Folder::with_scene("", &SCENE.replace("masses = 2", "masses = 10000000"));
-        let messages = Messages::default();
-        let functions = callbacks(&messages);
-        let request = Request {
-            name: Some("one".into()),
-            kind: fmi2Type_fmi2CoSimulation,
-            guid: Some("{}".into()),
-            location: Some(folder.text().into()),
-            functions: &functions,
-            logging: false,
-        };
-        assert!(request.send().is_null());
-        let messages = messages.into_inner().unwrap();
+        let (is_made, messages) = asked(&folder, "{}", |_| ());
+        assert!(!is_made);
         assert!(messages.len() == 1 && messages[0].text.contains("MiB of memory"), "{messages:?}");
     }
 }

@@ -1,13 +1,13 @@
 //! Instantiation: its checks, and where the scene is found.
 
-use crate::common::assert_names;
 use std::ffi::CStr;
 use std::{fs, ptr};
 
 use asperity_fmi::bindings::*;
 use asperity_fmi::{fmi2FreeInstance, fmi2GetTypesPlatform, fmi2GetVersion};
 
-use crate::fmu::fmi_interface::master::{ERROR, Folder, Messages, Request, SCENE, callbacks};
+use crate::common::assert_names;
+use crate::fmu::fmi_interface::master::{ERROR, Folder, Message, Messages, Request, SCENE, callbacks};
 
 #[test]
 fn version_and_platform_are_the_standards() {
@@ -16,17 +16,16 @@ fn version_and_platform_are_the_standards() {
     assert_eq!(texts, [c"2.0", c"default"]);
 }
 
-/// Tries to make an instance of the scene in `folder`, `change` applied to the request; the error's text, if any.
-fn attempt(folder: &Folder, change: impl FnOnce(&mut Request)) -> Result<(), String> {
+/// Tries to make an instance of the scene in `folder` for a GUID, `change` applied to the request: whether it is made, and
+/// what is said.
+pub fn asked(folder: &Folder, guid: &str, change: impl FnOnce(&mut Request)) -> (bool, Vec<Message>) {
     let messages = Messages::default();
     let functions = callbacks(&messages);
-    let guid = folder.description().0;
-    let location = format!("file://{}", folder.text());
     let mut request = Request {
         name: Some("one".into()),
         kind: fmi2Type_fmi2CoSimulation,
-        guid: Some(guid),
-        location: Some(location),
+        guid: Some(guid.into()),
+        location: Some(folder.text().into()),
         functions: &functions,
         logging: false,
     };
@@ -35,9 +34,16 @@ fn attempt(folder: &Folder, change: impl FnOnce(&mut Request)) -> Result<(), Str
     if !c.is_null() {
         // SAFETY: just made.
         unsafe { fmi2FreeInstance(c) };
+    }
+    (!c.is_null(), messages.into_inner().unwrap())
+}
+
+/// The error's text, if any.
+fn attempt(folder: &Folder, change: impl FnOnce(&mut Request)) -> Result<(), String> {
+    let (is_made, messages) = asked(folder, &folder.description().0, change);
+    if is_made {
         return Ok(());
     }
-    let messages = messages.into_inner().unwrap();
     assert_eq!(messages.len(), 1);
     assert_eq!((messages[0].status, messages[0].category.as_str()), (ERROR, "logStatusError"));
     Err(messages[0].text.clone())
@@ -66,22 +72,9 @@ fn what_masters_pass_is_understood() {
     let folder = Folder::with_scene("", SCENE);
     let guid = folder.description().0;
     let warnings = |change: &dyn Fn(&mut Request)| {
-        let messages = Messages::default();
-        let functions = callbacks(&messages);
-        let mut request = Request {
-            name: Some("one".into()),
-            kind: fmi2Type_fmi2CoSimulation,
-            guid: Some(guid.clone()),
-            location: Some(folder.text().into()),
-            functions: &functions,
-            logging: false,
-        };
-        change(&mut request);
-        let c = request.send();
-        assert!(!c.is_null(), "{messages:?}");
-        // SAFETY: just made.
-        unsafe { fmi2FreeInstance(c) };
-        messages.into_inner().unwrap().into_iter().map(|message| message.text).collect::<Vec<_>>()
+        let (is_made, messages) = asked(&folder, &guid, change);
+        assert!(is_made, "{messages:?}");
+        messages.into_iter().map(|message| message.text).collect::<Vec<_>>()
     };
     assert!(warnings(&|_| ()).is_empty());
     assert!(warnings(&|request| request.name = None).is_empty());
@@ -104,19 +97,9 @@ fn an_invalid_scene_is_reported_with_the_readers_message() {
     let folder = Folder::with_scene("", SCENE);
     let guid = folder.description().0;
     fs::write(folder.scene_file(), SCENE.replace("masses = 2", "masses = 0")).unwrap();
-    let messages = Messages::default();
-    let functions = callbacks(&messages);
-    let request = Request {
-        name: Some("one".into()),
-        kind: fmi2Type_fmi2CoSimulation,
-        guid: Some(guid),
-        location: Some(folder.text().into()),
-        functions: &functions,
-        logging: false,
-    };
-    assert!(request.send().is_null());
-    let text = messages.into_inner().unwrap()[0].text.clone();
-    assert_names(&text, "scene.toml:4: layer.masses = 0");
+    let (is_made, messages) = asked(&folder, &guid, |_| ());
+    assert!(!is_made);
+    assert_names(&messages[0].text, "scene.toml:4: layer.masses = 0");
 }
 
 #[test]
@@ -127,16 +110,10 @@ fn callbacks_and_logger_may_be_null() {
     no_logger(&mut functions);
     assert_eq!(attempt(&folder, |request| request.functions = ptr::null()), Ok(()));
     assert_eq!(attempt(&folder, |request| request.functions = &functions), Ok(()));
-    let guid = folder.description().0;
-    let request = Request {
-        name: Some("one".into()),
-        kind: fmi2Type_fmi2CoSimulation,
-        guid: Some(guid),
-        location: None,
-        functions: ptr::null(),
-        logging: true,
+    let without = |request: &mut Request| {
+        (request.location, request.functions, request.logging) = (None, ptr::null(), true);
     };
-    assert!(request.send().is_null());
+    assert!(!asked(&folder, &folder.description().0, without).0);
 }
 
 #[test]

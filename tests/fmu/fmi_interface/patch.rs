@@ -5,8 +5,7 @@ use std::fs;
 use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchRun, PatchStart, Pose};
 use asperity_fmi::bindings::fmi2Status;
 
-use crate::common::assert_names;
-use crate::common::root;
+use crate::common::{assert_names, root};
 use crate::fmu::fmi_interface::lifecycle::try_all;
 use crate::fmu::fmi_interface::master::{DISCARD, ERROR, Fmu, OK};
 

@@ -5,9 +5,8 @@ use std::f64::consts::PI;
 use asperity::element::{FrictionTable, Node, Quantity};
 use asperity::patch::COORDINATES;
 
-use crate::common::assert_names;
-use crate::common::root;
 use crate::common::sweeps::{Grid, REST, WARM, separation};
+use crate::common::{assert_names, root};
 use crate::fmu::fmi_interface::master::{DISCARD, EVERYTHING, Fmu, OK};
 
 /// Twenty masses on a plane.

@@ -5,8 +5,7 @@ use std::{env, fs, ptr};
 
 use asperity_fmi::*;
 
-use crate::common::assert_names;
-use crate::common::scratch;
+use crate::common::{assert_names, scratch};
 use crate::fmu::fmi_interface::lifecycle::STATES;
 use crate::fmu::fmi_interface::many::{FOLDER, run_alone};
 use crate::fmu::fmi_interface::master::{ERROR, EVERYTHING, Fmu, OK, SCENE};

@@ -1,10 +1,10 @@
 //! Getting and setting variables.
 
-use crate::common::assert_names;
 use std::ptr;
 
 use asperity_fmi::*;
 
+use crate::common::assert_names;
 use crate::fmu::fmi_interface::master::{ERROR, Fmu, OK};
 
 #[test]
