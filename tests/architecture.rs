@@ -47,7 +47,7 @@ fn collect(src: &Path, folder: &Path, found: &mut Vec<Source>) {
             let text = fs::read_to_string(&path).unwrap();
             let lines = text.lines().map(|line| line.split_once("//").map_or(line, |(code, _)| code));
             let code = lines.collect::<Vec<_>>().join("\n");
-            let code = code.split("\nmod tests {").next().unwrap().to_owned();
+            let code = code.split("mod tests {").next().unwrap().to_owned();
             found.push(Source { path: path.strip_prefix(src).unwrap().to_string_lossy().replace('\\', "/"), code });
         }
     }
@@ -270,20 +270,7 @@ fn reached(uses: &BTreeMap<Vec<String>, BTreeSet<Vec<String>>>, from: &Vec<Strin
 }
 
 /// Files with a circle that is still to be undone.
-const STILL_IN_CIRCLES: [&str; 40] = [
-    ".: scene",
-    ".: scene::file_values",
-    ".: scene::keys",
-    ".: scene::keys::field",
-    ".: scene::keys::list",
-    ".: scene::keys::patch",
-    ".: scene::keys::scene_file",
-    ".: scene::keys::surface",
-    ".: scene::patch_file",
-    ".: table",
-    ".: table::header",
-    "crates/fmi: exports",
-    "crates/fmi: instance",
+const STILL_IN_CIRCLES: [&str; 23] = [
     "crates/formats: instruments",
     "crates/formats: instruments::crg",
     "crates/formats: instruments::gwyddion",
@@ -299,10 +286,6 @@ const STILL_IN_CIRCLES: [&str; 40] = [
     "crates/formats: text::blocks",
     "crates/formats: text::lines",
     "crates/formats: text::numbers",
-    "crates/study: calibration::calibrator",
-    "crates/study: calibration::written",
-    "crates/study: sweep::sampled",
-    "crates/study: sweep::table",
     "crates/cli: picture",
     "crates/cli: picture::layout",
     "crates/cli: picture::legend",

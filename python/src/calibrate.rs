@@ -1,48 +1,30 @@
 //! Numbers of a scene from measured friction.
 
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::sync::Arc;
 
 use asperity_study::calibration::{
-    Calibration, CalibrationOptions, FitCovariance, FreeParameter, calibrate_scene, chi_square_per_degree,
+    Calibration, CalibrationOptions, FitCovariance, calibrate_scene, chi_square_per_degree,
 };
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::background::in_background;
 use crate::errors::Raise as _;
-use crate::scene::{Scene, parsed};
-use crate::sweep::sliding;
+use crate::options::Options;
+use crate::scene::Scene;
 
 /// Fits numbers of the scene to the measured friction in a file.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn calibrate<'py>(
     py: Python<'py>,
     scene: &Scene,
-    data: PathBuf,
-    free: Vec<(String, f64, f64)>,
-    method: Option<&str>,
-    way: Option<f64>,
-    points: Option<u32>,
-    error: Option<f64>,
-    distance: Option<f64>,
+    options: Options<CalibrationOptions>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let parameter = |(key, low, high): (String, f64, f64)| {
-        let refused = format!("{key}: expected bounds (low, high), low below high, found ({low}, {high})");
-        FreeParameter::new(key, low, high).ok_or_else(|| PyValueError::new_err(refused))
-    };
-    let options = CalibrationOptions {
-        scene: scene.file.clone(),
-        set: parsed(&scene.settings),
-        free: free.into_iter().map(parameter).collect::<PyResult<_>>()?,
-        data,
-        sliding: sliding(method, way, points, error, distance)?,
-    };
-    let text = scene.text.clone();
+    let options = options.0;
+    let (data, text) = (Arc::clone(&scene.scene), scene.text());
     let found = in_background(py, None, move |task| {
-        calibrate_scene(&text, &options, || {
+        calibrate_scene((*data).clone(), text, &options, || {
             if task.is_stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })
     })?;

@@ -3,18 +3,24 @@
 use std::path::PathBuf;
 
 use asperity::element::OperatingPoint;
-use asperity_study::comparison::Comparison;
+use asperity_study::comparison::{CompareOptions, Comparison};
 use asperity_study::sweep::SweepTable;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::errors::Raise as _;
+use crate::options::Options;
 
-/// Compares a table with the measurements in a file.
+/// Compares a table with what is measured.
 #[pyfunction]
-pub(crate) fn compare<'py>(py: Python<'py>, table: PathBuf, data: PathBuf) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn compare<'py>(
+    py: Python<'py>,
+    table: PathBuf,
+    options: Options<CompareOptions>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let options = options.0;
     let swept = SweepTable::read(&table).map_err(|error| error.raise())?;
-    let comparison = Comparison::new(&swept, &table, &data).map_err(|error| error.raise())?;
+    let comparison = Comparison::new(&swept, &table, &options).map_err(|error| error.raise())?;
     let place = |point: &OperatingPoint| (point.speed, point.load, point.temperature);
     let (worst, left_out) = (PyList::empty(py), PyList::empty(py));
     for (row, friction, deviations) in comparison.worst_first() {
@@ -27,7 +33,7 @@ pub(crate) fn compare<'py>(py: Python<'py>, table: PathBuf, data: PathBuf) -> Py
         left_out.append((row.line, speed, pressure, temperature, row.friction, why.to_string()))?;
     }
     let found = PyDict::new(py);
-    found.set_item("refused", comparison.check(&data).err().map(|error| error.to_string()))?;
+    found.set_item("refused", comparison.check(&options.data).err().map(|error| error.to_string()))?;
     found.set_item("scene", swept.header.scene())?;
     found.set_item("worst", worst)?;
     found.set_item("left_out", left_out)?;

@@ -3,14 +3,14 @@
 use std::sync::Arc;
 
 use asperity::element::PointStatus;
-use asperity_study::contact::{SolvedContact, SteadyState, solve_contact};
-use asperity_study::sweep::SlidingOptions;
+use asperity_study::contact::{ContactOptions, SolvedContact, solve_contact};
 use numpy::IntoPyArray as _;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::background::in_background;
 use crate::errors::Raise as _;
+use crate::options::Options;
 use crate::scene::Scene;
 
 /// Solves for steady sliding.
@@ -18,14 +18,11 @@ use crate::scene::Scene;
 pub(crate) fn contact<'py>(
     py: Python<'py>,
     scene: &Scene,
-    pressure: f64,
-    speed: f64,
-    way: Option<f64>,
-    points: Option<u32>,
+    options: Options<ContactOptions>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (scene, at) = (Arc::clone(&scene.scene), SteadyState { pressure, speed });
-    let sliding = SlidingOptions { way, points, ..SlidingOptions::default() };
-    let solved = in_background(py, None, move |_| solve_contact(&scene, at, sliding))?;
+    let options = options.0;
+    let scene = Arc::clone(&scene.scene);
+    let solved = in_background(py, None, move |_| solve_contact(&scene, options))?;
     let SolvedContact { slide, fields, problem, warnings, .. } = solved.map_err(|error| error.raise())?;
     let found = PyDict::new(py);
     let (friction, separation) = (slide.friction(), slide.contact.separation);

@@ -12,8 +12,8 @@ use pyo3::types::PyDict;
 
 use crate::background::{Task, in_background};
 use crate::errors::Raise as _;
+use crate::options::Options;
 use crate::scene::Scene;
-use crate::sweep::sliding;
 
 /// Makes all runs of a study; `None` where nobody waits for them any more.
 fn find(study: &ConvergenceStudy, task: &Task) -> Result<Option<Findings>, Error> {
@@ -34,23 +34,13 @@ fn find(study: &ConvergenceStudy, task: &Task) -> Result<Option<Findings>, Error
 
 /// The study of a scene.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn converge<'py>(
     py: Python<'py>,
     scene: &Scene,
-    pressure: f64,
-    speed: f64,
-    error: f64,
-    seeds: Option<u32>,
-    method: Option<&str>,
-    way: Option<f64>,
-    points: Option<u32>,
-    most_points: Option<u32>,
-    distance: Option<f64>,
+    options: Options<ConvergenceOptions>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let method = sliding(method, way, points, None, distance)?.method;
-    let options = ConvergenceOptions { pressure, speed, error, seeds, method, way, points, most_points, distance };
+    let options = options.0;
     let (data, file) = (Arc::clone(&scene.scene), scene.file.clone());
     let found = in_background(py, progress, move |task| {
         let study = ConvergenceStudy::new(&data, &file, options)?;

@@ -6,21 +6,12 @@ use std::{fs, process};
 
 use asperity_fmi::Definition;
 use asperity_study::Error;
-use asperity_study::pack::{Fmu, Library, LibraryFile, no_start, summary};
+use asperity_study::pack::{Fmu, FmuOptions, Library, LibraryFile, no_start, summary};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::errors::Raise as _;
-
-/// What of an FMU is to choose.
-#[derive(Clone, Copy, Debug, FromPyObject)]
-#[pyo3(from_item_all)]
-pub(crate) struct FmuOptions {
-    /// Whether names of variables have no structure.
-    flat_names: bool,
-    /// Whether it carries its experiment and the list of its files.
-    references: bool,
-}
+use crate::options::Options;
 
 /// Writes the FMU of a `definition`, which was read from the file at `path`, with these shared libraries, each as
 /// `asperity pack --library` takes it; returns a warning. What is at `output` is what was there before, or the whole FMU.
@@ -28,7 +19,7 @@ pub(crate) fn pack(
     definition: &Definition,
     path: &Path,
     libraries: &[OsString],
-    (output, options): (&Path, FmuOptions),
+    (output, Options(options)): (&Path, Options<FmuOptions>),
 ) -> PyResult<Option<String>> {
     let files: Vec<LibraryFile> = libraries.iter().map(|text| LibraryFile::named(text)).collect();
     let mut read: Vec<PathBuf> = definition.sources(path);
@@ -39,9 +30,8 @@ pub(crate) fn pack(
     }
     let libraries = Library::read_all(&files).map_err(|error| error.raise())?;
     let summary = summary(definition);
-    let FmuOptions { flat_names, references } = options;
     let (libraries, summary) = (&libraries, &summary);
-    let fmu = Fmu { definition, path, libraries, summary, picture: None, flat_names, references };
+    let fmu = Fmu { definition, path, libraries, summary, picture: None, options };
     write(output, &fmu.pack().map_err(|error| error.raise())?)?;
     Ok(no_start(definition))
 }

@@ -5,13 +5,15 @@ use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use asperity::patch::{PatchMotion, PatchStart, PatchVariable, Pose};
+use asperity_study::pack::FmuOptions;
 use asperity_study::summary::{LabelledLine, described_patch, missing_backing};
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::errors::{Raise as _, check_dt, no_output};
-use crate::pack::{FmuOptions, pack};
+use crate::options::Options;
+use crate::pack::pack;
 use crate::state::{Reduced, read, reduced};
 
 /// A contact patch, read from its file.
@@ -66,7 +68,12 @@ impl Patch {
     }
 
     /// Writes an FMU.
-    fn pack(&self, output: PathBuf, libraries: Vec<OsString>, options: FmuOptions) -> PyResult<Option<String>> {
+    fn pack(
+        &self,
+        output: PathBuf,
+        libraries: Vec<OsString>,
+        options: Options<FmuOptions>,
+    ) -> PyResult<Option<String>> {
         pack(&self.patch.clone().into(), &self.file, &libraries, (&output, options))
     }
 }

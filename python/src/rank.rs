@@ -1,49 +1,34 @@
 //! Scenes in the order of their friction.
 
-use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use asperity_study::Error;
-use asperity_study::rank::{MeasuredRanking, RankPlan, RankScene, Ranking, Weights, measured_ranking};
-use asperity_study::uncertainty::SampleOptions;
+use asperity_study::rank::{MeasuredRanking, RankOptions, RankPlan, RankScene, Ranking, measured_ranking};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::background::in_background;
 use crate::errors::Raise as _;
+use crate::options::Options;
 use crate::scene::Scene;
-use crate::sweep::{options, sliding};
 
 /// Ranks scenes.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn rank<'py>(
     py: Python<'py>,
     scenes: Vec<PyRef<'py, Scene>>,
-    speeds: Vec<f64>,
-    pressures: Option<Vec<f64>>,
-    forces: Option<Vec<f64>>,
-    temperatures: Option<Vec<f64>>,
-    weights: Option<PathBuf>,
-    samples: (usize, u64),
-    data: Option<PathBuf>,
-    method: Option<&str>,
-    way: Option<f64>,
-    points: Option<u32>,
-    error: Option<f64>,
-    distance: Option<f64>,
+    options: Options<RankOptions>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let options = options(speeds, (pressures, forces), temperatures, sliding(method, way, points, error, distance)?);
+    let options = options.0;
     let scene = |scene: &PyRef<'_, Scene>| RankScene { scene: (*scene.scene).clone(), file: scene.file.clone() };
     let scenes: Vec<RankScene> = scenes.iter().map(scene).collect();
     let found = in_background(py, progress, move |task| -> Result<_, Error> {
-        let plan = RankPlan::new(scenes, options, SampleOptions { count: samples.0, seed: samples.1 })?;
-        let weights = weights.as_deref().map(Weights::read).transpose()?.unwrap_or_default();
+        let plan = RankPlan::new(scenes, &options)?;
         let (all, done) = (plan.sweeps() as f64, AtomicUsize::new(0));
         let told = || task.report((1 + done.fetch_add(1, Ordering::Relaxed)) as f64 / all);
-        let found = plan.find(&weights, &task.stop(), &told)?;
-        let measured = data.as_deref().map(|data| measured_ranking(&plan, &found, data)).transpose()?;
+        let found = plan.find(&task.stop(), &told)?;
+        let measured = options.data.as_deref().map(|data| measured_ranking(&plan, &found, data)).transpose()?;
         let warnings: Vec<String> = plan.warnings().into_iter().chain(found.ranking.warnings()).collect();
         Ok((found.ranking, measured, warnings))
     })?;

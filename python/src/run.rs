@@ -8,7 +8,7 @@ use asperity::scene::{Scene as SceneData, Unit};
 use asperity::simulation::SimulationError;
 use asperity_study::masses::{ElementField, ElementHistory};
 use asperity_study::run_figures::{RunFigures, implausible_run};
-use asperity_study::runner::{InputSample, Rows, Runner};
+use asperity_study::runner::{InputSample, Rows, RunOptions, Runner};
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -16,6 +16,7 @@ use pyo3::types::PyDict;
 use crate::background::{Task, in_background};
 use crate::elements::recorded;
 use crate::errors::Raise as _;
+use crate::options::Options;
 use crate::scene::Scene;
 
 /// A column of a result.
@@ -71,28 +72,19 @@ struct Recorded {
     warnings: Vec<String>,
 }
 
-/// What a run is asked for.
-struct Asked {
-    /// Rows for each phase.
-    points: u32,
-    /// Times of rows besides, s.
-    times: Vec<f64>,
-    elements: bool,
-}
-
-fn run(scene: &SceneData, asked: Asked, task: &Task) -> Result<Recorded, SimulationError> {
+fn run(scene: &SceneData, options: RunOptions, elements: bool, task: &Task) -> Result<Recorded, SimulationError> {
     let (inputs, variables) = (scene.inputs(), variables(scene));
     let time = Column { name: "time".into(), unit: "s".into(), kind: OutputType::Real, values: Vec::new() };
     let of_input = inputs.iter().map(|input| Column::new(input.name(), input.unit(), OutputType::Real));
     let mut columns: Vec<Column> =
         std::iter::once(time).chain(of_input).chain(variables.iter().map(Column::of)).collect();
-    let mut elements = asked.elements.then(|| ElementHistory::new(scene));
+    let mut elements = elements.then(|| ElementHistory::new(scene));
     let mut values = vec![0.0; variables.len()];
     let duration = scene.duration();
     let mut figures = RunFigures::default();
 
-    let runner = Runner::new(scene, Rows::PerPhase(asked.points), 0.0)?;
-    let mut runner = runner.with_rows_at(asked.times).stopped_by(&task.stop());
+    let runner = Runner::new(scene, Rows::PerPhase(options.rows), 0.0)?;
+    let mut runner = runner.with_rows_at(options.times).stopped_by(&task.stop());
     runner.run(&scene.excitation, |carrier: InputSample, snapshot| {
         snapshot.evaluate(&variables, &mut values);
         figures.add(snapshot);
@@ -120,13 +112,13 @@ type Found<'py> = (Arrays<'py>, Arrays<'py>, Bound<'py, PyArray1<f64>>, Vec<Stri
 pub(crate) fn simulate<'py>(
     py: Python<'py>,
     scene: &Scene,
-    points: u32,
-    times: Vec<f64>,
+    options: Options<RunOptions>,
     elements: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Found<'py>> {
-    let (scene, asked) = (Arc::clone(&scene.scene), Asked { points, times, elements });
-    let recorded = in_background(py, progress, move |task| run(&scene, asked, task))?;
+    let options = options.0;
+    let scene = Arc::clone(&scene.scene);
+    let recorded = in_background(py, progress, move |task| run(&scene, options, elements, task))?;
     let Recorded { columns, elements, instants, warnings } = recorded.map_err(|error| error.raise())?;
     Ok((arrays(py, columns)?, arrays(py, elements)?, instants.into_pyarray(py), warnings))
 }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use asperity::scene::Setting;
 use asperity_study::files::parse_scene;
+use asperity_study::pack::FmuOptions;
 use asperity_study::settings::edited;
 use asperity_study::summary::{LabelledLine, described};
 use numpy::{PyArray1, PyArrayMethods as _, ToPyArray as _};
@@ -16,15 +17,16 @@ use pyo3::types::{PyDict, PyList};
 use toml::Value;
 
 use crate::errors::Raise as _;
-use crate::pack::{FmuOptions, pack};
+use crate::options::Options;
+use crate::pack::pack;
 
 /// The text of a scene file with keys set, read and checked.
 #[pyclass(frozen, module = "asperity._native")]
 #[derive(Debug)]
 pub(crate) struct Scene {
-    pub(crate) text: String,
+    text: String,
     pub(crate) file: PathBuf,
-    pub(crate) settings: Vec<(String, String)>,
+    settings: Vec<(String, String)>,
     pub(crate) scene: Arc<asperity::scene::Scene>,
 }
 
@@ -86,7 +88,7 @@ impl Scene {
     }
 
     /// The text with the keys set.
-    fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         edited(&self.text, &parsed(&self.settings))
     }
 
@@ -125,25 +127,24 @@ impl Scene {
     }
 
     /// Writes an FMU. The file of the scene has to hold what the scene is.
-    fn pack(&self, output: PathBuf, libraries: Vec<OsString>, options: FmuOptions) -> PyResult<Option<String>> {
+    fn pack(
+        &self,
+        output: PathBuf,
+        libraries: Vec<OsString>,
+        options: Options<FmuOptions>,
+    ) -> PyResult<Option<String>> {
         let definition = (*self.scene).clone().into();
         pack(&definition, &self.file, &libraries, (&output, options))
     }
 
     /// Whether the scene is the same as another, whatever text and files it is read from.
     fn is_same(&self, other: &Self) -> bool {
-        let content = |scene: &asperity::scene::Scene| asperity::scene::Scene {
-            files: Vec::new(),
-            warnings: Vec::new(),
-            notes: Vec::new(),
-            ..scene.clone()
-        };
-        content(&self.scene) == content(&other.scene)
+        self.scene.is_same(&other.scene)
     }
 }
 
 /// The settings of `--set`.
-pub(crate) fn parsed(settings: &[(String, String)]) -> Vec<Setting> {
+fn parsed(settings: &[(String, String)]) -> Vec<Setting> {
     settings.iter().map(|(key, value)| Setting::parse(key, value)).collect()
 }
 

@@ -7,47 +7,17 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use asperity::element::{FrictionTable, PointContact};
 use asperity_study::Error;
-use asperity_study::sweep::{SlidingOptions, SweepMethod, SweepOptions, SweepPlan, SweepTable, quantile_table};
+use asperity_study::pack::FmuOptions;
+use asperity_study::sweep::{SweepOptions, SweepPlan, SweepTable, quantile_table};
 use asperity_study::uncertainty::{SampleOptions, UncertainScene};
-use asperity_study::values::Values;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::background::{Task, in_background};
 use crate::errors::Raise as _;
-use crate::pack::{FmuOptions, pack};
+use crate::options::Options;
+use crate::pack::pack;
 use crate::scene::Scene;
-
-/// How steady sliding is found, as Python has it.
-pub(crate) fn sliding(
-    method: Option<&str>,
-    way: Option<f64>,
-    points: Option<u32>,
-    error: Option<f64>,
-    distance: Option<f64>,
-) -> PyResult<SlidingOptions> {
-    let method = match method {
-        None => None,
-        Some("steady") => Some(SweepMethod::Steady),
-        Some("layer") => Some(SweepMethod::Layer),
-        Some(other) => {
-            return Err(PyValueError::new_err(format!("method = {other:?}: expected \"steady\" or \"layer\"")));
-        }
-    };
-    Ok(SlidingOptions { method, way, points, friction_error: error, distance })
-}
-
-/// What a sweep goes over, as Python has it.
-pub(crate) fn options(
-    speeds: Vec<f64>,
-    (pressures, forces): (Option<Vec<f64>>, Option<Vec<f64>>),
-    temperatures: Option<Vec<f64>>,
-    sliding: SlidingOptions,
-) -> SweepOptions {
-    let values = |values: Option<Vec<f64>>| values.map(Values::from);
-    let (pressures, forces, temperatures) = (values(pressures), values(forces), values(temperatures));
-    SweepOptions { speeds: Some(speeds.into()), pressures, forces, temperatures, sliding }
-}
 
 /// All points of a sweep; `None` where nobody waits for them any more.
 fn find(plan: &SweepPlan, task: &Task) -> Option<SweepTable> {
@@ -86,24 +56,15 @@ impl Source {
 
 /// The text of the table of a sweep, and what is said of it.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn sweep(
     py: Python<'_>,
     scene: &Scene,
-    speeds: Vec<f64>,
-    pressures: Option<Vec<f64>>,
-    forces: Option<Vec<f64>>,
-    temperatures: Option<Vec<f64>>,
-    method: Option<&str>,
-    way: Option<f64>,
-    points: Option<u32>,
-    error: Option<f64>,
-    distance: Option<f64>,
+    options: Options<SweepOptions>,
     samples: Option<usize>,
     seed: u64,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Found> {
-    let options = options(speeds, (pressures, forces), temperatures, sliding(method, way, points, error, distance)?);
+    let options = options.0;
     let (scene, samples) = (Source::new(scene), samples.map(|count| SampleOptions { count, seed }));
     let found = in_background(py, progress, move |task| {
         let plan = plan(&scene, &options, samples)?;
@@ -143,7 +104,7 @@ pub(crate) fn pack_table(
     table: PathBuf,
     output: PathBuf,
     libraries: Vec<OsString>,
-    options: FmuOptions,
+    options: Options<FmuOptions>,
 ) -> PyResult<Option<String>> {
     let read = FrictionTable::load(&table).map_err(|error| PyValueError::new_err(error.to_string()))?;
     pack(&PointContact::new(read).into(), &table, &libraries, (&output, options))

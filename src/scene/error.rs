@@ -54,6 +54,8 @@ pub enum Problem {
         /// Those that may be meant, by their whole paths.
         similar: Vec<String>,
     },
+    /// Keys are set in a scene of which code has changed fields.
+    Changed,
     /// A required key is missing.
     Missing {
         /// What it should hold.
@@ -155,6 +157,10 @@ impl Problem {
             Self::Unknown { allowed, similar } => {
                 format!("{key}: unknown; allowed: {}{}", allowed.join(", "), did_you_mean(similar))
             }
+            Self::Changed => format!(
+                "{key}: code has changed fields of the scene since it was read, and a scene with keys set, which is built \
+                 anew of what was read, would not have them: expected keys to be set first, or the field itself to be changed"
+            ),
             Self::Missing { expected } => format!("{key}: missing; expected {expected}"),
             Self::Value { given, expected } => format!("{}expected {expected}", assignment(key, given)),
         }

@@ -1,21 +1,22 @@
 //! What a scene or a patch was read from, as values: with some of them changed it is read anew, by the same reader and
 //! without its files.
 
+use std::any::Any;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Table, Value};
 
 use super::error::{Location, Problem, SceneError};
 use super::files::carried_name;
-use super::values::similar_word;
-use super::{CanonicalFiles, FileFormats, LoadedProfile, ProfileOptions, keys, read_file};
+use super::values::{closest, similar_word};
+use super::{CanonicalFiles, FileFormats, LoadedProfile, ProfileOptions, read_file};
 
 type Result<T> = std::result::Result<T, SceneError>;
 
@@ -74,6 +75,8 @@ pub struct FileValues {
     pub(super) root: Table,
     pub(super) formats: &'static dyn FileFormats,
     pub(super) files: NamedFiles,
+    /// What is read of them, once it was asked for.
+    read: OnceLock<Arc<dyn Any + Send + Sync>>,
 }
 
 /// The files that a scene names, read once.
@@ -113,7 +116,7 @@ impl NamedFiles {
 impl Default for FileValues {
     fn default() -> Self {
         let (file, root, files) = (PathBuf::new(), Table::new(), NamedFiles::default());
-        Self { file, text: None, root, formats: &CanonicalFiles, files }
+        Self { file, text: None, root, formats: &CanonicalFiles, files, read: OnceLock::new() }
     }
 }
 
@@ -189,6 +192,17 @@ impl FileValues {
         Ok(Self { root, ..values })
     }
 
+    /// What `read` makes of them as they are, found once; `None` where nothing can be read of them, as of what was made in
+    /// code.
+    pub(super) fn as_read<T: Any + Send + Sync>(&self, read: impl FnOnce(Self) -> Result<T>) -> Option<Arc<T>> {
+        if let Some(found) = self.read.get() {
+            return found.clone().downcast().ok();
+        }
+        let found = Arc::new(read(self.clone()).ok()?);
+        let _ = self.read.set(found.clone());
+        Some(found)
+    }
+
     /// The path of the file.
     pub fn file(&self) -> &Path {
         &self.file
@@ -225,6 +239,7 @@ impl FileValues {
     pub(super) fn set_all(&mut self, settings: &[Setting]) -> Result<Vec<(String, Setting)>> {
         let mut in_files = Vec::new();
         self.text = self.text.take().filter(|_| settings.is_empty());
+        self.read = OnceLock::new();
         for setting in settings {
             let Setting { key, value } = setting;
             let refused = |expected: String| SceneError::new(Location::default(), key, Problem::value(value, expected));
@@ -259,7 +274,7 @@ impl FileValues {
     pub fn unknown(&self, path: &str, allowed: &[&str]) -> SceneError {
         let name = path.rsplit('.').next().unwrap_or_default();
         let allowed: Vec<String> = allowed.iter().map(|name| (*name).to_owned()).collect();
-        let similar = keys::closest(name, allowed.iter().cloned());
+        let similar = closest(name, allowed.iter().cloned());
         self.error(path, Problem::Unknown { allowed, similar })
     }
 

@@ -203,3 +203,16 @@ fn a_scene_varies_as_a_value_and_its_files_are_read_once() {
     let error = Scene::parse(&text.replace("1e6", "-1.0"), &folder.join("scene.toml")).unwrap_err();
     assert_eq!((error.key(), error.line()), ("material.equilibrium_modulus", Some(9)));
 }
+
+/// What the file does not have would be lost.
+#[test]
+fn keys_are_not_set_in_a_scene_that_code_has_changed() {
+    let text = "name = 'a'\nlayer = { masses = 4, spacing = 1e-4, mass = 1e-6 }\nsurface = { kind = 'flat' }\n";
+    let mut scene = Scene::parse(text, FilePath::new("scene.toml")).unwrap();
+    assert_eq!(scene.with("layer.masses", 8).unwrap().layer.masses, 8);
+    scene.layer.spacing = 2e-4;
+    let refused = scene.with("layer.masses", 8).unwrap_err();
+    assert_eq!((refused.key(), refused.problem()), ("layer.masses", &crate::scene::Problem::Changed));
+    scene.layer.spacing = 1e-4;
+    assert!(scene.with("layer.masses", 8).is_ok());
+}

@@ -46,6 +46,26 @@ pub(super) fn words<T: Word>() -> String {
     format!("one of {}", quoted.join(", "))
 }
 
+/// Those of `paths`, but `given` itself, that look most like it, or end with it.
+pub(super) fn closest(given: &str, paths: impl Iterator<Item = String>) -> Vec<String> {
+    let difference = |path: &str| if is_end_of(given, path) { 0 } else { strsim::levenshtein(given, path) };
+    let similar = paths.filter(|path| path != given && is_similar(given, path)).map(|path| (difference(&path), path));
+    let mut similar: Vec<(usize, String)> = similar.collect();
+    similar.sort_unstable();
+    similar.dedup();
+    let least = similar.first().map_or(0, |(difference, _)| *difference);
+    similar.into_iter().take_while(|(difference, _)| *difference == least).map(|(_, path)| path).collect()
+}
+
+/// Whether a few letters differ, or only the end of the path is given.
+pub(super) fn is_similar(given: &str, name: &str) -> bool {
+    is_end_of(given, name) || strsim::levenshtein(given, name) <= 1 + given.chars().count() / 8
+}
+
+fn is_end_of(given: &str, path: &str) -> bool {
+    path.strip_suffix(given).is_some_and(|start| start.ends_with('.'))
+}
+
 /// The word in quotation marks within `expected` that looks most like `given`: hyphens, blanks and capitals do not count.
 pub(super) fn similar_word<'a>(given: &str, expected: &'a str) -> Option<&'a str> {
     let plain = |word: &str| word.to_lowercase().replace(['-', '_', ' '], "");

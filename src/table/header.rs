@@ -2,8 +2,21 @@
 
 use std::path::{Path, PathBuf};
 
-use super::TableError;
 use super::numbers::{number, parsed};
+
+/// Why a table is refused: where, what was expected and what was found.
+///
+/// It reads like `table.csv:12: speed [m/s] = "fast": expected a number above 0`.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}{}: {problem}", file.display(), line.map_or_else(String::new, |line| format!(":{line}")))]
+pub struct TableError {
+    /// The file.
+    pub file: PathBuf,
+    /// The line, from 1, where it is one.
+    pub line: Option<usize>,
+    /// What was expected and what was found.
+    pub problem: String,
+}
 
 /// The values by their keys, in order, each as text, a number or numbers with their unit, or a whole number. They are
 /// kept as files have them, and checked by who asks for them.

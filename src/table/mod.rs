@@ -9,26 +9,12 @@ mod header;
 mod numbers;
 
 use std::borrow::Cow;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::tables::{fields, quoted};
 
-pub use header::Header;
+pub use header::{Header, TableError};
 pub use numbers::number;
-
-/// Why a table is refused: where, what was expected and what was found.
-///
-/// It reads like `table.csv:12: speed [m/s] = "fast": expected a number above 0`.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{}{}: {problem}", file.display(), line.map_or_else(String::new, |line| format!(":{line}")))]
-pub struct TableError {
-    /// The file.
-    pub file: PathBuf,
-    /// The line, from 1, where it is one.
-    pub line: Option<usize>,
-    /// What was expected and what was found.
-    pub problem: String,
-}
 
 /// A column.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,19 +1,32 @@
 //! `asperity compare`: the curves of a sweep beside measured friction.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use asperity_study::Error;
 use asperity_study::calibration::{self, Measured, ModelCurves, chi_square_per_degree};
-use asperity_study::comparison::Comparison;
+use asperity_study::comparison::{CompareOptions, Comparison, off_in_words};
 use asperity_study::decimals::rounded;
 use asperity_study::picture::Stroke;
 use asperity_study::sweep::SweepTable;
+use clap::Args;
 
-use super::cli::Compare;
+use super::cli::values::{self, example};
 use super::files::{check_outputs, name_of, named, print_beside};
-use super::measured_friction::off;
 use super::picture;
 use super::terminal::{labelled, lines, note, warn};
+
+#[derive(Debug, Args)]
+#[command(after_help = example!("asperity compare friction.csv --data docs/guide/measured.csv"))]
+pub(crate) struct Compare {
+    /// The table of asperity sweep, over pressures.
+    #[arg(value_name = "TABLE.csv")]
+    pub(crate) table: PathBuf,
+    #[command(flatten)]
+    pub(crate) options: CompareOptions,
+    /// The plot to write, as SVG or PNG according to the file name. Default: the table's name with .compare.svg.
+    #[arg(short, long, value_name = "OUT.svg", value_parser = values::picture())]
+    pub(crate) output: Option<PathBuf>,
+}
 
 /// Measurements that are off the most are named up to this many.
 const WORST: usize = 5;
@@ -21,12 +34,12 @@ const WORST: usize = 5;
 /// Draws the curves and the points, and says how far these are off.
 pub(crate) fn compare(command: &Compare) -> Result<(), Error> {
     let path = command.output.clone().unwrap_or_else(|| command.table.with_extension("compare.svg"));
-    check_outputs([&path], vec![command.table.clone(), command.data.clone()])?;
+    check_outputs([&path], vec![command.table.clone(), command.options.data.clone()])?;
     let table = SweepTable::read(&command.table)?;
-    let comparison = Comparison::new(&table, &command.table, &command.data)?;
+    let comparison = Comparison::new(&table, &command.table, &command.options)?;
     comparison.notes.iter().for_each(|text| note(text));
     comparison.left_out_in_words().iter().for_each(|text| warn(text));
-    comparison.check(&command.data)?;
+    comparison.check(&command.options.data)?;
     let rows: Vec<Measured> = comparison.within.iter().map(|(row, _)| *row).collect();
     let swept = ModelCurves { name: "swept", stroke: Stroke::Solid, points: comparison.swept.clone() };
     picture::write(&calibration::picture(table.header.scene(), &comparison.grid, &rows, &[swept]), &path)?;
@@ -40,11 +53,11 @@ fn summary(command: &Compare, comparison: &Comparison, picture: &Path) -> String
     let per_measurement = rounded(chi_square_per_degree(chi_square, within.len()), 4);
     let mut rows = vec![
         ("Table", name_of(&command.table)),
-        ("Data", format!("{}: {} measurements{note}", name_of(&command.data), within.len())),
+        ("Data", format!("{}: {} measurements{note}", name_of(&command.options.data), within.len())),
         ("Chi square", format!("{}, {per_measurement} per measurement", rounded(chi_square, 4))),
     ];
     let worst = comparison.worst_first();
-    let worst = worst.iter().take(WORST).map(|(row, friction, deviations)| off(row, *friction, *deviations));
+    let worst = worst.iter().take(WORST).map(|(row, friction, deviations)| off_in_words(row, *friction, *deviations));
     rows.extend(labelled("Worst", worst));
     rows.push(("Written", named(picture)));
     lines(&rows)

@@ -1,16 +1,39 @@
 //! `asperity describe`: summarises a scene or a patch.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use asperity::scene::{Scene, Setting};
 use asperity_study::summary::{self, DescribedScene, described, described_patch, described_shortly, missing_backing};
 use asperity_study::{Context as _, Error};
+use clap::{ArgGroup, Args};
 
-use super::cli::Describe;
+use super::cli::values::{self, Set, example};
 use super::files::{check_outputs, load, load_patch, print};
 use super::picture;
 use super::simulate::NOT_STARTED;
 use super::terminal::{LabelledLine, is_verbose, lines, screen_lines, warn};
+
+#[derive(Debug, Args)]
+#[command(group(ArgGroup::new("described").required(true).args(["scene", "patch"])))]
+#[command(after_help = example!("asperity describe scenes/road/road.toml"))]
+pub(crate) struct Describe {
+    /// The scene file.
+    #[arg(value_name = "SCENE.toml")]
+    pub(crate) scene: Option<PathBuf>,
+    /// A patch file: summarises a contact patch instead.
+    #[arg(long, value_name = "PATCH.toml", conflicts_with_all = ["json", "plot"])]
+    pub(crate) patch: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) set: Set,
+    /// Prints the whole scene as one JSON object in SI units: links as constants, the profile as data points. Absent
+    /// entries are null or empty.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Plots the stiffness of the links over that of the material's surface, over wavelength, and the friction below the
+    /// profile over speed at three temperatures, as SVG or PNG according to the file name.
+    #[arg(long, value_name = "OUT.svg", value_parser = values::picture())]
+    pub(crate) plot: Option<PathBuf>,
+}
 
 /// Prints the summary of a scene.
 pub(crate) fn describe(command: &Describe, path: &Path) -> Result<(), Error> {

@@ -12,9 +12,9 @@ use asperity_study::fit::{
 
 use super::cli::{Fit, FitVertical, FitWeight};
 use super::files::{self, check_outputs, name_of, named, picture_beside, print_beside};
+use super::output::{NOT_REACHED, SUCCESS};
 use super::picture;
 use super::terminal::{LabelledLine, lines, note, warn, with_flags};
-use super::{NOT_REACHED, SUCCESS};
 
 /// `asperity fit` failed.
 #[derive(Debug, thiserror::Error)]

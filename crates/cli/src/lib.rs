@@ -9,28 +9,26 @@
 //! |---|---|---|
 //! | `terminal` | | text for the terminal: aligned lines, warnings, the progress bar |
 //! | `npz` | | archives of arrays for numpy |
-//! | `output` | | outputs by their names, and errors of files |
+//! | `output` | | exit statuses, outputs by their names, and errors of files |
 //! | `interrupt` | output, terminal | what is left to do where the program is stopped |
 //! | `draft` | interrupt, output | files that take their places whole |
 //! | `files` | draft, output, terminal | scenes and other files that commands read and write |
 //! | `lock` | interrupt, terminal | a table that one process writes at a time |
 //! | `table_file` | draft, files, lock, output, terminal | tables that a stopped command goes on with, which add rows |
 //! | `result_file` | draft | results of runs, row by row |
-//! | `cli` | files | the command line: commands and their options |
+//! | `cli` | files | values of options, and options that several commands have |
 //! | `picture` | files | draws pictures, as SVG or PNG |
 //! | `plot` | cli, files, picture, terminal | `plot` |
-//! | `measured_friction` | | how far measured friction is off that of a model |
-//! | `elements` | files, npz | the masses of a run as arrays |
-//! | `simulate` | cli, elements, files, picture, result_file, terminal | `simulate` of a scene |
+//! | `simulate` | cli, files, npz, picture, result_file, terminal | `simulate` of a scene |
 //! | `patch` | cli, files, picture, result_file, simulate, terminal | `simulate` of a patch |
 //! | `describe` | cli, files, picture, simulate, terminal | `describe` |
 //! | `contact` | cli, files, npz, picture, terminal | `contact` |
 //! | `sweep` | cli, files, interrupt, output, picture, table_file, terminal | `sweep` |
-//! | `rank` | cli, files, picture, terminal | `rank` |
-//! | `converge` | cli, files, interrupt, picture, table_file, terminal | `converge` |
-//! | `fit` | cli, files, picture, terminal | `fit` |
-//! | `calibrate` | cli, files, interrupt, measured_friction, picture, table_file, terminal | `calibrate` |
-//! | `compare` | cli, files, measured_friction, picture, terminal | `compare` |
+//! | `rank` | cli, files, output, picture, terminal | `rank` |
+//! | `converge` | cli, files, interrupt, output, picture, table_file, terminal | `converge` |
+//! | `fit` | cli, files, output, picture, terminal | `fit` |
+//! | `calibrate` | cli, files, interrupt, output, picture, table_file, terminal | `calibrate` |
+//! | `compare` | cli, files, picture, terminal | `compare` |
 //! | `material` | cli, files, picture, terminal | `material` |
 //! | `surface` | cli, files, picture, terminal | `surface` |
 //! | `pack` | cli, files, picture, terminal | `pack` |
@@ -44,13 +42,11 @@ mod contact;
 mod converge;
 mod describe;
 mod draft;
-mod elements;
 mod files;
 mod fit;
 mod interrupt;
 mod lock;
 mod material;
-mod measured_friction;
 mod npz;
 mod output;
 mod pack;
@@ -70,19 +66,67 @@ mod terminal;
 use std::error::Error;
 use std::ffi::OsString;
 
-use clap::Parser as _;
-use cli::{Arguments, Command};
+use clap::{CommandFactory as _, Parser, Subcommand};
 
-/// Exit status of a command that did what was asked for.
-const SUCCESS: u8 = 0;
-/// Exit status of one that did not.
-const FAILURE: u8 = 1;
-/// Exit status of one whose result is written and is to be looked at: it did not converge, or an error is larger than
-/// asked for.
-const NOT_REACHED: u8 = 3;
+/// Simulates rubber on a rough surface and packs the simulation as an FMU.
+#[derive(Debug, Parser)]
+#[command(name = "asperity", version)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    /// Prints results and warnings alone, neither notes nor progress.
+    #[arg(short, long, global = true)]
+    pub(crate) quiet: bool,
+    /// Prints every note where only some or their number would be printed.
+    #[arg(short, long, global = true, conflicts_with = "quiet")]
+    pub(crate) verbose: bool,
+}
 
-/// Exit status of one whose results nobody reads any more: 128 and the number of SIGPIPE.
-const BROKEN_PIPE: u8 = 141;
+#[derive(Debug, Subcommand)]
+#[command(defer = true)]
+pub(crate) enum Command {
+    /// Simulates a scene along its excitation and writes a result file.
+    Simulate(simulate::Simulate),
+    /// Plots columns of result files and tables.
+    Plot(plot::Plot),
+    /// Summarises a scene on a screen: what it contains, what is computed and what is left out; with -v also the constants
+    /// derived from it.
+    Describe(describe::Describe),
+    /// Packs a scene, or a point-contact element or a contact patch from a sweep table, as an FMI 2.0 co-simulation
+    /// FMU.
+    Pack(pack::Pack),
+    /// Fits Prony terms to measured moduli of a compound (DMA data).
+    Fit(cli::Fit),
+    /// Plots the complex modulus of a scene's compound over frequency, or the complex stiffness of its links.
+    Material(material::Material),
+    /// Benchmarks a scene: accuracy, run time and robustness, as tables, plots and an HTML page.
+    Report(cli::Report),
+    /// Analyses a measured profile or a scene's surface: heights, slopes, spectrum and Hurst exponent.
+    Surface(cli::Surface),
+    /// Computes the friction coefficient over speed, pressure and temperature, as a table and a plot.
+    Sweep(sweep::Sweep),
+    /// Tests whether friction and contact area depend on a scene's spacing, length and seed. Exit status 0: all within
+    /// the error; 3: not all.
+    Converge(converge::Converge),
+    /// Fits numbers of a scene to measured friction: values, standard errors, what the data cannot tell. Exit status 0:
+    /// converged; 3: not converged, or not all identifiable; 1: refused.
+    Calibrate(calibrate::Calibrate),
+    /// Compares the table of a sweep with measured friction: curves and points in one picture, and the worst points.
+    Compare(compare::Compare),
+    /// Ranks scenes by their friction: an index with its band, which is the largest and how surely. Exit status 0: the first
+    /// two are told apart with a probability of 0.9; 3: they are not.
+    Rank(rank::Rank),
+    /// Draws where the rubber touches in steady sliding, and how hard.
+    Contact(contact::Contact),
+    /// Prints what completes commands and options in a shell: asperity completions bash >>
+    /// ~/.local/share/bash-completion/completions/asperity.
+    Completions(reference::Completions),
+    /// Writes the manual pages, one for each command.
+    Manual(reference::Manual),
+    /// Prints all keys of scenes and patches, all outputs and options, as Markdown: docs/reference.md.
+    #[command(hide = true)]
+    Reference,
+}
 
 /// Executes a command line, the program's name first; prints its results, and the error that ended it. Returns the exit
 /// status. Does not return from `--help` and from a command line that cannot be understood.
@@ -91,10 +135,10 @@ pub fn execute(words: impl IntoIterator<Item = OsString>) -> u8 {
         Ok(status) => status,
         Err(error) => {
             if output::is_broken_pipe(&*error) {
-                return BROKEN_PIPE;
+                return output::BROKEN_PIPE;
             }
             terminal::say(&error.to_string());
-            FAILURE
+            output::FAILURE
         }
     }
 }
@@ -114,18 +158,18 @@ fn run(arguments: Arguments) -> Result<u8, Box<dyn Error>> {
         Command::Pack(command) => pack::pack(&command)?,
         Command::Fit(command) => return Ok(fit::fit(&command)?),
         Command::Material(command) => material::material(&command)?,
-        Command::Reference => reference::reference()?,
-        Command::Completions(command) => reference::completions(&command)?,
-        Command::Manual(command) => reference::manual(&command)?,
+        Command::Reference => reference::reference(Arguments::command())?,
+        Command::Completions(command) => reference::completions(&command, Arguments::command())?,
+        Command::Manual(command) => reference::manual(&command, Arguments::command())?,
         Command::Report(command) => report::report(&command)?,
         Command::Surface(command) => surface::surface(&command)?,
         Command::Sweep(command) => sweep::sweep(&command)?,
     }
-    Ok(SUCCESS)
+    Ok(output::SUCCESS)
 }
 
 /// A scene along its excitation, or a patch along a motion file.
-fn run_simulate(command: &cli::Simulate) -> Result<(), Box<dyn Error>> {
+fn run_simulate(command: &simulate::Simulate) -> Result<(), Box<dyn Error>> {
     match (&command.scene, &command.patch, &command.motion) {
         (Some(scene), _, _) => simulate::simulate(command, scene)?,
         (None, Some(patch), Some(motion)) => patch::simulate(command, patch, motion)?,
@@ -136,7 +180,7 @@ fn run_simulate(command: &cli::Simulate) -> Result<(), Box<dyn Error>> {
 }
 
 /// A scene or a patch.
-fn run_describe(command: &cli::Describe) -> Result<(), Box<dyn Error>> {
+fn run_describe(command: &describe::Describe) -> Result<(), Box<dyn Error>> {
     match (&command.scene, &command.patch) {
         (Some(scene), _) => describe::describe(command, scene)?,
         (None, Some(patch)) => describe::describe_patch(patch, &command.set)?,
@@ -144,4 +188,42 @@ fn run_describe(command: &cli::Describe) -> Result<(), Box<dyn Error>> {
         (None, None) => (),
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_program_says_its_own_name() {
+        assert_eq!(Arguments::command().render_version(), concat!("asperity ", env!("CARGO_PKG_VERSION"), "\n"));
+    }
+
+    /// Also those that a test cannot run.
+    #[test]
+    fn examples_are_understood() {
+        let mut command = Arguments::command();
+        command.build();
+        for of in command.get_subcommands().filter(|of| !of.is_hide_set() && of.get_name() != "help") {
+            let help = of.get_after_help().map(ToString::to_string).unwrap_or_default();
+            let example = help.lines().skip(1).collect::<Vec<_>>().join(" ").replace('\\', " ");
+            let parsed = Arguments::try_parse_from(example.split_whitespace());
+            assert!(parsed.is_ok() && example.contains(&format!("asperity {}", of.get_name())), "{parsed:?}");
+        }
+    }
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        Arguments::command().debug_assert();
+    }
+
+    /// The page in docs is the one that the program makes: asperity reference > docs/reference.md.
+    #[test]
+    fn the_page_in_docs_is_that_of_the_tables() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/reference.md");
+        let committed = std::fs::read_to_string(path).unwrap();
+        let made = reference::page(Arguments::command());
+        let different = committed.lines().zip(made.lines()).find(|(old, new)| old != new);
+        assert!(committed == made, "run asperity reference > docs/reference.md: {different:?}");
+    }
 }

@@ -8,11 +8,50 @@ use asperity::scene::Scene;
 use asperity_study::Error;
 use asperity_study::decimals;
 use asperity_study::material::{POINTS, Response, Responses, at_temperature, evenly};
+use asperity_study::values::ends;
+use clap::Args;
 
-use super::cli::Material;
+use super::cli::values::{Set, example, picture_or_table, temperature};
 use super::files::{self, check_outputs, ends_in, is_standard_output, load_without_run, named, print_beside};
 use super::picture;
 use super::terminal::{LabelledLine, lines};
+
+#[derive(Debug, Args)]
+#[command(after_help = example!("asperity material scenes/road/road.toml --temperature 40°C -o moduli.svg"))]
+pub(crate) struct Material {
+    /// The scene file.
+    #[arg(value_name = "SCENE.toml")]
+    pub(crate) scene: PathBuf,
+    /// A file to write: a table as CSV, or a plot as SVG or PNG, according to its name; - for a table on standard
+    /// output. May be repeated. Default: a plot SCENE-material.svg.
+    #[arg(short, long, value_name = "OUT", value_parser = picture_or_table())]
+    pub(crate) output: Vec<PathBuf>,
+    /// The range of the angular frequency in rad/s, or of the frequency if Hz is appended. Default: derived from the
+    /// relaxation times.
+    #[arg(long, value_name = "A..B[Hz]", value_parser = Frequencies::parse)]
+    pub(crate) frequencies: Option<Frequencies>,
+    /// The compound's temperature in K, in place of the scene's.
+    #[arg(long, value_name = "T", value_parser = temperature, allow_negative_numbers = true)]
+    pub(crate) temperature: Option<f64>,
+    #[command(flatten)]
+    pub(crate) set: Set,
+}
+
+/// A range of angular frequencies, rad/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Frequencies((f64, f64));
+
+impl Frequencies {
+    fn parse(text: &str) -> Result<Self, String> {
+        let (numbers, unit) = text.trim().strip_suffix("Hz").map_or((text, 1.0), |numbers| (numbers, TAU));
+        // Hz may be appended to both ends.
+        let numbers = numbers.replace("Hz", "");
+        let allowed = |(low, high): &(f64, f64)| *low >= 1e-30 && high > low && *high <= 1e30;
+        let message =
+            || "expected A..B, such as 1..1e5 in rad/s or 0.1..1e4Hz, from 1e-30 to 1e30, A below B".to_owned();
+        ends(&numbers).filter(allowed).map(|(low, high)| Self((low * unit, high * unit))).ok_or_else(message)
+    }
+}
 
 /// Prints a summary and a table; writes the outputs or, if none is given, a plot.
 pub(crate) fn material(command: &Material) -> Result<(), Error> {
@@ -118,4 +157,20 @@ fn title(responses: &Responses<'_>, scene: &Scene) -> String {
 /// Five digits.
 fn short(value: f64) -> String {
     decimals::short(value, 5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frequencies_are_angular_unless_in_hertz() {
+        assert_eq!(Frequencies::parse("1..1e5"), Ok(Frequencies((1.0, 1e5))));
+        for hertz in ["0.5..10Hz", "0.5Hz..10 Hz"] {
+            assert_eq!(Frequencies::parse(hertz), Ok(Frequencies((0.5 * TAU, 10.0 * TAU))), "{hertz}");
+        }
+        for wrong in ["1", "2..1", "0..1", "1..inf", "a..b"] {
+            assert!(Frequencies::parse(wrong).unwrap_err().contains("1..1e5"), "{wrong}");
+        }
+    }
 }

@@ -1,10 +1,20 @@
-//! Names of files in messages, and what goes wrong with them.
+//! Exit statuses, names of files in messages, and what goes wrong with them.
 
 use std::fs;
 use std::io;
 use std::path::Path;
 
 use asperity_study::Error;
+
+/// Exit status of a command that did what was asked for.
+pub(crate) const SUCCESS: u8 = 0;
+/// Exit status of one that did not.
+pub(crate) const FAILURE: u8 = 1;
+/// Exit status of one whose result is written and is to be looked at: it did not converge, or an error is larger than
+/// asked for.
+pub(crate) const NOT_REACHED: u8 = 3;
+/// Exit status of one whose results nobody reads any more: 128 and the number of SIGPIPE.
+pub(crate) const BROKEN_PIPE: u8 = 141;
 
 /// What stands for standard output as the name of an output.
 pub(crate) const STANDARD_OUTPUT: &str = "-";

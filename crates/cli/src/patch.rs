@@ -4,18 +4,17 @@ use std::path::Path;
 
 use asperity::outputs::OutputType;
 use asperity::patch::{Patch, PatchRun, PatchVariable};
-
-use crate::cli::Simulate;
-use crate::files::{check_outputs, load_patch, named, print_beside};
-use crate::picture;
-use crate::result_file::CsvWriter;
-use crate::simulate::{NOT_STARTED, ended_at};
-use crate::terminal::{lines, warn};
 use asperity_study::csv::Field;
 use asperity_study::decimals::with_prefix;
 use asperity_study::motion::MotionFile;
 use asperity_study::patch_history::PatchHistory;
 use asperity_study::{Context as _, Error};
+
+use crate::files::{check_outputs, load_patch, named, print_beside};
+use crate::picture;
+use crate::result_file::CsvWriter;
+use crate::simulate::{NOT_STARTED, Simulate, ended_at};
+use crate::terminal::{lines, warn};
 
 /// Moves the patch, writes the rows and draws the plot.
 pub(crate) fn simulate(command: &Simulate, patch_file: &Path, motion_file: &Path) -> Result<(), Error> {

@@ -1,25 +1,100 @@
 //! `asperity simulate`: runs a scene along its excitation, writes a result file and draws what is asked for.
 
+use std::borrow::Cow;
 use std::fmt::Display;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use asperity::outputs::{Snapshot, Variable, variables};
+use asperity::outputs::{OutputType, Snapshot, Variable, variables};
 use asperity::scene::Scene;
 use asperity::simulation::MethodSwitch;
-use indicatif::ProgressBar;
-
-use super::cli::Simulate;
-use super::elements::write_arrays;
-use super::files::{self, check_outputs, ends_in, load, named, print_beside};
-use super::picture;
-use super::result_file::ResultWriter;
-use super::terminal::{LabelledLine, bar, is_verbose, lines, note, warn};
-use asperity_study::masses::{ElementHistory, Span, animation};
+use asperity_study::csv::Head;
+use asperity_study::masses::{self, ElementField, ElementHistory, Instant, Span};
 use asperity_study::run_figures::{RunFigures, implausible_run};
+use asperity_study::runner::RunOptions;
 use asperity_study::runner::{InputSample, Rows, Runner};
 use asperity_study::time_history::TimeHistory;
 use asperity_study::{Context as _, Error};
+use clap::builder::{StringValueParser, TypedValueParser};
+use clap::{ArgGroup, Args};
+use indicatif::ProgressBar;
+
+use super::cli::values::{self, Set, animation, arrays, example, seconds};
+use super::files::{self, check_outputs, default_output, ends_in, load, named, print_beside};
+use super::npz::{Array, Values, npz};
+use super::picture;
+use super::result_file::ResultWriter;
+use super::terminal::{LabelledLine, bar, is_verbose, lines, note, warn};
+
+#[derive(Debug, Args)]
+#[command(group(ArgGroup::new("simulated").required(true).args(["scene", "patch"])))]
+#[command(after_help = example!("asperity simulate scenes/tread-block/tread-block.toml -o block.csv --plot block.svg"))]
+pub(crate) struct Simulate {
+    /// The scene file.
+    #[arg(value_name = "SCENE.toml")]
+    pub(crate) scene: Option<PathBuf>,
+    /// A patch file: moves a contact patch along the motion instead.
+    #[arg(long, value_name = "PATCH.toml", requires = "motion", conflicts_with = "rows")]
+    pub(crate) patch: Option<PathBuf>,
+    /// The motion of the patch: columns time, x, y, z, roll, pitch, yaw, with a tread transport.speed, and temperature;
+    /// one step from row to row.
+    #[arg(long, value_name = "MOTION.csv", requires = "patch", conflicts_with = "scene")]
+    pub(crate) motion: Option<PathBuf>,
+    /// The result file to write; - for standard output. Default: the name of the scene or patch with .csv, in this
+    /// folder.
+    #[arg(short, long, value_name = "OUT.csv")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) options: RunOptions,
+    #[command(flatten)]
+    pub(crate) set: Set,
+    /// Plots forces, contacts and dissipation over time, as SVG or PNG according to the file name.
+    #[arg(long, value_name = "OUT.svg", value_parser = values::picture())]
+    pub(crate) plot: Option<PathBuf>,
+    /// Animates the contact: the layer on its profile, pressure, stick and slip, flash temperature, forces. A page for
+    /// a browser (.html), or a row of pictures (.png: OUT-001.png and so on).
+    #[arg(long, value_name = "OUT.html", value_parser = animation(), conflicts_with = "patch")]
+    pub(crate) animate: Option<PathBuf>,
+    /// Draws the layer, the profile and the pressure at a time in s, as SVG or PNG; the result file has a row there
+    /// too. May be repeated.
+    #[arg(long, value_name = "TIME=OUT.svg", value_parser = moment(), conflicts_with = "patch")]
+    pub(crate) contact: Vec<(f64, PathBuf)>,
+    /// Writes position, forces, mode and flash temperature of all masses as arrays of numpy, a line for each result
+    /// row, and the profile.
+    #[arg(long, value_name = "OUT.npz", value_parser = arrays(), conflicts_with = "patch")]
+    pub(crate) elements: Option<PathBuf>,
+    /// Writes units behind the names of the result file's columns: F_x [N].
+    #[arg(long)]
+    units: bool,
+    /// Also prints what the run cost, and what would make it cheaper.
+    #[arg(long, conflicts_with = "patch")]
+    pub(crate) stats: bool,
+}
+
+impl Simulate {
+    /// The result file of a run of what is in the file `simulated`.
+    pub(crate) fn output(&self, simulated: &Path) -> PathBuf {
+        self.output.clone().unwrap_or_else(|| default_output(simulated, "csv"))
+    }
+
+    /// What is above the columns of the result file.
+    pub(crate) fn head(&self) -> Head {
+        if self.units { Head::NameAndUnit } else { Head::Name }
+    }
+}
+
+/// A time in s, and a file for a plot of that instant.
+fn moment() -> impl TypedValueParser<Value = (f64, PathBuf)> {
+    StringValueParser::new().try_map(|text| {
+        let (time, path) = text.split_once('=').ok_or("expected TIME=OUT.svg, such as 2e-3=contact.svg")?;
+        let path = PathBuf::from(path);
+        let is_picture = ["svg", "png"].into_iter().any(|ending| ends_in(&path, ending));
+        if !is_picture {
+            return Err("expected a name that ends in .svg or .png after TIME=".to_owned());
+        }
+        Ok((seconds(time)?, path))
+    })
+}
 
 /// What is said before why a run cannot start.
 pub(crate) const NOT_STARTED: &str = "the run cannot start";
@@ -40,7 +115,7 @@ pub(crate) fn simulate(command: &Simulate, path: &Path) -> Result<(), Error> {
     if scene.excitation.is_empty() {
         warn("the scene has no [[excitation]]: the carrier rests, and the result file has the initial row only");
     }
-    Rows::PerPhase(command.rows).check(&scene, numbers_of_masses(&scene, command)).context(NOT_STARTED)?;
+    Rows::PerPhase(command.options.rows).check(&scene, numbers_of_masses(&scene, command)).context(NOT_STARTED)?;
     let mut recorder = Recorder::new(&scene, command, &output)?;
     let result = run(&scene, command, &mut recorder)?;
     let (history, elements) = recorder.finish()?;
@@ -90,7 +165,7 @@ fn write_elements(elements: &ElementHistory, command: &Simulate) -> Result<(), E
     }
     match &command.animate {
         Some(path) if ends_in(path, "html") => {
-            let page = animation(elements).map_err(|error| files::not_drawn(path, error))?;
+            let page = masses::animation(elements).map_err(|error| files::not_drawn(path, error))?;
             files::write(path, page)?;
         }
         Some(path) => write_frames(elements, path)?,
@@ -119,7 +194,7 @@ fn write_frames(elements: &ElementHistory, path: &Path) -> Result<(), Error> {
 /// # Errors
 /// Where it cannot start, or its rows cannot be written: what is recorded of it is of no use then.
 fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<Result<Vec<LabelledLine>, Error>, Error> {
-    let rows = Rows::PerPhase(command.rows);
+    let rows = Rows::PerPhase(command.options.rows);
     let runner = Runner::new(recorder.shown(scene), rows, 0.0).context(NOT_STARTED)?;
     let mut runner = runner.with_rows_at(command.contact.iter().map(|&(time, _)| time).collect());
     let mut written = Ok(());
@@ -227,4 +302,33 @@ impl Recorder {
         self.writer.finish()?;
         Ok((self.history, self.elements))
     }
+}
+
+/// Writes the rows' times, displacements and forces, the fields of the masses with a line for each row, the masses'
+/// positions at rest, the area that each stands for where the scene gives it, and the data points of the profile.
+fn write_arrays(history: &ElementHistory, path: &Path) -> Result<(), Error> {
+    let of_rows = |value: fn(&Instant) -> f64| history.rows().iter().map(value).collect::<Vec<_>>();
+    let lines = [
+        Array::line("time", of_rows(|row| row.time)),
+        Array::line("u", of_rows(|row| row.u)),
+        Array::line("w", of_rows(|row| row.w)),
+        Array::line("F_x", of_rows(|row| row.force_x)),
+        Array::line("F_z", of_rows(|row| row.force_z)),
+        Array::line("rest_x", history.rest()),
+        Array::line("profile_x", history.surface().x()),
+        Array::line("profile_z", history.surface().z()),
+    ];
+    let area = history.area().map(|area| Array::single("area", area));
+    let fields = history.fields().fields().iter().map(|field| array(field, history.rest().len()));
+    let archive = npz(lines.into_iter().chain(area).chain(fields));
+    let archive = archive.map_err(|error| Error::value(format!("cannot write {}: {error}", path.display())))?;
+    files::write(path, archive)
+}
+
+fn array(field: &ElementField, masses: usize) -> Array<'_> {
+    let values = match field.kind {
+        OutputType::Real => Values::Reals(Cow::Borrowed(&field.values)),
+        OutputType::Integer => Values::Integers(field.values.iter().map(|&value| value as i8).collect()),
+    };
+    Array { name: &field.name, shape: vec![field.values.len() / masses, masses], values }
 }

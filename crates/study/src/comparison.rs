@@ -1,12 +1,24 @@
 //! The curves of a sweep beside measured friction.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use asperity::element::{Load, OperatingPoint, Quantity};
+use clap::Args;
+use serde::{Deserialize, Serialize};
 
 use crate::Error;
-use crate::calibration::{CurveGrid, Measured, Measurements, left_out_in_words};
+use crate::calibration::{CurveGrid, Measured, Measurements, in_words, left_out_in_words};
+use crate::decimals::rounded;
 use crate::sweep::{SweepHeader, SweepTable, way_of};
+
+// What a table is compared with. Not a doc comment: that would be the description of the command.
+#[expect(missing_docs, reason = "clap would print it")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Args)]
+pub struct CompareOptions {
+    /// The measured friction, as for asperity calibrate.
+    #[arg(long, value_name = "MEASURED.csv")]
+    pub data: PathBuf,
+}
 
 /// Measurements and the friction of a table there.
 #[derive(Clone, Debug)]
@@ -41,12 +53,12 @@ pub enum NoFriction {
 const CURVE: u32 = 60;
 
 impl Comparison {
-    /// Of the `table` at `path` and the measurements in the file `data`.
+    /// Of the `table` at `path` and what is measured.
     ///
     /// # Errors
     /// Where the table is over forces, or the measurements cannot be read.
-    pub fn new(table: &SweepTable, path: &Path, data: &Path) -> Result<Self, Error> {
-        let measurements = measured_beside(&table.header, path, data)?;
+    pub fn new(table: &SweepTable, path: &Path, options: &CompareOptions) -> Result<Self, Error> {
+        let measurements = measured_beside(&table.header, path, &options.data)?;
         let curves = SweptFriction { table };
         let (mut within, mut left_out) = (Vec::<(Measured, f64)>::new(), Vec::<(Measured, NoFriction)>::new());
         for &row in &measurements.rows {
@@ -96,6 +108,18 @@ impl Comparison {
         all.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
         all
     }
+}
+
+/// A measurement that is off the friction of a model, by so many standard deviations, in a line.
+pub fn off_in_words(measured: &Measured, model: f64, deviations: f64) -> String {
+    format!(
+        "line {}, {}: {} measured, {} found, off by {} standard deviations",
+        measured.line,
+        in_words(&measured.point),
+        rounded(measured.friction, 4),
+        rounded(model, 4),
+        rounded(deviations, 2),
+    )
 }
 
 /// The measurements in the file `data`, to be looked at beside the table at `path` with this header: at its temperature

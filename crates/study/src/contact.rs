@@ -54,11 +54,24 @@ pub struct SteadyState {
     pub speed: f64,
 }
 
+// A state, and how it is found.
+#[expect(missing_docs, reason = "clap would print it")]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Args)]
+pub struct ContactOptions {
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub at: SteadyState,
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub sliding: SlidingOptions,
+}
+
 /// Solves for steady sliding of a scene.
 ///
 /// # Errors
 /// Where the scene cannot be solved for, or there is no such state.
-pub fn solve_contact(scene: &Scene, at: SteadyState, sliding: SlidingOptions) -> Result<SolvedContact, Error> {
+pub fn solve_contact(scene: &Scene, options: ContactOptions) -> Result<SolvedContact, Error> {
+    let ContactOptions { at, sliding } = options;
     check_possible("speed", "m/s", &[at.speed])?;
     check_possible("pressure", "Pa", &[at.pressure])?;
     let no_material = || Error::scene("the scene has no material or layer.width, so its contact has no pressure");

@@ -26,15 +26,15 @@
 //! | [`masses`] | decimals, html, picture | what the masses of a layer do over a run, as arrays, as a picture and as an animation |
 //! | [`time_history`] | picture | a run over time as a picture |
 //! | [`patch_history`] | decimals, picture, time_history | a run of a patch as a picture |
-//! | [`runner`] | progress | a scene along its excitation, row by row |
+//! | [`runner`] | progress, values | a scene along its excitation, row by row |
 //! | [`steady`] | | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
 //! | [`sweep`] | decimals, error, files, implausible, picture, progress, steady, uncertainty, values | friction over speed, load and temperature, as a table |
 //! | [`contact`] | decimals, implausible, picture, steady, sweep, values | the contact of a surface in steady sliding |
-//! | [`converge`] | decimals, error, picture, steady, sweep | whether area and friction depend on spacing, length or chance |
-//! | [`calibration`] | csv, decimals, error, files, implausible, picture, progress, settings, steady, sweep, uncertainty | free numbers of a scene from measured friction: models, least squares, errors, plans |
-//! | [`comparison`] | calibration, sweep | a table of a sweep beside measured friction |
+//! | [`converge`] | contact, decimals, error, picture, steady, sweep, values | whether area and friction depend on spacing, length or chance |
+//! | [`calibration`] | csv, decimals, error, files, implausible, picture, progress, settings, steady, sweep, uncertainty, values | free numbers of a scene from measured friction: models, least squares, errors, plans |
+//! | [`comparison`] | calibration, decimals, sweep | a table of a sweep beside measured friction |
 //! | [`friction_map`] | calibration, comparison, picture, sweep | a table's friction over two of its quantities |
-//! | [`rank`] | calibration, comparison, csv, decimals, error, files, picture, progress, sweep, uncertainty | scenes in the order of their friction, and how sure that is |
+//! | [`rank`] | calibration, comparison, csv, decimals, error, files, picture, progress, sweep, uncertainty, values | scenes in the order of their friction, and how sure that is |
 //! | [`fit`] | decimals, error, files, picture | Prony series and shift factors from measured moduli |
 //! | [`material`] | decimals, error, picture | moduli of a scene's compound, or stiffnesses of its links, over frequency |
 //! | [`surface`] | decimals, error, picture | numbers, spectra and power laws of a surface; smoothed, split and made periodic |

@@ -6,8 +6,24 @@ use asperity::math::{NotEnoughMemory, check_memory};
 use asperity::outputs::{Snapshot, variables};
 use asperity::scene::{Force, Input, Phase, Scene};
 use asperity::simulation::{MethodSwitch, Motion, Simulation, SimulationError, Start};
+use clap::Args;
+use serde::{Deserialize, Serialize};
 
 use crate::progress::Stop;
+use crate::values::count;
+
+// Which rows a run along the excitation has. Not a doc comment: that would be the description of the command.
+#[expect(missing_docs, reason = "clap would print it")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Args)]
+pub struct RunOptions {
+    /// Number of result rows for each phase of the excitation.
+    #[arg(long, value_name = "N", default_value_t = 50, value_parser = count)]
+    pub rows: u32,
+    // Times of rows besides these, s.
+    #[arg(skip)]
+    #[serde(default)]
+    pub times: Vec<f64>,
+}
 
 /// Time and inputs at a row: displacements of the carrier or of a body's drive, forces on a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -92,6 +92,12 @@ pub fn number(text: &str, allowed: impl Fn(&f64) -> bool, expected: &str) -> Res
     text.trim().parse().ok().filter(allowed).ok_or_else(|| format!("expected {expected}"))
 }
 
+/// The two ends of `A..B`.
+pub fn ends(text: &str) -> Option<(f64, f64)> {
+    let number = |text: &str| text.trim().parse().ok();
+    text.split_once("..").and_then(|(first, last)| Some((number(first)?, number(last)?)))
+}
+
 /// A number above 0, such as a quantity can have, in SI units or in the unit behind it.
 pub fn above_zero(text: &str, dimension: Dimension) -> Option<f64> {
     quantity(text, dimension).map(|(number, _)| number).filter(|number| POSITIVE.holds(*number))

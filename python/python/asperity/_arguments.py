@@ -79,6 +79,17 @@ def positive(name: str, value: float) -> float:
     return float(value)
 
 
+def given(**options: object) -> dict[str, Any]:
+    """The options that are given, as plain values; what is None is left out."""
+
+    def plain(value: object) -> object:
+        if isinstance(value, np.ndarray | np.generic):
+            return value.tolist()
+        return str(value) if isinstance(value, Path) else value
+
+    return {name: plain(value) for name, value in options.items() if value is not None}
+
+
 def columns_of(data: object) -> dict[str, Any]:
     """The columns of a DataFrame, or of a mapping of names to columns."""
     if not hasattr(data, "items"):

@@ -9,76 +9,27 @@ __version__: str
 
 _Floats = NDArray[np.float64]
 _Progress = Callable[[float], object] | None
+_Options = dict[str, Any]
 
 def simulate(
-    scene: Scene, points: int, times: list[float], elements: bool, progress: _Progress
+    scene: Scene, options: _Options, elements: bool, progress: _Progress
 ) -> tuple[tuple[dict[str, Any], dict[str, str]], tuple[dict[str, Any], dict[str, str]], _Floats, list[str]]: ...
 def animate(scene: Scene, rows: _Floats, masses: _Floats) -> str: ...
 def moment(scene: Scene, rows: _Floats, masses: _Floats, time: float) -> dict[str, Any]: ...
 def sweep(
-    scene: Scene,
-    speeds: list[float],
-    pressures: list[float] | None,
-    forces: list[float] | None,
-    temperatures: list[float] | None,
-    method: str | None,
-    way: float | None,
-    points: int | None,
-    error: float | None,
-    distance: float | None,
-    samples: int | None,
-    seed: int,
-    progress: _Progress,
+    scene: Scene, options: _Options, samples: int | None, seed: int, progress: _Progress
 ) -> tuple[str, list[str], str, list[tuple[str, list[float]]]]: ...
 def quantile(scene: Scene, table: str, probability: float, progress: _Progress) -> str: ...
-def rank(
-    scenes: list[Scene],
-    speeds: list[float],
-    pressures: list[float] | None,
-    forces: list[float] | None,
-    temperatures: list[float] | None,
-    weights: Path | None,
-    samples: tuple[int, int],
-    data: Path | None,
-    method: str | None,
-    way: float | None,
-    points: int | None,
-    error: float | None,
-    distance: float | None,
-    progress: _Progress,
-) -> dict[str, Any]: ...
-def contact(
-    scene: Scene, pressure: float, speed: float, way: float | None, points: int | None
-) -> dict[str, Any]: ...
-def converge(
-    scene: Scene,
-    pressure: float,
-    speed: float,
-    error: float,
-    seeds: int | None,
-    method: str | None,
-    way: float | None,
-    points: int | None,
-    most_points: int | None,
-    distance: float | None,
-    progress: _Progress,
-) -> dict[str, Any]: ...
-def compare(table: Path, data: Path) -> dict[str, Any]: ...
+def rank(scenes: list[Scene], options: _Options, progress: _Progress) -> dict[str, Any]: ...
+def contact(scene: Scene, options: _Options) -> dict[str, Any]: ...
+def converge(scene: Scene, options: _Options, progress: _Progress) -> dict[str, Any]: ...
+def compare(table: Path, options: _Options) -> dict[str, Any]: ...
 
 _Treatment = tuple[float | None, float | None, bool, bool, tuple[float, float] | None]
 
 def surface(path: Path, reading: dict[str, Any], treatment: _Treatment) -> dict[str, Any]: ...
 def surface_of(scene: Scene, treatment: _Treatment) -> dict[str, Any]: ...
-def calibrate(
-    scene: Scene,
-    data: Path,
-    free: list[tuple[str, float, float]],
-    method: str | None,
-    way: float | None,
-    points: int | None,
-    error: float | None,
-    distance: float | None,
-) -> dict[str, Any]: ...
+def calibrate(scene: Scene, options: _Options) -> dict[str, Any]: ...
 def with_covariance(text: str, file: str, keys: list[str]) -> str: ...
 def fit(
     data: Path,
@@ -97,7 +48,7 @@ def fit(
     vertical: str,
     expansion: float,
 ) -> Fit: ...
-def pack_table(table: Path, output: Path, libraries: list[str], options: dict[str, bool]) -> str | None: ...
+def pack_table(table: Path, output: Path, libraries: list[str], options: _Options) -> str | None: ...
 
 @final
 class Scene:
@@ -125,7 +76,7 @@ class Scene:
     def profile(self) -> tuple[_Floats, _Floats]: ...
     def map(self) -> tuple[_Floats, int, tuple[float, float]] | None: ...
     def modulus(self, omega: _Floats) -> _Floats: ...
-    def pack(self, output: Path, libraries: list[str], options: dict[str, bool]) -> str | None: ...
+    def pack(self, output: Path, libraries: list[str], options: _Options) -> str | None: ...
     def is_same(self, other: Scene) -> bool: ...
 
 @final
@@ -211,7 +162,7 @@ class Patch:
     def describe(self) -> list[tuple[str, str]]: ...
     def files(self) -> list[Path]: ...
     def __len__(self) -> int: ...
-    def pack(self, output: Path, libraries: list[str], options: dict[str, bool]) -> str | None: ...
+    def pack(self, output: Path, libraries: list[str], options: _Options) -> str | None: ...
 
 _Six = Sequence[float] | _Floats
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
-from ._arguments import Floats, Progress, axis, positive, shown
+from ._arguments import Floats, Progress, axis, given, positive, shown
 from ._files import table_file
 
 if TYPE_CHECKING:
@@ -188,18 +188,21 @@ def rank(
         data_file = None if data is None else files.enter_context(table_file(data))
         found = _native.rank(
             [scene._native for scene in scenes],
-            axis("speeds", speeds),
-            None if pressures is None else axis("pressures", pressures),
-            None if forces is None else axis("forces", forces),
-            None if temperatures is None else axis("temperatures", temperatures),
-            weights_file,
-            (samples, seed),
-            data_file,
-            method,
-            None if way is None else positive("way", way),
-            points,
-            friction_error,
-            distance,
+            given(
+                speeds=axis("speeds", speeds),
+                pressures=None if pressures is None else axis("pressures", pressures),
+                forces=None if forces is None else axis("forces", forces),
+                temperatures=None if temperatures is None else axis("temperatures", temperatures),
+                weights=weights_file,
+                samples=samples,
+                seed=seed,
+                data=data_file,
+                method=method,
+                way=None if way is None else positive("way", way),
+                points=points,
+                friction_error=friction_error,
+                distance=distance,
+            ),
             shown(progress),
         )
     for text in found["warnings"]:

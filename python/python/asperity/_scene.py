@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
-from ._arguments import Progress, axis, numbers, positive, renamed, shown, to_toml
+from ._arguments import Progress, axis, given, numbers, positive, renamed, shown, to_toml
 from ._files import table_file
 from ._library import options as library_options
 from ._library import warn_of_start
@@ -75,7 +75,7 @@ class Scene(SceneInputs):
         also_at = numbers("times", times)
         if not np.all((also_at >= 0.0) & (also_at <= scene.duration)):
             raise ValueError(f"times: expected numbers from 0 to {scene.duration:g} s, the end of the run")
-        found = _native.simulate(scene._native, rows, also_at.tolist(), elements, shown(progress))
+        found = _native.simulate(scene._native, given(rows=rows, times=also_at), elements, shown(progress))
         (columns, units), (of_masses, mass_units), instants, said = found
         for text in said:
             warnings.warn(text, stacklevel=3)
@@ -128,15 +128,17 @@ class Scene(SceneInputs):
 
         text, said, matters, drawn = _native.sweep(
             self._native,
-            axis("speeds", speeds),
-            None if pressures is None else axis("pressures", pressures),
-            None if forces is None else axis("forces", forces),
-            None if temperatures is None else axis("temperatures", temperatures),
-            method,
-            None if way is None else positive("way", way),
-            points,
-            friction_error,
-            distance,
+            given(
+                speeds=axis("speeds", speeds),
+                pressures=None if pressures is None else axis("pressures", pressures),
+                forces=None if forces is None else axis("forces", forces),
+                temperatures=None if temperatures is None else axis("temperatures", temperatures),
+                method=method,
+                way=None if way is None else positive("way", way),
+                points=points,
+                friction_error=friction_error,
+                distance=distance,
+            ),
             samples,
             seed,
             shown(progress),
@@ -170,8 +172,8 @@ class Scene(SceneInputs):
         from ._contact import Contact
 
         slid = None if way is None else positive("way", way)
-        at = (positive("pressure", pressure), positive("speed", speed))
-        found = _native.contact(self._native, *at, slid, points)
+        at = given(pressure=positive("pressure", pressure), speed=positive("speed", speed), way=slid, points=points)
+        found = _native.contact(self._native, at)
         for warning in found.pop("warnings"):
             warnings.warn(warning, stacklevel=2)
         return Contact._of(found)
@@ -214,15 +216,17 @@ class Scene(SceneInputs):
 
         found = _native.converge(
             self._native,
-            positive("pressure", pressure),
-            positive("speed", speed),
-            positive("error", error),
-            seeds,
-            method,
-            None if way is None else positive("way", way),
-            points,
-            most_points,
-            distance,
+            given(
+                pressure=positive("pressure", pressure),
+                speed=positive("speed", speed),
+                error=positive("error", error),
+                seeds=seeds,
+                method=method,
+                way=None if way is None else positive("way", way),
+                points=points,
+                most_points=most_points,
+                distance=distance,
+            ),
             shown(progress),
         )
         for warning in found.pop("warnings"):
@@ -285,7 +289,16 @@ class Scene(SceneInputs):
         bounds = [(key, float(low), float(high)) for key, (low, high) in free.items()]
         with table_file(data) as path:
             slid = None if way is None else positive("way", way)
-            found = _native.calibrate(self._native, path, bounds, method, slid, points, friction_error, distance)
+            options = given(
+                data=path,
+                free=bounds,
+                method=method,
+                way=slid,
+                points=points,
+                friction_error=friction_error,
+                distance=distance,
+            )
+            found = _native.calibrate(self._native, options)
         for text in found["warnings"]:
             warnings.warn(text, stacklevel=3)
         settings = {one["key"]: to_toml(one["value"]) for one in found["parameters"]}

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _native
-from ._arguments import Floats
+from ._arguments import Floats, given
 from ._files import table_file
 from ._library import options as library_options
 from ._library import warn_of_start
@@ -243,7 +243,7 @@ class Table:
         with tempfile.TemporaryDirectory(prefix="asperity-") as folder, table_file(data) as path:
             file = Path(folder) / "table.csv"
             self.to_csv(file)
-            found = _native.compare(file, path)
+            found = _native.compare(file, given(data=path))
         for text in found.pop("warnings"):
             warnings.warn(text, stacklevel=2)
         refused = found.pop("refused")

@@ -1,10 +1,11 @@
 //! The keys in a list, each with its full path.
 
+use super::definition::{Absent, Allowed, Form, Key, KindKeys};
+use super::field::At;
 use super::patch::PATCH_ROOT;
 use super::scene_file::ROOT;
-use super::{Absent, Allowed, At, Form, Key, KindKeys};
 use crate::scene::Unit;
-use crate::scene::values::{NumberRange, POSITIVE};
+use crate::scene::values::{NumberRange, POSITIVE, closest};
 
 /// A key and the place of its table.
 #[derive(Clone, Debug)]
@@ -46,17 +47,6 @@ pub fn similar_keys(given: &str) -> Vec<String> {
     closest(given, all)
 }
 
-/// Those of `paths`, but `given` itself, that look most like it, or end with it.
-pub(in crate::scene) fn closest(given: &str, paths: impl Iterator<Item = String>) -> Vec<String> {
-    let difference = |path: &str| if is_end_of(given, path) { 0 } else { strsim::levenshtein(given, path) };
-    let similar = paths.filter(|path| path != given && is_similar(given, path)).map(|path| (difference(&path), path));
-    let mut similar: Vec<(usize, String)> = similar.collect();
-    similar.sort_unstable();
-    similar.dedup();
-    let least = similar.first().map_or(0, |(difference, _)| *difference);
-    similar.into_iter().take_while(|(difference, _)| *difference == least).map(|(_, path)| path).collect()
-}
-
 /// The paths of keys with the name at the end of `given`, which is none of the file's, in its other tables; none where
 /// there are many.
 pub(in crate::scene) fn elsewhere(root: &'static [Key], form: Form, given: &str) -> Vec<String> {
@@ -77,15 +67,6 @@ pub(in crate::scene) fn elsewhere(root: &'static [Key], form: Form, given: &str)
 /// A path without the numbers of elements.
 fn without_numbers(path: &str) -> String {
     path.chars().filter(|character| !character.is_ascii_digit()).collect()
-}
-
-/// Whether a few letters differ, or only the end of the path is given.
-pub(in crate::scene) fn is_similar(given: &str, name: &str) -> bool {
-    is_end_of(given, name) || strsim::levenshtein(given, name) <= 1 + given.chars().count() / 8
-}
-
-fn is_end_of(given: &str, path: &str) -> bool {
-    path.strip_suffix(given).is_some_and(|start| start.ends_with('.'))
 }
 
 /// A key of a file, for a list of all keys.

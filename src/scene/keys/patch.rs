@@ -1,7 +1,7 @@
 //! The keys of a patch file.
 
+use super::definition::{Allowed, Key, Kinds, PATH, key, kinds, number, numbers, table, whole, word};
 use super::scene_file::{DEPENDENCIES, INTEGERS};
-use super::{Allowed, Key, Kinds, PATH, key, kinds, number, numbers, table, whole, word};
 use crate::scene::patch_file::{MAX_ELEMENTS, PatchGroup, TableExtrapolation};
 use crate::scene::values::{ANY, NumberRange, POSITIVE, Word, words};
 use crate::scene::{Extrapolation, Unit};

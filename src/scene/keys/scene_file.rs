@@ -1,8 +1,8 @@
 //! The keys of a scene file.
 
+use super::definition::{Allowed, Key, PATH, key, number, table, whole, word};
 use super::field::{At, FieldValue, field};
 use super::surface::SURFACE;
-use super::{Allowed, Key, PATH, key, number, table, whole, word};
 use crate::scene::values::{ANY, LOOSEST_TOLERANCE, NOT_NEGATIVE, POSITIVE, words};
 use crate::scene::{
     Axis, CarrierInitial, DependencyList, Extrapolation, FoundationKind, Initial, IntegerType, LinkKind, Method,

@@ -1,7 +1,7 @@
 //! The keys of a surface and of the roughness below its profile.
 
+use super::definition::{Allowed, Key, Kinds, PATH, key, kinds, number, numbers, table, whole, word};
 use super::field::{Field, FieldValue, field};
-use super::{Allowed, Key, Kinds, PATH, key, kinds, number, numbers, table, whole, word};
 use crate::scene::fine_roughness::Convention;
 use crate::scene::values::{ANY, NOT_NEGATIVE, POSITIVE, Word};
 use crate::scene::{Depth, FineRoughness, FineWaves, LengthUnit, Missing, Softening, ThirdColumn, Tilt, Unit};

@@ -8,7 +8,7 @@ mod tests;
 
 use super::error::{ParameterError, Problem};
 use super::keys::{self, At, Key, KeyRow};
-use super::values::Value;
+use super::values::{Value, is_similar};
 use super::{Foundation, Scene, Unit};
 use key_path::KeyPath;
 
@@ -213,7 +213,7 @@ impl Scene {
 
     fn unknown(&self, name: &str) -> ParameterError {
         let names: Vec<String> = self.parameters().into_iter().map(Parameter::name).collect();
-        let similar: Vec<String> = names.iter().filter(|other| keys::is_similar(name, other)).cloned().collect();
+        let similar: Vec<String> = names.iter().filter(|other| is_similar(name, other)).cloned().collect();
         let allowed = if similar.is_empty() { names } else { similar };
         ParameterError::new(name, Problem::Unknown { allowed, similar: Vec::new() })
     }

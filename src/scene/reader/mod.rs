@@ -11,6 +11,7 @@ pub use patch::POINTS;
 use std::path::Path as FilePath;
 use std::sync::Arc;
 
+use super::error::{Location, Problem};
 use super::file_values::{FileValues, Setting};
 use super::keys::{self, At, Form, KeyRow, ROOT};
 use super::values::Word;
@@ -59,11 +60,11 @@ impl Scene {
     }
 
     /// The scene with a key set to another value, elements of lists counted from 1: `with("friction.coulomb", 0.3)`. It is
-    /// built anew of the [values](Self::values) that it was read from, and the files are not read again; fields that code
-    /// has changed since are as they were read.
+    /// built anew of the [values](Self::values) that it was read from, and the files are not read again.
     ///
     /// # Errors
-    /// Where there is no such key, or the scene cannot have the value.
+    /// Where there is no such key, the scene cannot have the value, or code has changed fields of the scene since it was
+    /// read, which what it was read from does not have.
     pub fn with(&self, key: &str, value: impl Into<toml::Value>) -> Result<Self> {
         self.with_all(&[Setting::new(key, value)])
     }
@@ -73,7 +74,23 @@ impl Scene {
     /// # Errors
     /// As for [`with`](Self::with).
     pub fn with_all(&self, settings: &[Setting]) -> Result<Self> {
+        if !self.is_as_read() {
+            let keys: Vec<&str> = settings.iter().map(|setting| setting.key.as_str()).collect();
+            return Err(SceneError::new(Location::default(), keys.join(", "), Problem::Changed));
+        }
         Self::of_values(FileValues::clone(&self.values), settings)
+    }
+
+    /// Whether its fields are as they were read.
+    fn is_as_read(&self) -> bool {
+        let read = self.values.as_read(|values| Self::of_values(values, &[]));
+        read.is_some_and(|read| self.is_same(&read))
+    }
+
+    /// Whether the scene is the same as another, whatever text and files it is read from.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let (files, warnings, notes) = (self.files.clone(), self.warnings.clone(), self.notes.clone());
+        *self == Self { files, warnings, notes, ..other.clone() }
     }
 
     fn of_values(mut values: FileValues, settings: &[Setting]) -> Result<Self> {

@@ -6,7 +6,7 @@ use toml::{Table, Value as TomlValue};
 use crate::scene::error::{Location, Problem, SceneError};
 use crate::scene::file_values::FileValues;
 use crate::scene::keys::{self, Absent, Allowed, At, Field, Form, Key, Kinds};
-use crate::scene::values::{NumberRange, Value, Word, words};
+use crate::scene::values::{NumberRange, Value, Word, closest, words};
 use crate::scene::{Scene, Unit};
 
 pub(super) type Result<T> = std::result::Result<T, SceneError>;
@@ -259,7 +259,7 @@ impl<'a> TableReader<'a> {
         let given = self.full(name);
         // Names of a letter or two are like too many.
         let is_long = |other: &&String| name.len().min(other.len()) > 2;
-        let here = keys::closest(&given, allowed.iter().filter(is_long).map(|name| self.full(name)));
+        let here = closest(&given, allowed.iter().filter(is_long).map(|name| self.full(name)));
         if here.is_empty() { keys::elsewhere(self.source.keys, self.source.form, &given) } else { here }
     }
 

@@ -10,35 +10,50 @@ use std::time::Duration;
 use asperity::scene::{Scene, read_text};
 use asperity_study::Error;
 use asperity_study::calibration::{
-    self, Calibration, CalibrationOptions, CalibrationStage, Calibrator, CandidateOptions, CurveGrid, FitCovariance,
-    FreeScene, ModelCurves, Outcome, PointsTable, Task, calibrated_text, named_covariance,
+    self, Calibration, CalibrationOptions, CalibrationStage, Calibrator, CurveGrid, FitCovariance, FreeScene,
+    ModelCurves, Outcome, PointsTable, Task, calibrated_text, named_covariance,
 };
 use asperity_study::decimals::rounded;
 use asperity_study::picture::Stroke;
+use asperity_study::settings::edited;
+use clap::Args;
 use indicatif::ProgressBar;
 
-use super::cli::Calibrate;
+use super::cli::values::{self, Set, example};
 use super::files::{self, check_outputs, is_standard_output, load_without_run, name_of, picture_beside, print_beside};
 use super::interrupt::Farewell;
+use super::output::{NOT_REACHED, SUCCESS};
 use super::picture;
 use super::table_file::TableFile;
 use super::terminal::{self, note, warn};
-use super::{NOT_REACHED, SUCCESS};
+
+#[derive(Debug, Args)]
+#[command(after_help = example!(
+    "asperity calibrate docs/guide/measured.toml --data docs/guide/measured.csv \\\n\
+    \x20     --free friction.rate_shear.strength=1e6..2e7 -o docs/guide/fitted.toml"
+))]
+pub(crate) struct Calibrate {
+    /// The scene file, in the material form; its excitation and outputs are not used.
+    #[arg(value_name = "SCENE.toml")]
+    pub(crate) scene: PathBuf,
+    #[command(flatten)]
+    pub(crate) options: CalibrationOptions,
+    /// The scene to write with the numbers found, its comments kept; - for standard output. The points found are kept in
+    /// a table beside it, from which an interrupted fit goes on. Default: the scene's file with .calibrated.toml.
+    #[arg(short, long, value_name = "OUT.toml")]
+    pub(crate) output: Option<PathBuf>,
+    /// The plot to write, as SVG or PNG according to the file name. Default: the output's name with .svg.
+    #[arg(long, value_name = "OUT.svg", value_parser = values::picture())]
+    pub(crate) plot: Option<PathBuf>,
+    /// Replaces an existing table of points instead of going on from it.
+    #[arg(long)]
+    pub(crate) force: bool,
+    #[command(flatten)]
+    pub(crate) set: Set,
+}
 
 /// Points of a curve.
 const CURVE: u32 = 25;
-
-impl From<&Calibrate> for CalibrationOptions {
-    fn from(command: &Calibrate) -> Self {
-        Self {
-            scene: command.scene.clone(),
-            set: command.set.to_vec(),
-            free: command.free.clone(),
-            data: command.data.clone(),
-            sliding: command.sliding,
-        }
-    }
-}
 
 /// The files that are written.
 struct Outputs {
@@ -57,7 +72,7 @@ impl Outputs {
         let picture = picture_beside(&output, command.plot.as_ref());
         let beside = |extension| (!is_standard_output(&output)).then(|| output.with_extension(extension));
         let (table, covariance) = (beside("points.csv"), beside("covariance.csv"));
-        let taken = scene.sources(&command.scene).into_iter().chain([command.data.clone()]).collect();
+        let taken = scene.sources(&command.scene).into_iter().chain([command.options.data.clone()]).collect();
         check_outputs([&output].into_iter().chain(&picture).chain(&table).chain(&covariance), taken)?;
         check_folder(&output, command, scene)?;
         Ok(Self { scene: output, picture, table, covariance })
@@ -73,10 +88,9 @@ impl Outputs {
 
 /// Fits, writes the scene and the picture, and says what the data tell.
 pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, Error> {
-    let scene = load_without_run(&command.scene, &command.set, |scene| !command.sliding.solves(scene))?;
+    let scene = load_without_run(&command.scene, &command.set, |scene| !command.options.sliding.solves(scene))?;
     let text = read_text(&command.scene).map_err(Error::io("read", &command.scene))?;
-    let options = command.into();
-    let free = FreeScene::new(&options, &text, scene)?;
+    let free = FreeScene::new(&command.options, edited(&text, &command.set), scene)?;
     let measurements = free.measurements()?;
     measurements.notes.iter().for_each(|text| note(text));
     let outputs = Outputs::new(command, free.scene())?;
@@ -105,7 +119,7 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, Error> {
     };
     let done = free.with_models(known, &found, &|stage| bar.set_message(in_words(stage)), |calibrator| {
         let calibration = calibrator.calibrate(&measurements)?;
-        let planned = if command.plan { Some(calibrator.plan(&calibration, &candidates(command))?) } else { None };
+        let planned = calibrator.plan(&calibration)?;
         bar.finish_and_clear();
         let covariance = FitCovariance::new(&free, &calibration);
         let has_covariance = written(&outputs, calibrated_text(&free, &calibration), &covariance)?;
@@ -173,14 +187,6 @@ fn drawn(
     ];
     let rows = &calibration.measurements.rows;
     picture::write(&calibration::picture(&free.scene().name, &grid, rows, &curves), path)
-}
-
-fn candidates(command: &Calibrate) -> CandidateOptions {
-    CandidateOptions {
-        speeds: command.speeds.clone().map(|values| values.0),
-        pressures: command.pressures.clone().map(|values| values.0),
-        temperatures: command.temperatures.clone().map(|values| values.0),
-    }
 }
 
 fn in_words(stage: CalibrationStage) -> String {

@@ -8,8 +8,8 @@ use asperity_study::fit::WlfConstants;
 use clap::Args;
 
 use super::values::{
-    FitVertical, FitWeight, column_unit, count, expansion, fit_error, frequency, given_column, length, picture,
-    poisson_ratio, temperature, wavelengths, wlf_constants,
+    FitVertical, FitWeight, column_unit, count, example, expansion, fit_error, frequency, given_column, length,
+    picture, poisson_ratio, temperature, wavelengths, wlf_constants,
 };
 
 #[derive(Debug, Args)]

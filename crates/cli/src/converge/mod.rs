@@ -4,29 +4,47 @@ mod summary;
 
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::path::PathBuf;
 use std::time::Duration;
 
 use asperity_study::Error;
-use asperity_study::contact::SteadyState;
 use asperity_study::converge::{self, ConvergenceOptions, ConvergenceStudy, Ended, Findings, Round, RunRow};
-use asperity_study::sweep::SlidingOptions;
+use clap::Args;
 
-use super::cli::Converge;
+use super::cli::values::{self, Set, example};
 use super::files::{check_outputs, default_output, load_without_run, picture_beside, print_beside};
 use super::interrupt::Farewell;
+use super::output::{NOT_REACHED, SUCCESS};
 use super::picture;
 use super::table_file::TableFile;
 use super::terminal::{self, warn};
-use super::{NOT_REACHED, SUCCESS};
+
+#[derive(Debug, Args)]
+#[command(after_help = example!("asperity converge scenes/two-maxima/two-maxima.toml --pressure 2bar --speed 0.1 -o study.csv"))]
+pub(crate) struct Converge {
+    /// The scene file, in the material form; its excitation and outputs are not used.
+    #[arg(value_name = "SCENE.toml")]
+    pub(crate) scene: PathBuf,
+    #[command(flatten)]
+    pub(crate) options: ConvergenceOptions,
+    /// The table to write, - for standard output; an existing table of the same study is continued. Default: the
+    /// scene's file name with .converge.csv.
+    #[arg(short, long, value_name = "TABLE.csv")]
+    pub(crate) output: Option<PathBuf>,
+    /// The plot to write, as SVG or PNG according to the file name. Default: the table's name with .svg.
+    #[arg(long, value_name = "OUT.svg", value_parser = values::picture())]
+    pub(crate) plot: Option<PathBuf>,
+    /// Replaces an existing table instead of continuing it.
+    #[arg(long)]
+    pub(crate) force: bool,
+    #[command(flatten)]
+    pub(crate) set: Set,
+}
 
 /// Makes the runs, prints the study and draws it.
 pub(crate) fn converge(command: &Converge) -> Result<u8, Error> {
-    if command.sliding.friction_error.is_some() {
-        return Err(Error::value("--friction-error: expected none, since runs are known to a tenth of --error"));
-    }
-    let options = options(command);
-    let scene = load_without_run(&command.scene, &command.set, |scene| !options.sliding().solves(scene))?;
-    let study = ConvergenceStudy::new(&scene, &command.scene, options)?;
+    let scene = load_without_run(&command.scene, &command.set, |scene| !command.options.sliding.solves(scene))?;
+    let study = ConvergenceStudy::new(&scene, &command.scene, command.options)?;
     study.warning().iter().for_each(|warning| warn(warning));
     let output = command.output.clone().unwrap_or_else(|| default_output(&command.scene, "converge.csv"));
     let picture = picture_beside(&output, command.plot.as_ref());
@@ -41,12 +59,6 @@ pub(crate) fn converge(command: &Converge) -> Result<u8, Error> {
         picture::write(&converge::picture(&scene.name, &findings.runs), path)?;
     }
     Ok(if findings.verdict.is_converged() { SUCCESS } else { NOT_REACHED })
-}
-
-fn options(command: &Converge) -> ConvergenceOptions {
-    let Converge { at: SteadyState { pressure, speed }, error, seeds, most_points, sliding, .. } = *command;
-    let SlidingOptions { method, way, points, distance, .. } = sliding;
-    ConvergenceOptions { pressure, speed, way, error, seeds, method, points, most_points, distance }
 }
 
 /// Makes what is missing beside `runs` and shows how far it is.

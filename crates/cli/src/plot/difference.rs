@@ -1,7 +1,6 @@
 //! The difference of two files, column by column: where it is largest, in words and as a panel.
 
-use super::selection::{PlotError, Selection};
-use crate::cli::Plot;
+use super::selection::{Plot, PlotError, Selection};
 use crate::terminal::{LabelledLine, labelled};
 use asperity_study::decimals::{decimal, rounded};
 use asperity_study::picture::{Axis, Fit, Mark, Panel, ys};

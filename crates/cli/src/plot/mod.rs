@@ -5,13 +5,12 @@ mod selection;
 
 use asperity_study::picture::{Axis, Fit, Mark, Panel, Picture, xs, ys};
 
-use super::cli::{Plot, PlotAxis};
 use super::files::{check_outputs, named, print_beside};
 use super::picture;
 use super::terminal::{lines, note};
 use difference::Comparison;
-pub(crate) use selection::PlotError;
-use selection::Selection;
+pub(crate) use selection::{Plot, PlotError};
+use selection::{PlotAxis, Selection};
 
 /// Width of what the axes enclose and its height, and that of each of several, pixels.
 const WIDTH: f64 = 894.0;

@@ -1,6 +1,8 @@
 //! The rows of a result file that are drawn: which, their columns and the units of these.
 
+use std::fmt::{self, Display, Formatter};
 use std::path::Path;
+use std::path::PathBuf;
 
 use asperity::outputs;
 use asperity::patch;
@@ -9,9 +11,96 @@ use asperity_formats::text::Row;
 use asperity_study::Error;
 use asperity_study::csv::{self, Csv};
 use asperity_study::picture::{Mark, Point};
+use clap::Args;
 
-use crate::cli::{Condition, Plot, PlotAxis};
+use crate::cli::values::{example, picture};
 use crate::terminal::warn;
+
+#[derive(Debug, Args)]
+#[command(after_help = example!("asperity plot block.csv --y F_x --y F_z -o forces.svg"))]
+pub(crate) struct Plot {
+    /// Result files, or tables of asperity sweep or converge; each gives one curve for every --y.
+    #[arg(value_name = "FILE.csv", required = true)]
+    pub(crate) files: Vec<PathBuf>,
+    /// The column for the horizontal axis. Units in a header are not a part of a column's name.
+    #[arg(long, value_name = "COLUMN", default_value = "time")]
+    pub(crate) x: String,
+    /// A column for the vertical axis. May be repeated; columns of another unit have a chart of their own below.
+    #[arg(long, value_name = "COLUMN", required_unless_present = "compare")]
+    pub(crate) y: Vec<String>,
+    /// Compares two files: draws the second less the first below the curves, and says how large that gets, and where.
+    /// Rows of the second are interpolated to those of the first. Without --y all columns are compared, and that which
+    /// differs most is drawn.
+    #[arg(long, conflicts_with = "from_motion")]
+    pub(crate) compare: bool,
+    /// Draws the rows alone in which a column has this value, a number or a text: pressure=2e5, status=steady. May be
+    /// repeated.
+    #[arg(long = "where", value_name = "COLUMN=VALUE", value_parser = Condition::parse)]
+    pub(crate) conditions: Vec<Condition>,
+    /// Logarithmic axes: x, y or both.
+    #[arg(long, value_name = "x,y", value_delimiter = ',')]
+    pub(crate) log: Vec<PlotAxis>,
+    /// Marks every row; curves of few rows are marked in any case.
+    #[arg(long)]
+    pub(crate) markers: bool,
+    /// The plot to write, as SVG or PNG according to the file name.
+    #[arg(short, long, value_name = "OUT.svg", value_parser = picture())]
+    pub(crate) output: PathBuf,
+    /// Names of the curves, one for each file. Default: the file names.
+    #[arg(long, value_name = "A,B,...", value_delimiter = ',')]
+    pub(crate) labels: Vec<String>,
+    /// A title above the plot.
+    #[arg(long)]
+    pub(crate) title: Option<String>,
+    /// Plots -y instead of y: F_x, the force on the carrier, is negative where the carrier slides towards +x.
+    #[arg(long)]
+    pub(crate) negate: bool,
+    /// Starts each curve where x begins to change: with x = u this omits a phase that only presses.
+    #[arg(long)]
+    pub(crate) from_motion: bool,
+}
+
+/// Which rows `--where` chooses.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Condition {
+    pub(crate) column: String,
+    value: String,
+}
+
+impl Condition {
+    fn parse(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            Some((column, value)) if !column.trim().is_empty() => {
+                Ok(Self { column: column.trim().into(), value: value.trim().into() })
+            }
+            _ => Err("expected COLUMN=VALUE, such as pressure=2e5".into()),
+        }
+    }
+
+    /// Whether a field is the value: the same text, or the same number however it is written.
+    pub(crate) fn holds_for(&self, field: &str) -> bool {
+        /// Relative difference of numbers that count as the same: values are rounded in tables.
+        const ROUNDING: f64 = 1e-9;
+        let (field, value) = (field.trim(), self.value.as_str());
+        let numbers = || Some((field.parse::<f64>().ok()?, value.parse::<f64>().ok()?));
+        field == value || numbers().is_some_and(|(a, b)| (a - b).abs() <= ROUNDING * b.abs())
+    }
+}
+
+impl Display for Condition {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{} = {}", self.column, self.value)
+    }
+}
+
+/// An axis of a plot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum PlotAxis {
+    /// The horizontal one.
+    X,
+    /// The vertical ones.
+    Y,
+}
 
 /// `asperity plot` failed.
 #[derive(Debug, thiserror::Error)]
@@ -195,5 +284,16 @@ mod tests {
             assert_eq!(unit_of_name(name), unit, "{name}");
         }
         assert_eq!(["N.m/rad", "m2", "kg/m3", "Pa"].map(symbol), ["N m/rad", "m²", "kg/m³", "Pa"]);
+    }
+
+    #[test]
+    fn a_condition_holds_for_a_text_and_for_a_number_however_it_is_written() {
+        let pressure = Condition::parse("pressure = 2e5").unwrap();
+        assert_eq!(
+            ["200000", "2e5", "2.0e5", "2e4", "steady", ""].map(|field| pressure.holds_for(field)),
+            [true, true, true, false, false, false]
+        );
+        assert!(Condition::parse("status=steady").unwrap().holds_for("steady"));
+        assert!(Condition::parse("pressure").is_err() && Condition::parse("=1").is_err());
     }
 }

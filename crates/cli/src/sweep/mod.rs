@@ -1,8 +1,6 @@
 //! `asperity sweep`: the friction coefficient over speed, load and temperature, as a table and a plot.
 
 mod printed;
-mod samples;
-mod ways;
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -10,18 +8,133 @@ use std::sync::{Mutex, PoisonError};
 
 use asperity::element::{OperatingPoint, some_of};
 use asperity::scene::{Scene, Wlf};
-use asperity::table::{Table, TableError};
+use asperity::table::{Cell, Column, Header, Table, TableError};
+use asperity::tables::Dimension;
 use asperity_study::Error;
 use asperity_study::friction_map::Maps;
 use asperity_study::progress::Stop;
-use asperity_study::sweep::{SweepHeader, SweepPlan, SweepRow, SweepTable, master_picture, sweep_picture, verdict};
+use asperity_study::sweep::{
+    Over, SlidingOptions, SweepHeader, SweepOptions, SweepPlan, SweepRow, SweepTable, master_picture, matters_picture,
+    over_ways, sweep_picture, verdict,
+};
+use asperity_study::uncertainty::{SampleOptions, UncertainScene};
+use asperity_study::values::Values;
+use clap::{ArgGroup, Args};
 
-use super::cli::Sweep;
-use super::files::{check_outputs, default_output, load_without_run, named, picture_beside, print_beside, read};
+use super::cli::values::{self, Set, count, example};
+use super::files::{check_outputs, default_output, load_without_run, named, picture_beside, print_beside, read, write};
 use super::interrupt::Farewell;
+use super::output::is_stream;
 use super::picture;
 use super::table_file::TableFile;
 use super::terminal::{self, LabelledLine, lines, note, warn};
+
+/// Options of a sweep that --merge does not take.
+const OF_A_SCENE: [&str; 15] = [
+    "speeds",
+    "pressures",
+    "forces",
+    "temperatures",
+    "method",
+    "points",
+    "friction_error",
+    "distance",
+    "shard",
+    "master",
+    "converged",
+    "samples",
+    "seed",
+    "keep",
+    "set",
+];
+
+#[derive(Debug, Args)]
+#[command(group(ArgGroup::new("input").required(true)))]
+#[command(group(ArgGroup::new("speeds_or_merge").required(true).args(["speeds", "merge"])))]
+#[command(after_help = example!(
+    "asperity sweep scenes/road/road.toml --speeds 1e-4..10/11 --pressures 3bar \\\n      --temperatures 5°C,20°C,40°C -o friction.csv"
+))]
+pub(crate) struct Sweep {
+    /// The scene file; its excitation and outputs are not used.
+    #[arg(value_name = "SCENE.toml", group = "input")]
+    pub(crate) scene: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) options: SweepOptions,
+    /// The table to write, - for standard output; an existing table of the same sweep is continued. Default: the
+    /// scene's file name with .sweep.csv.
+    #[arg(short, long, value_name = "TABLE.csv")]
+    pub(crate) output: Option<PathBuf>,
+    /// The plot to write, as SVG or PNG according to the file name. Points that are not steady, or not converged, are
+    /// hollow. Default: the table's name with .svg.
+    #[arg(long, value_name = "OUT.svg", value_parser = values::picture(), conflicts_with = "shard")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Plots a map in place of curves: friction in colours over two of speed, pressure (or force) and temperature, x and y
+    /// in this order, a map for each value of the third, with contour lines and where along x friction is largest.
+    #[arg(long, value_name = "X,Y", value_parser = Over::parse, conflicts_with_all = ["shard", "ways"])]
+    pub(crate) over: Option<Over>,
+    /// Measured friction, as for asperity calibrate, drawn in the same colours into the maps of --over.
+    #[arg(long, value_name = "MEASURED.csv", requires = "over")]
+    pub(crate) data: Option<PathBuf>,
+    /// Also plots the master curve: friction over a_T v, the speed at the reference temperature of material.wlf.
+    #[arg(long, value_name = "OUT.svg", value_parser = values::picture(), conflicts_with = "shard")]
+    pub(crate) master: Option<PathBuf>,
+    /// Several ways in m, in the format of --speeds: the table has a column way [m], and friction is plotted over the way. It
+    /// is not to be packed or continued.
+    #[arg(long, value_name = "VALUES", value_parser = Values::of(Dimension::Length))]
+    #[arg(conflicts_with_all = ["way", "shard", "merge", "master", "converged"])]
+    pub(crate) ways: Option<Values>,
+    /// Also computes each point for N scenes drawn from what the scene's section [uncertainty] says is not known: quantiles
+    /// of friction, hysteresis and area are columns of the table, friction's bands of 50 and 90 % are plotted, and what
+    /// matters is written beside the table with .matters.csv and .matters.svg.
+    #[arg(long, value_name = "N", value_parser = count, conflicts_with = "ways")]
+    pub(crate) samples: Option<u32>,
+    /// What scrambles the points of the samples: another seed draws others.
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "samples")]
+    pub(crate) seed: u64,
+    /// Also writes friction, hysteresis and area of every sample at every point, with what was drawn for it.
+    #[arg(long, value_name = "SAMPLES.csv", requires = "samples", conflicts_with = "shard")]
+    pub(crate) keep: Option<PathBuf>,
+    /// Computes only share I of N of the points, I from 1 to N.
+    #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
+    pub(crate) shard: Option<Shard>,
+    /// Merges the tables of shards, and the one at --output if it is of the same sweep.
+    #[arg(long, value_name = "TABLE.csv", num_args = 1.., group = "input", requires = "output")]
+    #[arg(conflicts_with_all = OF_A_SCENE)]
+    pub(crate) merge: Vec<PathBuf>,
+    /// The table of an asperity converge of the scene: what it found goes into the header. Default: the scene's file
+    /// name with .converge.csv, if there is such a file.
+    #[arg(long, value_name = "STUDY.csv")]
+    pub(crate) converged: Option<PathBuf>,
+    /// Replaces an existing table instead of continuing it.
+    #[arg(long)]
+    pub(crate) force: bool,
+    #[command(flatten)]
+    pub(crate) set: Set,
+}
+
+/// Shares of a sweep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Shard {
+    /// Counted from 1.
+    index: usize,
+    count: usize,
+}
+
+impl Shard {
+    /// `I/N`, I from 1 to N.
+    fn parse(text: &str) -> Result<Self, String> {
+        let parts = text.split_once('/').and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
+        match parts {
+            Some((index, count)) if (1..=count).contains(&index) => Ok(Self { index, count }),
+            _ => Err(format!("expected I/N with I from 1 to N, such as 3/8, found {text:?}")),
+        }
+    }
+
+    /// Whether the point of this index is in it: every `count`th is, so that all shards have slow and quick points.
+    fn has(self, index: usize) -> bool {
+        index % self.count == self.index - 1
+    }
+}
 
 /// Computes a table or merges several.
 pub(crate) fn sweep(command: &Sweep) -> Result<(), Error> {
@@ -122,7 +235,7 @@ fn compute(command: &Sweep, path: &Path) -> Result<(), Error> {
     let picture = picture(command, &output);
     let study = study_file(command.converged.as_ref(), path);
     let taken = scene.sources(path).into_iter().chain(study.clone()).chain(command.data.clone()).collect();
-    let beside = samples::files(command, &output);
+    let beside = files_of_samples(command, &output);
     check_outputs([&output].into_iter().chain(&picture).chain(&command.master).chain(&beside), taken)?;
     let no_master =
         || Error::value("--master: the scene has no material.wlf, by whose factors speeds would be shifted");
@@ -131,10 +244,10 @@ fn compute(command: &Sweep, path: &Path) -> Result<(), Error> {
         None => None,
     };
     if let Some(ways) = &command.ways {
-        return over_ways(command, &scene, (&ways.0, &output, picture.as_deref()));
+        return compute_ways(command, &scene, (&ways.0, &output, picture.as_deref()));
     }
     let convergence = study_verdict(study.as_deref(), &scene.name)?;
-    let plan = samples::plan(command, scene, convergence)?;
+    let plan = plan(command, scene, convergence)?;
     plan.warning().iter().for_each(|warning| warn(warning));
     let maps = maps(command, plan.header(), &output)?;
     let header = plan.header();
@@ -142,12 +255,12 @@ fn compute(command: &Sweep, path: &Path) -> Result<(), Error> {
     let table = SweepTable::new(header.clone(), run(command, &plan, (&file, done), &output)?);
     plan.warnings(&table.rows).iter().for_each(|warning| warn(warning));
     file.finish(&table.table())?;
-    let said = samples::write(command, &plan, &table, &beside)?;
+    let said = write_samples(command, &plan, &table, &beside)?;
     finish(&output, &table, &Pictures { friction: picture.as_deref(), maps, master }, (&said, &beside))
 }
 
 /// Sweeps over several ways.
-fn over_ways(
+fn compute_ways(
     command: &Sweep,
     scene: &Scene,
     (ways, output, picture): (&[f64], &PathBuf, Option<&Path>),
@@ -158,7 +271,7 @@ fn over_ways(
             output.display()
         )));
     }
-    let [total, failed] = ways::sweep(scene, &command.options, ways, (output, picture))?;
+    let [total, failed] = sweep_ways(scene, &command.options, ways, (output, picture))?;
     let files = [output.as_path()].into_iter().chain(picture).map(named).collect::<Vec<_>>().join(", ");
     print_beside([output], &lines(&[("Points", format!("{total}, at {} ways", ways.len())), ("Written", files)]))?;
     check_steady([total, failed], output)
@@ -283,4 +396,91 @@ fn finish(
 /// The shift of the compound with temperature.
 fn wlf(scene: &Scene) -> Option<Wlf> {
     scene.material.as_ref().and_then(|material| material.wlf)
+}
+
+/// Sweeps a scene over `ways` (m), writes table and picture, and returns how many points there are, and have no result.
+fn sweep_ways(
+    scene: &Scene,
+    options: &SweepOptions,
+    ways: &[f64],
+    (output, picture): (&Path, Option<&Path>),
+) -> Result<[usize; 2], Error> {
+    let plan = |&way: &f64| {
+        let sliding = SlidingOptions { way: Some(way), ..options.sliding };
+        SweepPlan::new(scene.clone(), &SweepOptions { sliding, ..options.clone() }, None)
+    };
+    let plans = ways.iter().map(plan).collect::<Result<Vec<_>, _>>()?;
+    plans.iter().take(1).filter_map(SweepPlan::warning).for_each(warn);
+    let bar = terminal::bar((plans.len() * plans.first().map_or(0, |plan| plan.header().grid.count())) as u64);
+    let tables: Vec<SweepTable> = plans.iter().map(|plan| plan.table(&Stop::default(), || bar.inc(1))).collect();
+    bar.finish_and_clear();
+    for (plan, table) in plans.iter().zip(&tables) {
+        plan.warnings(&table.rows).iter().for_each(|warning| warn(warning));
+    }
+    write(output, whole(ways, &tables).text())?;
+    if let Some(path) = picture {
+        picture::write(&over_ways(ways, &tables), path)?;
+    }
+    let rows = || tables.iter().flat_map(|table| &table.rows);
+    Ok([rows().count(), rows().filter(|row| !row.is_result()).count()])
+}
+
+/// The rows of all ways as one table.
+fn whole(ways: &[f64], tables: &[SweepTable]) -> Table {
+    let own = tables.first().map(|table| table.header.table().columns().to_vec()).unwrap_or_default();
+    let mut whole = Table::new(Header::default(), [Column::numbers("way", "m")].into_iter().chain(own));
+    for (way, table) in ways.iter().zip(tables) {
+        table.rows.iter().for_each(|row| whole.push([Cell::from(*way)].into_iter().chain(row.cells())));
+    }
+    whole
+}
+
+/// The sweep of a scene, with samples where they are asked for.
+fn plan(command: &Sweep, scene: Scene, convergence: Option<String>) -> Result<SweepPlan, Error> {
+    let options = &command.options;
+    let Some(count) = command.samples else { return SweepPlan::new(scene, options, convergence) };
+    let uncertain = UncertainScene::new(scene)?;
+    let samples = SampleOptions { count: count as usize, seed: command.seed };
+    SweepPlan::with_samples(&uncertain, options, convergence, samples)
+}
+
+/// The files that are written beside the table: what matters, as a table and as a picture, and all samples. Of a shard none,
+/// which has not all points.
+fn files_of_samples(command: &Sweep, output: &Path) -> Vec<PathBuf> {
+    if command.samples.is_none() || command.shard.is_some() {
+        return Vec::new();
+    }
+    let beside = ["matters.csv", "matters.svg"].map(|extension| output.with_extension(extension));
+    let beside = beside.into_iter().filter(|_| !is_stream(output));
+    beside.chain(command.keep.clone()).collect()
+}
+
+/// Writes these [files](files_of_samples) and says what there is in the samples.
+fn write_samples(
+    command: &Sweep,
+    plan: &SweepPlan,
+    table: &SweepTable,
+    files: &[PathBuf],
+) -> Result<Vec<LabelledLine>, Error> {
+    let Some(matters) = plan.matters(&table.rows).filter(|_| command.shard.is_none()) else { return Ok(Vec::new()) };
+    for file in files {
+        match file.extension().and_then(|extension| extension.to_str()) {
+            _ if command.keep.as_ref() == Some(file) => write(file, plan.samples_table(&table.rows).text())?,
+            Some("svg") => picture::write(&matters_picture(table, &matters), file)?,
+            _ => write(file, matters.table(table.header.load).text())?,
+        }
+    }
+    Ok(printed::samples(table, &matters))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shards_share_all_points() {
+        let shards: Vec<Shard> = ["1/3", "2/3", "3/3"].map(|text| Shard::parse(text).unwrap()).into();
+        assert!((0..10).all(|number| shards.iter().filter(|shard| shard.has(number)).count() == 1));
+        assert!(["0/3", "4/3", "1", "a/2", "1/0"].iter().all(|text| Shard::parse(text).is_err()));
+    }
 }

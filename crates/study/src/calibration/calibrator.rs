@@ -2,27 +2,22 @@
 //!
 //! What a calibration found.
 
-use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
 use asperity::element::OperatingPoint;
 use asperity::scene::Scene;
 
-use super::curve_grid::in_words;
 use super::fit::{Fitted, Tolerance, map_space, minimise, starts_by_theory};
-use super::free_scene::{CalibrationOptions, CandidateOptions, FreeScene};
-use super::measurements::Measurements;
+use super::free_scene::FreeScene;
+use super::measurements::{Measurements, in_words};
 use super::models::{
-    FrictionModel, FrictionParts, LayerModel, Memo, NewOutcome, Outcome, SteadyModel, Task, TheoryModel,
+    FrictionModel, FrictionParts, LayerModel, Memo, ModelError, NewOutcome, NoSliding, Outcome, SteadyModel, Task,
+    TheoryModel,
 };
-use super::models::{ModelError, NoSliding};
-use super::plan::{Plan, candidates, plan};
 use super::problem::{FreeParameter, FrictionMeasurement, Linearised, Problem};
-use super::statistics::{Statistics, chi_square_per_degree};
-use super::written::{FitCovariance, calibrated_text};
+use super::statistics::{Plan, Statistics, candidates, chi_square_per_degree, plan};
 use crate::decimals::{rounded, short};
 use crate::error::Error;
-use crate::files::parse_scene;
 use crate::implausible::{FoundFriction, implausible};
 use crate::sweep::Method;
 
@@ -199,17 +194,21 @@ impl Calibrator<'_> {
         Ok(found.into_inner().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// What to measure next, among the points that are asked for.
+    /// What to measure next, among the points that are asked for; `None` where that is not asked for.
     ///
     /// # Errors
     /// Where the model fails, or it is stopped.
-    pub fn plan(&self, calibration: &Calibration, asked: &CandidateOptions) -> Result<Plan, ModelError> {
+    pub fn plan(&self, calibration: &Calibration) -> Result<Option<Plan>, ModelError> {
+        let asked = &self.free.options.next;
+        if !asked.plan {
+            return Ok(None);
+        }
         (self.progress)(CalibrationStage::Planning);
         let Calibration { problem, fitted, linearised, statistics, .. } = calibration;
         let candidates = candidates(self.free.scene(), &problem.points, asked);
         // The layer is too expensive for a grid.
         let model: &dyn FrictionModel = if self.free.is_solved() { self.model } else { self.theory };
-        plan(problem, model, (&fitted.places, linearised, statistics), &candidates, PLANNED)
+        plan(problem, model, (&fitted.places, linearised, statistics), &candidates, PLANNED).map(Some)
     }
 }
 
@@ -220,25 +219,6 @@ fn found_at(problem: &Problem, frictions: &[FrictionParts]) -> Vec<FoundFriction
         FoundFriction { place, friction, area: Some(parts.area), rise: None }
     };
     problem.points.iter().zip(frictions).map(found).collect()
-}
-
-/// Fits numbers of a scene, of which this is the `text`, to measured friction: what it found, and the text of the scene
-/// with the numbers, and their covariance. `found` is called for every point that was found, and says whether to go on.
-///
-/// # Errors
-/// Where the scene, the parameters or the measurements are refused, and where `found` says to stop.
-pub fn calibrate_scene(
-    text: &str,
-    options: &CalibrationOptions,
-    found: impl Fn() -> ControlFlow<()> + Sync,
-) -> Result<(Calibration, String, FitCovariance), Error> {
-    let scene = parse_scene(text, &options.scene, &options.set)?;
-    let free = FreeScene::new(options, text, scene)?;
-    let measurements = free.measurements()?;
-    let calibrate = |calibrator: Calibrator<'_>| calibrator.calibrate(&measurements);
-    let calibration = free.with_models(Vec::new(), &|_, _| found(), &|_| (), calibrate)?;
-    let (text, covariance) = (calibrated_text(&free, &calibration), FitCovariance::new(&free, &calibration));
-    Ok((calibration, text, covariance))
 }
 
 /// Where a fit led, and what the data say there.

@@ -13,8 +13,7 @@ use asperity::math::SplitMix64;
 use rayon::prelude::*;
 use rmpfit::{MPConfig, MPError, MPFitter, MPPar, MPResult, MPSide, MPSuccess};
 
-use super::models::ModelError;
-use super::models::{Done, FrictionModel, FrictionParts, Task};
+use super::models::{Done, FrictionModel, FrictionParts, ModelError, Task};
 use super::problem::{Linearised, Problem, sum_of_squares};
 use super::statistics::Statistics;
 use crate::Error;

@@ -5,15 +5,57 @@
 use std::path::{Path, PathBuf};
 
 use asperity::scene::{Scene, Setting, did_you_mean, similar_keys};
+use asperity::tables::Dimension;
+use clap::Args;
+use serde::Deserialize;
 
 use super::measurements::Measurements;
 use super::problem::FreeParameter;
 use crate::error::Error;
-use crate::settings::edited;
 use crate::sweep::{Method, SlidingOptions, fingerprint, relevant};
+use crate::values::Values;
 
 /// Most free parameters.
 const MOST_FREE: usize = 12;
+
+// What is fitted, and to what. Not a doc comment: that would be the description of the command.
+#[expect(missing_docs, reason = "clap would print it")]
+#[derive(Clone, Debug, PartialEq, Deserialize, Args)]
+pub struct CalibrationOptions {
+    /// The measured friction: columns, by their names and units, of speed, pressure (or force on the whole layer) and
+    /// friction; of temperature and of the standard deviation of friction if it has them. Rows of one point are repeats.
+    #[arg(long, value_name = "MEASURED.csv")]
+    pub data: PathBuf,
+    /// A number of the scene to fit, by its key as for --set, within bounds; its logarithm where they are positive and a
+    /// decade apart. May be repeated, up to 12 times.
+    #[arg(long, value_name = "KEY=LOW..HIGH", value_parser = FreeParameter::parse, required = true)]
+    pub free: Vec<FreeParameter>,
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub sliding: SlidingOptions,
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub next: PlanOptions,
+}
+
+// Among which points those to measure next are chosen.
+#[expect(missing_docs, reason = "clap would print it")]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Args)]
+#[serde(default)]
+pub struct PlanOptions {
+    /// Also proposes three points to measure that would tell most (D-optimal among a grid).
+    #[arg(long)]
+    pub plan: bool,
+    /// Speeds of that grid in m/s, in the format of asperity sweep. Default: a decade beyond the data's.
+    #[arg(long, value_name = "VALUES", value_parser = Values::of(Dimension::Speed), requires = "plan")]
+    pub speeds: Option<Values>,
+    /// Pressures of that grid in Pa. Default: a factor of two beyond the data's.
+    #[arg(long, value_name = "VALUES", value_parser = Values::of(Dimension::Pressure), requires = "plan")]
+    pub pressures: Option<Values>,
+    /// Temperatures of that grid in K. Default: 20 K beyond the data's.
+    #[arg(long, value_name = "VALUES", value_parser = Values::of(Dimension::Temperature), requires = "plan")]
+    pub temperatures: Option<Values>,
+}
 
 /// A scene whose numbers are free.
 #[derive(Debug)]
@@ -31,18 +73,17 @@ pub struct FreeScene<'a> {
 }
 
 impl<'a> FreeScene<'a> {
-    /// Of the `text` of the scene file, which was read as `scene` with its keys set.
+    /// Of the `text` of the scene file with keys set, which is that of `scene`.
     ///
     /// # Errors
     /// Where the scene or the parameters are refused.
-    pub fn new(options: &'a CalibrationOptions, text: &str, scene: Scene) -> Result<Self, Error> {
+    pub fn new(options: &'a CalibrationOptions, text: String, scene: Scene) -> Result<Self, Error> {
         if scene.carrier.x.is_some() {
             return Err(Error::value("the scene has [carrier.x]; expected none, since the speed is prescribed"));
         }
         let no_area =
             "the scene has no material or layer.width, so nothing in it has a pressure: expected the material form";
         let area = scene.layer.area().filter(|_| scene.material.is_some()).ok_or_else(|| Error::value(no_area))?;
-        let text = edited(text, &options.set);
         let (method, of_method) = options.sliding.choose(&scene)?;
         method.check(&scene)?;
         let mut free =
@@ -164,30 +205,4 @@ impl<'a> FreeScene<'a> {
     pub fn fingerprint(&self) -> Result<String, Error> {
         fingerprint(&relevant(self.scene.clone()), self.options.sliding, self.method.surface(), "calibrate")
     }
-}
-
-/// What is calibrated, and by what.
-#[derive(Clone, Debug)]
-pub struct CalibrationOptions {
-    /// The scene file: files that the scene names are looked for beside it.
-    pub scene: PathBuf,
-    /// Keys of it that are set, none of them free.
-    pub set: Vec<Setting>,
-    /// The numbers to fit.
-    pub free: Vec<FreeParameter>,
-    /// The table of measured friction.
-    pub data: PathBuf,
-    /// How steady sliding is found.
-    pub sliding: SlidingOptions,
-}
-
-/// The points among which those to measure next are chosen: where there are none, points beyond the measurements.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct CandidateOptions {
-    /// Speeds, m/s.
-    pub speeds: Option<Vec<f64>>,
-    /// Pressures, Pa.
-    pub pressures: Option<Vec<f64>>,
-    /// Temperatures, K.
-    pub temperatures: Option<Vec<f64>>,
 }

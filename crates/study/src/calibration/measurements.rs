@@ -1,16 +1,17 @@
 //! Tables of measured friction: columns by their names and units.
 
+use std::fmt::Display;
 use std::path::Path;
 
-use asperity::element::{Load, OperatingPoint};
+use asperity::element::{Load, OperatingPoint, some_of};
 use asperity::scene::FileFormats as _;
 use asperity::tables::{
     ABOVE_ZERO, ANY, ContentError, Dimension, FileKind, Others, POSITIVE, ReadColumn, ReadTable, Role,
 };
 use asperity_formats::Instruments;
 
-use super::curve_grid::left_out_in_words;
 use super::models::NoSliding;
+use crate::decimals::rounded;
 use crate::error::Error;
 use crate::files;
 
@@ -330,6 +331,32 @@ impl Deviation {
             Self::None | Self::OfForce(_) => None,
         }
     }
+}
+
+/// A point by its pressure, for reading.
+pub fn in_words(point: &OperatingPoint) -> String {
+    let point = OperatingPoint {
+        speed: rounded(point.speed, 4),
+        load: rounded(point.load, 4),
+        temperature: point.temperature.map(|temperature| rounded(temperature, 5)),
+        way: point.way.map(|way| rounded(way, 4)),
+    };
+    point.describe(Load::Pressure { area: 1.0 })
+}
+
+/// How many of some measurements are left out, the lines of each with its point and why; `None` where none is.
+pub fn left_out_in_words<W: Display>(
+    left_out: impl IntoIterator<Item = (Vec<usize>, OperatingPoint, W)>,
+    all: usize,
+) -> Option<String> {
+    let mut count = 0;
+    let named = |(lines, point, why): (Vec<usize>, OperatingPoint, W)| {
+        count += lines.len();
+        let lines: Vec<String> = lines.iter().map(usize::to_string).collect();
+        format!("line {} ({}): {why}", lines.join(", "), in_words(&point))
+    };
+    let named: Vec<String> = left_out.into_iter().map(named).collect();
+    (count > 0).then(|| format!("{count} of {all} measurements are left out: {}", some_of(&named)))
 }
 
 #[cfg(test)]

@@ -7,28 +7,26 @@
 //! would say more. [`calibrate_scene`] does it for a [scene](FreeScene); a [`Calibrator`] does it step by step. docs/calibrate.md has the formulas.
 
 mod calibrator;
-mod curve_grid;
+mod curves;
 mod fit;
 mod free_scene;
 mod measurements;
 mod models;
-mod picture;
-mod plan;
 mod problem;
 mod statistics;
 mod written;
 
-pub use calibrator::{CalibratedParameter, Calibration, CalibrationStage, Calibrator, calibrate_scene};
-pub use curve_grid::{Cluster, Condition, CurveGrid, in_words, left_out_in_words};
+pub use calibrator::{CalibratedParameter, Calibration, CalibrationStage, Calibrator};
+pub use curves::{Cluster, Condition, CurveGrid, ModelCurves, picture};
 pub use fit::{Fitted, SpaceMapping, Tolerance, map_space, minimise, starts_by_theory};
-pub use free_scene::{CalibrationOptions, CandidateOptions, FreeScene};
-pub use measurements::{FRICTION, Measured, Measurements};
+pub use free_scene::{CalibrationOptions, FreeScene, PlanOptions};
+pub use measurements::{FRICTION, Measured, Measurements, in_words, left_out_in_words};
 pub use models::{
     Done, FrictionModel, FrictionParts, GridOf, Memo, ModelError, NewOutcome, NoSliding, Outcome, SceneAt, SteadyModel,
     Task, TheoryModel,
 };
-pub use picture::{ModelCurves, picture};
-pub use plan::{Plan, plan};
 pub use problem::{FreeParameter, FrictionMeasurement, Linearised, Problem};
-pub use statistics::{Direction, Statistics, chi_square_per_degree};
-pub use written::{FitCovariance, NotInCovariance, PointsTable, calibrated_text, named_covariance, with_covariance};
+pub use statistics::{Direction, Plan, Statistics, chi_square_per_degree, plan};
+pub use written::{
+    FitCovariance, NotInCovariance, PointsTable, calibrate_scene, calibrated_text, named_covariance, with_covariance,
+};

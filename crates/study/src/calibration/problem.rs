@@ -6,10 +6,11 @@ use std::sync::{Mutex, PoisonError};
 
 use asperity::element::OperatingPoint;
 use nalgebra::DMatrix;
+use serde::Deserialize;
 
 use super::measurements::Measurements;
-use super::models::{FrictionModel, FrictionParts, Outcome, Task};
-use super::models::{ModelError, NoSliding};
+use super::models::{FrictionModel, FrictionParts, ModelError, NoSliding, Outcome, Task};
+use crate::values::ends;
 
 /// A measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -210,7 +211,8 @@ impl Problem {
 const DECADE: f64 = 10.0;
 
 /// A number of the scene that is fitted, by its key, within bounds.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "(String, f64, f64)")]
 pub struct FreeParameter {
     /// The path of its key, as in `friction.rate_shear.strength`.
     pub key: String,
@@ -218,10 +220,33 @@ pub struct FreeParameter {
     high: f64,
 }
 
+impl TryFrom<(String, f64, f64)> for FreeParameter {
+    type Error = String;
+
+    fn try_from((key, low, high): (String, f64, f64)) -> Result<Self, String> {
+        let refused = format!("{key}: expected bounds (low, high), low below high, found ({low}, {high})");
+        Self::new(key, low, high).ok_or(refused)
+    }
+}
+
 impl FreeParameter {
     /// The parameter of a key within bounds; `None` where these are not finite and in their order.
     pub fn new(key: String, low: f64, high: f64) -> Option<Self> {
         (low.is_finite() && high.is_finite() && low < high).then_some(Self { key, low, high })
+    }
+
+    /// The parameter of a text `KEY=LOW..HIGH`.
+    ///
+    /// # Errors
+    /// What was expected of the text.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let parted = text.split_once('=').and_then(|(key, bounds)| {
+            let (low, high) = ends(bounds)?;
+            Self::new(key.trim().to_owned(), low, high)
+        });
+        parted.filter(|parameter| !parameter.key.is_empty()).ok_or_else(|| {
+            "expected KEY=LOW..HIGH in SI units, LOW below HIGH, such as friction.rate_shear.strength=1e5..2e7".into()
+        })
     }
 
     /// The bounds.

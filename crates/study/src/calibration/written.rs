@@ -5,21 +5,42 @@
 //!
 //! The table beside a calibration's output: the points that were found, so that nothing is found twice.
 
+use std::ops::ControlFlow;
+
 use asperity::element::{OperatingPoint, PointStatus};
-use asperity::scene::Setting;
+use asperity::scene::{Scene, Setting};
 use asperity::table::{Cell, Column, Header, Table, TableError};
 use toml_edit::{DocumentMut, TableLike};
 
-use super::calibrator::Calibration;
-use super::free_scene::FreeScene;
-use super::models::NoSliding;
-use super::models::{FrictionParts, Outcome, Task};
+use super::calibrator::{Calibration, Calibrator};
+use super::free_scene::{CalibrationOptions, FreeScene};
+use super::models::{FrictionParts, NoSliding, Outcome, Task};
 use super::problem::FreeParameter;
 use crate::csv;
 use crate::decimals::{plain, real, short};
+use crate::error::Error;
 use crate::files::name_of;
 use crate::settings::edited;
 use crate::uncertainty::{FittedNumber, Scale};
+
+/// Fits numbers of a scene, of which this is the `text` with keys set, to measured friction: what it found, and the text of the scene
+/// with the numbers, and their covariance. `found` is called for every point that was found, and says whether to go on.
+///
+/// # Errors
+/// Where the scene, the parameters or the measurements are refused, and where `found` says to stop.
+pub fn calibrate_scene(
+    scene: Scene,
+    text: String,
+    options: &CalibrationOptions,
+    found: impl Fn() -> ControlFlow<()> + Sync,
+) -> Result<(Calibration, String, FitCovariance), Error> {
+    let free = FreeScene::new(options, text, scene)?;
+    let measurements = free.measurements()?;
+    let calibrate = |calibrator: Calibrator<'_>| calibrator.calibrate(&measurements);
+    let calibration = free.with_models(Vec::new(), &|_, _| found(), &|_| (), calibrate)?;
+    let (text, covariance) = (calibrated_text(&free, &calibration), FitCovariance::new(&free, &calibration));
+    Ok((calibration, text, covariance))
+}
 
 /// What the lines of the header begin with; those of a calibration before are replaced.
 const MARK: &str = "# asperity calibrate: ";

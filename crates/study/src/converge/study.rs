@@ -15,48 +15,45 @@ use super::plan::{Next, Pair, Plan, Study, Verdict};
 use super::table::{Measured, RunRow, StudyHeader};
 use super::variants::{Parts, Template, Variant};
 use crate::Error;
+use crate::contact::SteadyState;
 use crate::steady::persson::{Roughness, Theory};
 use crate::steady::{SlidingRubber, SteadySolver};
 use crate::sweep::{Method, NotSteady, SlidingOptions, StopBounds, SweepMethod, fingerprint, relevant, steady_sliding};
+use crate::values::{count, share};
+use clap::Args;
+use serde::Deserialize;
 
-/// What a study is asked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
+// What a study is asked for. Not a doc comment: that would be the description of the command.
+#[expect(missing_docs, reason = "clap would print it")]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Args)]
 pub struct ConvergenceOptions {
-    /// Mean pressure of the runs, Pa.
-    pub pressure: f64,
-    /// Speed of the runs, m/s.
-    pub speed: f64,
-    /// The way that rubber as warm as the scene has slid, m; `None`: its surface is as warm.
-    pub way: Option<f64>,
-    /// The change of friction and area that is small enough, as a share of them.
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub at: SteadyState,
+    /// Admissible change of friction and area, as a share of them, with the spacing halved, the length doubled or
+    /// another seed.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.05, value_parser = share)]
     pub error: f64,
-    /// Number of seeds, the scene's own included; `None`: 4 where it has any.
+    /// Number of seeds of a self-affine surface or roughness, the scene's own included. Default: 4.
+    #[arg(long, value_name = "N", value_parser = seeds)]
     pub seeds: Option<u32>,
-    /// How steady sliding is found; `None`: as the scene allows.
-    pub method: Option<SweepMethod>,
-    /// Points along x to begin with, where it is solved for; `None`: as of a sweep.
-    pub points: Option<u32>,
-    /// Most masses, or points of the whole surface, that the halved spacing may come to; `None`: 4096 masses, 2097152
-    /// points.
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub sliding: SlidingOptions,
+    /// Most masses, or points of the whole surface with --method steady, that the halved spacing may come to; with twice
+    /// the length there are twice as many. Default: 4096 masses, 2097152 points.
+    #[arg(long, value_name = "N", visible_alias = "most-masses", value_parser = count)]
     pub most_points: Option<u32>,
-    /// Longest distance that a layer slides, m; `None`: 100 blocks.
-    pub distance: Option<f64>,
+}
+
+fn seeds(text: &str) -> Result<u32, String> {
+    let number = text.trim().parse().ok().filter(|number| (2..=1000).contains(number));
+    number.ok_or_else(|| "expected a whole number from 2 to 1000".into())
 }
 
 impl ConvergenceOptions {
-    /// How steady sliding is found.
-    pub fn sliding(&self) -> SlidingOptions {
-        SlidingOptions {
-            method: self.method,
-            way: self.way,
-            points: self.points,
-            friction_error: None,
-            distance: self.distance,
-        }
-    }
-
     fn state(&self) -> State {
-        State { pressure: self.pressure, speed: self.speed, way: self.way }
+        State { pressure: self.at.pressure, speed: self.at.speed, way: self.sliding.way }
     }
 }
 
@@ -114,25 +111,30 @@ impl ConvergenceStudy {
     /// # Errors
     /// Where the scene does not go with the options, or has nothing that could be varied.
     pub fn new(scene: &Scene, path: &Path, options: ConvergenceOptions) -> Result<Self, Error> {
+        if options.sliding.friction_error.is_some() {
+            return Err(Error::value("`friction_error`: expected none, since runs are known to a tenth of `error`"));
+        }
         if scene.material.is_none() {
             let problem = "the scene is in the direct form: its masses and links do not follow the spacing, so nothing could \
                            converge; give [material], layer.width and layer.foundation";
             return Err(Error::scene(format!("{}: {problem}", path.display())));
         }
         let template = Template::new(scene, path)?;
-        let (method, of_method) = options.sliding().choose(scene)?;
+        let (method, of_method) = options.sliding.choose(scene)?;
         let template = match &method {
             Method::Steady(surface) => template.on_grid(surface),
             Method::Layer => template,
         };
         let plan = plan(&options, &template)?;
-        let warning = scene.hard_pressure("`pressure`", options.pressure).filter(|_| matches!(method, Method::Layer));
+        let warning =
+            scene.hard_pressure("`pressure`", options.at.pressure).filter(|_| matches!(method, Method::Layer));
         method.check(scene)?;
-        let ConvergenceOptions { pressure, speed, way, error, distance, .. } = options;
+        let ConvergenceOptions { at: SteadyState { pressure, speed }, error, .. } = options;
+        let SlidingOptions { way, distance, .. } = options.sliding;
         let asked = format!("converge {pressure:?} {speed:?} {error:?} {distance:?}");
         let header = StudyHeader {
             scene: scene.name.clone(),
-            fingerprint: fingerprint(&relevant(scene.clone()), options.sliding(), method.surface(), &asked)?,
+            fingerprint: fingerprint(&relevant(scene.clone()), options.sliding, method.surface(), &asked)?,
             method: of_method,
             parts: template.parts(),
             pressure,
@@ -211,19 +213,22 @@ impl ConvergenceStudy {
     }
 
     fn make(&self, variant: Variant) -> Result<RunRow, Error> {
-        let ConvergenceOptions { pressure, speed, error, distance, .. } = self.options;
         let (scene, state) = (self.template.scene(variant)?, self.options.state());
         let clock = ThreadTime::now();
         let dimensions = self.template.dimensions(variant);
         let is_of_layer = self.parts() == Parts::Masses;
         let measured = if is_of_layer {
-            slide(&scene, state, StopBounds { error: RUN_ERROR * error, distance })
+            slide(
+                &scene,
+                state,
+                StopBounds { error: RUN_ERROR * self.options.error, distance: self.options.sliding.distance },
+            )
         } else {
             solve(&scene, state, dimensions.count)
         };
         let run_time = clock.elapsed().as_secs_f64();
         let theories = [Roughness::Ridges, Roughness::Isotropic]
-            .map(|roughness| Theory::new(&scene, pressure, speed, roughness).unwrap_or_default());
+            .map(|roughness| Theory::new(&scene, state.pressure, state.speed, roughness).unwrap_or_default());
         let fit_rms = is_of_layer.then(|| scene.quality(LinkKind::Vertical).map_or(0.0, |quality| quality.rms));
         let status = PointStatus::new(measured.as_ref().err());
         Ok(RunRow { variant, dimensions, fit_rms, status, measured: measured.ok(), theories, run_time })

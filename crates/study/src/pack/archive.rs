@@ -1,11 +1,19 @@
 //! The zip archive of an FMU.
 
 use std::collections::BTreeMap;
+use std::ffi::OsStr;
 use std::io::{Cursor, Write as _};
+use std::path::{Path, PathBuf};
 
+use object::Endianness;
+use object::elf::FileHeader64;
+use object::read::elf::FileHeader as _;
 use zip::result::ZipResult;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
+
+use crate::error::Error;
+use crate::files::bytes;
 
 /// A file of the archive.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,7 +61,142 @@ fn options(entry: &ArchiveEntry) -> SimpleFileOptions {
         .unix_permissions(if entry.executable { 0o755 } else { 0o644 })
 }
 
+// The shared libraries that an FMU carries, one a platform.
+
+/// A platform as FMI 2.0 names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Platform {
+    /// Its folder in `binaries/`.
+    pub folder: &'static str,
+    /// The extension of its shared libraries.
+    pub extension: &'static str,
+}
+
+impl Platform {
+    const LINUX: Self = Self { folder: "linux64", extension: "so" };
+    const WINDOWS: Self = Self { folder: "win64", extension: "dll" };
+    const MACOS: Self = Self { folder: "darwin64", extension: "dylib" };
+    const ALL: [Self; 3] = [Self::LINUX, Self::WINDOWS, Self::MACOS];
+
+    /// The platform that this is built for.
+    pub const HOST: Self = if cfg!(target_os = "windows") {
+        Self::WINDOWS
+    } else if cfg!(target_os = "macos") {
+        Self::MACOS
+    } else {
+        Self::LINUX
+    };
+}
+
+/// Where a shared library is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LibraryFile {
+    platform: Platform,
+    path: PathBuf,
+}
+
+impl LibraryFile {
+    /// The one for the platform that this is built for.
+    pub fn of_host(path: impl Into<PathBuf>) -> Self {
+        Self { platform: Platform::HOST, path: path.into() }
+    }
+
+    /// `PLATFORM=PATH`, as in `win64=asperity.dll`, or a path alone for the platform that this is built for.
+    pub fn named(text: &OsStr) -> Self {
+        let named = text.to_str().and_then(|text| text.split_once('=')).and_then(|(name, path)| {
+            let platform = Platform::ALL.into_iter().find(|platform| platform.folder == name);
+            platform.map(|platform| Self { platform, path: path.into() })
+        });
+        named.unwrap_or_else(|| Self::of_host(text))
+    }
+
+    /// The library that cargo builds beside the `program`, or that a package brings there.
+    pub fn beside(program: &Path) -> Self {
+        let name = format!("{}asperity_fmu.{}", std::env::consts::DLL_PREFIX, Platform::HOST.extension);
+        Self::of_host(program.with_file_name(name))
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+/// A shared library.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Library {
+    /// Its platform.
+    pub platform: Platform,
+    /// The file's content.
+    pub bytes: Vec<u8>,
+}
+
+impl Library {
+    /// Reads libraries.
+    ///
+    /// # Errors
+    /// Where one is not there or cannot be read, or a platform has two.
+    pub fn read_all(files: &[LibraryFile]) -> Result<Vec<Self>, Error> {
+        check_platforms(files)?;
+        files.iter().map(Self::read).collect()
+    }
+
+    fn read(file: &LibraryFile) -> Result<Self, Error> {
+        if !file.path.is_file() {
+            return Err(Error::value(format!("no shared library at {}", file.path.display())));
+        }
+        Ok(Self { platform: file.platform, bytes: bytes(&file.path)? })
+    }
+
+    /// The version of glibc that it asks for, as in "linux64: glibc 2.17 or later".
+    pub fn needs(&self) -> Option<String> {
+        let version = newest_glibc(&self.bytes)?.iter().map(u32::to_string).collect::<Vec<_>>().join(".");
+        Some(format!("{}: glibc {version} or later", self.platform.folder))
+    }
+
+    /// Its place in the archive of a model.
+    pub(super) fn place(&self, identifier: &str) -> String {
+        format!("binaries/{}/{identifier}.{}", self.platform.folder, self.platform.extension)
+    }
+}
+
+/// Each platform may have one library.
+fn check_platforms(libraries: &[LibraryFile]) -> Result<(), Error> {
+    for (i, library) in libraries.iter().enumerate() {
+        if let Some(other) = libraries[..i].iter().find(|other| other.platform == library.platform) {
+            let (first, second) = (other.path.clone(), library.path.clone());
+            return Err(Error::value(format!(
+                "`library`: two of {}: {} and {}",
+                library.platform.folder,
+                first.display(),
+                second.display()
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// The newest version of glibc among those that an ELF file's symbols are of.
+fn newest_glibc(elf: &[u8]) -> Option<Vec<u32>> {
+    let header = FileHeader64::<Endianness>::parse(elf).ok()?;
+    let endian = header.endian().ok()?;
+    let sections = header.sections(endian, elf).ok()?;
+    let (mut files, strings) = sections.gnu_verneed(endian, elf).ok()??;
+    let strings = sections.strings(endian, elf, strings).ok()?;
+    let mut newest = None;
+    while let Some((_, mut versions)) = files.next().ok()? {
+        while let Some(version) = versions.next().ok()? {
+            let name = std::str::from_utf8(version.name(endian, strings).ok()?).ok()?;
+            // Private symbols have no number.
+            let numbers = name.strip_prefix("GLIBC_").map(|name| name.split('.').map(str::parse).collect());
+            newest = newest.max(numbers.and_then(Result::ok));
+        }
+    }
+    newest
+}
+
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use zip::ZipArchive;
 
@@ -80,5 +223,32 @@ mod tests {
             assert_eq!(&header[4..6], &[20, 0], "version needed to extract is 2.0");
             assert_eq!(&header[10..14], &[0, 0, 0x21, 0], "1980-01-01, 00:00");
         }
+    }
+
+    #[test]
+    fn a_library_is_this_platforms_unless_another_is_named() {
+        let library = |text: &str| LibraryFile::named(text.as_ref());
+        assert_eq!(library("a/b.so"), LibraryFile::of_host("a/b.so"));
+        assert_eq!(library("win64=a/b.dll"), LibraryFile { platform: Platform::WINDOWS, path: "a/b.dll".into() });
+        assert_eq!(library("a=b/c.so"), LibraryFile::of_host("a=b/c.so"));
+    }
+
+    /// The program itself is linked against one.
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    #[test]
+    fn the_newest_glibc_is_read_from_the_file() {
+        let own = std::fs::read(std::env::current_exe().unwrap()).unwrap();
+        let version = newest_glibc(&own).unwrap();
+        assert!(version >= vec![2, 17] && version < vec![3], "{version:?}");
+        assert_eq!(newest_glibc(b"MZ"), None);
+        assert_eq!(newest_glibc(&own[..100]), None);
+    }
+
+    #[test]
+    fn a_platform_has_one_library() {
+        let two = ["win64=a", "linux64=b", "win64=c"].map(|text| LibraryFile::named(text.as_ref()));
+        let text = check_platforms(&two).unwrap_err().to_string();
+        assert_eq!(text, "`library`: two of win64: a and c");
+        assert!(check_platforms(&two[..2]).is_ok());
     }
 }

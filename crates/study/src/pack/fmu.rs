@@ -5,15 +5,30 @@ use std::path::{Component, Path};
 
 use asperity::table::Header;
 use asperity_fmi::{Definition, Sources, VariableTable, guid};
+use clap::{ArgAction, Args};
+use serde::{Deserialize, Serialize};
 
-use super::archive::{ArchiveEntry, zip};
+use super::archive::{ArchiveEntry, Library, zip};
 use super::description::{FIXED_FILES, description, documentation};
-use super::library::Library;
-use super::references;
+use super::experiment;
 use crate::error::Error;
 use crate::files::bytes;
 use crate::summary::{LabelledLine, patch_rows, scene_rows, table_rows};
 use crate::sweep::is_converged;
+
+// What of an FMU is to choose. Not a doc comment: that would be the description of the command.
+#[expect(missing_docs, reason = "clap would print it")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Args)]
+pub struct FmuOptions {
+    /// Gives variables names without structure, as transport_speed for transport.speed, for tools that make buses or
+    /// folders of points and brackets in names.
+    #[arg(long)]
+    pub flat_names: bool,
+    /// Leaves out what shows that the FMU runs as it should, for which its experiment is run: inputs, result and the list of
+    /// the files that it carries (FMI-LS-REF).
+    #[arg(long = "no-references", action = ArgAction::SetFalse)]
+    pub references: bool,
+}
 
 /// An FMU before it is packed.
 #[derive(Debug)]
@@ -28,11 +43,8 @@ pub struct Fmu<'a> {
     pub summary: &'a [LabelledLine],
     /// model.png, a picture of it as a PNG file; without one it has none.
     pub picture: Option<Vec<u8>>,
-    /// Whether names of variables have an underscore in place of each point and bracket.
-    pub flat_names: bool,
-    /// Whether it carries what shows that it runs as it should: an experiment with its result, and the list of all that it
-    /// carries (FMI-LS-REF). The experiment is run for it.
-    pub references: bool,
+    /// What of it is to choose.
+    pub options: FmuOptions,
 }
 
 impl Fmu<'_> {
@@ -46,9 +58,9 @@ impl Fmu<'_> {
         let mut entries: Vec<ArchiveEntry> = self.libraries.iter().map(binary).collect();
         let resources = self.resources()?;
         let variables = self.variables()?;
-        if self.references {
+        if self.options.references {
             let names: Vec<&str> = resources.iter().map(ArchiveEntry::name).collect();
-            let references = references::entries(self.definition, &variables, (&names, self.picture.is_some()));
+            let references = experiment::entries(self.definition, &variables, (&names, self.picture.is_some()));
             entries.extend(references.map_err(document("the references"))?);
         }
         entries.extend(resources);
@@ -72,7 +84,7 @@ impl Fmu<'_> {
     /// The variables, as they are called in the FMU.
     fn variables(&self) -> Result<VariableTable, Error> {
         let variables = self.definition.variables();
-        if !self.flat_names {
+        if !self.options.flat_names {
             return Ok(variables);
         }
         let same = |[first, second]: [String; 2]| format!("`flat-names`: {first} and {second} would have one name");
@@ -83,7 +95,7 @@ impl Fmu<'_> {
     fn documents(&self, variables: &VariableTable) -> Result<Vec<ArchiveEntry>, Error> {
         let Self { definition, path, .. } = *self;
         let guid = guid(&Sources::new(path, &**definition).map_err(Error::io("read", path))?, &definition.variables());
-        let naming = if self.flat_names { "flat" } else { "structured" };
+        let naming = if self.options.flat_names { "flat" } else { "structured" };
         let description = description(&**definition, variables, (&guid, naming));
         let description = description.map_err(document("modelDescription.xml"))?;
         let index = documentation(definition, variables, self.summary);

@@ -5,9 +5,7 @@ mod description;
 mod experiment;
 mod fmu;
 mod icon;
-mod library;
-mod references;
 
-pub use fmu::{Fmu, flat_names, no_start, not_converged, summary};
+pub use archive::{Library, LibraryFile, Platform};
+pub use fmu::{Fmu, FmuOptions, flat_names, no_start, not_converged, summary};
 pub use icon::{element_icon, layer_icon};
-pub use library::{Library, LibraryFile, Platform};

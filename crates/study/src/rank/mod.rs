@@ -8,15 +8,10 @@ mod measured;
 mod picture;
 mod plan;
 mod ranking;
-mod table;
-#[cfg(test)]
-#[allow(clippy::unwrap_used)]
-mod tests;
 mod weights;
 
 pub use measured::{MeasuredRanking, MeasuredScene, kendall, measured_ranking};
 pub use picture::picture;
-pub use plan::{RankFound, RankPlan, RankScene};
-pub use ranking::{Band, Pair, QUANTILES, RankedPoint, RankedScene, Ranking, SURE};
-pub use table::table;
+pub use plan::{RankFound, RankOptions, RankPlan, RankScene};
+pub use ranking::{Band, Pair, QUANTILES, RankedPoint, RankedScene, Ranking, SURE, table};
 pub use weights::{WEIGHTS, Weights};

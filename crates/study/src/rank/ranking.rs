@@ -1,5 +1,7 @@
 //! The ranking, from friction of all scenes at all points, their own and that of the samples.
 
+use crate::csv;
+use crate::decimals::real;
 use crate::error::Error;
 use crate::sweep::quantile;
 use asperity::element::{Load, OperatingPoint, some_of};
@@ -244,6 +246,28 @@ fn band(values: impl Iterator<Item = f64>) -> Option<Band> {
     values.sort_by(f64::total_cmp);
     let band = QUANTILES.map(|probability| quantile(&values, probability).unwrap_or_default());
     (values.len() > 1).then_some(band)
+}
+
+/// The table of a ranking, a row for each point and scene; fields of what there is no result of are empty.
+pub fn table(ranking: &Ranking) -> String {
+    let load = match ranking.load {
+        Load::Pressure { .. } => "pressure [Pa]",
+        Load::Force => "force [N]",
+    };
+    let quantiles = QUANTILES.map(|quantile| format!("friction_{quantile}"));
+    let head = ["scene", "speed [m/s]", load, "temperature [K]", "weight", "friction"];
+    let head = head.into_iter().chain(quantiles.iter().map(String::as_str)).chain(["largest"]);
+    let text = |value: Option<f64>| value.map_or_else(String::new, real);
+    let rows = ranking.points.iter().flat_map(|ranked| {
+        ranking.scenes.iter().enumerate().map(move |(i, scene)| {
+            let at = &ranked.point;
+            let own = [Some(at.speed), Some(at.load), at.temperature, Some(ranked.weight), ranked.friction[i]];
+            let band = (0..QUANTILES.len()).map(|quantile| ranked.bands[i].map(|band| band[quantile]));
+            let numbers = own.into_iter().chain(band).chain([Some(ranked.largest[i])]).map(text);
+            std::iter::once(scene.label.clone()).chain(numbers).collect()
+        })
+    });
+    csv::text(head, rows)
 }
 
 #[cfg(test)]

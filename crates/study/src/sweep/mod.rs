@@ -7,25 +7,22 @@ mod over;
 mod picture;
 mod plan;
 mod point;
-mod sampled;
-mod samples;
 mod scene_plan;
 mod search;
 mod solved;
 mod table;
 #[cfg(test)]
 mod tests;
-mod window;
 
 pub use layer::relevant;
 pub use load_search::separation_at_rest;
 pub use options::{Method, SlidingOptions, SweepMethod, SweepOptions, check_possible, fingerprint, way_of};
 pub use over::{Over, SweptQuantity};
 pub use picture::{master_picture, matters_picture, over_ways, sweep_picture};
+pub use plan::{Matter, Matters};
 pub use plan::{SweepPlan, quantile_table};
 pub use point::steady_sliding;
-pub use sampled::{SampleHeader, SampleValues, Sampled, quantile};
-pub use samples::{Matter, Matters};
 pub use search::{NotSteady, SMALL_FRICTION, SteadySliding, StopBounds};
 pub use solved::{Swept, SweptPoint};
 pub use table::{CONVERGED, SweepHeader, SweepRow, SweepTable, is_converged, verdict};
+pub use table::{SampleHeader, SampleValues, Sampled, quantile};

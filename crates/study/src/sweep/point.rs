@@ -4,7 +4,7 @@
 //! It is then searched block by block: after each block, w moves by the [`LoadSearch`], and the dashpots along z move
 //! to where the block's means say that they will be ([`Simulation::relax_dashpots`]), as a compound has elements that
 //! would take minutes. Once a block bears the load and its dashpots nothing, w is held and nothing is changed any more:
-//! these blocks are the window, judged as in [`window`](super::window). Where the mean of F_z differs from the load, w
+//! these blocks are the window, judged as in [`search`](super::search). Where the mean of F_z differs from the load, w
 //! moves again, and a new window begins.
 //!
 //! Where the carrier is a body along z, its load is constant in place of w: it starts at equilibrium, nothing is

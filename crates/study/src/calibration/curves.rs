@@ -1,36 +1,10 @@
-//! The curves that measured points make: pressures and temperatures that are nearly alike are one.
+//! The curves that measured points make: pressures and temperatures that are nearly alike are one; and their picture.
 
-use std::fmt::Display;
+use asperity::element::OperatingPoint;
 
-use asperity::element::{Load, OperatingPoint, some_of};
-
-use crate::decimals::rounded;
-
-/// A point by its pressure, for reading.
-pub fn in_words(point: &OperatingPoint) -> String {
-    let point = OperatingPoint {
-        speed: rounded(point.speed, 4),
-        load: rounded(point.load, 4),
-        temperature: point.temperature.map(|temperature| rounded(temperature, 5)),
-        way: point.way.map(|way| rounded(way, 4)),
-    };
-    point.describe(Load::Pressure { area: 1.0 })
-}
-
-/// How many of some measurements are left out, the lines of each with its point and why; `None` where none is.
-pub fn left_out_in_words<W: Display>(
-    left_out: impl IntoIterator<Item = (Vec<usize>, OperatingPoint, W)>,
-    all: usize,
-) -> Option<String> {
-    let mut count = 0;
-    let named = |(lines, point, why): (Vec<usize>, OperatingPoint, W)| {
-        count += lines.len();
-        let lines: Vec<String> = lines.iter().map(usize::to_string).collect();
-        format!("line {} ({}): {why}", lines.join(", "), in_words(&point))
-    };
-    let named: Vec<String> = left_out.into_iter().map(named).collect();
-    (count > 0).then(|| format!("{count} of {all} measurements are left out: {}", some_of(&named)))
-}
+use super::measurements::Measured;
+use crate::decimals::{as_given, rounded};
+use crate::picture::{Mark, Picture, Stroke};
 
 /// Values that are nearly alike, and their mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,6 +110,61 @@ impl CurveGrid {
     pub fn is_on(&self, point: &OperatingPoint, pressure: &Cluster, condition: &Condition) -> bool {
         pressure.has(point.load) && condition.has(point)
     }
+}
+
+/// Friction of a model at some points.
+#[derive(Clone, Debug)]
+pub struct ModelCurves {
+    /// What it is; of solid lines it is not said, for these have the name of their colour.
+    pub name: &'static str,
+    /// How it is drawn.
+    pub stroke: Stroke,
+    /// Each point with its friction.
+    pub points: Vec<(OperatingPoint, f64)>,
+}
+
+/// Measured points with bars of a standard deviation to each side, and curves: a panel a temperature and way, and a colour
+/// a pressure, or of one temperature and way a panel a pressure.
+pub fn picture(title: &str, grid: &CurveGrid, measured: &[Measured], curves: &[ModelCurves]) -> Picture {
+    let held = |condition: &Condition| {
+        let kelvin = condition.temperature.map(|cluster| format!("{} K", rounded(cluster.mean, 5)));
+        let way = condition.way.map(|way| format!("after {}", as_given(rounded(way, 4), "m")));
+        kelvin.into_iter().chain(way).collect::<Vec<_>>().join(", ")
+    };
+    let pascal = |pressure: &Cluster| as_given(rounded(pressure.mean, 4), "Pa");
+    let of = |pressure: &Cluster, condition: &Condition, look: usize, name: &str| {
+        let is_on = |point: &OperatingPoint| grid.is_on(point, pressure, condition);
+        let rows = measured.iter().filter(|row| is_on(&row.point));
+        let bar = |row: &Measured| {
+            let (speed, sigma) = (row.point.speed, row.sigma_or_assumed());
+            Mark::line("", look, vec![[speed, row.friction - sigma], [speed, row.friction + sigma]])
+        };
+        let places = rows.clone().map(|row| [row.point.speed, row.friction]).collect();
+        let curve = |model: &ModelCurves| {
+            let on = model.points.iter().filter(|(point, _)| is_on(point));
+            let mut points: Vec<_> = on.map(|(point, friction)| [point.speed, *friction]).collect();
+            points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            Mark::broken(if model.stroke == Stroke::Solid { name } else { model.name }, look, points, model.stroke)
+        };
+        let has_data = rows.clone().next().is_some();
+        let all = curves.iter().map(curve).chain(rows.map(bar)).chain([Mark::rings("measured", look, places)]);
+        if has_data { all.collect() } else { Vec::new() }
+    };
+    let panels = match &grid.conditions[..] {
+        [condition] => {
+            let each = grid.pressures.iter();
+            each.map(|pressure| (pascal(pressure), of(pressure, condition, 0, &held(condition)))).collect()
+        }
+        several => several
+            .iter()
+            .map(|condition| {
+                let each = grid.pressures.iter().enumerate();
+                let curves = each.flat_map(|(look, pressure)| of(pressure, condition, look, &pascal(pressure)));
+                (held(condition), curves.collect())
+            })
+            .collect(),
+    };
+    Picture::side_by_side(("speed", "m/s"), vec![("friction coefficient", panels)]).titled(title)
 }
 
 #[cfg(test)]
