@@ -58,7 +58,7 @@ pub(crate) enum Command {
     Fit(Fit),
     /// Plots the complex modulus of a scene's compound over frequency, or the complex stiffness of its links.
     Material(Material),
-    /// Benchmarks a scene: accuracy, run time and robustness, as tables, plots and an HTML page.
+    /// Benchmarks a scene: accuracy, run time and robustness, as tables, plots and a summary.
     Report(Report),
     /// Analyses a measured profile or a scene's surface: heights, slopes, spectrum and Hurst exponent.
     Surface(Surface),

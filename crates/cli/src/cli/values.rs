@@ -8,7 +8,6 @@ use std::path::PathBuf;
 use asperity::scene::Wlf;
 use asperity::tables::{Dimension, Unit, quantity};
 use asperity_study::calibration::FreeParameter;
-use asperity_study::decimals::tenth;
 use asperity_study::fit::WlfConstants;
 use asperity_study::values::{above_zero, number};
 pub(super) use asperity_study::values::{count, length, share, temperature};
@@ -72,11 +71,6 @@ pub(crate) enum PlotAxis {
 pub(super) fn seeds(text: &str) -> Result<u32, String> {
     let number = text.trim().parse().ok().filter(|number| (2..=1000).contains(number));
     number.ok_or_else(|| "expected a whole number from 2 to 1000".into())
-}
-
-/// Powers of ten of the robustness test.
-pub(super) fn powers(text: &str) -> Result<u32, String> {
-    text.trim().parse().ok().filter(|&powers| powers <= 12).ok_or_else(|| "expected a whole number from 0 to 12".into())
 }
 
 /// A frequency above 0 in rad/s, or in the unit behind it.
@@ -239,30 +233,6 @@ impl Frequencies {
     }
 }
 
-/// Relative tolerances from loose to tight, at least one.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Tolerances(pub(crate) Vec<f64>);
-
-impl Tolerances {
-    /// The largest tolerance that a scene may have.
-    const LOOSEST: f64 = 0.1;
-    /// Rounding hides any smaller one.
-    const TIGHTEST: f64 = 1e-14;
-
-    pub(super) fn parse(text: &str) -> Result<Self, String> {
-        let inside = |(loosest, tightest): &(f64, f64)| {
-            *loosest <= Self::LOOSEST && tightest <= loosest && *tightest >= Self::TIGHTEST
-        };
-        let Some((loosest, tightest)) = ends(text).filter(inside) else {
-            return Err("expected LOOSEST..TIGHTEST, such as 1e-2..1e-10, from at most 0.1 to at least 1e-14".into());
-        };
-        let ladder = std::iter::successors(Some(loosest), |&tolerance| Some(tenth(tolerance)));
-        /// Relative rounding error of a tolerance.
-        const ROUNDING: f64 = 1e-9;
-        Ok(Self(ladder.take_while(|&tolerance| tolerance >= tightest * (1.0 - ROUNDING)).collect()))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -296,17 +266,6 @@ mod tests {
         }
         for wrong in ["1", "2..1", "0..1", "1..inf", "a..b"] {
             assert!(Frequencies::parse(wrong).unwrap_err().contains("1..1e5"), "{wrong}");
-        }
-    }
-
-    #[test]
-    fn tolerances_are_decimal_tenths() {
-        let ladder = Tolerances::parse("1e-2..1e-10").unwrap().0;
-        assert_eq!(ladder, [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10]);
-        assert_eq!(Tolerances::parse("0.05..1e-3").unwrap().0, [0.05, 0.005]);
-        assert_eq!(Tolerances::parse("1e-3..1e-3").unwrap().0, [1e-3]);
-        for wrong in ["1e-3", "1e-10..1e-2", "1..1e-2", "1e-2..0", "1e-2..NaN", "a..b"] {
-            assert!(Tolerances::parse(wrong).unwrap_err().contains("1e-2..1e-10"), "{wrong}");
         }
     }
 }
