@@ -16,13 +16,11 @@ pub struct Cell {
     pub class: String,
     /// The columns that it fills.
     pub span: usize,
-    /// What it says more of where it is pointed at; empty for nothing.
-    pub title: String,
 }
 
 impl<T: Into<String>> From<T> for Cell {
     fn from(text: T) -> Self {
-        Self { text: text.into(), class: String::new(), span: 1, title: String::new() }
+        Self { text: text.into(), class: String::new(), span: 1 }
     }
 }
 
@@ -52,9 +50,7 @@ fn write_row(html: &mut Html, element: &str, cells: &[Cell]) -> io::Result<()> {
             let span = cell.span.to_string();
             let class = (!cell.class.is_empty()).then_some(("class", cell.class.as_str()));
             let span = (cell.span != 1).then_some(("colspan", span.as_str()));
-            let title = (!cell.title.is_empty()).then_some(("title", cell.title.as_str()));
-            let attributes = class.into_iter().chain(span).chain(title);
-            let html = html.create_element(element).with_attributes(attributes);
+            let html = html.create_element(element).with_attributes(class.into_iter().chain(span));
             html.write_text_content(BytesText::new(&cell.text)).map(drop)
         })
     })?;

@@ -1,4 +1,4 @@
-//! What one computes with scenes: steady sliding, sweeps, fits, calibrations, checks, reports, and their packing as FMUs.
+//! What one computes with scenes: steady sliding, sweeps, fits, calibrations, checks, benchmarks, and their packing as FMUs.
 //! Inputs and results are typed, what is written of them is made as text, and long work tells how far it is by a callback
 //! whose answer may end it.
 //!
@@ -44,8 +44,9 @@
 //! | [`pack`] | decimals, error, files, html, picture, robustness, runner, summary, sweep | scenes, tables and patches as FMUs |
 //! | [`motion`] | error, files | the motion that a patch is moved along |
 //! | [`check`] | csv, decimals, error, picture, progress, runner, summary, sweep | elements and patches against what was swept |
-//! | [`report`] | csv, decimals, error, picture, progress, robustness, runner | what the runs of a scene cost and how accurate they are |
+//! | [`benchmark`] | csv, decimals, error, picture, progress, robustness, runner, values | what the runs of a scene cost and how accurate they are |
 
+pub mod benchmark;
 pub mod calibration;
 pub mod check;
 pub mod comparison;
@@ -70,7 +71,6 @@ pub mod patch_history;
 pub mod picture;
 pub mod progress;
 pub mod rank;
-pub mod report;
 pub mod robustness;
 pub mod run_figures;
 pub mod runner;

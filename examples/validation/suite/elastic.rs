@@ -4,9 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use asperity_study::steady::{SlidingRubber, SteadySolver};
 
-use super::picture::{Curve, Picture};
-use super::row::{Claim, Comparison, Entry, Row};
-use super::sliding::{largest_pressure, map, rubber, sine, slide};
+use super::row::{Claim, Comparison, Curve, Entry, Picture, Row};
+use super::scenes::{largest_pressure, map, rubber, sine, slide};
 
 const FILE: &str = "examples/validation/suite/elastic.rs";
 /// E (Pa) and ν of the elastic rubber.
@@ -33,7 +32,7 @@ fn cylinder() -> Comparison {
     let (length, radius) = (1e-2, 5e-3);
     let (half_width, modulus) = (length / 64.0, plane_modulus());
     let force = PI * modulus * half_width * half_width / (4.0 * radius);
-    let surface = super::sliding::cylinder(65536, length, radius, half_width);
+    let surface = super::scenes::cylinder(65536, length, radius, half_width);
     let found = slide(&rubber(MODULUS, POISSON, &[]), surface, 1.0, force / length);
     let most = modulus * half_width / (2.0 * radius);
     Comparison {

@@ -8,7 +8,7 @@ use asperity_study::decimals::percent;
 use asperity_study::steady::{SlidingRubber, SteadySolver};
 
 use super::row::{Claim, Comparison, Entry, Row};
-use super::sliding::{cylinder, parse, sine, slide};
+use super::scenes::{cylinder, parse, sine, slide};
 
 const FILE: &str = "examples/validation/suite/heat.rs";
 /// W/(m K), J/(m³ K), and the rubber's part.

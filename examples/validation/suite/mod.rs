@@ -3,16 +3,14 @@
 
 pub mod elastic;
 pub mod heat;
-pub mod layer;
 pub mod oscillator;
 pub mod page;
-pub mod picture;
 pub mod reference;
 pub mod road;
 pub mod rough;
 pub mod row;
 pub mod rubber;
-pub mod sliding;
+pub mod scenes;
 pub mod springs;
 pub mod viscoelastic;
 

@@ -5,10 +5,8 @@ use std::f64::consts::PI;
 use asperity::scene::Scene;
 use asperity::simulation::Start;
 
-use super::layer::{begin, even_times, sample, straight};
-use super::picture::{Curve, Picture};
-use super::row::{Claim, Comparison, Entry, Row};
-use super::sliding::parse;
+use super::row::{Claim, Comparison, Curve, Entry, Picture, Row};
+use super::scenes::{begin, even_times, parse, sample, straight};
 
 pub const BLOCK: Entry = Entry {
     title: "A block on a spring sticks and slips",

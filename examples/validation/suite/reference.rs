@@ -4,9 +4,8 @@ use std::fs;
 
 use asperity::scene::Scene;
 
-use super::picture::{Curve, Picture};
 use super::root;
-use super::row::{Claim, Comparison, Entry, Row};
+use super::row::{Claim, Comparison, Curve, Entry, Picture, Row};
 use crate::common::{Table, runs};
 
 pub const CASES: Entry = Entry {

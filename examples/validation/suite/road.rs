@@ -6,9 +6,8 @@ use asperity_study::decimals::short;
 use asperity_study::steady::{SlidingRubber, SteadySolver, SurfaceGrid};
 use asperity_study::sweep::{StopBounds, steady_sliding};
 
-use super::picture::{Curve, Picture};
 use super::root;
-use super::row::{Claim, Comparison, Entry, Row};
+use super::row::{Claim, Comparison, Curve, Entry, Picture, Row};
 
 const FILE: &str = "examples/validation/suite/road.rs";
 /// Pa.

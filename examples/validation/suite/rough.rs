@@ -6,9 +6,8 @@ use asperity::math::SplitMix64;
 use asperity_study::decimals::short;
 use asperity_study::steady::{GridSize, SlidingRubber, SteadySolver, SurfaceGrid};
 
-use super::picture::{Curve, Picture};
-use super::row::{Claim, Comparison, Entry, Row};
-use super::sliding::{rubber, slide};
+use super::row::{Claim, Comparison, Curve, Entry, Picture, Row};
+use super::scenes::{rubber, slide};
 
 const FILE: &str = "examples/validation/suite/rough.rs";
 /// The period, m, the rms gradient, and the exponent of heights over wave numbers, -(1 + H) with H = 0.8.

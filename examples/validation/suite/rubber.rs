@@ -2,9 +2,8 @@
 
 use asperity::simulation::Start;
 
-use super::layer::{begin, even_times, loaded, sample, straight};
 use super::row::{Claim, Comparison, Entry, Row};
-use super::sliding::parse;
+use super::scenes::{begin, even_times, loaded, parse, sample, straight};
 
 pub const SOLID: Entry = Entry {
     title: "Creep, relaxation and ramps of a standard linear solid",

@@ -6,8 +6,7 @@ use std::fs;
 
 use asperity::patch::{Patch, PatchMotion, PatchOutput, PatchRun, PatchStart, Pose};
 
-use super::picture::{Curve, Picture};
-use super::row::{Claim, Comparison, Entry, Row};
+use super::row::{Claim, Comparison, Curve, Entry, Picture, Row};
 
 pub const SPRINGS: Entry = Entry {
     title: "Slope, grip, drilling torque and rolling of a bed of springs",

@@ -4,9 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use asperity_study::decimals::{percent, short};
 
-use super::picture::{Curve, Picture};
-use super::row::{Claim, Comparison, Entry, Row};
-use super::sliding::{cylinder, largest_pressure, parse, rubber, sine, slide};
+use super::row::{Claim, Comparison, Curve, Entry, Picture, Row};
+use super::scenes::{cylinder, largest_pressure, parse, rubber, sine, slide};
 
 const FILE: &str = "examples/validation/suite/viscoelastic.rs";
 

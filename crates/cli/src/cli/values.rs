@@ -6,9 +6,8 @@ use std::path::PathBuf;
 
 use asperity::scene::{Setting, Wlf};
 use asperity::tables::{Dimension, Unit, quantity};
-use asperity_study::decimals::tenth;
 use asperity_study::fit::WlfConstants;
-use asperity_study::values::{above_zero, ends, number};
+use asperity_study::values::{above_zero, number};
 pub(crate) use asperity_study::values::{count, length, share, temperature};
 use clap::Args;
 use clap::builder::{PathBufValueParser, TypedValueParser};
@@ -39,11 +38,6 @@ impl Deref for Set {
     fn deref(&self) -> &Self::Target {
         &self.set
     }
-}
-
-/// Powers of ten of the robustness test.
-pub(crate) fn powers(text: &str) -> Result<u32, String> {
-    text.trim().parse().ok().filter(|&powers| powers <= 12).ok_or_else(|| "expected a whole number from 0 to 12".into())
 }
 
 /// A frequency above 0 in rad/s, or in the unit behind it.
@@ -171,30 +165,6 @@ pub(crate) fn wlf_constants(text: &str) -> Result<WlfConstants, String> {
     }
 }
 
-/// Relative tolerances from loose to tight, at least one.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Tolerances(pub(crate) Vec<f64>);
-
-impl Tolerances {
-    /// The largest tolerance that a scene may have.
-    const LOOSEST: f64 = 0.1;
-    /// Rounding hides any smaller one.
-    const TIGHTEST: f64 = 1e-14;
-
-    pub(crate) fn parse(text: &str) -> Result<Self, String> {
-        let inside = |(loosest, tightest): &(f64, f64)| {
-            *loosest <= Self::LOOSEST && tightest <= loosest && *tightest >= Self::TIGHTEST
-        };
-        let Some((loosest, tightest)) = ends(text).filter(inside) else {
-            return Err("expected LOOSEST..TIGHTEST, such as 1e-2..1e-10, from at most 0.1 to at least 1e-14".into());
-        };
-        let ladder = std::iter::successors(Some(loosest), |&tolerance| Some(tenth(tolerance)));
-        /// Relative rounding error of a tolerance.
-        const ROUNDING: f64 = 1e-9;
-        Ok(Self(ladder.take_while(|&tolerance| tolerance >= tightest * (1.0 - ROUNDING)).collect()))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -207,16 +177,5 @@ mod tests {
             assert!(wlf_constants(wrong).unwrap_err().contains("C1,C2,TREF"), "{wrong}");
         }
         assert!(wlf_constants("7.52,119.75,20").unwrap_err().contains("20 °C being 293.15 K"));
-    }
-
-    #[test]
-    fn tolerances_are_decimal_tenths() {
-        let ladder = Tolerances::parse("1e-2..1e-10").unwrap().0;
-        assert_eq!(ladder, [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10]);
-        assert_eq!(Tolerances::parse("0.05..1e-3").unwrap().0, [0.05, 0.005]);
-        assert_eq!(Tolerances::parse("1e-3..1e-3").unwrap().0, [1e-3]);
-        for wrong in ["1e-3", "1e-10..1e-2", "1..1e-2", "1e-2..0", "1e-2..NaN", "a..b"] {
-            assert!(Tolerances::parse(wrong).unwrap_err().contains("1e-2..1e-10"), "{wrong}");
-        }
     }
 }

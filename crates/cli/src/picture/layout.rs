@@ -2,9 +2,10 @@
 
 use asperity_study::picture::{Colour, ColourScale, Frame, Panel, Picture, Point, Row, Tick};
 
+use super::drawing::{Drawing, Item, LABEL_SIZE, Paint, Pen, Side, TEXT_SIZE, TICK_SIZE, TITLE_SIZE};
+use super::font;
 use super::legend::{LINE, Legend};
 use super::marks::{Placed, at};
-use super::{Drawing, Item, LABEL_SIZE, Paint, Pen, Side, TEXT_SIZE, TICK_SIZE, TITLE_SIZE, font};
 
 /// The height of a title.
 const TITLE: f64 = 36.0;

@@ -2,8 +2,9 @@
 
 use asperity_study::picture::{Colour, Fill, Mark, Panel, Point, Shape, Stroke, Symbol};
 
+use super::drawing::{Item, Paint, Pen, Side, TEXT_SIZE};
+use super::font;
 use super::marks::{BACK, arrow, dashes, symbol};
-use super::{Item, Paint, Pen, Side, TEXT_SIZE, font};
 
 /// The height of a line.
 pub(super) const LINE: f64 = 30.0;

@@ -4,8 +4,9 @@ use asperity_study::picture::{
     Colour, ColourScale, Colours, ContourLine, Fill, Mark, Panel, Point, Shape, Stroke, Symbol,
 };
 
+use super::drawing::{Item, LABEL_SIZE, Paint, Pen, Side, TICK_SIZE};
+use super::font;
 use super::labels::Room;
-use super::{Item, LABEL_SIZE, Paint, Pen, Side, TICK_SIZE, font};
 
 /// Behind areas that are white themselves.
 pub(super) const BACK: Colour = Colour([160, 160, 160]);

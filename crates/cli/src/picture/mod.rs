@@ -1,5 +1,6 @@
 //! Draws pictures: laid out as lines, areas and text, which are written as SVG or PNG by the file's name.
 
+mod drawing;
 mod font;
 mod labels;
 mod layout;
@@ -10,113 +11,12 @@ mod svg;
 
 use std::path::{Path, PathBuf};
 
-use asperity_study::picture::{Colour, Picture, Point};
+use asperity_study::picture::Picture;
 use rayon::prelude::*;
 
 use asperity_study::Error;
 
 use crate::files::{self, ends_in};
-
-/// Text of titles, of axes and legends, of ticks, and beside points, pixels.
-const TITLE_SIZE: f64 = 22.0;
-const TEXT_SIZE: f64 = 17.0;
-const TICK_SIZE: f64 = 15.0;
-const LABEL_SIZE: f64 = 13.0;
-
-/// Something of a picture as it is drawn, in pixels from the corner at the upper left.
-#[derive(Clone, Debug, PartialEq)]
-enum Item {
-    /// Straight from point to point.
-    Path {
-        points: Vec<Point>,
-        is_closed: bool,
-        fill: Option<Paint>,
-        pen: Option<Pen>,
-    },
-    Circle {
-        at: Point,
-        radius: f64,
-        fill: Option<Paint>,
-        pen: Option<Pen>,
-    },
-    /// `at` is half-way up its capitals.
-    Text {
-        text: String,
-        at: Point,
-        side: Side,
-        size: f64,
-        colour: Colour,
-        is_upright: bool,
-    },
-    /// Colours in rows from the upper left corner on.
-    Image {
-        corner: Point,
-        size: Point,
-        columns: usize,
-        colours: Vec<Colour>,
-    },
-}
-
-/// A colour that what is below may show through.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Paint {
-    colour: Colour,
-    opacity: f64,
-}
-
-/// A line's paint, its width, and lengths of dashes and gaps.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Pen {
-    paint: Paint,
-    width: f64,
-    dashes: Option<[f64; 2]>,
-}
-
-/// Which of its ends a text has at its place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Side {
-    Start,
-    Middle,
-    End,
-}
-
-/// A picture as it is drawn.
-#[derive(Clone, Debug, PartialEq)]
-struct Drawing {
-    size: Point,
-    items: Vec<Item>,
-}
-
-impl Paint {
-    fn full(colour: Colour) -> Self {
-        Self { colour, opacity: 1.0 }
-    }
-}
-
-impl Pen {
-    fn new(colour: Colour, width: f64) -> Self {
-        Self { paint: Paint::full(colour), width, dashes: None }
-    }
-}
-
-impl Item {
-    fn line(points: Vec<Point>, pen: Pen) -> Self {
-        Self::Path { points, is_closed: false, fill: None, pen: Some(pen) }
-    }
-
-    fn area(points: Vec<Point>, fill: Paint) -> Self {
-        Self::Path { points, is_closed: true, fill: Some(fill), pen: None }
-    }
-
-    /// A rectangle by two opposite corners.
-    fn rectangle([x, y]: Point, [to_x, to_y]: Point, fill: Paint) -> Self {
-        Self::area(vec![[x, y], [to_x, y], [to_x, to_y], [x, to_y]], fill)
-    }
-
-    fn text(text: impl Into<String>, at: Point, side: Side, size: f64) -> Self {
-        Self::Text { text: text.into(), at, side, size, colour: Colour::INK, is_upright: false }
-    }
-}
 
 /// Writes a picture to `path`: as PNG where its name ends so, else as SVG.
 pub(crate) fn write(picture: &Picture, path: &Path) -> Result<(), Error> {

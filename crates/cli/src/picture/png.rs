@@ -7,8 +7,8 @@ use tiny_skia::{
     Color, FillRule, LineJoin, Paint as SkiaPaint, Path, PathBuilder, Pixmap, Rect, Stroke, StrokeDash, Transform,
 };
 
-use super::svg::TO_BASE_LINE;
-use super::{Drawing, Item, Paint, Pen, Side, font};
+use super::drawing::{Drawing, Item, Paint, Pen, Side, TO_BASE_LINE};
+use super::font;
 
 /// The file, with `scale` pixels for one of the drawing's along each axis.
 pub(super) fn png(drawing: &Drawing, scale: f64) -> Result<Vec<u8>, EncodingError> {

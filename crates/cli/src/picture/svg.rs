@@ -7,11 +7,8 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use quick_xml::escape::escape;
 
+use super::drawing::{Drawing, Item, Paint, Pen, Side, TO_BASE_LINE};
 use super::png::encode;
-use super::{Drawing, Item, Paint, Pen, Side};
-
-/// From half-way up capitals down to the base line, as a share of a text's size.
-pub(super) const TO_BASE_LINE: f64 = 0.36;
 
 /// The text of the file.
 pub(super) fn svg(drawing: &Drawing) -> Result<String, png::EncodingError> {

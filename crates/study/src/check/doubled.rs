@@ -4,10 +4,9 @@
 use asperity::patch::{Patch, PatchOutput, PatchVariable};
 use asperity::scene::{NotDoubled, PatchGroup};
 
-use super::measure::SLIDING_DISTANCE;
+use super::measure::{COMPONENTS, SLIDING_DISTANCE, Wrench, WrenchSeries, along, percentages};
 use super::patch::{Drag, PatchCheck, table};
 use super::tilt::TiltedFace;
-use super::wrench::{COMPONENTS, Wrench, WrenchSeries, extent, text};
 use crate::decimals::real;
 use crate::error::Error;
 use crate::progress::{Counter, Watch};
@@ -71,16 +70,17 @@ impl Doubled {
     pub fn summary(&self, check: &PatchCheck) -> Vec<String> {
         let (nx, ny) = self.grid;
         let shares = self.steady.shares();
-        let line = |(face, share): (&TiltedFace, Wrench)| format!("at {} m/s: {}", real(face.speed), text(share));
+        let line =
+            |(face, share): (&TiltedFace, Wrench)| format!("at {} m/s: {}", real(face.speed), percentages(share));
         let mut texts = vec![format!("the whole patch beside one of {nx} by {ny} elements, over its largest values")];
         texts.extend(check.faces.iter().zip(shares).map(line));
         if check.motion.length > 0.0 {
-            texts.extend(extent("to and fro", &self.to_and_fro));
+            texts.extend(along("to and fro", &self.to_and_fro));
         }
         if !self.rolling.reference.is_empty() {
             let speed = check.middle().speed;
             let rolling = format!("rolling at {} m/s, slipping at {} m/s", real(ROLLING * speed), real(speed));
-            texts.extend(extent(&rolling, &self.rolling));
+            texts.extend(along(&rolling, &self.rolling));
         }
         texts
     }

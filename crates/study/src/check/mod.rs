@@ -10,11 +10,10 @@ mod patch;
 mod picture;
 mod sliding;
 mod tilt;
-mod wrench;
 
 pub use doubled::Doubled;
 pub use drag::Loop;
 pub use element::{COMPARED as COMPARED_OF_ELEMENTS, ElementCheck, PointCheck, PointChecks};
+pub use measure::{COMPONENTS, Wrench, WrenchSeries};
 pub use patch::{Dragged, PatchCheck};
 pub use sliding::{COMPARED as COMPARED_OF_PATCHES, ElementErrors, Sliding};
-pub use wrench::{COMPONENTS, Wrench, WrenchSeries};

@@ -8,9 +8,8 @@ use asperity::simulation::Start;
 use rayon::prelude::*;
 
 use super::drag::{ToAndFro, element_at, nothing_sticks};
-use super::measure::swept_scene;
+use super::measure::{COMPONENTS, Wrench, WrenchSeries, along, swept_scene, wrench};
 use super::tilt::{TiltedElement, TiltedFace};
-use super::wrench::{COMPONENTS, Wrench, WrenchSeries, extent, wrench};
 use crate::csv::text;
 use crate::decimals::real;
 use crate::error::{Context as _, Error, ErrorKind};
@@ -225,7 +224,7 @@ impl Dragged {
 
     /// The largest and the root mean square differences.
     pub fn summary(&self) -> [String; 2] {
-        extent(&self.motion.describe(), &self.pair)
+        along(&self.motion.describe(), &self.pair)
     }
 }
 

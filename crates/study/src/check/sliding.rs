@@ -4,10 +4,9 @@ use asperity::element::OperatingPoint;
 use rayon::prelude::*;
 
 use super::element::not_steady;
-use super::measure::{ERROR, SLIDING_DISTANCE};
+use super::measure::{ERROR, SLIDING_DISTANCE, Wrench, WrenchSeries, percentages, wrench};
 use super::patch::{Elements, PatchCheck, point};
 use super::tilt::{TiltedElement, TiltedFace};
-use super::wrench::{Wrench, WrenchSeries, text, wrench};
 use crate::csv;
 use crate::decimals::real;
 use crate::error::Error;
@@ -137,7 +136,7 @@ impl<'a> SlidingAtSpeed<'a> {
     }
 
     fn line(&self, share: Wrench) -> String {
-        format!("at {} m/s: {}", real(self.face.speed), text(share))
+        format!("at {} m/s: {}", real(self.face.speed), percentages(share))
     }
 
     fn failed(&self) -> impl Iterator<Item = String> {

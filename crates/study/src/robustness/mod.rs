@@ -5,8 +5,9 @@
 
 mod judge;
 mod perturbation;
-mod tight;
 
-pub use judge::{Accuracy, Difference, ForceHistory, KEPT, NOTABLE, Verdict, WRONG, larger};
-pub use perturbation::{Perturbation, ScaledQuantity};
-pub use tight::{Budget, DISPLACEMENT, RunFailure, TIGHTER, at_tolerance, divergence, exact};
+pub use judge::{
+    Accuracy, Budget, DISPLACEMENT, Difference, ForceHistory, KEPT, NOTABLE, RunFailure, TIGHTER, Verdict, WRONG,
+    at_tolerance, divergence, exact, larger,
+};
+pub use perturbation::{Perturbation, ScaledQuantity, factor};

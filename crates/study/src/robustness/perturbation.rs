@@ -142,7 +142,7 @@ impl Perturbation {
 
     /// The factor of a quantity.
     pub fn factor(&self, quantity: ScaledQuantity) -> Option<f64> {
-        self.power(quantity).map(power_of_ten)
+        self.power(quantity).map(factor)
     }
 
     /// The perturbed scene; the communication step is not part of it.
@@ -159,8 +159,8 @@ impl Perturbation {
     }
 }
 
-/// The number nearest to the power as it is written: 1e-5, not the fifth power of a rounded tenth.
-fn power_of_ten(power: i32) -> f64 {
+/// A power of ten: the number nearest to it as it is written: 1e-5, not the fifth power of a rounded tenth.
+pub fn factor(power: i32) -> f64 {
     format!("1e{power}").parse().unwrap_or(1.0)
 }
 

@@ -4,23 +4,18 @@ use std::ops::ControlFlow;
 
 use asperity::scene::{Method, Scene};
 
-use super::figures::RunFigures;
 use super::reference::Reference;
-use super::run::{UNLIMITED, follow};
-use super::scenes::estimated;
-use super::weighed::{WeighedRuns, weight};
+use super::run::{RunFigures, UNLIMITED, WeighedRuns, estimated, follow, weight};
 use crate::progress::{Stopped, Watch};
 use crate::robustness::{RunFailure, at_tolerance};
 use crate::runner::Rows;
 
-/// The name of this program beside those of its peers.
-pub const PROGRAM: &str = "asperity";
 /// The name of the reference among the methods.
 const REFERENCE: &str = "reference";
 /// The methods compared, and their names in `solver.method`.
 const METHODS: [(Method, &str); 2] = [(Method::Event, "event"), (Method::Step, "step")];
 /// Once a method has taken so many times the Newton iterations of the reference, its tighter runs are left out.
-pub const PATIENCE: u64 = 3;
+const PATIENCE: u64 = 3;
 /// Runs are timed again and again until that may have taken about this time, s, ...
 const ENOUGH: f64 = 2.0;
 /// ... and at least so often.
@@ -31,67 +26,19 @@ const ESTIMATED: f64 = 3.0;
 /// A row of the table of errors and run times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ToleranceRow {
-    /// The program that ran.
-    pub program: String,
     /// The method, as in `solver.method`.
-    pub method: String,
+    pub method: &'static str,
     /// The relative tolerance.
     pub tolerance: f64,
-    /// What its time is that of.
-    pub timed: Timed,
     /// Or why there are no figures.
-    pub result: Result<RunFigures, NoFigures>,
-}
-
-/// Why a run of the table has no figures.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[expect(missing_docs, reason = "the messages say what they are")]
-pub enum NoFigures {
-    #[error("left out: a looser one took {last} Newton iterations, the reference {most}")]
-    LeftOut { last: u64, most: u64 },
-    #[error(transparent)]
-    Failed(#[from] RunFailure),
-    /// Of a process measured elsewhere.
-    #[error("no run time")]
-    NoTime,
-}
-
-/// What a run time is that of. Only times of the same are divided by each other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Timed {
-    /// The run alone, within this program.
-    RunAlone,
-    /// A process from its start to its end, this program's or a peer's.
-    WholeProcess,
-}
-
-impl Timed {
-    /// In words.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::RunAlone => "run alone",
-            Self::WholeProcess => "whole process",
-        }
-    }
+    pub result: Result<RunFigures, String>,
 }
 
 impl ToleranceRow {
-    /// The method, after the program where that is a process.
-    pub fn name(&self) -> String {
-        match self.timed {
-            Timed::RunAlone => self.method.clone(),
-            Timed::WholeProcess => format!("{} {}", self.program, self.method),
-        }
-    }
-
-    /// The row of the reference.
+    /// The row of the reference; its errors are its own.
     pub fn from_reference(reference: &Reference) -> Self {
-        let result = Ok(reference.figures());
-        Self::from_run(REFERENCE, reference.tolerance, result)
-    }
-
-    fn from_run(method: &str, tolerance: f64, result: Result<RunFigures, NoFigures>) -> Self {
-        Self { program: PROGRAM.into(), method: method.into(), tolerance, timed: Timed::RunAlone, result }
+        let result = Ok(RunFigures::new(&reference.measured, reference.own));
+        Self { method: REFERENCE, tolerance: reference.tolerance, result }
     }
 }
 
@@ -134,7 +81,7 @@ impl ToleranceLadder<'_> {
     fn run_method(
         &self,
         method: Method,
-        name: &str,
+        name: &'static str,
         reference: &Reference,
         progress: &WeighedRuns<'_>,
     ) -> Vec<ToleranceRow> {
@@ -143,12 +90,13 @@ impl ToleranceLadder<'_> {
         let mut last = 0;
         let mut row = |&tolerance: &f64| {
             let result = if last > PATIENCE * most {
-                Err(NoFigures::LeftOut { last, most })
+                Err(format!("left out: a looser one took {last} Newton iterations, the reference {most}"))
             } else {
-                self.rung(&at_tolerance(&scene, tolerance), name, reference, progress).map_err(NoFigures::Failed)
+                let rung = self.rung(&at_tolerance(&scene, tolerance), name, reference, progress);
+                rung.map_err(|failure| failure.to_string())
             };
-            last = result.as_ref().ok().and_then(|figures| figures.iterations).unwrap_or(last);
-            ToleranceRow::from_run(name, tolerance, result)
+            last = result.as_ref().map_or(last, |figures| figures.counts.iterations);
+            ToleranceRow { method: name, tolerance, result }
         };
         self.tolerances.iter().map(&mut row).collect()
     }
@@ -168,7 +116,7 @@ impl ToleranceLadder<'_> {
         let follow = |tick: &dyn Fn(f64) -> ControlFlow<()>| follow(&scene, comparison.rows(), 0.0, UNLIMITED, tick);
         let run = progress.during(&message, weight, follow)?;
         let errors = comparison.errors(&run.trace, &reference.measured.trace);
-        Ok(RunFigures { estimate: Some(run.estimate), ..run.figures(errors) })
+        Ok(RunFigures { estimate: Some(run.estimate), ..RunFigures::new(&run, errors) })
     }
 
     /// Times the runs of `rows` again without their estimates, in rounds: what disturbs the machine for a while does
@@ -207,7 +155,6 @@ struct TimedRun<'a> {
     expected: f64,
     /// How often it is timed.
     repeat: u32,
-    times: Vec<f64>,
 }
 
 impl<'a> TimedRun<'a> {
@@ -217,14 +164,14 @@ impl<'a> TimedRun<'a> {
         let scene = with_method(&at_tolerance(scene, row.tolerance), method);
         let message = format!("timing {}, tolerance {:e}", row.method, row.tolerance);
         let figures = row.result.as_mut().ok()?;
-        let expected = figures.time?;
-        Some(Self { figures, message, scene, expected, repeat: timings(expected, most), times: Vec::new() })
+        let expected = figures.time()?;
+        figures.times.clear();
+        Some(Self { figures, message, scene, expected, repeat: timings(expected, most) })
     }
 
     fn time(&mut self, rows: Rows, progress: &WeighedRuns<'_>) {
         let run = progress.during(&self.message, self.expected, |tick| follow(&self.scene, rows, 0.0, UNLIMITED, tick));
-        self.times.extend(run.ok().map(|run| run.time));
-        *self.figures = self.figures.timed(&self.times);
+        self.figures.times.extend(run.ok().map(|run| run.time));
     }
 }
 

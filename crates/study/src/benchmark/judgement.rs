@@ -1,11 +1,11 @@
 //! Runs held against what they promise: errors over the tolerance asked for, and their own estimates over the errors.
 
-use crate::robustness::{KEPT, Perturbation, TIGHTER};
+use crate::robustness::{KEPT, ScaledQuantity, TIGHTER};
 
-use super::figures::Estimate;
 use super::reference::Reference;
-use super::robustness::Robustness;
-use super::tolerances::{Timed, ToleranceRow};
+use super::run::Estimate;
+use super::stress::Stress;
+use super::tolerances::ToleranceRow;
 use super::trace::Errors;
 
 /// The reference's own error may be so many tolerances: errors of [`KEPT`] are far enough above it.
@@ -14,8 +14,8 @@ const MAX_FLOOR: f64 = 0.3 * KEPT;
 /// A run with its error, the larger of those of F_x and F_z, each over its largest value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Judgement {
-    /// What was scaled; `None` for the scene as it is.
-    pub perturbation: Option<Perturbation>,
+    /// What was scaled, by this power of ten; `None` for the scene as it is.
+    pub scaled: Option<(ScaledQuantity, i32)>,
     /// The method, as in `solver.method`.
     pub method: String,
     /// The relative tolerance.
@@ -59,34 +59,33 @@ impl Judgement {
             (false, true) => Standing::Counts,
             (false, false) => Standing::BelowReference,
         };
-        Self { perturbation: None, method: String::new(), tolerance, error, estimate, floor, standing }
+        Self { scaled: None, method: String::new(), tolerance, error, estimate, floor, standing }
     }
 
-    /// Judgements of this program's runs of `rows`; none of a run that failed, or without forces.
+    /// Judgements of the runs of `rows`; none of a run that failed, or without forces.
     pub(super) fn from_tolerances<'a>(
         reference: &Reference,
         rows: &'a [ToleranceRow],
     ) -> impl Iterator<Item = Self> + use<'a> {
         let (floor, sensitive) = (force_error(&reference.own).unwrap_or_default(), reference.comparison.is_of_means());
-        rows.iter().filter(|row| row.timed == Timed::RunAlone).filter_map(move |row| {
+        rows.iter().filter_map(move |row| {
             let figures = row.result.as_ref().ok()?;
             let error = force_error(&figures.errors)?;
             let judgement = Self::new(error, figures.estimate?, floor, row.tolerance, sensitive);
-            Some(Self { method: row.method.clone(), ..judgement })
+            Some(Self { method: row.method.into(), ..judgement })
         })
     }
 
-    /// Judgements of the perturbed runs that came to their ends, by a method of this name. Their tight runs are taken
-    /// to be as accurate as their tolerances.
-    pub(super) fn from_perturbations(robustness: &Robustness, method: &str) -> impl Iterator<Item = Self> {
-        let tolerance = robustness.tolerance;
-        let perturbed = robustness.trials().filter(|(perturbation, _)| **perturbation != Perturbation::default());
-        perturbed.filter_map(move |(&perturbation, trial)| {
-            let ended = trial.ended()?;
+    /// Judgements of the scaled runs that came to their ends. Their tight runs are taken to be as accurate as their
+    /// tolerances.
+    pub(super) fn from_stress(stress: &Stress) -> impl Iterator<Item = Self> {
+        let tolerance = stress.tolerance;
+        stress.scaled.iter().filter_map(move |trial| {
+            let ended = trial.outcome.as_ref().ok()?;
             let error = force_error(ended.errors.as_ref()?)?;
             let sensitive = ended.accuracy.moved().is_some();
             let judgement = Self::new(error, ended.estimate, tolerance / TIGHTER, tolerance, sensitive);
-            Some(Self { perturbation: Some(perturbation), method: method.into(), ..judgement })
+            Some(Self { scaled: trial.scaled, method: stress.method.clone(), ..judgement })
         })
     }
 
@@ -94,7 +93,7 @@ impl Judgement {
     pub fn groups<'a>(runs: impl Iterator<Item = &'a Self>) -> Vec<(String, Vec<&'a Self>)> {
         let mut groups: Vec<(String, Vec<&Self>)> = Vec::new();
         for run in runs {
-            let name = if run.perturbation.is_some() { format!("{}, scaled", run.method) } else { run.method.clone() };
+            let name = format!("{}{}", run.method, if run.scaled.is_some() { ", scaled" } else { "" });
             match groups.iter_mut().find(|(own, _)| *own == name) {
                 Some((_, runs)) => runs.push(run),
                 None => groups.push((name, vec![run])),
@@ -167,7 +166,7 @@ impl<'a> Ratios<'a> {
 
 /// The middle one of values in order, of an even number of them the geometric mean of the two in the middle; there is
 /// one at least.
-pub fn median(ordered: &[f64]) -> f64 {
+pub(super) fn median(ordered: &[f64]) -> f64 {
     let n = ordered.len();
     (ordered[(n - 1) / 2] * ordered[n / 2]).sqrt()
 }

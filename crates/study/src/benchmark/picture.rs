@@ -1,44 +1,41 @@
-//! The pictures of a report: errors over run time and over the communication step, and what runs keep of what they
-//! promise.
+//! The pictures of a benchmark: errors over run time and over the communication step, what runs keep of what they promise,
+//! and what becomes of them under stress.
 
-use super::communication::CommunicationRow;
+use super::communication::{CommunicationRow, MasterInputs};
 use super::judgement::{Judgement, Standing, median};
-use super::master::MasterInputs;
 use super::reference::{Comparison, Reference};
-use super::tolerances::{Timed, ToleranceRow};
+use super::stress::{Stress, Trial};
+use super::tables::Peer;
+use super::tolerances::ToleranceRow;
 use super::trace::{Errors, QUANTITIES};
 use crate::picture::{Fill, Ladders, Mark, Picture, Point, Shape, Stroke};
-use crate::robustness::KEPT;
+use crate::robustness::{KEPT, ScaledQuantity, factor};
 
-/// Errors over run time, one line for each program and method, with the tolerances at its ends.
-pub fn tolerance_picture(reference: &Reference, rows: &[ToleranceRow]) -> Picture {
-    let mut names: Vec<String> = Vec::new();
-    for name in rows.iter().map(ToleranceRow::name) {
-        if !names.contains(&name) {
-            names.push(name);
-        }
-    }
+/// Errors over run time, one line for each method and, dashed, for each whole process of the `peers`, with the tolerances
+/// at its ends.
+pub fn tolerance_picture(reference: &Reference, rows: &[ToleranceRow], peers: &[Peer]) -> Picture {
+    let own = rows.iter().filter_map(|row| {
+        let figures = row.result.as_ref().ok()?;
+        Some((row.method, Stroke::Solid, row.tolerance, figures.time()?, figures.errors))
+    });
+    let peers = peers.iter().map(|peer| (peer.name.as_str(), Stroke::Dashed, peer.tolerance, peer.time, peer.errors));
+    let runs: Vec<_> = own.chain(peers).collect();
     let panels = panels(reference, |quantity, floor| {
-        let line = |(look, name): (usize, &String)| {
-            let own = rows.iter().filter(|row| row.name() == *name);
-            let processes = own.clone().all(|row| row.timed == Timed::WholeProcess);
-            let (points, tolerances): (Vec<Point>, Vec<f64>) = own.filter_map(|row| rung(row, quantity)).unzip();
-            let stroke = if processes { Stroke::Dashed } else { Stroke::Solid };
+        let line = |(look, runs): (usize, &[(&str, Stroke, f64, f64, Errors)])| {
+            let seen =
+                |&(_, _, tolerance, time, errors): &(_, _, _, _, Errors)| Some(([time, errors[quantity]?], tolerance));
+            let (points, tolerances): (Vec<Point>, Vec<f64>) = runs.iter().filter_map(seen).unzip();
             // Those between are powers of ten.
             let last = tolerances.len().saturating_sub(1);
             let label = |(i, tolerance): (usize, &f64)| {
                 if i == 0 || i == last { format!("{tolerance:e}") } else { String::new() }
             };
+            let (name, stroke, ..) = runs[0];
             ladder(name, look, points, (stroke, tolerances.iter().enumerate().map(label).collect()), floor)
         };
-        names.iter().enumerate().flat_map(line).collect()
+        runs.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).enumerate().flat_map(line).collect()
     });
     Picture::of(vec![Picture::ladders(("run time", "s"), &panels)])
-}
-
-fn rung(row: &ToleranceRow, quantity: usize) -> Option<(Point, f64)> {
-    let figures = row.result.as_ref().ok()?;
-    Some(([figures.time?, figures.errors[quantity]?], row.tolerance))
 }
 
 /// A line with labelled symbols, which are hollow where nothing is known; nothing without points.
@@ -138,7 +135,7 @@ fn judged(runs: &[&Judgement], ratio: Ratio) -> Vec<Mark> {
     for (name, runs) in Judgement::groups(runs.iter().copied().filter(|run| run.counts())) {
         let look = METHODS.iter().position(|method| *method == runs[0].method).unwrap_or(METHODS.len());
         let medians = medians(points(&runs));
-        let is_scaled = runs[0].perturbation.is_some();
+        let is_scaled = runs[0].scaled.is_some();
         if is_scaled || medians.len() < runs.len() {
             let name = if is_scaled { name.clone() } else { format!("{name}, single runs") };
             rings.push(Mark::rings(name, look, points(&runs)));
@@ -162,14 +159,48 @@ fn medians(mut points: Vec<Point>) -> Vec<Point> {
     same.map(|same| [same[0][0], median(&same.iter().map(|point| point[1]).collect::<Vec<_>>())]).collect()
 }
 
+/// What is drawn of a run.
+type Figure<'a> = dyn Fn(&Trial) -> Option<f64> + 'a;
+
+/// Errors over the tolerance and steps over those due, over the factor of each quantity: a line goes as far as runs come to
+/// their ends, and what is sensitive or has nothing to be compared with is hollow.
+pub fn stress_picture(stress: &Stress) -> Picture {
+    let error = |trial: &Trial| Some(trial.outcome.as_ref().ok()?.accuracy.error()?.share / stress.tolerance);
+    let work = |trial: &Trial| stress.times_the_steps(trial);
+    let quantities = stress.quantities();
+    let marks = |figure: &Figure<'_>| {
+        quantities.iter().enumerate().flat_map(|(look, &quantity)| line(stress, quantity, look, figure)).collect()
+    };
+    let panels = vec![(("error over tolerance", ""), marks(&error)), (("steps over those due", ""), marks(&work))];
+    Picture::stacked(("factor", ""), panels)
+}
+
+/// The line of a quantity, broken where a run has no figure, and its symbols.
+fn line(stress: &Stress, quantity: ScaledQuantity, look: usize, figure: &Figure<'_>) -> Vec<Mark> {
+    let is_relied_on = |trial: &Trial| {
+        trial.outcome.as_ref().is_ok_and(|ended| ended.accuracy.error().is_some() && ended.accuracy.moved().is_none())
+    };
+    let runs = stress.of(quantity);
+    let point = |(power, trial): &(i32, &Trial)| Some(([factor(*power), figure(trial)?], is_relied_on(trial)));
+    let points: Vec<Option<(Point, bool)>> = runs.iter().map(point).collect();
+    let parts = points.split(Option::is_none).filter(|part| !part.is_empty());
+    let lines = parts.map(|part| Mark::line(quantity.name(), look, part.iter().flatten().map(|(at, _)| *at).collect()));
+    let mut marks: Vec<Mark> = lines.collect();
+    for (fill, kept) in [(Fill::Full, true), (Fill::Hollow, false)] {
+        let own = points.iter().flatten().filter(|(_, is_relied_on)| *is_relied_on == kept);
+        marks.push(Mark::symbols(quantity.name(), look, own.map(|(at, _)| *at).collect(), fill));
+    }
+    marks
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Estimate;
+    use crate::benchmark::run::Estimate;
 
     fn run(method: &str, tolerance: f64, error: f64, standing: Standing) -> Judgement {
         let (method, estimate) = (method.into(), Estimate { error, warned: false });
-        Judgement { perturbation: None, method, tolerance, error, estimate, floor: 0.0, standing }
+        Judgement { scaled: None, method, tolerance, error, estimate, floor: 0.0, standing }
     }
 
     #[test]

@@ -1,14 +1,11 @@
 //! The run that all others are compared with, its own error, and whether runs can be compared row by row at all.
 
-use crate::robustness::{Budget, DISPLACEMENT, RunFailure, at_tolerance, divergence, exact};
 use asperity::scene::Scene;
 
-use super::figures::{CompletedRun, Counts, RunFigures};
-use super::run::{UNLIMITED, follow};
-use super::scenes::with_durations;
-use super::trace::{Errors, OF_ALL_SCENES, QUANTITIES, Trace, WINDOWS};
-use super::weighed::{WeighedRuns, weight};
+use super::run::{CompletedRun, Counts, UNLIMITED, WeighedRuns, follow, weight, with_durations};
+use super::trace::{Errors, QUANTITIES, Trace, WINDOWS};
 use crate::decimals::tenth;
+use crate::robustness::{Budget, DISPLACEMENT, RunFailure, at_tolerance, divergence, exact};
 use crate::runner::Rows;
 
 /// A run at a tenth of the tolerance may take so many times the steps, far more than any method needs: where they are
@@ -120,16 +117,6 @@ impl Reference {
     /// What the search weighs, for a ladder down to `tightest`.
     pub(super) fn weight(tightest: f64) -> f64 {
         weight(tightest) + 2.0 * weight(tightest / 10.0) + weight(tightest / 100.0)
-    }
-
-    /// The figures of the reference itself; its errors are its own.
-    pub fn figures(&self) -> RunFigures {
-        self.measured.figures(self.own)
-    }
-
-    /// How many of the [`QUANTITIES`] are shown: u and w where the carrier is a body.
-    pub fn shown(&self) -> usize {
-        if self.scene.carrier.any() { QUANTITIES.len() } else { OF_ALL_SCENES }
     }
 
     /// Which errors are below the reference's own.

@@ -8,9 +8,6 @@ pub const QUANTITIES: [&str; COUNT] = ["F_x", "F_z", "E_diss", "u", "w"];
 
 const COUNT: usize = 5;
 
-/// How many of them every scene may have: the others are those of a carrier that is a body.
-pub const OF_ALL_SCENES: usize = 3;
-
 /// The errors of F_x, F_z and E_diss, and of u and w of bodies, over the largest value of each, of u and w from the
 /// start; `None` for a quantity that a scene does not have.
 pub type Errors = [Option<f64>; COUNT];
