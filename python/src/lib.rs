@@ -9,6 +9,7 @@ mod converge;
 mod elements;
 mod errors;
 mod fit;
+mod options;
 mod pack;
 mod patch;
 mod rank;

@@ -92,6 +92,12 @@ pub fn number(text: &str, allowed: impl Fn(&f64) -> bool, expected: &str) -> Res
     text.trim().parse().ok().filter(allowed).ok_or_else(|| format!("expected {expected}"))
 }
 
+/// The two ends of `A..B`.
+pub fn ends(text: &str) -> Option<(f64, f64)> {
+    let number = |text: &str| text.trim().parse().ok();
+    text.split_once("..").and_then(|(first, last)| Some((number(first)?, number(last)?)))
+}
+
 /// A number above 0, such as a quantity can have, in SI units or in the unit behind it.
 pub fn above_zero(text: &str, dimension: Dimension) -> Option<f64> {
     quantity(text, dimension).map(|(number, _)| number).filter(|number| POSITIVE.holds(*number))
@@ -145,6 +151,17 @@ pub fn length(text: &str) -> Result<f64, String> {
 pub fn temperature(text: &str) -> Result<f64, String> {
     let found = above_zero(text, Dimension::Temperature);
     found.ok_or_else(|| "expected a temperature above 0 K, such as 293.15 (in K) or 20°C".into())
+}
+
+/// The key of a role, and the name or number of its column.
+///
+/// # Errors
+/// What was expected of the text.
+pub fn given_column(text: &str) -> Result<(String, String), String> {
+    let parted = text.split_once('=').map(|(key, name)| (key.trim().to_owned(), name.trim().to_owned()));
+    parted
+        .filter(|(key, name)| !key.is_empty() && !name.is_empty())
+        .ok_or_else(|| "expected ROLE=COLUMN, such as speed=v2".into())
 }
 
 #[cfg(test)]

@@ -65,10 +65,8 @@ def converge(
 ) -> dict[str, Any]: ...
 def compare(table: Path, data: Path) -> dict[str, Any]: ...
 
-_Treatment = tuple[float | None, float | None, bool, bool, tuple[float, float] | None]
-
-def surface(path: Path, reading: dict[str, Any], treatment: _Treatment) -> dict[str, Any]: ...
-def surface_of(scene: Scene, treatment: _Treatment) -> dict[str, Any]: ...
+def surface(path: Path, reading: dict[str, Any], treatment: dict[str, Any]) -> dict[str, Any]: ...
+def surface_of(scene: Scene, treatment: dict[str, Any]) -> dict[str, Any]: ...
 def calibrate(
     scene: Scene,
     data: Path,
@@ -80,23 +78,7 @@ def calibrate(
     distance: float | None,
 ) -> dict[str, Any]: ...
 def with_covariance(text: str, file: str, keys: list[str]) -> str: ...
-def fit(
-    data: Path,
-    error: float,
-    viscosity: bool,
-    wlf: tuple[float, float, float] | None,
-    shifts: Path | None,
-    reference: float | None,
-    frequency: float | None,
-    poisson_ratio: float,
-    shear: bool,
-    units: list[tuple[str, str]],
-    sheet: str | None,
-    ignored: list[str],
-    weight: str,
-    vertical: str,
-    expansion: float,
-) -> Fit: ...
+def fit(data: Path, options: dict[str, Any]) -> Fit: ...
 def pack_table(table: Path, output: Path, libraries: list[str], options: dict[str, bool]) -> str | None: ...
 
 @final

@@ -20,12 +20,12 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 pub(crate) use friction::{Calibrate, Compare};
-pub(crate) use measurements::{Fit, Reading, Surface};
+pub(crate) use measurements::{Fit, Surface};
 pub(crate) use rank::Rank;
 pub(crate) use runs::{Plot, Report, Simulate};
 pub(crate) use scenes::{Describe, Material, Pack};
 pub(crate) use sliding::{Contact, Converge, Sweep};
-pub(crate) use values::{Condition, FitVertical, FitWeight, PlotAxis};
+pub(crate) use values::{Condition, PlotAxis};
 
 /// Simulates rubber on a rough surface and packs the simulation as an FMU.
 #[derive(Debug, Parser)]

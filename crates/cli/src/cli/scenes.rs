@@ -3,10 +3,11 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+use asperity_study::material::MaterialOptions;
 use clap::{ArgGroup, Args};
 
 use super::shared::Set;
-use super::values::{Frequencies, count, picture, picture_or_table, share, temperature};
+use super::values::{count, picture, picture_or_table, share};
 
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("described").required(true).args(["scene", "patch"])))]
@@ -40,13 +41,8 @@ pub(crate) struct Material {
     /// output. May be repeated. Default: a plot SCENE-material.svg.
     #[arg(short, long, value_name = "OUT", value_parser = picture_or_table())]
     pub(crate) output: Vec<PathBuf>,
-    /// The range of the angular frequency in rad/s, or of the frequency if Hz is appended. Default: derived from the
-    /// relaxation times.
-    #[arg(long, value_name = "A..B[Hz]", value_parser = Frequencies::parse)]
-    pub(crate) frequencies: Option<Frequencies>,
-    /// The compound's temperature in K, in place of the scene's.
-    #[arg(long, value_name = "T", value_parser = temperature, allow_negative_numbers = true)]
-    pub(crate) temperature: Option<f64>,
+    #[command(flatten)]
+    pub(crate) options: MaterialOptions,
     #[command(flatten)]
     pub(crate) set: Set,
 }
