@@ -94,7 +94,7 @@ impl Fit {
 
 /// Fits a Prony series to the moduli in a file.
 #[pyfunction]
-pub(crate) fn fit(py: Python<'_>, data: PathBuf, Options(options): Options<FitOptions>) -> PyResult<Fit> {
-    let fitted = in_background(py, None, move |_| fit_moduli(&data, &options))?;
+pub(crate) fn fit(py: Python<'_>, data: PathBuf, options: Options<FitOptions>) -> PyResult<Fit> {
+    let fitted = in_background(py, None, move |_| fit_moduli(&data, &options.0))?;
     fitted.map(Fit).map_err(|error| error.raise())
 }

@@ -2,7 +2,6 @@
 
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use serde::de::DeserializeOwned;
 
 /// The options that keyword arguments give; what they leave out is as the command has it.
@@ -16,6 +15,6 @@ impl<T: DeserializeOwned> FromPyObject<'_, '_> for Options<T> {
             error if error.is_instance_of::<PyTypeError>(given.py()) => error,
             error => PyValueError::new_err(error.value(given.py()).to_string()),
         };
-        pythonize::depythonize(&given.cast::<PyDict>()?).map(Self).map_err(refused)
+        pythonize::depythonize(&given).map(Self).map_err(refused)
     }
 }

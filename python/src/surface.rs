@@ -21,9 +21,10 @@ use crate::scene::Scene;
 pub(crate) fn surface<'py>(
     py: Python<'py>,
     path: PathBuf,
-    Options(reading): Options<ProfileReading>,
-    Options(treatment): Options<SurfaceOptions>,
+    reading: Options<ProfileReading>,
+    treatment: Options<SurfaceOptions>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let (Options(reading), Options(treatment)) = (reading, treatment);
     let found = in_background(py, None, move |_| {
         let read = asperity::scene::Surface::load(&path, &reading.options(), &Instruments)?;
         let treated = TreatedSurface::new(read.surface, &treatment, reading.line)?;
@@ -38,10 +39,10 @@ pub(crate) fn surface<'py>(
 pub(crate) fn surface_of<'py>(
     py: Python<'py>,
     scene: &Scene,
-    Options(treatment): Options<SurfaceOptions>,
+    treatment: Options<SurfaceOptions>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let scene = Arc::clone(&scene.scene);
-    let found = in_background(py, None, move |_| TreatedSurface::new(scene.surface.clone(), &treatment, None))?;
+    let found = in_background(py, None, move |_| TreatedSurface::new(scene.surface.clone(), &treatment.0, None))?;
     as_dictionary(py, &found.map_err(|error| error.raise())?, (Vec::new(), Vec::new()))
 }
 

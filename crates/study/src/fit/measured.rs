@@ -417,7 +417,10 @@ mod tests {
                 format!("{head}\n1,2,3\n\n2,x,3\n3,2,1"),
                 "4: column 2 \"E' [MPa]\" = \"x\": expected a number from 1e-30 to 1e30 in Pa",
             ),
-            (format!("{head}\n1,2,-3"), "2: column 3 \"E'' [MPa]\" = \"-3\": expected a number from 1e-30 to 1e30 in Pa"),
+            (
+                format!("{head}\n1,2,-3"),
+                "2: column 3 \"E'' [MPa]\" = \"-3\": expected a number from 1e-30 to 1e30 in Pa",
+            ),
             (format!("{head}\n0,2,3"), "2: column 1 \"f [Hz]\" = \"0\": expected a number from 1e-30 to 1e30 in rad/s"),
             (format!("{head}\n1,,3"), "2: column 2 \"E' [MPa]\": expected a number from 1e-30 to 1e30 in Pa"),
             (
