@@ -2,14 +2,13 @@
 
 use std::path::PathBuf;
 
-use asperity::tables::Unit;
-use asperity_study::fit::{FitOptions, FittedModuli, Vertical, Weight, WlfConstants, fit_moduli};
+use asperity_study::fit::{FitOptions, FittedModuli, fit_moduli};
 use numpy::{IntoPyArray as _, PyArray1, PyArrayMethods as _};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::background::in_background;
 use crate::errors::Raise as _;
+use crate::options::Options;
 
 /// A Prony series fitted to measured moduli.
 #[pyclass(frozen, module = "asperity._native")]
@@ -89,67 +88,13 @@ impl Fit {
 
     /// The file of Prony terms.
     fn text(&self) -> String {
-        self.0.file()
+        self.0.table().text()
     }
 }
 
 /// Fits a Prony series to the moduli in a file.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
-pub(crate) fn fit(
-    py: Python<'_>,
-    data: PathBuf,
-    error: f64,
-    viscosity: bool,
-    wlf: Option<(f64, f64, f64)>,
-    shifts: Option<PathBuf>,
-    reference: Option<f64>,
-    frequency: Option<f64>,
-    poisson_ratio: f64,
-    shear: bool,
-    units: Vec<(String, String)>,
-    sheet: Option<String>,
-    ignored: Vec<String>,
-    weight: &str,
-    vertical: &str,
-    expansion: f64,
-) -> PyResult<Fit> {
-    let unit = |(column, unit): (String, String)| {
-        let known = Unit::parse(&unit);
-        known.map(|known| (column, known)).ok_or_else(|| PyValueError::new_err(format!("{unit}: not a known unit")))
-    };
-    let wlf = wlf.map(|(c1, c2, reference_temperature)| WlfConstants { c1, c2, reference_temperature });
-    let options = FitOptions {
-        data,
-        sheet,
-        ignored,
-        columns: Vec::new(),
-        units: units.into_iter().map(unit).collect::<PyResult<_>>()?,
-        frequency,
-        poisson_ratio,
-        shear,
-        error,
-        viscosity,
-        wlf,
-        shifts,
-        reference,
-        weight: match weight {
-            "storage" => Weight::Storage,
-            "loss" => Weight::Loss,
-            "both" => Weight::Both,
-            _ => return Err(PyValueError::new_err(format!("weight = {weight:?}: expected storage, loss or both"))),
-        },
-        vertical: match vertical {
-            "divide" => Vertical::Divide,
-            "multiply" => Vertical::Multiply,
-            "density" => Vertical::Density(expansion),
-            "none" => Vertical::None,
-            _ => {
-                let expected = "expected divide, multiply, density or none";
-                return Err(PyValueError::new_err(format!("vertical = {vertical:?}: {expected}")));
-            }
-        },
-    };
-    let fitted = in_background(py, None, move |_| fit_moduli(&options))?;
+pub(crate) fn fit(py: Python<'_>, data: PathBuf, options: Options<FitOptions>) -> PyResult<Fit> {
+    let fitted = in_background(py, None, move |_| fit_moduli(&data, &options.0))?;
     fitted.map(Fit).map_err(|error| error.raise())
 }

@@ -2,6 +2,9 @@
 
 use std::str::FromStr;
 
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer};
+
 use crate::scene::values::{Word, words};
 use crate::tables::Unit;
 
@@ -113,6 +116,13 @@ macro_rules! option_words {
 
             fn from_str(word: &str) -> Result<Self, UnknownWord> {
                 Self::parse(word).ok_or_else(|| UnknownWord { expected: words::<Self>() })
+            }
+        }
+
+        impl<'de> Deserialize<'de> for $option {
+            fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+                let word = String::deserialize(from)?;
+                word.parse().map_err(|error| D::Error::custom(format!("{word:?}: {error}")))
             }
         }
     };

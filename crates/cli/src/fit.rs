@@ -6,82 +6,33 @@ use std::path::{Path, PathBuf};
 use asperity_study::Error;
 use asperity_study::decimals::{percent, plain, short};
 use asperity_study::fit::{
-    Consistency, DecadeConsistency, FitOptions, FittedModuli, RelativeError, ShiftedCurve, Test, Vertical, Weight,
-    fit_moduli,
+    Consistency, DecadeConsistency, FittedModuli, RelativeError, ShiftedCurve, Test, Weight, fit_moduli,
 };
 
-use super::cli::{Fit, FitVertical, FitWeight};
+use super::cli::Fit;
 use super::files::{self, check_outputs, name_of, named, picture_beside, print_beside};
 use super::output::{NOT_REACHED, SUCCESS};
 use super::picture;
 use super::terminal::{LabelledLine, lines, note, warn, with_flags};
 
-/// `asperity fit` failed.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum FitError {
-    #[error(transparent)]
-    File(#[from] Error),
-    #[error(transparent)]
-    Fit(#[from] asperity_study::fit::FitError),
-    #[error("--expansion: expected --vertical density beside it")]
-    Expansion,
-}
-
-/// Of the volume of natural rubber, 1/K.
-const EXPANSION: f64 = 6.6e-4;
-
-impl From<&Fit> for FitOptions {
-    fn from(command: &Fit) -> Self {
-        Self {
-            data: command.data.clone(),
-            sheet: command.sheet.clone(),
-            ignored: command.ignore.clone(),
-            columns: command.columns.clone(),
-            units: command.unit.clone(),
-            frequency: command.frequency,
-            poisson_ratio: command.poisson_ratio,
-            shear: command.shear,
-            error: command.fit_error,
-            viscosity: command.viscosity,
-            wlf: command.wlf,
-            shifts: command.shifts.clone(),
-            reference: command.reference,
-            weight: match command.weight {
-                FitWeight::Storage => Weight::Storage,
-                FitWeight::Loss => Weight::Loss,
-                FitWeight::Both => Weight::Both,
-            },
-            vertical: match command.vertical {
-                FitVertical::Divide => Vertical::Divide,
-                FitVertical::Multiply => Vertical::Multiply,
-                FitVertical::Density => Vertical::Density(command.expansion.unwrap_or(EXPANSION)),
-                FitVertical::None => Vertical::None,
-            },
-        }
-    }
-}
-
 /// Reads the moduli, puts those of several temperatures together, fits, writes the terms and the plot, and prints a
 /// summary. Where the requested error cannot be reached, the best fit is written, with a warning and an exit status of
 /// its own.
-pub(crate) fn fit(command: &Fit) -> Result<u8, FitError> {
-    if command.expansion.is_some() && command.vertical != FitVertical::Density {
-        return Err(FitError::Expansion);
-    }
+pub(crate) fn fit(command: &Fit) -> Result<u8, Error> {
     let picture = picture_beside(&command.output, command.plot.as_ref());
-    let read: Vec<PathBuf> = std::iter::once(&command.data).chain(&command.shifts).cloned().collect();
+    let read: Vec<PathBuf> = std::iter::once(&command.data).chain(&command.options.shifts).cloned().collect();
     check_outputs([&command.output].into_iter().chain(&picture), read)?;
-    let fitted = fit_moduli(&command.into())?;
+    let fitted = fit_moduli(&command.data, &command.options)?;
     fitted.notes().iter().for_each(|text| note(text));
     fitted.warnings().iter().for_each(|text| warn(text));
-    files::write(&command.output, with_flags(&fitted.file()))?;
+    files::write(&command.output, with_flags(&fitted.table().text()))?;
     if let Some(path) = &picture {
         let terms = fitted.terms().len();
         let title = format!("{}: {terms} terms, {} rms", name_of(&command.data), percent(fitted.error(), 3));
         picture::write(&fitted.picture().titled(title), path)?;
     }
     print_beside([&command.output], &summary(&fitted, command, picture.as_deref()))?;
-    if fitted.error() <= command.fit_error {
+    if fitted.error() <= command.options.fit_error {
         return Ok(SUCCESS);
     }
     warn(&not_reached(&fitted, command));
@@ -90,7 +41,7 @@ pub(crate) fn fit(command: &Fit) -> Result<u8, FitError> {
 
 /// Why the error asked for was not reached: the data scatter, or known constants do not put them together.
 fn not_reached(fitted: &FittedModuli, command: &Fit) -> String {
-    let (wanted, reached) = (percent(command.fit_error, 3), percent(fitted.error(), 3));
+    let (wanted, reached) = (percent(command.options.fit_error, 3), percent(fitted.error(), 3));
     let scatter = || "the data scatter too much for less, and --fit-error sets what is enough".to_owned();
     let contradiction = || fitted.consistency().filter(|found| found.is_contradiction()).map(contradiction);
     let why = fitted.blame().map(|why| with_flags(&why)).or_else(contradiction).unwrap_or_else(scatter);
@@ -135,14 +86,14 @@ fn consistency(fitted: &FittedModuli, requested: f64) -> Vec<LabelledLine> {
 fn summary(fitted: &FittedModuli, command: &Fit, picture: Option<&Path>) -> String {
     let modulus = fitted.equilibrium_modulus();
     let mut rows = vec![("Data", fitted.data()), ("E_inf", format!("{} Pa", plain(modulus)))];
-    if command.viscosity {
+    if command.options.viscosity {
         rows.push(("Viscosity", format!("{} Pa s", plain(fitted.viscosity()))));
     }
     let glassy: f64 = fitted.terms().iter().map(|term| term.modulus).sum::<f64>() + modulus;
     rows.push(("Glassy", format!("{} Pa, the sum of all moduli", short(glassy, 4))));
     rows.push(("Terms", terms(fitted)));
     rows.extend(errors(fitted, command));
-    rows.extend(consistency(fitted, command.fit_error));
+    rows.extend(consistency(fitted, command.options.fit_error));
     rows.extend(shifts(fitted));
     let written = [Some(command.output.as_path()), picture].into_iter().flatten().map(named);
     rows.push(("Written", written.collect::<Vec<_>>().join(", ")));
@@ -164,13 +115,13 @@ fn terms(fitted: &FittedModuli) -> String {
 /// A table of the errors.
 fn errors(fitted: &FittedModuli, command: &Fit) -> Vec<LabelledLine> {
     let errors = fitted.errors();
-    let counted = match (fitted.test(), command.weight) {
+    let counted = match (fitted.test(), command.options.weight) {
         (Test::Relaxation, _) => "E(t)",
-        (Test::Oscillation, FitWeight::Both) => "E' and E'' together",
-        (Test::Oscillation, FitWeight::Storage) => "E' alone",
-        (Test::Oscillation, FitWeight::Loss) => "E'' alone",
+        (Test::Oscillation, Weight::Both) => "E' and E'' together",
+        (Test::Oscillation, Weight::Storage) => "E' alone",
+        (Test::Oscillation, Weight::Loss) => "E'' alone",
     };
-    let (rms, requested) = (percent(fitted.error(), 3), percent(command.fit_error, 3));
+    let (rms, requested) = (percent(fitted.error(), 3), percent(command.options.fit_error, 3));
     let mut rows = vec![
         ("Error", format!("{rms} rms of {counted}; {requested} requested")),
         ("", format!("{:<11}{:<11}{:<11}at", "", "rms", "largest")),

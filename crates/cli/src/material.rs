@@ -1,17 +1,15 @@
 //! `asperity material`: the complex modulus of a scene's compound over frequency, at its temperature; in the direct
 //! form, the complex stiffness of its links.
 
-use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 use asperity::scene::Scene;
 use asperity_study::Error;
 use asperity_study::decimals;
-use asperity_study::material::{POINTS, Response, Responses, at_temperature, evenly};
-use asperity_study::values::ends;
+use asperity_study::material::{MaterialOptions, POINTS, Response, Responses, evenly};
 use clap::Args;
 
-use super::cli::values::{Set, example, picture_or_table, temperature};
+use super::cli::values::{Set, example, picture_or_table};
 use super::files::{self, check_outputs, ends_in, is_standard_output, load_without_run, named, print_beside};
 use super::picture;
 use super::terminal::{LabelledLine, lines};
@@ -26,55 +24,28 @@ pub(crate) struct Material {
     /// output. May be repeated. Default: a plot SCENE-material.svg.
     #[arg(short, long, value_name = "OUT", value_parser = picture_or_table())]
     pub(crate) output: Vec<PathBuf>,
-    /// The range of the angular frequency in rad/s, or of the frequency if Hz is appended. Default: derived from the
-    /// relaxation times.
-    #[arg(long, value_name = "A..B[Hz]", value_parser = Frequencies::parse)]
-    pub(crate) frequencies: Option<Frequencies>,
-    /// The compound's temperature in K, in place of the scene's.
-    #[arg(long, value_name = "T", value_parser = temperature, allow_negative_numbers = true)]
-    pub(crate) temperature: Option<f64>,
+    #[command(flatten)]
+    pub(crate) options: MaterialOptions,
     #[command(flatten)]
     pub(crate) set: Set,
 }
 
-/// A range of angular frequencies, rad/s.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Frequencies((f64, f64));
-
-impl Frequencies {
-    fn parse(text: &str) -> Result<Self, String> {
-        let (numbers, unit) = text.trim().strip_suffix("Hz").map_or((text, 1.0), |numbers| (numbers, TAU));
-        // Hz may be appended to both ends.
-        let numbers = numbers.replace("Hz", "");
-        let allowed = |(low, high): &(f64, f64)| *low >= 1e-30 && high > low && *high <= 1e30;
-        let message =
-            || "expected A..B, such as 1..1e5 in rad/s or 0.1..1e4Hz, from 1e-30 to 1e30, A below B".to_owned();
-        ends(&numbers).filter(allowed).map(|(low, high)| Self((low * unit, high * unit))).ok_or_else(message)
-    }
-}
-
 /// Prints a summary and a table; writes the outputs or, if none is given, a plot.
 pub(crate) fn material(command: &Material) -> Result<(), Error> {
-    let mut scene = load_without_run(&command.scene, &command.set, |_| false)?;
-    if let Some(temperature) = command.temperature {
-        scene = at_temperature(&scene, temperature)?;
-    }
+    let scene = load_without_run(&command.scene, &command.set, |_| false)?;
     let outputs = if command.output.is_empty() { vec![default_output(&command.scene)] } else { command.output.clone() };
     check_outputs(&outputs, scene.sources(&command.scene))?;
-    let responses = Responses::new(&scene, command.frequencies.map(|range| range.0))?;
+    let responses = Responses::new(scene, &command.options)?;
     for output in &outputs {
         if ends_in(output, "csv") || is_standard_output(output) {
-            files::write(output, responses.file())?;
+            files::write(output, responses.table().text())?;
         } else {
-            picture::write(
-                &responses.picture(&evenly(responses.band, POINTS)).titled(title(&responses, &scene)),
-                output,
-            )?;
+            picture::write(&responses.picture(&evenly(responses.band, POINTS)).titled(title(&responses)), output)?;
         }
     }
     let names: Vec<String> = outputs.iter().map(|output| named(output)).collect();
     let written = lines(&[("Written", names.join(", "))]);
-    print_beside(&outputs, &(summary(&responses, &scene) + &written))
+    print_beside(&outputs, &(summary(&responses) + &written))
 }
 
 /// In the working directory, named after the scene file.
@@ -84,7 +55,8 @@ fn default_output(scene: &Path) -> PathBuf {
 }
 
 /// The summary and a table of some rows.
-fn summary(responses: &Responses<'_>, scene: &Scene) -> String {
+fn summary(responses: &Responses) -> String {
+    let scene = &responses.scene;
     let kind = if responses.is_material() { "Material" } else { "Link" };
     let mut rows: Vec<LabelledLine> = vec![("Scene", scene.name.clone())];
     rows.extend(responses.temperature().map(|text| ("Temperature", text)));
@@ -109,7 +81,7 @@ fn heat(scene: &Scene) -> Option<String> {
 }
 
 /// A response in a line.
-fn figures(responses: &Responses<'_>, response: &Response) -> String {
+fn figures(responses: &Responses, response: &Response) -> String {
     let (symbol, unit) = responses.symbol_and_unit();
     let name = if response.name.is_empty() { String::new() } else { format!("{:<12}", response.name) };
     let glassy = if response.damper() > 0.0 {
@@ -129,13 +101,13 @@ fn figures(responses: &Responses<'_>, response: &Response) -> String {
 }
 
 /// A table of some rows.
-fn table(responses: &Responses<'_>) -> String {
+fn table(responses: &Responses) -> String {
     let points = match (responses.band.1 / responses.band.0).log10() {
         decades if decades > 8.0 => 1.0,
         decades if decades > 3.0 => 2.0,
         _ => 5.0,
     };
-    let names: Vec<String> = responses.columns().into_iter().map(|(name, _)| name).collect();
+    let names: Vec<String> = responses.columns().into_iter().map(|column| column.name).collect();
     let widths: Vec<usize> = names.iter().map(|name| name.chars().count().max(11) + 2).collect();
     let line = |fields: Vec<String>| {
         let fields = fields.iter().zip(&widths).map(|(field, width)| format!("{field:<width$}"));
@@ -143,12 +115,13 @@ fn table(responses: &Responses<'_>) -> String {
     };
     let rows = evenly(responses.band, points)
         .into_iter()
-        .map(|omega| line(responses.row(omega).into_iter().map(|value| format!("{value:.3e}")).collect()));
+        .map(|omega| line(responses.row(omega).map(|value| format!("{value:.3e}")).collect()));
     std::iter::once(line(names.clone())).chain(rows).collect()
 }
 
 /// The title of the picture.
-fn title(responses: &Responses<'_>, scene: &Scene) -> String {
+fn title(responses: &Responses) -> String {
+    let scene = &responses.scene;
     let wlf = scene.material.as_ref().and_then(|material| material.wlf);
     let temperature = wlf.map_or_else(String::new, |wlf| format!(" at {} K", short(wlf.temperature)));
     format!("{}: {}{temperature}", scene.name, responses.quantity())

@@ -2,65 +2,25 @@
 
 use std::path::PathBuf;
 
-use asperity::scene::{self, PowerLaw, RoughnessSpectrum};
+use asperity::scene::{self, HeightMap, PowerLaw, RoughnessSpectrum};
 use asperity_formats::Instruments;
 use asperity_study::Error;
-use asperity_study::surface::{
-    FinerWaves, MadePeriodic, MapAnalysis, Removed, SurfaceAnalysis, SurfaceOptions, TreatedSurface, matrix,
-    profile_columns, spectrum_columns,
-};
+use asperity_study::surface::{FinerWaves, MapAnalysis, ProfileReading, Removed, SurfaceAnalysis, TreatedSurface};
 
-use super::cli::{Reading, Surface};
+use super::cli::Surface;
 use super::files::{self, check_outputs, ends_in, load_without_run, name_of, named, print_beside};
 use super::picture;
 use super::terminal::{LabelledLine, lines, note, warn};
 
-/// `asperity surface` failed.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum SurfaceError {
-    #[error(transparent)]
-    File(#[from] Error),
-    #[error("{}: a scene defines how its surface is read; these options are for profiles only", .path.display())]
-    SceneHasOptions { path: PathBuf },
-    #[error("{}: {error}", .path.display())]
-    Treated { path: PathBuf, error: asperity_study::surface::SurfaceError },
-    #[error(transparent)]
-    Split(asperity_study::surface::SurfaceError),
-    #[error("--spectrum: expected --split, or a map, whose isotropic spectrum is written")]
-    NoSpectrum,
-    #[error("cannot be written as JSON: {0}")]
-    Json(#[from] serde_json::Error),
-}
-
-impl From<&Surface> for SurfaceOptions {
-    fn from(command: &Surface) -> Self {
-        Self {
-            smooth: command.smooth,
-            split: command.split,
-            periodic: match (command.mirror, command.taper) {
-                (true, _) => Some(MadePeriodic::Mirrored),
-                (_, true) => Some(MadePeriodic::Tapered),
-                _ => None,
-            },
-            line_alone: command.reading.line.is_some(),
-            wavelengths: command.wavelengths.clone(),
-        }
-    }
-}
-
 /// Reads the surface, prints the analysis, plots it and writes the profile.
-pub(crate) fn surface(command: &Surface) -> Result<(), SurfaceError> {
+pub(crate) fn surface(command: &Surface) -> Result<(), Error> {
     let (read, files) = read(command)?;
     check_outputs(command.output.iter().chain(&command.write).chain(&command.spectrum), files)?;
-    let treated = TreatedSurface::new(read, &command.into()).map_err(|error| match error {
-        asperity_study::surface::SurfaceError::AlreadyPeriodic => {
-            SurfaceError::Treated { path: command.file.clone(), error }
-        }
-        error => SurfaceError::Split(error),
-    })?;
-    let TreatedSurface { surface, analysis, finer, .. } = &treated;
-    if command.spectrum.is_some() && finer.is_none() && analysis.map.is_none() {
-        return Err(SurfaceError::NoSpectrum);
+    let treated = TreatedSurface::new(read, &command.options, command.reading.line);
+    let treated = treated.map_err(|error| error.context(command.file.display()))?;
+    let TreatedSurface { surface, analysis, .. } = &treated;
+    if command.spectrum.is_some() && treated.isotropic().is_none() {
+        return Err(Error::value("`spectrum`: expected `split`, or a map, whose isotropic spectrum is written"));
     }
     let text = if command.json { serde_json::to_string(analysis)? + "\n" } else { summary(analysis) };
     if let Some(expected) = surface.map_error() {
@@ -71,63 +31,58 @@ pub(crate) fn surface(command: &Surface) -> Result<(), SurfaceError> {
         let hurst = analysis.law.map(|law| format!(", Hurst exponent {:.2}", law.hurst)).unwrap_or_default();
         let height = analysis.statistics.rms_height;
         let title = format!("{}: rms height {height:.3e} m{hurst}", name_of(&command.file));
-        picture::write(&treated.picture(command.wavelengths.as_ref()).titled(title), path)?;
+        picture::write(&treated.picture().titled(title), path)?;
     }
-    write_surface(surface, command)?;
-    write_spectrum(finer.as_ref(), analysis.map.as_ref(), command)
+    write_surface(&treated, command)?;
+    write_spectrum(&treated, command)
 }
 
 /// Writes the profile; a map that was made periodic whole.
-fn write_surface(surface: &scene::Surface, command: &Surface) -> Result<(), SurfaceError> {
+fn write_surface(treated: &TreatedSurface, command: &Surface) -> Result<(), Error> {
     let Some(path) = &command.write else { return Ok(()) };
-    let periodic = if surface.is_periodic() { " with periodic = true" } else { "" };
-    if let Some(map) = surface.map().filter(|_| command.mirror) {
-        files::write(path, matrix(map))?;
-        let [dx, dy] = map.spacing();
-        let keys = format!("with spacing = [{dx:?}, {dy:?}] and periodic = true");
-        note(&format!("{} holds the map in m, for path = of a scene's surface {keys}", named(path)));
-    } else {
-        files::write(path, profile_columns(surface))?;
-        note(&format!("{} holds the profile in m, for path = of a scene's surface{periodic}", named(path)));
-    }
+    files::write(path, treated.file())?;
+    let periodic = if treated.surface.is_periodic() { " with periodic = true" } else { "" };
+    let held = match treated.mirrored_map().map(HeightMap::spacing) {
+        Some([dx, dy]) => {
+            format!("map in m, for path = of a scene's surface with spacing = [{dx:?}, {dy:?}] and periodic = true")
+        }
+        None => format!("profile in m, for path = of a scene's surface{periodic}"),
+    };
+    note(&format!("{} holds the {held}", named(path)));
     Ok(())
 }
 
 /// Writes the spectrum of the finer waves, or the isotropic one of a map.
-fn write_spectrum(
-    finer: Option<&RoughnessSpectrum>,
-    map: Option<&MapAnalysis>,
-    command: &Surface,
-) -> Result<(), SurfaceError> {
-    let Some(path) = &command.spectrum else { return Ok(()) };
-    if let Some(finer) = finer {
-        files::write(path, spectrum_columns(finer.points()))?;
-        let [longest, shortest] = finer.wavelengths();
-        note(&format!(
-            "{} holds their spectrum, for fine = {{ spectrum = \"{}\", longest = {longest:.6e}, shortest = {shortest:.6e} }}",
-            named(path),
-            name_of(path)
-        ));
-    } else if let Some(map) = map {
-        files::write(path, spectrum_columns(&map.spectrum))?;
-        note(&format!("{} holds the isotropic spectrum of the map", named(path)));
-    }
+fn write_spectrum(treated: &TreatedSurface, command: &Surface) -> Result<(), Error> {
+    let (Some(path), Some(text)) = (&command.spectrum, treated.spectrum_file()) else { return Ok(()) };
+    files::write(path, text)?;
+    let held = match treated.finer.as_ref().map(RoughnessSpectrum::wavelengths) {
+        Some([longest, shortest]) => {
+            let name = name_of(path);
+            format!(
+                "their spectrum, for fine = {{ spectrum = \"{name}\", longest = {longest:.6e}, shortest = {shortest:.6e} }}"
+            )
+        }
+        None => "the isotropic spectrum of the map".into(),
+    };
+    note(&format!("{} holds {held}", named(path)));
     Ok(())
 }
 
 /// The surface, and the files that it was read from.
-fn read(command: &Surface) -> Result<(scene::Surface, Vec<PathBuf>), SurfaceError> {
+fn read(command: &Surface) -> Result<(scene::Surface, Vec<PathBuf>), Error> {
     let path = &command.file;
     if ends_in(path, "toml") {
-        if command.reading != Reading::default() {
-            return Err(SurfaceError::SceneHasOptions { path: path.clone() });
+        if command.reading != ProfileReading::default() {
+            let problem = "a scene defines how its surface is read; these options are for profiles only";
+            return Err(Error::value(problem).context(path.display()));
         }
         let scene = load_without_run(path, &[], |_| false)?;
         scene.notes.iter().filter(|read| !read.assumed).for_each(|read| note(&read.text));
         let files = scene.sources(path);
         return Ok((scene.surface, files));
     }
-    let loaded = scene::Surface::load(path, &command.reading.options(), &Instruments).map_err(Error::from)?;
+    let loaded = scene::Surface::load(path, &command.reading.options(), &Instruments)?;
     loaded.warnings.iter().for_each(|warning| warn(warning));
     loaded.notes.iter().for_each(|read| note(&read.text));
     Ok((loaded.surface, vec![path.clone()]))

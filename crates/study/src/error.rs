@@ -245,7 +245,6 @@ macro_rules! of_kind {
         })*
     };
 }
-pub(crate) use of_kind;
 
 of_kind! {
     ContentError => Value,

@@ -1,17 +1,46 @@
 //! The complex modulus of a scene's compound over frequency, at its temperature; in the direct form, the complex stiffness
 //! of its links.
 
+use std::f64::consts::TAU;
+
 use asperity::scene::{Link, LinkKind, MaxwellElement, Scene};
+use asperity::table::{Cell, Column, Header, Table};
+use clap::Args;
+use serde::Deserialize;
 
 use crate::decimals::short;
 use crate::error::{Context as _, Error};
 use crate::picture::{Mark, Picture};
+use crate::values::{ends, temperature};
+
+/// A range of angular frequencies, rad/s.
+pub type FrequencyBand = (f64, f64);
+
+// What is shown of a compound. Not a doc comment: that would be the description of the command.
+#[expect(missing_docs, reason = "clap would print it")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Args)]
+#[serde(default)]
+pub struct MaterialOptions {
+    /// The range of the angular frequency in rad/s, or of the frequency if Hz is appended. Default: derived from the
+    /// relaxation times.
+    #[arg(long, value_name = "A..B[Hz]", value_parser = frequencies)]
+    pub frequencies: Option<FrequencyBand>,
+    /// The compound's temperature in K, in place of the scene's.
+    #[arg(long, value_name = "T", value_parser = temperature, allow_negative_numbers = true)]
+    pub temperature: Option<f64>,
+}
+
+fn frequencies(text: &str) -> Result<FrequencyBand, String> {
+    let (numbers, unit) = text.trim().strip_suffix("Hz").map_or((text, 1.0), |numbers| (numbers, TAU));
+    // Hz may be appended to both ends.
+    let numbers = numbers.replace("Hz", "");
+    let allowed = |(low, high): &(f64, f64)| *low >= 1e-30 && high > low && *high <= 1e30;
+    let message = || "expected A..B, such as 1..1e5 in rad/s or 0.1..1e4Hz, from 1e-30 to 1e30, A below B".to_owned();
+    ends(&numbers).filter(allowed).map(|(low, high)| (low * unit, high * unit)).ok_or_else(message)
+}
 
 /// The scene at another temperature, K.
-///
-/// # Errors
-/// Where nothing in it depends on temperature, or it cannot have this one.
-pub fn at_temperature(scene: &Scene, temperature: f64) -> Result<Scene, Error> {
+fn at_temperature(scene: &Scene, temperature: f64) -> Result<Scene, Error> {
     let wlf = scene.material.as_ref().and_then(|material| material.wlf);
     if wlf.is_none() {
         return Err(Error::scene(
@@ -20,9 +49,6 @@ pub fn at_temperature(scene: &Scene, temperature: f64) -> Result<Scene, Error> {
     }
     scene.at_temperature(temperature).context("`temperature`")
 }
-
-/// A range of angular frequencies, rad/s.
-pub type FrequencyBand = (f64, f64);
 
 /// Decades by which a band exceeds the rates 1/τ of its responses.
 const MARGIN: f64 = 1.0;
@@ -132,27 +158,31 @@ impl Response {
 
 /// The responses of a scene and the band to show them in.
 #[derive(Clone, Debug)]
-pub struct Responses<'a> {
-    scene: &'a Scene,
+pub struct Responses {
+    /// At the temperature that is asked for.
+    pub scene: Scene,
     /// The compound's, or those of the links.
     pub responses: Vec<Response>,
     /// Where they are shown.
     pub band: FrequencyBand,
 }
 
-impl<'a> Responses<'a> {
-    /// Of a scene, over the band that is asked for, or where they change.
+impl Responses {
+    /// Of a scene, at the temperature and over the band that are asked for, or where they change.
     ///
     /// # Errors
-    /// Where the scene has none.
-    pub fn new(scene: &'a Scene, asked: Option<FrequencyBand>) -> Result<Self, Error> {
-        let responses = responses(scene);
+    /// Where the scene has none, cannot have this temperature, or nothing in it depends on that.
+    pub fn new(mut scene: Scene, options: &MaterialOptions) -> Result<Self, Error> {
+        if let Some(temperature) = options.temperature {
+            scene = at_temperature(&scene, temperature)?;
+        }
+        let responses = responses(&scene);
         if responses.is_empty() {
             return Err(Error::scene(
                 "the scene has neither a material nor a link, so it has no modulus or stiffness to show",
             ));
         }
-        let band = asked.unwrap_or_else(|| band(&responses));
+        let band = options.frequencies.unwrap_or_else(|| band(&responses));
         Ok(Self { scene, responses, band })
     }
 
@@ -187,26 +217,26 @@ impl<'a> Responses<'a> {
         ))
     }
 
-    /// The columns' names and units.
-    pub fn columns(&self) -> Vec<(String, &'static str)> {
+    /// The columns of the table.
+    pub fn columns(&self) -> Vec<Column> {
         let (symbol, unit) = self.symbol_and_unit();
-        let mut columns = vec![("omega".to_owned(), "rad/s")];
+        let mut columns = vec![Column::numbers("omega", "rad/s")];
         for response in &self.responses {
             let prefix = if response.name.is_empty() { String::new() } else { format!("{} ", response.name) };
-            columns.push((format!("{prefix}{symbol}'"), unit));
-            columns.push((format!("{prefix}{symbol}''"), unit));
-            columns.push((format!("{prefix}tan delta"), "1"));
+            columns.push(Column::numbers(format!("{prefix}{symbol}'"), unit));
+            columns.push(Column::numbers(format!("{prefix}{symbol}''"), unit));
+            columns.push(Column::numbers(format!("{prefix}tan delta"), "1"));
         }
         columns
     }
 
     /// The numbers of the columns at ω, rad/s.
-    pub fn row(&self, omega: f64) -> Vec<f64> {
-        let values = self.responses.iter().flat_map(|response| {
+    pub fn row(&self, omega: f64) -> impl Iterator<Item = f64> {
+        let values = self.responses.iter().flat_map(move |response| {
             let (storage, loss) = response.at(omega);
             [storage, loss, response.loss_tangent(omega)]
         });
-        std::iter::once(omega).chain(values).collect()
+        std::iter::once(omega).chain(values)
     }
 
     /// The moduli of a compound with its loss tangent, or the stiffnesses of the links with theirs, at `omegas` (rad/s).
@@ -234,19 +264,16 @@ impl<'a> Responses<'a> {
         Picture::stacked(("angular frequency", "rad/s"), panels)
     }
 
-    /// The table as a file.
-    pub fn file(&self) -> String {
-        let mut text = format!("# {} of {} by `asperity material`\n", self.quantity(), self.scene.name);
-        if let Some(temperature) = self.temperature() {
-            text += &format!("# temperature: {temperature}\n");
+    /// The table, whose columns have units as `asperity fit` reads them.
+    pub fn table(&self) -> Table {
+        let header = Header::default()
+            .with(self.quantity(), &format!("{}, by `asperity material`", self.scene.name))
+            .with_some("temperature", self.temperature());
+        let mut table = Table::new(header, self.columns());
+        for omega in evenly(self.band, POINTS) {
+            table.push(self.row(omega).map(Cell::Number));
         }
-        // With units, as `asperity fit` reads them.
-        let names: Vec<String> = self.columns().iter().map(|(name, unit)| format!("{name} [{unit}]")).collect();
-        text += &(names.join(",") + "\n");
-        let line = |omega: f64| {
-            self.row(omega).into_iter().map(|value| format!("{value:e}")).collect::<Vec<_>>().join(",") + "\n"
-        };
-        text + &evenly(self.band, POINTS).into_iter().map(line).collect::<String>()
+        table
     }
 }
 
@@ -286,6 +313,17 @@ mod tests {
         let two = response(&[(0.1, 6.0), (1e-4, 1.0), (1e9, 0.0)]);
         assert_eq!(band(&[zener(), two]), (1.0, 1e5));
         assert_eq!(band(&[response(&[])]), DEFAULT_BAND);
+    }
+
+    #[test]
+    fn frequencies_are_angular_unless_in_hertz() {
+        assert_eq!(frequencies("1..1e5"), Ok((1.0, 1e5)));
+        for hertz in ["0.5..10Hz", "0.5Hz..10 Hz"] {
+            assert_eq!(frequencies(hertz), Ok((0.5 * TAU, 10.0 * TAU)), "{hertz}");
+        }
+        for wrong in ["1", "2..1", "0..1", "1..inf", "a..b"] {
+            assert!(frequencies(wrong).unwrap_err().contains("1..1e5"), "{wrong}");
+        }
     }
 
     #[test]

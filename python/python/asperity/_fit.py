@@ -155,24 +155,24 @@ def fit(
     Raises:
         ValueError: Where the table cannot be read, or its temperatures cannot be put together.
     """
+    options = {
+        "fit_error": fit_error,
+        "viscosity": viscosity,
+        "wlf": wlf,
+        "shifts": None if shifts is None else str(Path(shifts)),
+        "reference": reference,
+        "frequency": frequency,
+        "poisson_ratio": poisson_ratio,
+        "shear": shear,
+        "units": list((units or {}).items()),
+        "sheet": sheet,
+        "ignore": list(ignore),
+        "weight": weight,
+        "vertical": vertical,
+        "expansion": expansion if vertical == "density" else None,
+    }
     with table_file(data) as path:
-        native = _native.fit(
-            path,
-            float(fit_error),
-            viscosity,
-            wlf,
-            None if shifts is None else Path(shifts),
-            reference,
-            frequency,
-            float(poisson_ratio),
-            shear,
-            list((units or {}).items()),
-            sheet,
-            list(ignore),
-            weight,
-            vertical,
-            float(expansion),
-        )
+        native = _native.fit(path, options)
     for text in native.warnings:
         warnings.warn(text, stacklevel=3)
     if native.error > fit_error:

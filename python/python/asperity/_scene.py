@@ -251,10 +251,10 @@ class Scene(SceneInputs):
             taper: As for :func:`asperity.surface`.
             wavelengths: As for :func:`asperity.surface`.
         """
-        from ._surface import Surface, treatment
+        from ._surface import Surface
 
-        asked = treatment(smooth, split, mirror, taper, wavelengths)
-        return Surface(self.name, _native.surface_of(self._native, asked))
+        treatment = {"smooth": smooth, "split": split, "mirror": mirror, "taper": taper, "wavelengths": wavelengths}
+        return Surface(self.name, _native.surface_of(self._native, treatment))
 
     def calibrate(
         self,

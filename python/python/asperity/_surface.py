@@ -18,9 +18,6 @@ from ._files import table_file
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Treatment = tuple[float | None, float | None, bool, bool, tuple[float, float] | None]
-
-
 class Surface:
     """A profile or a map, as read or smoothed, split, made periodic, and its analysis.
 
@@ -108,22 +105,6 @@ class Surface:
         return f"<asperity.Surface {self.name!r}: {len(self.x)} points, rms {self['rms_height']:.4g} m, {hurst}>"
 
 
-def treatment(
-    smooth: float | None, split: float | None, mirror: bool, taper: bool, wavelengths: tuple[float, float] | None
-) -> Treatment:
-    """What is done with a surface, checked."""
-    if smooth is not None and split is not None:
-        raise ValueError("smooth and split: expected one of them")
-    if mirror and taper:
-        raise ValueError("mirror and taper: expected one of them")
-    for name, length in (("smooth", smooth), ("split", split)):
-        if length is not None and not (np.isfinite(length) and length > 0.0):
-            raise ValueError(f"{name} = {length!r}: expected a number above 0, in m")
-    if wavelengths is not None and not 0.0 < wavelengths[0] < wavelengths[1] < np.inf:
-        raise ValueError(f"wavelengths = {wavelengths!r}: expected the shortest and the longest, in m")
-    return smooth, split, mirror, taper, wavelengths
-
-
 def surface(
     data: object,
     *,
@@ -171,9 +152,7 @@ def surface(
         SceneError: Where the file is refused.
         ValueError: Where the surface cannot be made what is asked for.
     """
-    asked = treatment(smooth, split, mirror, taper, wavelengths)
-    if periodic and (mirror or taper):
-        raise ValueError("mirror and taper make a profile periodic: expected neither with periodic=True")
+    treatment = {"smooth": smooth, "split": split, "mirror": mirror, "taper": taper, "wavelengths": wavelengths}
     reading = {
         "unit": unit,
         "x_unit": x_unit,
@@ -188,7 +167,7 @@ def surface(
         "periodic": periodic,
     }
     with table_file(data) as path:
-        found = _native.surface(path, reading, asked)
+        found = _native.surface(path, reading, treatment)
     for text in found["warnings"]:
         warnings.warn(text, stacklevel=2)
     return Surface(path.name, found)

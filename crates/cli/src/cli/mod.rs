@@ -4,6 +4,5 @@ mod measurements;
 mod runs;
 pub(crate) mod values;
 
-pub(crate) use measurements::{Fit, Reading, Surface};
+pub(crate) use measurements::{Fit, Surface};
 pub(crate) use runs::Report;
-pub(crate) use values::{FitVertical, FitWeight};

@@ -18,4 +18,6 @@ pub use head::Head;
 pub use lines::{Line, Row, Separator};
 pub use names::{Heading, RefusedHeading, chosen, find, plain, unit_beside};
 pub use numbers::{Decimal, UsedColumn, decimal_of, is_missing, is_number, number};
-pub use reader::{GivenColumns, assumed_unit, behind_note, left_out_words, number_of, read, told, used_column};
+pub use reader::{
+    GivenColumns, assumed_unit, behind_note, left_out_words, no_number, number_of, read, told, used_column,
+};

@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 
 use asperity::tables::{
-    ContentError, Dimension, FileKind, Others, Presence, ReadColumn, ReadTable, ReadingNote, Role, Unit, UnitRule,
-    shortened,
+    ContentError, Dimension, FileKind, NumberRange, Others, Presence, ReadColumn, ReadTable, ReadingNote, Role, Unit,
+    UnitRule, shortened,
 };
 
 use super::blocks::Block;
@@ -110,16 +110,24 @@ fn value(
 ) -> Result<f64, ContentError> {
     let range = kind.role(column.key).map_or(asperity::tables::ANY, |role| role.range);
     let read = number_of(column, decimal, field).filter(|number| range.holds(*number));
-    read.ok_or_else(|| {
-        let given = if field.is_empty() { String::new() } else { format!("\"{}\"", shortened(field)) };
-        let dimension = column.unit.dimension;
-        let is_plain = column.unit.is_si() || dimension == Dimension::Number;
-        let mut expected = if is_plain { range.to_string() } else { format!("{range} in {}", Unit::si(dimension)) };
-        if decimal.read(field).is_none() && super::numbers::is_number(field) {
-            expected = "numbers with decimal points or with decimal commas, not both in one file".to_owned();
-        }
-        ContentError::value(Some(line), &column.label(), &given, &expected)
-    })
+    read.ok_or_else(|| no_number(column, range, decimal, (line, field)))
+}
+
+/// The error of a field of a line that is no number of a range.
+pub fn no_number(
+    column: &ReadColumn,
+    range: NumberRange,
+    decimal: Decimal,
+    (line, field): (usize, &str),
+) -> ContentError {
+    let given = if field.is_empty() { String::new() } else { format!("\"{}\"", shortened(field)) };
+    let dimension = column.unit.dimension;
+    let is_plain = column.unit.is_si() || dimension == Dimension::Number;
+    let mut expected = if is_plain { range.to_string() } else { format!("{range} in {}", Unit::si(dimension)) };
+    if decimal.read(field).is_none() && super::numbers::is_number(field) {
+        expected = "numbers with decimal points or with decimal commas, not both in one file".to_owned();
+    }
+    ContentError::value(Some(line), &column.label(), &given, &expected)
 }
 
 /// Finds the columns of the roles.

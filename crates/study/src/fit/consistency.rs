@@ -8,10 +8,9 @@
 
 use std::f64::consts::TAU;
 
-use super::compound::{Compound, FitErrors};
+use super::compound::{Compound, FitErrors, Sample, Test};
 use super::options::Weight;
-use super::prony_problem::PronyProblem;
-use super::sample::{Sample, Test};
+use super::prony::PronyProblem;
 
 /// Points a decade of the dense spectra.
 const PER_DECADE: f64 = 12.0;

@@ -1,41 +1,46 @@
-//! A Prony series that was fitted: its figures, and its file.
+//! A Prony series that was fitted: its figures, its file, and its picture.
 
 use std::f64::consts::TAU;
+use std::path::{Path, PathBuf};
 
 use asperity::scene::PronyTerm;
+use asperity::table::{Column, Header, Table};
 
-use super::compound::{Compound, FitErrors};
+use super::compound::{Compound, FitErrors, Sample, Test};
 use super::consistency::Consistency;
-use super::error::FitError;
-use super::file::{in_data, read_moduli};
 use super::measured::MeasuredModuli;
-use super::options::{FitOptions, Vertical, Weight, WlfConstants};
-use super::sample::{Sample, Test};
-use super::search::{Target, search};
-use super::temperatures::{Shift, ShiftedCurve};
-use super::vertical::VerticalShift;
+use super::options::{FitOptions, Vertical, Weight, WlfConstants, word};
+use super::prony::PronyProblem;
+use super::temperatures::{Shift, ShiftedCurve, VerticalShift};
 use crate::decimals::{percent, plain, rounded, short};
-use crate::files::name_of;
+use crate::error::Error;
+use crate::files::{self, name_of};
+use crate::picture::{Mark, Picture};
 
-/// Reads the moduli, puts those of several temperatures together and fits a Prony series.
+/// Reads the moduli in the file `data`, puts those of several temperatures together and fits a Prony series.
 ///
 /// # Errors
 /// Where the table cannot be read, or its temperatures cannot be put together.
-pub fn fit_moduli(options: &FitOptions) -> Result<FittedModuli, FitError> {
-    let mut measured = read_moduli(options)?;
-    if measured.test == Test::Relaxation && options.weight != Weight::Both {
-        return Err(FitError::Weight(options.weight.word()));
+pub fn fit_moduli(data: &Path, options: &FitOptions) -> Result<FittedModuli, Error> {
+    if options.expansion.is_some() && options.vertical != Vertical::Density {
+        return Err(Error::value("`expansion`: expected `vertical` density beside it"));
     }
-    let mut vertical = VerticalShift::apply(options, &mut measured)?;
-    let shift = Shift::of(options, &measured)?;
-    vertical.finish(&mut measured, shift.reference());
-    let samples = shift.samples(&measured).map_err(|error| in_data(options, error))?;
-    Ok(FittedModuli::new(options.clone(), measured, (shift, vertical), samples))
+    let mut measured = MeasuredModuli::read(&files::bytes(data)?, options).map_err(Error::content(data))?;
+    if measured.test == Test::Relaxation && options.weight != Weight::Both {
+        let weight = word(options.weight);
+        return Err(Error::value(format!("`weight` {weight}: a relaxation has one modulus, which counts alone")));
+    }
+    let mut vertical = VerticalShift::apply(data, options, &mut measured)?;
+    let shift = Shift::of(data, options, &measured)?;
+    vertical.finish(options, &mut measured, shift.reference());
+    let samples = shift.samples(&measured).map_err(Error::content(data))?;
+    Ok(FittedModuli::new((data, options), measured, (shift, vertical), samples))
 }
 
 /// A Prony series fitted to measured moduli.
 #[derive(Debug)]
 pub struct FittedModuli {
+    data: PathBuf,
     options: FitOptions,
     measured: MeasuredModuli,
     shift: Shift,
@@ -49,19 +54,20 @@ pub struct FittedModuli {
 
 impl FittedModuli {
     fn new(
-        options: FitOptions,
+        (data, options): (&Path, &FitOptions),
         measured: MeasuredModuli,
         (shift, vertical): (Shift, VerticalShift),
         samples: Vec<Sample>,
     ) -> Self {
         let test = measured.test;
-        let FitOptions { error, viscosity, weight, .. } = options;
-        let exact = search(&samples, &Target { error, viscosity, test, weight });
+        let problem = PronyProblem::new(&samples, test, options.viscosity, options.weight);
+        let exact = problem.fewest_terms(options.fit_error);
         let compound = exact.rounded(FitErrors::of(&exact, &samples, test).both.rms);
         let errors = FitErrors::of(&compound, &samples, test);
         let is_oscillation = test == Test::Oscillation;
         let consistency = is_oscillation.then(|| Consistency::of(&samples, measured.in_hertz));
-        Self { options, measured, shift, vertical, samples, compound, errors, consistency }
+        let (data, options) = (data.to_owned(), options.clone());
+        Self { data, options, measured, shift, vertical, samples, compound, errors, consistency }
     }
 
     /// How the table was read, and what was assumed.
@@ -164,40 +170,37 @@ impl FittedModuli {
         self.shift.blame(&self.measured)
     }
 
-    /// The file of Prony terms, with the fit's figures as comments.
-    pub fn file(&self) -> String {
-        let mut text =
-            String::from("# A generalised Maxwell model: Prony terms fitted to measured moduli by `asperity fit`\n");
-        for (name, value) in self.facts() {
-            text += &format!("# {name} = {value}\n");
+    /// The table of Prony terms, with the fit's figures in its header.
+    pub fn table(&self) -> Table {
+        let columns = [Column::numbers("relaxation_time", "s"), Column::numbers("modulus", "Pa")];
+        let mut table = Table::new(self.header(), columns);
+        for term in &self.compound.terms {
+            table.push([term.relaxation_time.into(), term.modulus.into()]);
         }
-        text += "relaxation_time [s],modulus [Pa]\n";
-        let row = |term: &PronyTerm| format!("{},{}\n", plain(term.relaxation_time), plain(term.modulus));
-        text + &self.compound.terms.iter().map(row).collect::<String>()
+        table
     }
 
-    fn facts(&self) -> Vec<(&'static str, String)> {
-        let both = self.errors.both;
+    fn header(&self) -> Header {
+        let Self { compound, errors: FitErrors { both, .. }, .. } = self;
         let (rms, largest) = (percent(self.error(), 3), percent(both.largest, 3));
-        let mut facts = vec![
-            ("equilibrium_modulus", format!("{} Pa", plain(self.compound.equilibrium_modulus))),
-            ("units", "relaxation_time in s, modulus in Pa".into()),
-            ("source", name_of(&self.options.data)),
-            ("data", self.data()),
-            ("options", self.options_in_words()),
-            ("error", format!("{rms} (root mean square of the relative errors of {} at all rows)", self.quantities())),
-            ("largest_error", format!("{largest} at {}", self.place(both.at))),
-        ];
-        if let Some(found) = &self.consistency {
+        let viscosity = self.options.viscosity.then(|| format!("{} Pa s", plain(compound.viscosity)));
+        let consistency = self.consistency.as_ref().map(|found| {
             let (apart, nearest) = (percent(found.apart(), 2), percent(found.nearest, 3));
-            let text =
-                format!("E'' is {apart} from what E' says it is; no sum of terms is nearer to both than {nearest} rms");
-            facts.push(("kramers_kronig", text));
-        }
-        if self.options.viscosity {
-            facts.insert(1, ("viscosity", format!("{} Pa s", plain(self.compound.viscosity))));
-        }
-        facts
+            format!("E'' is {apart} from what E' says it is; no sum of terms is nearer to both than {nearest} rms")
+        });
+        Header::default()
+            .with("model", "a generalised Maxwell model: Prony terms fitted to measured moduli by `asperity fit`")
+            .with_number("equilibrium_modulus", compound.equilibrium_modulus, "Pa")
+            .with_some("viscosity", viscosity)
+            .with("source", &name_of(&self.data))
+            .with("data", &self.data())
+            .with("options", &self.options_in_words())
+            .with(
+                "error",
+                &format!("{rms} (root mean square of the relative errors of {} at all rows)", self.quantities()),
+            )
+            .with("largest_error", &format!("{largest} at {}", self.place(both.at)))
+            .with_some("kramers_kronig", consistency)
     }
 
     fn quantities(&self) -> &'static str {
@@ -226,7 +229,7 @@ impl FittedModuli {
 
     /// The options that were given.
     fn options_in_words(&self) -> String {
-        let mut text = format!("`fit_error` {}", plain(self.options.error));
+        let mut text = format!("`fit_error` {}", plain(self.options.fit_error));
         if let Some(wlf) = self.options.wlf {
             text += &format!(" `wlf` {},{},{}", plain(wlf.c1), plain(wlf.c2), plain(wlf.reference_temperature));
         }
@@ -237,13 +240,13 @@ impl FittedModuli {
             text += &format!(" `shifts` {}", name_of(shifts));
         }
         if self.options.weight != Weight::Both {
-            text += &format!(" `weight` {}", self.options.weight.word());
+            text += &format!(" `weight` {}", word(self.options.weight));
         }
-        match self.options.vertical {
-            Vertical::Divide => (),
-            Vertical::Multiply => text += " `vertical` multiply",
-            Vertical::Density(expansion) => text += &format!(" `vertical` density `expansion` {}", plain(expansion)),
-            Vertical::None => text += " `vertical` none",
+        if self.options.vertical != Vertical::Divide {
+            text += &format!(" `vertical` {}", word(self.options.vertical));
+        }
+        if self.options.vertical == Vertical::Density {
+            text += &format!(" `expansion` {}", plain(self.options.expansion()));
         }
         if let Some(frequency) = self.options.frequency {
             text += &format!(" `frequency` {}Hz", plain(frequency / TAU));
@@ -251,7 +254,7 @@ impl FittedModuli {
         if self.options.shear {
             text += " `shear`";
         }
-        text + &self.options.ignored.iter().map(|name| format!(" `ignore` '{name}'")).collect::<String>()
+        text + &self.options.ignore.iter().map(|name| format!(" `ignore` '{name}'")).collect::<String>()
     }
 
     /// Whether the data are over frequencies in Hz.
@@ -271,4 +274,64 @@ impl FittedModuli {
 
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(value), high.max(value)))
+}
+
+/// Points of the fit's curves.
+const POINTS_PER_DECADE: f64 = 20.0;
+
+impl FittedModuli {
+    /// The moduli, and how the errors add up.
+    pub fn picture(&self) -> Picture {
+        let unit = if self.counts_cycles() { TAU } else { 1.0 };
+        let places = between(self.samples());
+        let curves = |name: &str, look: usize, measured: fn(&Sample) -> f64, of_fit: fn((f64, f64)) -> f64| {
+            let points = self.samples().iter().map(|sample| [sample.at / unit, measured(sample)]).collect();
+            let line = places.iter().map(|&at| [at / unit, of_fit(self.response(at))]).collect();
+            [Mark::rings(format!("{name} measured"), look, points), Mark::line(format!("{name} fitted"), look, line)]
+        };
+        let mut panels = if self.test() == Test::Oscillation {
+            let storage = curves("E'", 0, |sample| sample.storage, |(storage, _)| storage);
+            let loss = curves("E''", 1, |sample| sample.loss, |(_, loss)| loss);
+            let tangent = curves("tan δ", 2, |sample| sample.loss / sample.storage, |(storage, loss)| loss / storage);
+            vec![(("modulus", "Pa"), [storage, loss].concat()), (("tan δ", ""), tangent.to_vec())]
+        } else {
+            let relaxed = curves("E(t)", 0, |sample| sample.storage, |(storage, _)| storage);
+            vec![(("modulus", "Pa"), relaxed.to_vec())]
+        };
+        panels.push((("rms error up to there, %", ""), self.misfit(unit)));
+        Picture::stacked((&self.x_title(), ""), panels)
+    }
+
+    /// How the errors add up to those of the fit, in per cent, over frequencies in `unit`.
+    fn misfit(&self, unit: f64) -> Vec<Mark> {
+        /// Of the whole: what is less is not drawn.
+        const LEAST: f64 = 0.01;
+        let sums = self.cumulative_errors();
+        let names: &[&str] = if self.test() == Test::Oscillation { &["E'", "E''"] } else { &["E(t)"] };
+        let curve = |(look, name): (usize, &&str)| {
+            let whole = sums.last().map_or(0.0, |sums| sums[1 + look]);
+            let seen = sums.iter().filter(|sums| sums[1 + look] > LEAST * whole);
+            let points = seen.map(|sums| [sums[0] / unit, 100.0 * sums[1 + look]]).collect();
+            Mark::line(format!("{name} off the fit"), look, points)
+        };
+        names.iter().enumerate().map(curve).collect()
+    }
+
+    fn x_title(&self) -> String {
+        let quantity = match (self.test(), self.counts_cycles()) {
+            (Test::Relaxation, _) => "time in s",
+            (Test::Oscillation, true) => "frequency in Hz",
+            (Test::Oscillation, false) => "angular frequency in rad/s",
+        };
+        let shifted = |reference: f64| format!("{quantity}, shifted to {} K", plain(rounded(reference, 6)));
+        self.reference().map_or_else(|| quantity.into(), shifted)
+    }
+}
+
+/// Angular frequencies or times over the range of `samples`, evenly spaced in the logarithm.
+fn between(samples: &[Sample]) -> Vec<f64> {
+    let places = samples.iter().map(|sample| sample.at.log10());
+    let (low, high) = places.fold((f64::MAX, f64::MIN), |(low, high), place| (low.min(place), high.max(place)));
+    let intervals = ((high - low) * POINTS_PER_DECADE).ceil().max(1.0);
+    (0..=intervals as usize).map(|i| 10.0_f64.powf(low + (high - low) * i as f64 / intervals)).collect()
 }

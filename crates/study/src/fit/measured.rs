@@ -1,14 +1,18 @@
-//! Tables of measured moduli, as people and instruments write them: what each row says, in SI units.
+//! Measured moduli, as people and instruments write them: what each row says, in SI units.
+
+use std::f64::consts::TAU;
 
 use asperity::scene::Wlf;
-use asperity::tables::{ContentError, shortened};
-use asperity_formats::text::Block;
-use asperity_formats::text::decode;
+use asperity::tables::{ContentError, Dimension, shortened};
+use asperity_formats::text::{Block, decode};
+use asperity_formats::workbook;
 
 use super::columns::EXPECTED;
-use super::reading::{MeasuredPoint, Reading};
-use super::sample::{Sample, Test};
-use super::table::ModuliTable;
+use super::compound::{Sample, Test};
+use super::conditions::{Condition, conditions_of};
+use super::options::FitOptions;
+use super::table::{MeasuredPoint, ModuliTable};
+use crate::decimals::short;
 
 /// Measured moduli of tension, in SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,18 +28,60 @@ pub(super) struct MeasuredModuli {
 }
 
 impl MeasuredModuli {
-    /// Reads all tables of moduli in the bytes of a file.
-    pub(super) fn parse(bytes: &[u8], reading: &Reading<'_>) -> Result<Self, ContentError> {
-        Self::parse_text(&decode(bytes)?, reading)
+    /// Reads the moduli in the bytes of a file: all tables of a text, or of a sheet of a workbook, or of several that are
+    /// named by their temperatures or frequencies.
+    pub(super) fn read(bytes: &[u8], options: &FitOptions) -> Result<Self, ContentError> {
+        if workbook::is_workbook(bytes) {
+            Self::of_sheets(&workbook::sheets(bytes)?, options)
+        } else {
+            Self::parse(&decode(bytes)?, options)
+        }
     }
 
-    /// The same from text.
-    pub(super) fn parse_text(text: &str, reading: &Reading<'_>) -> Result<Self, ContentError> {
+    fn of_sheets(sheets: &[(String, String)], options: &FitOptions) -> Result<Self, ContentError> {
+        let wanted = |(name, _): &&(String, String)| options.sheet.as_ref().is_none_or(|wanted| wanted == name);
+        let chosen: Vec<&(String, String)> = sheets.iter().filter(wanted).collect();
+        let refuse = |expected| {
+            let found: Vec<&str> = sheets.iter().map(|(name, _)| name.as_str()).collect();
+            Err(ContentError::value(None, "sheets", &found.join(", "), expected))
+        };
+        let names: Vec<&str> = chosen.iter().map(|(name, _)| name.as_str()).collect();
+        let sheet = |((name, text), condition): (&(String, String), Option<Condition>)| {
+            let of_name = condition.filter(|found| found.dimension == Dimension::Frequency).map(|found| found.value);
+            let options = FitOptions { frequency: of_name.or(options.frequency), ..options.clone() };
+            Sheet { name: name.clone(), condition, measured: Self::parse(text, &options) }
+        };
+        let conditions = conditions_of(&names, &options.units);
+        let mut read: Vec<Sheet> = chosen.iter().copied().zip(conditions).map(sheet).collect();
+        if read.len() > 1 {
+            // One that is named as the others is no sheet of something else.
+            let series = read.iter().filter(|sheet| sheet.measured.is_ok() && sheet.condition.is_some()).count();
+            read.retain(|sheet| sheet.measured.is_ok() || (series > 0 && sheet.condition.is_some()));
+        }
+        match read.len() {
+            0 if names.is_empty() => refuse("one of them for `sheet`"),
+            0 => refuse("moduli in one of them; `sheet` NAME says what one lacks"),
+            1 => {
+                let sheet = read.remove(0);
+                let note = format!("sheet {}", sheet.name);
+                let mut measured = sheet.with_condition()?;
+                measured.notes.insert(0, note);
+                Ok(measured)
+            }
+            _ if read.iter().all(|sheet| sheet.condition.is_some()) => together(read),
+            _ => {
+                refuse("moduli in one of them alone, or in sheets named by their temperatures, 20 °C, or `sheet` NAME")
+            }
+        }
+    }
+
+    /// Reads all tables of moduli in a text.
+    fn parse(text: &str, options: &FitOptions) -> Result<Self, ContentError> {
         let blocks = Block::all(text, true);
         let mut tables: Vec<ModuliTable<'_>> = Vec::new();
         let (mut notes, mut errors) = (Vec::new(), Vec::new());
         for block in &blocks {
-            match ModuliTable::read(block, tables.last(), reading) {
+            match ModuliTable::read(block, tables.last(), options) {
                 Ok(Some(table)) => tables.push(table),
                 Ok(None) if block.rows > 1 => notes.push(format!(
                     "lines {} to {}: numbers without names of moduli above them are left out",
@@ -53,7 +99,7 @@ impl MeasuredModuli {
             notes.push(format!("lines {} to {} are left out: {error}", block.first, block.last));
         }
         let Some(first) = tables.first() else { return Err(no_table(text, &blocks)) };
-        if let Some(name) = reading.ignored.iter().find(|name| !first.has(name, text)) {
+        if let Some(name) = options.ignore.iter().find(|name| !first.has(name, text)) {
             return Err(refused(first.line, &format!("`ignore` {name}"), "one of the headings"));
         }
         let (test, in_hertz, reduced) = (first.test(), first.in_hertz(), first.is_reduced());
@@ -67,13 +113,13 @@ impl MeasuredModuli {
             if tables.len() > 1 {
                 table.check_temperature()?;
             }
-            match table.add_points(text, decimal, reading, &mut points)? {
+            match table.add_points(text, decimal, options, &mut points)? {
                 0 => (),
                 1 => notes.push("a row whose loss is 0, below what was measured, is left out".into()),
                 zeros => notes.push(format!("{zeros} rows whose loss is 0, below what was measured, are left out")),
             }
         }
-        notes.splice(0..0, first.notes(reading, tables.len()));
+        notes.splice(0..0, first.notes(options, tables.len()));
         if points.is_empty() {
             return Err(refused(first.line + 1, "", "a row of numbers"));
         }
@@ -126,6 +172,56 @@ impl MeasuredModuli {
     }
 }
 
+/// A sheet with what its name says of all its rows.
+struct Sheet {
+    name: String,
+    condition: Option<Condition>,
+    measured: Result<MeasuredModuli, ContentError>,
+}
+
+impl Sheet {
+    /// Its moduli at the temperature of its name, where the rows have none of their own.
+    fn with_condition(self) -> Result<MeasuredModuli, ContentError> {
+        let mut measured = self.measured.map_err(|error| error.in_sheet(&self.name))?;
+        if let Some(Condition { dimension: Dimension::Temperature, value }) = self.condition {
+            let rows = measured.points.iter_mut().filter(|point| point.temperature.is_none());
+            rows.for_each(|point| point.temperature = Some(value));
+        }
+        Ok(measured)
+    }
+
+    /// Its name, and what is taken from that.
+    fn said(&self) -> Option<String> {
+        let Condition { dimension, value } = self.condition?;
+        let taken = match dimension {
+            Dimension::Frequency => format!("{} Hz", short(value / TAU, 6)),
+            _ => format!("{} K", short(value, 6)),
+        };
+        Some(format!("{} at {taken}", self.name))
+    }
+}
+
+/// The moduli of several sheets.
+fn together(sheets: Vec<Sheet>) -> Result<MeasuredModuli, ContentError> {
+    let said: Vec<String> = sheets.iter().filter_map(Sheet::said).collect();
+    let mut all: Option<MeasuredModuli> = None;
+    for sheet in sheets {
+        let name = sheet.name.clone();
+        let measured = sheet.with_condition()?;
+        match &mut all {
+            None => all = Some(measured),
+            Some(all) if (all.test, all.reduced) != (measured.test, measured.reduced) => {
+                let expected = "tables of one kind in a file: all of oscillation, or all of relaxation";
+                return Err(ContentError::value(None, &format!("sheet {name}"), "another kind of table", expected));
+            }
+            Some(all) => all.points.extend(measured.points),
+        }
+    }
+    let mut all = all.ok_or_else(|| ContentError::value(None, "sheets", "none", "one"))?;
+    all.notes.insert(0, format!("sheets by their names: {}", said.join(", ")));
+    Ok(all)
+}
+
 /// The error of what was `found` in a line.
 fn refused(line: usize, found: &str, expected: &str) -> ContentError {
     ContentError::value(Some(line), "", &shortened(found), expected)
@@ -151,25 +247,20 @@ fn no_table(text: &str, blocks: &[Block<'_>]) -> ContentError {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::TAU;
-
     use asperity::tables::Unit;
 
     use super::*;
 
-    const READING: Reading<'_> =
-        Reading { ignored: &[], columns: &[], units: &[], frequency: None, poisson_ratio: 0.5, shear: false };
-
-    fn read_with(text: &str, reading: &Reading<'_>) -> MeasuredModuli {
-        MeasuredModuli::parse(text.as_bytes(), reading).unwrap_or_else(|error| panic!("{text}: {error}"))
+    fn read_with(text: &str, options: &FitOptions) -> MeasuredModuli {
+        MeasuredModuli::parse(text, options).unwrap_or_else(|error| panic!("{text}: {error}"))
     }
 
     fn read(text: &str) -> MeasuredModuli {
-        read_with(text, &READING)
+        read_with(text, &FitOptions::default())
     }
 
     fn refusal(text: &str) -> String {
-        with_line(MeasuredModuli::parse(text.as_bytes(), &READING).unwrap_err())
+        with_line(MeasuredModuli::read(text.as_bytes(), &FitOptions::default()).unwrap_err())
     }
 
     fn with_line(error: ContentError) -> String {
@@ -232,19 +323,19 @@ mod tests {
         let row = |kelvin, hertz, storage, loss| (Some(kelvin), Sample { at: TAU * hertz, storage, loss });
         let expected = [row(293.15, 2.0, 3e6, 1e6), row(293.15, 20.0, 5e6, 2e6), row(303.15, 2.0, 2e6, 1e6)];
         assert_eq!(found, expected);
-        assert!(points.notes[0].ends_with("and so on for 2 frequencies"), "{:?}", points.notes);
+        assert!(points.notes.iter().any(|note| note.contains("2 frequencies")), "{:?}", points.notes);
         for (text, message) in [
             (
                 "T [°C],E' [Pa] 1 Hz,E' [Pa],E'' [Pa] 1 Hz,E'' [Pa]\n1,2,3,4,5\n",
-                "1: column 3 (E' [Pa]): expected its frequency",
+                "1: column 3 \"E' [Pa]\": expected its frequency",
             ),
             (
                 "T [°C],E' [Pa] 1 Hz,E' [Pa] 2 Hz,E'' [Pa] 1 Hz,E'' [Pa] 3 Hz\n1,2,3,4,5\n",
-                "1: column 5 (E'' [Pa] 3 Hz): expected one column of its kind at 2.0000 Hz",
+                "1: column 5 \"E'' [Pa] 3 Hz\": expected one column of its kind at 2.0000 Hz",
             ),
             (
                 "f [Hz];E' [kPa];E'' [kPa]\n1;5.982;1.204\n10;12.004;2.310",
-                "2: column 2 (E' [kPa]) = \"5.982\": expected a line",
+                "2: column 2 \"E' [kPa]\" = \"5.982\": expected a line",
             ),
         ] {
             assert!(refusal(text).starts_with(message), "{text}\n{}", refusal(text));
@@ -257,11 +348,11 @@ mod tests {
     #[test]
     fn every_encoding_gives_the_same() {
         let bytes = b"f [Hz];E' [N/mm\xb2];tan d;Temp. [\xb0C]\r\n1;2;0,1;-10\r\n";
-        let measured = MeasuredModuli::parse(bytes, &READING).unwrap();
+        let measured = MeasuredModuli::read(bytes, &FitOptions::default()).unwrap();
         assert_eq!((measured.points[0].temperature, measured.points[0].sample.storage), (Some(263.15), 2e6));
         let text: String = bytes.iter().copied().map(char::from).collect();
         let utf_16: Vec<u8> = [0xfeff].into_iter().chain(text.encode_utf16()).flat_map(u16::to_le_bytes).collect();
-        assert_eq!(MeasuredModuli::parse(&utf_16, &READING), Ok(measured));
+        assert_eq!(MeasuredModuli::read(&utf_16, &FitOptions::default()), Ok(measured));
     }
 
     #[test]
@@ -276,7 +367,7 @@ mod tests {
     fn frequencies_may_be_reduced_or_given() {
         assert!(read("a_T f [Hz],E' [MPa],E'' [MPa],T [°C]\n1,2,3,20\n").reduced);
         assert!(!read("f [Hz],E' [MPa],E'' [MPa],T [°C]\n1,2,3,20\n").reduced);
-        let at = Reading { frequency: Some(5.0), ..READING };
+        let at = FitOptions { frequency: Some(5.0), ..FitOptions::default() };
         assert_eq!(read_with("T [°C],E' [MPa],E'' [MPa]\n20,2,3\n", &at).points[0].sample.at, 5.0);
         let factors = read("f [Hz],E' [MPa],E'' [MPa],T [°C],log aT\n1,2,3,20,2\n");
         assert_eq!(factors.points[0].shift, Some(100.0));
@@ -285,32 +376,34 @@ mod tests {
     #[test]
     fn shear_is_converted_and_assumptions_are_noted() {
         let notes = |text: &str| read(text).notes.join("; ");
-        let shear = read_with("f [Hz],G' [MPa],G'' [MPa]\n1,2,3\n", &Reading { poisson_ratio: 0.25, ..READING });
+        let shear = read_with(
+            "f [Hz],G' [MPa],G'' [MPa]\n1,2,3\n",
+            &FitOptions { poisson_ratio: 0.25, ..FitOptions::default() },
+        );
         assert_eq!(shear.points[0].sample.storage, 5e6);
         assert!(shear.notes.join("; ").contains("moduli of shear: E = 2(1 + ν) G, with ν = 0.25"));
         let named = "f [Hz],Storage modulus [MPa],Loss modulus [MPa]\n1,2,3\n";
         assert!(notes(named).contains("does not say whether of tension or shear: E is assumed"));
-        assert_eq!(read_with(named, &Reading { shear: true, ..READING }).points[0].sample.loss, 9e6);
-        assert!(notes("f,E' [MPa],E'' [MPa]\n1,2,3").contains("column 1 (f) names no unit: Hz is assumed"));
-        assert!(notes("omega,E',tan(d)\n1,2e6,3").contains("column 1 (omega) names no unit: rad/s is assumed"));
-        assert!(notes("omega,E',tan(d)\n1,2e6,3").contains("column 2 (E') names no unit: Pa is assumed"));
+        assert_eq!(read_with(named, &FitOptions { shear: true, ..FitOptions::default() }).points[0].sample.loss, 9e6);
+        assert!(notes("f,E' [MPa],E'' [MPa]\n1,2,3").contains("frequency = column 1 \"f\" in Hz, assumed"));
+        assert!(notes("omega,E',tan(d)\n1,2e6,3").contains("frequency = column 1 \"omega\" in rad/s, assumed"));
+        assert!(notes("omega,E',tan(d)\n1,2e6,3").contains("storage_modulus = column 2 \"E'\" in Pa, assumed"));
         let both = "f [Hz],E' [Pa],E'' [Pa],tan(d)\n1,2,3,1.5";
         assert!(notes(both).contains("both E'' and tan delta are given: E'' is used"));
-        assert!(notes("Point,f [Hz],E' [Pa],E'' [Pa],F [N]\n1,1,2,3,9").contains("columns left out: Point, F [N]"));
+        assert!(notes("Point,f [Hz],E' [Pa],E'' [Pa],F [N]\n1,1,2,3,9").contains("left out: Point, F [N]"));
         assert!(notes("f [Hz],E' [Pa],E'' [Pa]\n1,2,3\n2,2,0\n").contains("a row whose loss is 0"));
     }
 
     #[test]
     fn a_unit_may_be_given_and_a_column_ignored() {
         let text = "f [Hz],E' [MPa],E'' [MPa],Temperature\n1,2,3,20";
-        let celsius = [("temperature".to_owned(), Unit::parse("°C").unwrap())];
-        let given = Reading { units: &celsius, ..READING };
+        let units = vec![("temperature".to_owned(), Unit::parse("°C").unwrap())];
+        let given = FitOptions { units, ..FitOptions::default() };
         assert_eq!(read_with(text, &given).points[0].temperature, Some(293.15));
         let wide = ",20,,40,\nf [Hz],E' [MPa],E'' [MPa],E' [MPa],E'' [MPa]\n1,2,3,4,5\n";
         assert_eq!(read_with(wide, &given).points[1].temperature, Some(313.15));
         let ignored = |name: &str| {
-            let ignored = [name.to_owned()];
-            MeasuredModuli::parse(text.as_bytes(), &Reading { ignored: &ignored, ..READING })
+            MeasuredModuli::parse(text, &FitOptions { ignore: vec![name.to_owned()], ..FitOptions::default() })
         };
         assert_eq!(ignored("Temperature").unwrap().points[0].temperature, None);
         assert_eq!(with_line(ignored("temp").unwrap_err()), "1: `ignore` temp: expected one of the headings");
@@ -322,14 +415,17 @@ mod tests {
         let cases = [
             (
                 format!("{head}\n1,2,3\n\n2,x,3\n3,2,1"),
-                "4: column 2 (E' [MPa]) = \"x\": expected a number from 1e-30 to 1e30 in Pa",
+                "4: column 2 \"E' [MPa]\" = \"x\": expected a number from 1e-30 to 1e30 in Pa",
             ),
-            (format!("{head}\n1,2,-3"), "2: column 3 (E'' [MPa]) = \"-3\": expected a number from 1e-30 to 1e30 in Pa"),
-            (format!("{head}\n0,2,3"), "2: column 1 (f [Hz]) = \"0\": expected a number from 1e-30 to 1e30 in rad/s"),
-            (format!("{head}\n1,,3"), "2: column 2 (E' [MPa]): expected a number from 1e-30 to 1e30 in Pa"),
+            (
+                format!("{head}\n1,2,-3"),
+                "2: column 3 \"E'' [MPa]\" = \"-3\": expected a number from 1e-30 to 1e30 in Pa",
+            ),
+            (format!("{head}\n0,2,3"), "2: column 1 \"f [Hz]\" = \"0\": expected a number from 1e-30 to 1e30 in rad/s"),
+            (format!("{head}\n1,,3"), "2: column 2 \"E' [MPa]\": expected a number from 1e-30 to 1e30 in Pa"),
             (
                 format!("{head}\n1,1e-40,3"),
-                "2: column 2 (E' [MPa]) = \"1e-40\": expected a number from 1e-30 to 1e30 in Pa",
+                "2: column 2 \"E' [MPa]\" = \"1e-40\": expected a number from 1e-30 to 1e30 in Pa",
             ),
             (head.into(), "2: expected a row of numbers"),
             (String::new(), "1: expected a header line, then rows"),
@@ -342,7 +438,7 @@ mod tests {
             ("f [Hz],|E*| [Pa]\n1,2".into(), "1: expected a column of the phase beside |E*|"),
             (
                 "f [Hz],omega [rad/s],E' [Pa],E'' [Pa]\n1,2,3,4".into(),
-                "2: column 2 (omega [rad/s]) = \"2.0000e0 rad/s\"",
+                "2: column 2 \"omega [rad/s]\" = \"2.0000e0 rad/s\"",
             ),
             (
                 "f [Hz],E' [Pa],E' [Pa],E'' [Pa]\n1,2,3,4".into(),
@@ -350,25 +446,25 @@ mod tests {
             ),
             (
                 "f [Hz],E' [Pa],E'' [Pa],temperature\n1,2,3,4".into(),
-                "2: column 4 (temperature) = \"4\": expected the unit beside the name, as in temperature [°C]; or \
+                "2: column 4 \"temperature\" = \"4\": expected the unit beside the name, as in temperature [°C]; or \
                 `unit`",
             ),
             (
                 "f [Hz],E' [Pa],E'' [Pa],T [°C]\n1,2,3,-300".into(),
-                "2: column 4 (T [°C]) = \"-300\": expected a number above 0 in K",
+                "2: column 4 \"T [°C]\" = \"-300\": expected a number above 0 in K",
             ),
             (
                 "f [Hz],E' [furlong],E'' [Pa]\n1,2,3".into(),
-                "1: unit of column 2 (E' [furlong]) = \"furlong\": expected one of Pa",
+                "1: unit of column 2 \"E' [furlong]\" = \"furlong\": expected one of Pa",
             ),
             (
                 "f [Hz],E' [MPa],E'' [kPa],tan d\n1,2,0.2,0.1".into(),
-                "2: column 4 (tan d) = \"0.1\": expected 0.0001, which",
+                "2: column 4 \"tan d\" = \"0.1\": expected 0.0001, which",
             ),
-            ("omega [Hz],E' [Pa],E'' [Pa]\n1,2,3".into(), "1: column 1 (omega [Hz]): expected rad/s or 1/s"),
+            ("omega [Hz],E' [Pa],E'' [Pa]\n1,2,3".into(), "1: column 1 \"omega [Hz]\": expected rad/s or 1/s"),
             (
                 "f [Hz];E' [Pa];E'' [Pa]\n1,5;2;3\n2.5;2;3".into(),
-                "3: column 1 (f [Hz]) = \"2.5\": expected numbers with",
+                "3: column 1 \"f [Hz]\" = \"2.5\": expected numbers with",
             ),
             ("1,2,3\n4,5,6".into(), "1: expected columns by their names with units"),
             (
@@ -377,17 +473,17 @@ mod tests {
             ),
             (
                 "f,E',E''\n1,20,3".into(),
-                "2: column 2 (E') = \"20\": expected the unit beside the name, as in E' [MPa]; or `unit` 'E'=MPa': in \
+                "2: column 2 \"E'\" = \"20\": expected the unit beside the name, as in E' [MPa]; or `unit` 'E'=MPa': in \
                 Pa it",
             ),
             (
                 "# moduli in MPa\nf [Hz],E',E''\n1,2e6,3".into(),
-                "1: unit = \"moduli in MPa\": expected the unit beside the name of its column, as in E' [MPa]; or `unit`",
+                "1: unit = \"moduli in MPa\": expected the unit beside the name, as in E' [MPa]; or `unit`",
             ),
-            ("f [Hz],|E*| [Pa],delta\n1,2,3".into(), "1: column 3 (delta): expected the unit beside the name"),
+            ("f [Hz],|E*| [Pa],delta\n1,2,3".into(), "1: column 3 \"delta\": expected the unit beside the name"),
             (
                 "f [Hz],E' [Pa] 20 °C,E' [Pa] 30 °C,E'' [Pa] 20 °C,E'' [Pa] 40 °C\n1,2,3,4,5\n".into(),
-                "1: column 5 (E'' [Pa] 40 °C): expected one column of its kind at 303.15 K",
+                "1: column 5 \"E'' [Pa] 40 °C\": expected one column of its kind at 303.15 K",
             ),
             (
                 "T=20;\nf [Hz] E' [Pa] E'' [Pa]\n1 2 3\n2 3 4\n\nT=30;\nf [Hz] E' [Pa] E'' [Pa]\n1 2 3\n2 3 4\n".into(),

@@ -11,9 +11,9 @@ use std::f64::consts::LN_10;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::compound::{Sample, Test};
 use super::options::{Weight, WlfConstants};
-use super::prony_problem::{PronyProblem, Solution};
-use super::sample::{Sample, Test};
+use super::prony::{PronyProblem, Solution};
 
 /// The rows of one temperature.
 #[derive(Clone, Debug, PartialEq)]

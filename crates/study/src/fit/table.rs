@@ -1,16 +1,211 @@
-//! A table of moduli in a file: which columns make its curves, and what its rows say.
+//! A table of moduli in a file: which columns make its curves - one, or one for each temperature or frequency -, and what its
+//! rows say.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use asperity::scene::Wlf;
-use asperity::tables::{ABOVE_ZERO, ContentError, POSITIVE, shortened};
-use asperity_formats::text::{Block, Decimal, Line, Row, UsedColumn, decimal_of, left_out_words, plain};
+use asperity::tables::{ABOVE_ZERO, ContentError, Dimension, POSITIVE, ReadColumn, shortened};
+use asperity_formats::text::{Block, Decimal, Line, Row, UsedColumn, assumed_unit, decimal_of, plain, told};
 
-use super::columns::{self, Column, Columns, Quantity, with_unit};
-use super::curves::{Chosen, Curve, twin};
-use super::reading::{MeasuredPoint, Reading};
-use super::sample::{Sample, Test};
-use super::stated_temperature::{Setting, setting};
+use super::columns::{self, Column, Columns, with_unit};
+use super::compound::{Sample, Test};
+use super::conditions::{Condition, Setting, conditions_above, setting};
+use super::options::FitOptions;
+
+/// What a row of a table says of one curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct MeasuredPoint {
+    /// Line number in the file.
+    pub(super) line: usize,
+    pub(super) sample: Sample,
+    /// K.
+    pub(super) temperature: Option<f64>,
+    /// a_T as the table has it.
+    pub(super) shift: Option<f64>,
+    /// b_T as the table has it.
+    pub(super) vertical: Option<f64>,
+    /// The measurement that it belongs to, where the table numbers them.
+    pub(super) set: Option<f64>,
+}
+
+/// One curve of a table: its columns. A table has one, or one for each temperature or frequency.
+#[derive(Clone, Debug)]
+struct Curve {
+    /// Frequency or time; `None` where there is no such column.
+    at: Option<Column>,
+    modulus: Column,
+    loss: Option<Column>,
+    /// K.
+    temperature: Option<f64>,
+    /// rad/s.
+    frequency: Option<f64>,
+}
+
+impl Curve {
+    /// Its columns.
+    fn columns(&self) -> impl Iterator<Item = &Column> {
+        [self.at.as_ref(), Some(&self.modulus), self.loss.as_ref()].into_iter().flatten()
+    }
+
+    /// With what holds for all of it.
+    fn under(self, condition: Option<Condition>) -> Self {
+        let of = |dimension| condition.filter(|found| found.dimension == dimension).map(|found| found.value);
+        Self { temperature: of(Dimension::Temperature), frequency: of(Dimension::Frequency), ..self }
+    }
+}
+
+/// The columns by what they are for: frequencies or times, moduli, losses.
+#[derive(Debug)]
+struct Chosen {
+    at: Vec<Column>,
+    moduli: Vec<Column>,
+    losses: Vec<Column>,
+}
+
+impl Chosen {
+    /// `None` where there are no moduli.
+    fn of(columns: &Columns) -> Result<Option<Self>, ContentError> {
+        let (at, times) = (columns.first(&["frequency"]), columns.first(&["time"]));
+        let relaxed = columns.first(&["relaxation_modulus", "shear_relaxation_modulus"]);
+        if at.is_empty() && !times.is_empty() && !relaxed.is_empty() {
+            return Ok(Some(Self { at: times, moduli: relaxed, losses: Vec::new() }));
+        }
+        let moduli =
+            columns.first(&["storage_modulus", "shear_storage_modulus", "complex_modulus", "complex_shear_modulus"]);
+        let kind = moduli.first().map(|column| column.key);
+        let losses = columns.first(match kind {
+            Some("storage_modulus") => &["loss_modulus", "loss_tangent", "phase_angle"],
+            Some("shear_storage_modulus") => &["shear_loss_modulus", "loss_modulus", "loss_tangent", "phase_angle"],
+            Some(_) => &["phase_angle", "loss_tangent"],
+            None => &["loss_modulus", "shear_loss_modulus", "loss_tangent", "phase_angle"],
+        });
+        let missing = |expected: &str| Err(ContentError::value(Some(columns.line), "", "", expected));
+        match (kind, losses.is_empty()) {
+            (None, true) => Ok(None),
+            (None, false) => missing("a column of the storage modulus: E' [MPa]"),
+            (Some("complex_modulus" | "complex_shear_modulus"), true) => {
+                missing("a column of the phase beside |E*|: delta [°] or tan delta")
+            }
+            (Some(_), true) => missing("a column of the loss: E'' [MPa] or tan delta"),
+            _ => Ok(Some(Self { at, moduli, losses })),
+        }
+    }
+
+    /// A second column of frequencies beside one of moduli.
+    fn take_other_frequency(&mut self) -> Option<Column> {
+        let has_two = self.at.len() == 2 && self.moduli.len() == 1 && self.at[0].is(&["frequency"]);
+        if has_two { self.at.pop() } else { None }
+    }
+
+    /// One curve, or a pair of columns for each temperature, or for each frequency where there is no column of these.
+    fn curves(&self, block: &Block<'_>, columns: &Columns, options: &FitOptions) -> Result<Vec<Curve>, ContentError> {
+        let Self { at, moduli, losses } = self;
+        let curves = if let [modulus] = &moduli[..] {
+            match twin(columns.line, at).or_else(|| twin(columns.line, losses)) {
+                Some(error) => Err(error),
+                None => {
+                    let (at, modulus, loss) = (at.first().cloned(), modulus.clone(), losses.first().cloned());
+                    let condition = modulus.condition;
+                    Ok(vec![Curve { at, modulus, loss, temperature: None, frequency: None }.under(condition)])
+                }
+            }
+        } else {
+            self.check_counts(columns.line)?;
+            self.pairs(block, columns, options)
+        }?;
+        let has_none = |curve: &Curve| curve.at.is_none() && curve.frequency.or(options.frequency).is_none();
+        if curves.iter().any(has_none) {
+            let expected = "a frequency column, f [Hz] or omega [rad/s]; or `frequency` 10Hz for all rows";
+            return Err(ContentError::value(Some(columns.line), "", "", expected));
+        }
+        Ok(curves)
+    }
+
+    /// Of several columns of moduli there are as many of losses, and one of frequencies or as many.
+    fn check_counts(&self, line: usize) -> Result<(), ContentError> {
+        let Self { at, moduli, losses } = self;
+        let fits = |count: usize| count == moduli.len();
+        if (losses.is_empty() || fits(losses.len())) && (at.len() <= 1 || fits(at.len())) {
+            return Ok(());
+        }
+        let given =
+            format!("{} columns of moduli, {} of losses, {} of frequencies", moduli.len(), losses.len(), at.len());
+        let expected = "a pair of moduli a temperature or frequency, and one frequency or one for each";
+        Err(ContentError::value(Some(line), "", &given, expected))
+    }
+
+    fn pairs(&self, block: &Block<'_>, columns: &Columns, options: &FitOptions) -> Result<Vec<Curve>, ContentError> {
+        let Self { at, moduli, losses } = self;
+        let of_frequency = |column: &Column| column.condition.is_some_and(|it| it.dimension == Dimension::Frequency);
+        let has_temperatures = !columns.first(&["temperature", "set_temperature"]).is_empty();
+        let by_frequency = at.is_empty() && (has_temperatures || moduli.iter().all(of_frequency));
+        let dimension = if by_frequency { Dimension::Frequency } else { Dimension::Temperature };
+        let above = conditions_above(block, columns.line, &options.units, dimension)?;
+        let pairs = Pairs { above: &above, line: columns.line, dimension };
+        let curve = |(i, modulus): (usize, &Column)| {
+            let value = pairs.condition(modulus).ok_or_else(|| {
+                let expected = match dimension {
+                    Dimension::Frequency => {
+                        "its frequency, in its name (E' [MPa] 1 Hz) or in the line above; or one column of a kind: \
+                         `ignore` NAME"
+                    }
+                    _ => {
+                        "its temperature, in its name (E' [MPa] 20 °C) or in the line above; or one column of a kind: \
+                         `ignore` NAME"
+                    }
+                };
+                modulus.refuse(columns.line, "", expected)
+            })?;
+            let at = if at.len() == 1 { at.first().cloned() } else { pairs.partner(at, i, value)? };
+            let loss = pairs.partner(losses, i, value)?;
+            let curve = Curve { at, modulus: modulus.clone(), loss, temperature: None, frequency: None };
+            Ok(curve.under(Some(Condition { dimension, value })))
+        };
+        moduli.iter().enumerate().map(curve).collect()
+    }
+}
+
+/// Finds which columns belong together.
+struct Pairs<'c> {
+    /// What the line above the names says, in SI units.
+    above: &'c [Option<f64>],
+    line: usize,
+    /// Of what tells them apart.
+    dimension: Dimension,
+}
+
+impl Pairs<'_> {
+    fn condition(&self, column: &Column) -> Option<f64> {
+        let own = column.condition.filter(|condition| condition.dimension == self.dimension);
+        own.map(|condition| condition.value).or_else(|| self.above.get(column.index).copied().flatten())
+    }
+
+    /// The column for place `i`, where its condition is this `value` or none is named; else the only one of that value.
+    fn partner(&self, columns: &[Column], i: usize, value: f64) -> Result<Option<Column>, ContentError> {
+        let Some(own) = columns.get(i) else { return Ok(None) };
+        if self.condition(own).is_none_or(|other| other == value) {
+            return Ok(Some(own.clone()));
+        }
+        let mut alike = columns.iter().filter(|column| self.condition(column) == Some(value));
+        match (alike.next(), alike.next()) {
+            (Some(found), None) => Ok(Some(found.clone())),
+            _ => {
+                let expected = match self.dimension {
+                    Dimension::Frequency => format!("one column of its kind at {:.4} Hz", value / TAU),
+                    _ => format!("one column of its kind at {value:.2} K"),
+                };
+                Err(own.refuse(self.line, "", &expected))
+            }
+        }
+    }
+}
+
+/// Two columns of one kind, where one is used, are one too many.
+fn twin(line: usize, columns: &[Column]) -> Option<ContentError> {
+    let [first, second, ..] = columns else { return None };
+    let expected = format!("one column of a kind: {} is there already; ignore one by `ignore` NAME", first.text);
+    Some(second.refuse(line, "", &expected))
+}
 
 /// E' of any rubber is above it, Pa: without a unit, a modulus below it is in another one.
 const SOFTEST: f64 = 1e3;
@@ -43,51 +238,50 @@ impl<'a> ModuliTable<'a> {
     pub(super) fn read(
         block: &Block<'a>,
         before: Option<&Self>,
-        reading: &Reading<'_>,
+        options: &FitOptions,
     ) -> Result<Option<Self>, ContentError> {
-        let found = Self::with_own_header(block, reading)?;
+        let found = Self::with_own_header(block, options)?;
         let alike = |table: &&Self| (table.block.separator, table.block.columns) == (block.separator, block.columns);
         match before.filter(alike).filter(|_| found.is_none()) {
             Some(before) => {
                 let header: Vec<Line<'a>> =
                     before.block.above.iter().copied().filter(|(line, _)| *line >= before.line).collect();
-                Self::with_own_header(&block.with_header(&header), reading)
+                Self::with_own_header(&block.with_header(&header), options)
             }
             None => Ok(found),
         }
     }
 
-    fn with_own_header(block: &Block<'a>, reading: &Reading<'_>) -> Result<Option<Self>, ContentError> {
-        use Quantity::{Loss, LossTangent, Set, SetTemperature, ShearLoss, ShiftFactor, Temperature, VerticalFactor};
-        let Some(columns) = Columns::read(block, reading)? else { return Ok(None) };
+    fn with_own_header(block: &Block<'a>, options: &FitOptions) -> Result<Option<Self>, ContentError> {
+        let Some(columns) = Columns::read(block, options)? else { return Ok(None) };
         let Some(mut chosen) = Chosen::of(&columns)? else { return Ok(None) };
         let other_frequency = chosen.take_other_frequency();
-        let curves = chosen.curves(block, &columns, reading)?;
-        let is_loss = |loss: &Column| matches!(loss.quantity, Loss | ShearLoss);
-        let tangent = columns.first(&[&[LossTangent]]).into_iter().next().filter(|_| chosen.losses.iter().any(is_loss));
-        let one = |quantities: &[&[Quantity]]| columns.first(quantities).into_iter().next();
+        let curves = chosen.curves(block, &columns, options)?;
+        let is_loss = |loss: &Column| loss.is(&["loss_modulus", "shear_loss_modulus"]);
+        let tangent = columns.first(&["loss_tangent"]).into_iter().next().filter(|_| chosen.losses.iter().any(is_loss));
+        let one = |keys: &[&str]| columns.first(keys).into_iter().next();
         let mut table = Self {
             block: block.clone(),
             line: columns.line,
             curves,
-            temperature: one(&[&[Temperature], &[SetTemperature]]),
+            temperature: one(&["temperature", "set_temperature"]),
             bare_temperature: None,
             temperature_line: None,
-            shift: one(&[&[ShiftFactor]]),
-            vertical: one(&[&[VerticalFactor]]),
-            set: one(&[&[Set]]),
+            shift: one(&["shift_factor"]),
+            vertical: one(&["vertical_factor"]),
+            set: one(&["set"]),
             other_frequency,
             tangent,
             columns,
         };
         table.check_columns()?;
-        table.read_temperature_above(reading);
+        table.read_temperature_above(options);
         Ok(Some(table))
     }
 
     /// There is one column of temperatures, and columns in use have a unit or may be taken in SI units.
     fn check_columns(&self) -> Result<(), ContentError> {
-        if let Some(error) = twin(self.line, &self.columns.first(&[&[Quantity::Temperature]])) {
+        if let Some(error) = twin(self.line, &self.columns.first(&["temperature"])) {
             return Err(error);
         }
         for curve in &self.curves {
@@ -101,12 +295,12 @@ impl<'a> ModuliTable<'a> {
     }
 
     /// The temperature of a table whose rows have none: in its heading lines, `Temperature: 20 °C`.
-    fn read_temperature_above(&mut self, reading: &Reading<'_>) {
+    fn read_temperature_above(&mut self, options: &FitOptions) {
         if self.temperature.is_some() || self.curves.iter().any(|curve| curve.temperature.is_some()) {
             return;
         }
         let mut lines = self.block.above.iter().rev();
-        match lines.find_map(|(line, text)| Some((*line, *text, setting(text, reading.units)?))) {
+        match lines.find_map(|(line, text)| Some((*line, *text, setting(text, &options.units)?))) {
             Some((line, text, Setting::Kelvin(kelvin))) => {
                 self.curves.iter_mut().for_each(|curve| curve.temperature = Some(kelvin));
                 self.temperature_line = Some((line, shortened(text)));
@@ -131,10 +325,8 @@ impl<'a> ModuliTable<'a> {
     }
 
     pub(super) fn test(&self) -> Test {
-        let is_relaxation = self
-            .curves
-            .iter()
-            .any(|curve| matches!(curve.modulus.quantity, Quantity::Relaxation | Quantity::ShearRelaxation));
+        let relaxed = ["relaxation_modulus", "shear_relaxation_modulus"];
+        let is_relaxation = self.curves.iter().any(|curve| curve.modulus.is(&relaxed));
         if is_relaxation { Test::Relaxation } else { Test::Oscillation }
     }
 
@@ -147,36 +339,33 @@ impl<'a> ModuliTable<'a> {
     }
 
     /// What was found and assumed.
-    pub(super) fn notes(&self, reading: &Reading<'_>, tables: usize) -> Vec<String> {
+    pub(super) fn notes(&self, options: &FitOptions, tables: usize) -> Vec<String> {
         let curve = &self.curves[0];
-        let name = Column::label;
         let used = [curve.at.as_ref(), Some(&curve.modulus), curve.loss.as_ref(), self.temperature.as_ref()];
-        let many = if tables > 1 { format!("{tables} tables, the first with ") } else { String::new() };
-        let kind = if curve.frequency.is_some() { "frequencies" } else { "temperatures" };
-        let more =
-            if self.curves.len() > 1 { format!(", and so on for {} {kind}", self.curves.len()) } else { String::new() };
-        let read = used.into_iter().flatten().map(|column| {
-            let said = column.assumed_unit().map_or_else(String::new, |unit| format!(" in {unit}, assumed"));
-            format!("{} = {}{said}", key_of(column), name(column))
-        });
-        let read = read.collect::<Vec<_>>().join(", ");
-        let left_out = left_out_words(&self.columns.left_out);
-        let mut notes = vec![format!("{many}{read}{more}; {} rows{left_out}", self.block.rows)];
+        let used: Vec<ReadColumn> = used.into_iter().flatten().map(|column| (**column).clone()).collect();
+        let mut notes = vec![told(&used, self.block.rows, &self.columns.left_out).text];
+        if tables > 1 {
+            notes.push(format!("{tables} tables are read, the first with these columns"));
+        }
+        if self.curves.len() > 1 {
+            let kind = if curve.frequency.is_some() { "frequencies" } else { "temperatures" };
+            notes.push(format!("there are columns for {} {kind}", self.curves.len()));
+        }
         if let Some((line, text)) = &self.temperature_line {
             notes.push(format!("all rows are at the temperature of line {line}, \"{text}\""));
         }
         if let Some((line, text)) = &self.bare_temperature {
             notes.push(format!("line {line} ({text}) names no unit of temperature and is left out"));
         }
-        let shear = self.is_shear(&curve.modulus, reading);
+        let shear = self.is_shear(&curve.modulus, options);
         if shear {
-            let nu = reading.poisson_ratio;
+            let nu = options.poisson_ratio;
             let text = format!("moduli of shear: E = 2(1 + ν) G, with ν = {nu} (`poisson_ratio`)");
             notes.push(text);
         } else if !names_letter(&curve.modulus.text) {
             let text = format!(
                 "{} does not say whether of tension or shear: E is assumed, `shear` says G",
-                name(&curve.modulus)
+                curve.modulus.label()
             );
             notes.push(text);
         }
@@ -189,10 +378,9 @@ impl<'a> ModuliTable<'a> {
         notes
     }
 
-    fn is_shear(&self, modulus: &Column, reading: &Reading<'_>) -> bool {
-        use Quantity::{ShearComplex, ShearRelaxation, ShearStorage};
-        let named = matches!(modulus.quantity, ShearStorage | ShearComplex | ShearRelaxation);
-        named || (reading.shear && !names_letter(&modulus.text))
+    fn is_shear(&self, modulus: &Column, options: &FitOptions) -> bool {
+        let named = modulus.is(&["shear_storage_modulus", "complex_shear_modulus", "shear_relaxation_modulus"]);
+        named || (options.shear && !names_letter(&modulus.text))
     }
 
     /// The sign before the decimals of a text with these tables.
@@ -210,13 +398,13 @@ impl<'a> ModuliTable<'a> {
         &self,
         text: &'a str,
         decimal: Decimal,
-        reading: &Reading<'_>,
+        options: &FitOptions,
         points: &mut Vec<MeasuredPoint>,
     ) -> Result<usize, ContentError> {
         let mut zeros = 0;
         for row in self.block.rows(text) {
             for curve in &self.curves {
-                match self.point(curve, Numbers { row: &row, decimal }, reading)? {
+                match self.point(curve, Numbers { row: &row, decimal }, options)? {
                     Some(point) => points.push(point),
                     None if curve.modulus.is_empty(&row) => (),
                     None => zeros += 1,
@@ -231,7 +419,7 @@ impl<'a> ModuliTable<'a> {
         &self,
         curve: &Curve,
         row: Numbers<'_>,
-        reading: &Reading<'_>,
+        options: &FitOptions,
     ) -> Result<Option<MeasuredPoint>, ContentError> {
         let has_many = self.curves.len() > 1;
         if has_many && curve.modulus.is_empty(row.row) && curve.loss.as_ref().is_none_or(|loss| loss.is_empty(row.row))
@@ -240,17 +428,17 @@ impl<'a> ModuliTable<'a> {
         }
         let at = match &curve.at {
             Some(column) => row.positive(column)?,
-            None => curve.frequency.or(reading.frequency).unwrap_or(TAU),
+            None => curve.frequency.or(options.frequency).unwrap_or(TAU),
         };
         self.check_other_frequency(at, row)?;
         let modulus = row.positive(&curve.modulus)?;
-        if modulus < SOFTEST && curve.modulus.assumed_unit().is_some() {
+        if modulus < SOFTEST && assumed_unit(&curve.modulus).is_some() {
             let expected = format!("{}: in Pa it is too soft for rubber", with_unit(&curve.modulus, "MPa"));
             return Err(row.refuse(&curve.modulus, &expected));
         }
         let Some((storage, loss)) = response(modulus, curve, row)? else { return Ok(None) };
         self.check_tangent(storage, loss, curve, row)?;
-        let to_tension = if self.is_shear(&curve.modulus, reading) { 2.0 * (1.0 + reading.poisson_ratio) } else { 1.0 };
+        let to_tension = if self.is_shear(&curve.modulus, options) { 2.0 * (1.0 + options.poisson_ratio) } else { 1.0 };
         let sample = Sample { at, storage: to_tension * storage, loss: to_tension * loss };
         let temperature = match (&self.temperature, curve.temperature) {
             (Some(column), _) => Some(row.temperature(column)?),
@@ -297,26 +485,6 @@ impl<'a> ModuliTable<'a> {
     }
 }
 
-/// The key of a column's role.
-fn key_of(column: &Column) -> &'static str {
-    use Quantity::{
-        Complex, Frequency, Loss, LossTangent, Phase, Relaxation, SetTemperature, ShearComplex, ShearLoss,
-        ShearRelaxation, ShearStorage, Storage, Temperature, Time,
-    };
-    match column.quantity {
-        Frequency => "frequency",
-        Time => "time",
-        Storage | ShearStorage => "storage modulus",
-        Loss | ShearLoss => "loss modulus",
-        Complex | ShearComplex => "complex modulus",
-        LossTangent => "tan delta",
-        Phase => "phase angle",
-        Temperature | SetTemperature => "temperature",
-        Relaxation | ShearRelaxation => "relaxation modulus",
-        _ => "column",
-    }
-}
-
 /// Whether a heading says E or G.
 fn names_letter(text: &str) -> bool {
     const MARKS: [&str; 16] = [
@@ -334,10 +502,10 @@ fn response(modulus: f64, curve: &Curve, row: Numbers<'_>) -> Result<Option<(f64
         return Ok(None);
     }
     let loss = row.positive(column)?;
-    let is_complex = matches!(curve.modulus.quantity, Quantity::Complex | Quantity::ShearComplex);
-    let angle = match column.quantity {
-        Quantity::Phase => loss,
-        Quantity::LossTangent => loss.atan(),
+    let is_complex = curve.modulus.is(&["complex_modulus", "complex_shear_modulus"]);
+    let angle = match column.key {
+        "phase_angle" => loss,
+        "loss_tangent" => loss.atan(),
         _ => return Ok(Some((modulus, loss))),
     };
     if angle >= FRAC_PI_2 {
@@ -345,7 +513,7 @@ fn response(modulus: f64, curve: &Curve, row: Numbers<'_>) -> Result<Option<(f64
     }
     Ok(Some(if is_complex {
         (modulus * angle.cos(), modulus * angle.sin())
-    } else if column.quantity == Quantity::LossTangent {
+    } else if column.is(&["loss_tangent"]) {
         (modulus, modulus * loss)
     } else {
         (modulus, modulus * angle.tan())

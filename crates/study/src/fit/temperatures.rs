@@ -1,22 +1,18 @@
-//! How moduli of several temperatures become those of one: by known constants, by given factors, or by superposition.
+//! How moduli of several temperatures become those of one: shifted in frequency by known constants, by given factors or by
+//! superposition, and scaled by the factor b_T, by which all moduli of a temperature are those of the reference.
 
 use std::f64::consts::LN_10;
 use std::path::Path;
 
 use asperity::tables::{ABOVE_ZERO, ContentError, Dimension, FileKind, ReadTable, Role};
 
-use asperity::scene::FileFormats as _;
-use asperity_formats::Instruments;
-
-use super::compound::{Compound, FitErrors};
-use super::error::FitError;
+use super::compound::{Compound, FitErrors, Sample};
 use super::measured::MeasuredModuli;
-use super::options::{FitOptions, WlfConstants};
-use super::reading::MeasuredPoint;
-use super::sample::Sample;
+use super::options::{FitOptions, Vertical, WlfConstants};
 use super::shift::{Factor, Isotherm, Superposition, law_of, rms_with, superpose};
-use super::shift_error::ShiftError;
+use super::table::MeasuredPoint;
 use crate::decimals::{percent, plain, rounded, short};
+use crate::error::Error;
 use crate::files;
 
 /// The rows of one temperature in a master curve.
@@ -52,29 +48,29 @@ const NEAR: f64 = 1.0;
 /// The widest curve, K.
 const WIDEST: f64 = 3.0;
 /// 20 °C, K.
-pub(super) const ROOM: f64 = 293.15;
+const ROOM: f64 = 293.15;
 
 impl Shift {
     /// What the options and the table say.
-    pub(super) fn of(options: &FitOptions, measured: &MeasuredModuli) -> Result<Self, FitError> {
-        let in_data = |error: ShiftError| FitError::Shift { path: options.data.clone(), error };
+    pub(super) fn of(data: &Path, options: &FitOptions, measured: &MeasuredModuli) -> Result<Self, Error> {
+        let in_data = |error: ContentError| Error::content(data)(error);
         let is_known = |point: &MeasuredPoint| point.temperature.is_some();
         let all = measured.points.iter().all(is_known);
         if measured.reduced || !measured.points.iter().any(is_known) {
             return match options.shifts {
-                Some(_) if !measured.reduced => Err(in_data(ShiftError::NoTemperatures)),
+                Some(_) if !measured.reduced => Err(in_data(refused("no temperatures", "some to shift by `shifts`"))),
                 _ => Ok(Self::None),
             };
         }
         if !all {
-            return Err(in_data(ShiftError::Mixed));
+            return Err(in_data(refused("rows without a temperature", "one in each row, or in none")));
         }
         let isotherms = isotherms(measured);
         if let Some(wlf) = options.wlf {
             return Ok(Self::Known(wlf, isotherms));
         }
         if let Some(path) = &options.shifts {
-            return given(path, options, isotherms);
+            return given(path, data, options, isotherms);
         }
         if measured.points.iter().all(|point| point.shift.is_some()) {
             let factors = factors_of(measured, &isotherms).map_err(in_data)?;
@@ -283,17 +279,32 @@ fn factor_of(point: &MeasuredPoint, factors: &[Factor], isotherms: &[Isotherm]) 
     factors.get(isotherm_of(point, isotherms)).map_or(1.0, |factor| factor.ln.exp())
 }
 
+/// What shifts rows where no factors can be found.
+const CONSTANTS_OR_FACTORS: &str = "`wlf` C1,C2,TREF or `shifts` SHIFTS.csv";
+
+/// The error of what was `found` in the whole table.
+fn refused(found: &str, expected: &str) -> ContentError {
+    ContentError::value(None, "", found, expected)
+}
+
 /// Curves that can be laid over each other.
-fn check(measured: &MeasuredModuli, isotherms: &[Isotherm], ends: (f64, f64)) -> Result<(), ShiftError> {
+fn check(measured: &MeasuredModuli, isotherms: &[Isotherm], ends: (f64, f64)) -> Result<(), ContentError> {
     for isotherm in isotherms {
         let place = isotherm.samples[0].at;
         if isotherm.samples.iter().all(|sample| (sample.at / place - 1.0).abs() < 1e-6) {
             let what = if measured.in_hertz { "frequency" } else { "place" };
-            return Err(ShiftError::OnePlace { temperature: isotherm.temperature, what });
+            let found = format!("{:.2} K at one {what} alone", isotherm.temperature);
+            let expected = format!("curves that overlap; or {CONSTANTS_OR_FACTORS}");
+            return Err(refused(&found, &expected));
         }
     }
     let widest = widest(measured, isotherms);
-    if widest > WIDEST { Err(ShiftError::Ramp { from: ends.0, to: ends.1 }) } else { Ok(()) }
+    if widest <= WIDEST {
+        return Ok(());
+    }
+    let found = format!("temperatures that run through from {:.2} to {:.2} K", ends.0, ends.1);
+    let expected = format!("rows at a few temperatures, which have a range in common; or {CONSTANTS_OR_FACTORS}");
+    Err(refused(&found, &expected))
 }
 
 /// The largest distance of a row's temperature from that of its curve, twice, K.
@@ -306,14 +317,15 @@ fn widest(measured: &MeasuredModuli, isotherms: &[Isotherm]) -> f64 {
 }
 
 /// The factors in the rows of the table, one for each curve.
-fn factors_of(measured: &MeasuredModuli, isotherms: &[Isotherm]) -> Result<Vec<Factor>, ShiftError> {
+fn factors_of(measured: &MeasuredModuli, isotherms: &[Isotherm]) -> Result<Vec<Factor>, ContentError> {
     let mut factors: Vec<Option<f64>> = vec![None; isotherms.len()];
     for point in &measured.points {
         let i = isotherm_of(point, isotherms);
         let (temperature, here) = (isotherms[i].temperature, point.shift.unwrap_or(1.0));
         match factors[i] {
             Some(before) if (here / before - 1.0_f64).abs() > 0.01 => {
-                return Err(ShiftError::Factors { temperature, from: before, to: here });
+                let found = format!("a_T at {temperature:.2} K of {before} and {here}");
+                return Err(refused(&found, "one for all rows of a temperature"));
             }
             Some(_) => (),
             None => factors[i] = Some(here),
@@ -328,38 +340,30 @@ fn factors_of(measured: &MeasuredModuli, isotherms: &[Isotherm]) -> Result<Vec<F
 }
 
 /// Reads factors from a table: columns temperature and a_T.
-fn given(path: &Path, options: &FitOptions, isotherms: Vec<Isotherm>) -> Result<Shift, FitError> {
+fn given(path: &Path, data: &Path, options: &FitOptions, isotherms: Vec<Isotherm>) -> Result<Shift, Error> {
     let table = shift_table(path)?;
     if table.column("shift_factor").is_none() {
         let error = ContentError::value(table.line, "columns", "no a_T", SHIFTS.expected);
-        return Err(FitError::Moduli { path: path.to_owned(), error });
+        return Err(Error::content(path)(error));
     }
     let table = factors_in(&table, "shift_factor");
     let factor = |isotherm: &Isotherm| {
-        let distance = |(kelvin, _): &&(f64, f64)| (kelvin - isotherm.temperature).abs();
-        let nearest = table.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let found = nearest.filter(|row| distance(row) <= NEAR);
-        let missing = || ShiftError::NoFactor {
-            file: path.display().to_string(),
-            temperature: isotherm.temperature,
-            within: NEAR,
+        let temperature = isotherm.temperature;
+        let found = nearest(&table, temperature).filter(|(kelvin, _)| (kelvin - temperature).abs() <= NEAR);
+        let missing = || {
+            let found = format!("{temperature:.2} K");
+            refused(&found, &format!("a factor for it in {}, within {NEAR} K", path.display()))
         };
-        let ln = found.ok_or_else(missing)?.1.ln();
-        Ok(Factor { temperature: isotherm.temperature, ln, error: 0.0 })
+        Ok(Factor { temperature, ln: found.ok_or_else(missing)?.1.ln(), error: 0.0 })
     };
-    let factors: Result<Vec<Factor>, ShiftError> = isotherms.iter().map(factor).collect();
-    let factors = factors.map_err(|error| FitError::Shift { path: options.data.clone(), error })?;
-    Ok(Shift::with_factors(factors, isotherms, options.reference))
+    let factors: Result<Vec<Factor>, ContentError> = isotherms.iter().map(factor).collect();
+    Ok(Shift::with_factors(factors.map_err(Error::content(data))?, isotherms, options.reference))
 }
 
-/// The b_T of all points from a table of shift factors; `None` where it has none.
-pub(super) fn given_factors(path: &Path, measured: &MeasuredModuli) -> Result<Option<Vec<f64>>, FitError> {
-    let table = factors_in(&shift_table(path)?, "vertical_factor");
-    let of_point = |point: &MeasuredPoint| {
-        let distance = |(kelvin, _): &&(f64, f64)| (kelvin - point.temperature.unwrap_or(0.0)).abs();
-        table.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).map(|(_, factor)| *factor)
-    };
-    Ok(measured.points.iter().map(of_point).collect())
+/// The row of factors that is nearest to a temperature, K.
+fn nearest(factors: &[(f64, f64)], temperature: f64) -> Option<&(f64, f64)> {
+    let distance = |(kelvin, _): &&(f64, f64)| (kelvin - temperature).abs();
+    factors.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 
 const SHIFT_ROLES: [Role; 5] = [
@@ -396,10 +400,8 @@ pub const SHIFTS: FileKind = FileKind {
 };
 
 /// The table of shift factors in a file, its logarithms taken back.
-fn shift_table(path: &Path) -> Result<ReadTable, FitError> {
-    let kind = FileKind { one_of: &[], ..SHIFTS };
-    let read = Instruments.table(&files::bytes(path)?, &kind, &[]);
-    let mut table = read.map_err(|error| FitError::Moduli { path: path.to_owned(), error })?;
+fn shift_table(path: &Path) -> Result<ReadTable, Error> {
+    let mut table = files::read_table(path, &FileKind { one_of: &[], ..SHIFTS }, &[])?;
     for column in &mut table.columns {
         let plain = match column.key {
             "log_shift_factor" => "shift_factor",
@@ -415,4 +417,97 @@ fn shift_table(path: &Path) -> Result<ReadTable, FitError> {
 /// Temperatures in K and their factors of a kind; none where there is no column of these.
 fn factors_in(table: &ReadTable, key: &str) -> Vec<(f64, f64)> {
     table.values("temperature").iter().copied().zip(table.values(key).iter().copied()).collect()
+}
+
+/// What is done about the moduli of other temperatures.
+#[derive(Debug)]
+pub(super) struct VerticalShift {
+    kind: Vertical,
+    /// The least and the largest b_T.
+    range: Option<[f64; 2]>,
+}
+
+impl VerticalShift {
+    /// Divides the moduli of all points by their b_T, up to what is the same for all.
+    pub(super) fn apply(data: &Path, options: &FitOptions, measured: &mut MeasuredModuli) -> Result<Self, Error> {
+        let factors = match options.vertical {
+            Vertical::Density => Some(densities(measured, options.expansion()).map_err(Error::content(data))?),
+            Vertical::None => None,
+            Vertical::Divide | Vertical::Multiply => of_columns(options, measured)?,
+        };
+        let has_column = measured.points.iter().any(|point| point.vertical.is_some());
+        if options.vertical == Vertical::None && has_column {
+            measured.notes.push("the column b_T is left out".into());
+        }
+        if options.vertical == Vertical::Multiply && factors.is_none() {
+            let expected = "a column b_T in the table, or in that of `shifts`";
+            return Err(Error::content(data)(ContentError::value(None, "`vertical`", "multiply", expected)));
+        }
+        let Some(factors) = factors else { return Ok(Self { kind: Vertical::None, range: None }) };
+        measured.points.iter_mut().zip(&factors).for_each(|(point, b)| point.sample = point.sample.scaled(1.0 / b));
+        let least = factors.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = factors.iter().copied().fold(0.0, f64::max);
+        Ok(Self { kind: options.vertical, range: Some([least, most]) })
+    }
+
+    /// Makes b_T 1 at the reference temperature (K) where the factors are not relative to one already, and says what was
+    /// done.
+    pub(super) fn finish(&mut self, options: &FitOptions, measured: &mut MeasuredModuli, reference: Option<f64>) {
+        if self.kind == Vertical::Density {
+            let at_reference = density(reference.unwrap_or(ROOM), options.expansion());
+            measured.points.iter_mut().for_each(|point| point.sample = point.sample.scaled(at_reference));
+            self.range = self.range.map(|range| range.map(|b| b / at_reference));
+        }
+        let Some([least, most]) = self.range else { return };
+        let how = match self.kind {
+            Vertical::Multiply => "multiplied by the column's b_T, that is divided by",
+            Vertical::Density => "divided by b_T = ρT/(ρ0 T0),",
+            Vertical::Divide | Vertical::None => "divided by the column's b_T (`vertical` multiply: multiplied),",
+        };
+        let [least, most] = [least, most].map(|b| plain(rounded(b, 4)));
+        measured.notes.push(format!("moduli of other temperatures are {how} {least} to {most}"));
+    }
+
+    /// A scene shifts times alone.
+    pub(super) fn warning(&self) -> Option<String> {
+        /// Of the moduli.
+        const NEGLIGIBLE: f64 = 0.01;
+        let [least, most] = self.range?;
+        let largest = (1.0 - least).max(most - 1.0);
+        let text = format!(
+            "a scene shifts relaxation times with temperature, not moduli: at the temperatures measured it is up to {} off \
+             for want of b_T",
+            percent(largest, 2)
+        );
+        (largest > NEGLIGIBLE).then_some(text)
+    }
+}
+
+/// ρT/(ρ_room T_room): of a volume that grows by `expansion` (1/K).
+fn density(temperature: f64, expansion: f64) -> f64 {
+    temperature / ROOM / (1.0 + expansion * (temperature - ROOM))
+}
+
+fn densities(measured: &MeasuredModuli, expansion: f64) -> Result<Vec<f64>, ContentError> {
+    let of_point = |temperature: Option<f64>| Some(density(temperature?, expansion)).filter(|b| *b > 0.0);
+    let factors = measured.points.iter().map(|point| of_point(point.temperature));
+    let factors: Option<Vec<f64>> = factors.collect();
+    let expected = "a temperature of each row, and frequencies that are not reduced";
+    factors.filter(|_| !measured.reduced).ok_or_else(|| ContentError::value(None, "`vertical`", "density", expected))
+}
+
+/// The b_T of all points, by which moduli are divided: of their own rows, or of the table of shift factors.
+fn of_columns(options: &FitOptions, measured: &MeasuredModuli) -> Result<Option<Vec<f64>>, Error> {
+    let own: Option<Vec<f64>> = measured.points.iter().map(|point| point.vertical).collect();
+    let found = match (own, &options.shifts) {
+        (Some(own), _) => Some(own),
+        (None, Some(path)) => {
+            let table = factors_in(&shift_table(path)?, "vertical_factor");
+            let of_point = |point: &MeasuredPoint| Some(nearest(&table, point.temperature.unwrap_or(0.0))?.1);
+            measured.points.iter().map(of_point).collect()
+        }
+        (None, None) => None,
+    };
+    let multiplies = options.vertical == Vertical::Multiply;
+    Ok(found.map(|found| found.into_iter().map(|b| if multiplies { 1.0 / b } else { b }).collect()))
 }

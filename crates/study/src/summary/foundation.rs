@@ -4,8 +4,7 @@
 use asperity::model::{Reduction, Replaced, Replacement};
 use asperity::scene::{Foundation, FoundationKind, Initial, LinkKind, Material, PronyTerm, Quality, Scene};
 
-use super::words::{LEFT_OUT, each_once, number, six_digits};
-use super::{LabelledLine, labelled};
+use super::words::{LEFT_OUT, LabelledLine, each_once, labelled, number, six_digits};
 
 /// What the links stand for, in a line each; nothing in the direct form.
 pub(super) fn foundation(scene: &Scene) -> Vec<String> {

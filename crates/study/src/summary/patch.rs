@@ -4,7 +4,7 @@ use asperity::element::{FrictionTable, LeftOut, Load, OperatingPoint, left_out};
 use asperity::patch::{MotionError, Patch, PatchRun, PatchStart, Pose};
 use asperity::scene::{Backing, FaceHeat, Parameter, TableExtrapolation, Value};
 
-use super::{LabelledLine, labelled};
+use super::words::{LabelledLine, labelled};
 use crate::decimals::rounded;
 use crate::error::Error;
 
@@ -13,6 +13,11 @@ const STIFF: f64 = 3e9;
 
 /// Halvings of an interval of heights.
 const HALVINGS: u32 = 50;
+
+/// The summary of a patch.
+pub fn described_patch(patch: &Patch) -> Vec<LabelledLine> {
+    [vec![("Name", patch.name().to_owned())], patch_rows(patch)].concat()
+}
 
 /// The summary without the name.
 pub fn patch_rows(patch: &Patch) -> Vec<LabelledLine> {

@@ -1,18 +1,79 @@
-//! The summary of a scene, and that on a screen: what it is, what is computed and what is left out, without what follows
-//! from that.
+//! What `describe` says of a scene: its summary, and that on a screen, without what follows from that; as JSON with all
+//! constants that follow from it; and its picture.
+
+use std::sync::Arc;
 
 use asperity::model::Model;
 use asperity::outputs::variables;
 use asperity::scene::{
-    Axis, CarrierBody, CarrierInitial, Extrapolation, Force, Input, Link, LinkKind, Material, OutputGroup, Parameter,
-    Path, Phase, Scene, Surface, Wlf, peak_to_valley,
+    Axis, CarrierBody, CarrierInitial, Extrapolation, Force, FoundationKind, Friction, Input, Layer, Link, LinkKind,
+    Material, OutputGroup, Parameter, Path, Phase, Scene, Surface, Wlf, peak_to_valley,
 };
+use asperity::simulation::{Simulation, SimulationError};
+use asperity_fmi::FmuModel;
+use serde::Serialize;
 
-use super::fine::{fine, fine_in_brief};
 use super::foundation::{foundation, foundation_in_brief, reduction};
-use super::friction::friction;
-use super::words::{LEFT_OUT, each_once, number, or_left_out, word};
-use super::{LabelledLine, labelled};
+use super::friction::{FineFrictionCurve, MIDDLE, fine, fine_in_brief, friction};
+use super::words::{LEFT_OUT, LabelledLine, each_once, labelled, number, or_left_out, word};
+use crate::decimals::rounded;
+use crate::picture::{Mark, Picture, Stroke};
+use crate::runner::start;
+
+/// The summary of a scene, with how its tables were read and the memory of its FMU.
+///
+/// # Errors
+/// Where no run can start with it.
+pub fn described(scene: &Scene) -> Result<Vec<LabelledLine>, SimulationError> {
+    Simulation::new(scene, &start(scene, 0.0))?;
+    let bytes = FmuModel::memory(&Arc::new(scene.clone()));
+    let memory = ("Memory", format!("at most {} MiB an instance of the FMU", bytes.div_ceil(1 << 20)));
+    let tables = labelled("Tables", scene.notes.iter().map(|read| read.text.clone()));
+    Ok([vec![title(scene)], scene_rows(scene), tables, vec![memory]].concat())
+}
+
+/// The same on one screen: what it is, what is computed and left out, and what was assumed of its tables.
+///
+/// # Errors
+/// As for [`described`].
+pub fn described_shortly(scene: &Scene) -> Result<Vec<LabelledLine>, SimulationError> {
+    Simulation::new(scene, &start(scene, 0.0))?;
+    let assumed = scene.notes.iter().filter(|read| read.assumed).map(|read| read.text.clone());
+    Ok([vec![title(scene)], short_scene_rows(scene), labelled("Tables", assumed)].concat())
+}
+
+fn title(scene: &Scene) -> LabelledLine {
+    let text = scene.description.as_ref().map_or_else(|| scene.name.clone(), |text| format!("{}: {text}", scene.name));
+    ("Scene", text)
+}
+
+/// A scene as JSON has it: as read, plus, in the material form, the constants that the direct form would give.
+#[derive(Debug, Serialize)]
+pub struct DescribedScene {
+    #[serde(flatten)]
+    scene: Scene,
+    /// a_T, 1; null in the direct form.
+    shift_factor: Option<f64>,
+}
+
+impl DescribedScene {
+    /// Of the scene as given.
+    pub fn new(given: &Scene) -> Self {
+        let direct = given.direct_form();
+        let (thickness, width) = (given.layer.thickness, given.layer.width);
+        let shear_strength = given.friction.as_ref().and_then(|friction| friction.shear_strength);
+        let phases = direct.excitation.into_iter().zip(&given.excitation);
+        let scene = Scene {
+            material: given.material.clone(),
+            foundation: given.foundation.clone(),
+            layer: Layer { thickness, width, foundation: given.layer.foundation, ..direct.layer },
+            friction: direct.friction.map(|friction| Friction { shear_strength, ..friction }),
+            excitation: phases.map(|(phase, given)| Phase { until_pressure: given.until_pressure, ..phase }).collect(),
+            ..direct
+        };
+        Self { scene, shift_factor: given.material.as_ref().map(Material::shift_factor) }
+    }
+}
 
 /// The summary without the scene's name.
 pub fn scene_rows(scene: &Scene) -> Vec<LabelledLine> {
@@ -352,4 +413,35 @@ fn path_text(name: &str, unit: &str, path: &Path) -> String {
         text += &format!(", {name} by {} {unit} at {} Hz", number(path.amplitude), number(path.frequency));
     }
     text
+}
+
+/// The stiffness of the links over that of the body that they stand for, over wavelength, and μ_h of a mass over speed
+/// where bands rub; `None` in the direct form.
+pub fn picture(scene: &Scene) -> Option<Picture> {
+    let curve = |(look, (name, kind)): (usize, (&str, LinkKind))| {
+        let points = scene.quality(kind)?.curve.iter().map(|&(length, share)| [length, share]).collect();
+        Some(Mark::line(name, look, points))
+    };
+    let kinds: &[(&str, LinkKind)] = match scene.layer.foundation {
+        Some(FoundationKind::HalfSpace) => &[("along z and along x", LinkKind::Vertical)],
+        _ => &[("along z", LinkKind::Vertical), ("along x", LinkKind::Horizontal)],
+    };
+    let mut curves: Vec<Mark> = kinds.iter().copied().enumerate().filter_map(curve).collect();
+    let exact = curves.first()?.points().map(|[length, _]| [length, 1.0]).collect();
+    curves.push(Mark::broken("the body", 6, exact, Stroke::Dashed));
+    let panels = vec![(("stiffness of the links over the body's", ""), curves)];
+    let mut picture = Picture::stacked(("wavelength", "m"), panels).titled(&scene.name);
+    picture.rows.extend(friction_picture(scene).into_iter().flat_map(|friction| friction.rows));
+    Some(picture)
+}
+
+fn friction_picture(scene: &Scene) -> Option<Picture> {
+    let curve = |(look, FineFrictionCurve { temperature, points }): (usize, FineFrictionCurve)| {
+        let name = temperature.map_or_else(|| "mu_h".into(), |kelvin| format!("{} K", rounded(kelvin, 6)));
+        Mark::line(name, look, points.into_iter().map(|(speed, friction)| [speed, friction]).collect())
+    };
+    let curves: Vec<Mark> = FineFrictionCurve::around(scene).into_iter().enumerate().map(curve).collect();
+    let title = format!("friction below the profile, mu_h, under {} MPa", MIDDLE / 1e6);
+    let rows = vec![("friction coefficient", vec![(title, curves.clone())])];
+    (!curves.is_empty()).then(|| Picture::side_by_side(("speed", "m/s"), rows))
 }

@@ -1,8 +1,16 @@
-//! Words and numbers of a summary.
+//! Lines, words and numbers of a summary.
 
 use asperity::scene::{Parameter, Scene, Value};
 
 use crate::decimals::{decimal, rounded};
+
+/// A line with a label; without one it continues the line above.
+pub type LabelledLine = (&'static str, String);
+
+/// Lines of which the first has the label.
+pub fn labelled(label: &'static str, texts: impl IntoIterator<Item = String>) -> Vec<LabelledLine> {
+    texts.into_iter().enumerate().map(|(i, text)| (if i == 0 { label } else { "" }, text)).collect()
+}
 
 /// Stands for what the scene does not give.
 pub(super) const LEFT_OUT: &str = "left out";

@@ -5,9 +5,11 @@
 
 use std::path::PathBuf;
 
-use asperity::tables::{ContentError, LARGEST, fields};
-use asperity_formats::text::decode;
+use asperity::table::{Table, TableError};
+use asperity::tables::LARGEST;
 use nalgebra::{DMatrix, SymmetricEigen};
+
+use crate::error::Error;
 
 /// Numbers of a scene that move together.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,64 +57,44 @@ const COLUMNS: [&str; 3] = ["key", "value", "scale"];
 /// What is written with some digits is symmetric and positive but for this part.
 const ROUNDING: f64 = 1e-6;
 
-/// The covariance in a file, as yet of no name, and the line of each number.
-type Read = (Covariance, Vec<usize>);
-
-/// The covariance in the bytes of a file.
-pub(super) fn read_covariance(bytes: &[u8]) -> Result<Read, ContentError> {
-    let text = decode(bytes)?;
-    let is_data = |line: &&str| !line.trim().is_empty() && !line.starts_with('#');
-    let mut lines = (1..).zip(text.lines()).filter(|(_, line)| is_data(line));
-    let (first, head) = lines.next().unwrap_or((1, ""));
-    let head: Vec<String> = fields(head, ',').map(|name| name.into_owned()).collect();
-    if head.len() <= COLUMNS.len() || head[..COLUMNS.len()] != COLUMNS {
-        let expected = "key, value, scale and a column for each key, as calibrate writes them";
-        return Err(ContentError::value(Some(first), "columns", &format!("\"{}\"", head.join(", ")), expected));
+impl Covariance {
+    /// That of a table, each number about the one that is fitted in the table.
+    ///
+    /// # Errors
+    /// Where it is no such table.
+    pub(super) fn of(table: &Table, file: PathBuf) -> Result<Self, Error> {
+        let names: Vec<&str> = table.columns().iter().map(|column| column.name.as_str()).collect();
+        let Some(keys) = names.strip_prefix(&COLUMNS[..]).filter(|keys| !keys.is_empty()) else {
+            let expected = "expected key, value, scale and a column for each key, as calibrate writes them";
+            return Err(table.error(format!("the columns {}: {expected}", names.join(", "))).into());
+        };
+        if table.len() != keys.len() {
+            let (found, expected) = (table.len(), keys.len());
+            return Err(table.error(format!("{found} rows: expected {expected}, one for each column of a key")).into());
+        }
+        let number = |row: usize, name: &str| -> Result<f64, TableError> {
+            let found = table.number(row, name, "")?.filter(|number| number.abs() <= LARGEST);
+            found.ok_or_else(|| table.cell_error(row, name, "", "a number"))
+        };
+        let (mut numbers, mut rows) = (Vec::new(), Vec::new());
+        for (row, key) in keys.iter().copied().enumerate() {
+            if table.word(row, "key", "")? != key {
+                return Err(table.cell_error(row, "key", "", "the keys of the columns, in their order").into());
+            }
+            if keys[..row].contains(&key) {
+                return Err(table.cell_error(row, "key", "", "each key once").into());
+            }
+            let scale = match table.word(row, "scale", "")?.as_str() {
+                "log" => Scale::Log,
+                "linear" => Scale::Linear,
+                _ => return Err(table.cell_error(row, "scale", "", "one of \"log\", \"linear\"").into()),
+            };
+            numbers.push(FittedNumber { key: key.to_owned(), value: number(row, "value")?, scale });
+            rows.push(keys.iter().map(|key| number(row, key)).collect::<Result<Vec<f64>, _>>()?);
+        }
+        let root = root(&rows).map_err(|expected| table.error(format!("covariance: expected {expected}")))?;
+        Ok(Self { file, numbers, root })
     }
-    let keys = &head[COLUMNS.len()..];
-    let (mut numbers, mut rows, mut at) = (Vec::new(), Vec::new(), Vec::new());
-    for (line, text) in lines {
-        let (number, row) = read_row(line, text, keys, numbers.len())?;
-        numbers.push(number);
-        rows.push(row);
-        at.push(line);
-    }
-    if numbers.len() != keys.len() {
-        let expected = format!("{}, one for each column of a key", keys.len());
-        return Err(ContentError::value(None, "rows", &numbers.len().to_string(), &expected));
-    }
-    let root = root(&rows).map_err(|expected| ContentError::value(Some(first), "covariance", "", &expected))?;
-    Ok((Covariance { file: PathBuf::new(), numbers, root }, at))
-}
-
-/// Row `index` of a file with columns for these keys.
-fn read_row(line: usize, text: &str, keys: &[String], index: usize) -> Result<(FittedNumber, Vec<f64>), ContentError> {
-    let found: Vec<String> = fields(text, ',').map(|field| field.into_owned()).collect();
-    let error = |key: &str, given: &str, expected: &str| {
-        ContentError::value(Some(line), key, &format!("\"{given}\""), expected)
-    };
-    if found.len() != COLUMNS.len() + keys.len() {
-        let expected = format!("{}, as many as columns", COLUMNS.len() + keys.len());
-        return Err(ContentError::value(Some(line), "fields", &found.len().to_string(), &expected));
-    }
-    let Some(key) = keys.get(index).filter(|key| **key == found[0]) else {
-        return Err(error("key", &found[0], "the keys of the columns, in their order"));
-    };
-    if keys[..index].contains(key) {
-        return Err(error("key", key, "each key once"));
-    }
-    let number = |name: &str, text: &str| {
-        let number = text.parse().ok().filter(|number: &f64| number.abs() <= LARGEST);
-        number.ok_or_else(|| error(name, text, "a number"))
-    };
-    let scale = match &*found[2] {
-        "log" => Scale::Log,
-        "linear" => Scale::Linear,
-        other => return Err(error("scale", other, "one of \"log\", \"linear\"")),
-    };
-    let value = number("value", &found[1])?;
-    let row = found[COLUMNS.len()..].iter().zip(keys).map(|(text, name)| number(name, text));
-    Ok((FittedNumber { key: key.clone(), value, scale }, row.collect::<Result<_, _>>()?))
 }
 
 /// A root of a covariance by its eigenvectors: one that is only semidefinite has one, too.
@@ -153,7 +135,8 @@ mod tests {
     use crate::in_tests::assert_within;
 
     fn read(text: &str) -> Result<Covariance, String> {
-        read_covariance(text.as_bytes()).map(|(covariance, _)| covariance).map_err(|error| error.to_string())
+        let table = Table::parse(text, "fit.csv".as_ref()).map_err(|error| error.to_string())?;
+        Covariance::of(&table, PathBuf::from("fit.csv")).map_err(|error| error.to_string())
     }
 
     #[test]
@@ -174,9 +157,9 @@ mod tests {
     #[test]
     fn what_is_no_covariance_is_refused() {
         for (text, message) in [
-            ("", "columns = \"\": expected key, value, scale"),
-            ("key,value,scale\n", "columns = \"key, value, scale\": expected key, value"),
-            ("key,value,scale,a\n", "rows = 0: expected 1, one for each"),
+            ("", "the columns : expected key, value, scale"),
+            ("key,value,scale\n", "the columns key, value, scale: expected key, value"),
+            ("key,value,scale,a\n", "0 rows: expected 1, one for each"),
             ("key,value,scale,a\nb,1,log,1\n", "key = \"b\": expected the keys of the columns"),
             ("key,value,scale,a\na,1,ln,1\n", "scale = \"ln\": expected one of \"log\", \"linear\""),
             ("key,value,scale,a\na,x,log,1\n", "value = \"x\": expected a number"),
@@ -185,7 +168,7 @@ mod tests {
             ("key,value,scale,a,b\na,1,log,1,2\nb,1,log,2,1\n", "covariance: expected a matrix that is"),
         ] {
             let error = read(text).unwrap_err();
-            assert!(error.starts_with(message), "{text:?}: {error}");
+            assert!(error.starts_with("fit.csv") && error.contains(message), "{text:?}: {error}");
         }
     }
 }

@@ -3,11 +3,11 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::scene::{FineWaves, Scene, read_file};
+use asperity::scene::{FineWaves, Scene, read_text};
 use asperity::tables::{NumberRange, POSITIVE};
 use toml::{Table, Value};
 
-use super::covariance::{Covariance, Scale, read_covariance};
+use super::covariance::{Covariance, Scale};
 use crate::error::Error;
 
 /// What is not known of a scene; empty where it does not say.
@@ -269,14 +269,14 @@ fn fitted(scene: &Scene) -> Result<(Covariance, Option<String>)> {
     let refused = |expected: String| Error::from(scene.values.refuse(&key, expected));
     let file = covariance_file(scene).ok_or_else(|| refused("the path of a file".to_owned()))?;
     let place = scene.values.file().parent().unwrap_or(Path::new("")).join(&file);
-    let bytes = read_file(&place)
+    let text = read_text(&place)
         .map_err(Error::io("read", &place))
         .map_err(|error| refused(format!("a file that can be read: {error}")))?;
-    let (mut covariance, lines) = read_covariance(&bytes).map_err(Error::content(&place))?;
-    covariance.file.clone_from(&file);
+    let table = asperity::table::Table::parse(&text, &place)?;
+    let mut covariance = Covariance::of(&table, file.clone())?;
     let mut moved = Vec::new();
-    for (fitted, line) in covariance.numbers.iter_mut().zip(lines) {
-        let refused = |problem: String| Error::in_file(&place, Some(line), problem);
+    for (row, fitted) in covariance.numbers.iter_mut().enumerate() {
+        let refused = |problem: String| Error::from(table.error_in(row, problem));
         let number = scene.number_or_following(&fitted.key).map_err(|error| refused(error.to_string()))?;
         if number.value <= 0.0 && fitted.scale == Scale::Log {
             let (key, value) = (&fitted.key, number.value);
