@@ -1,6 +1,7 @@
 //! `asperity material`: the complex modulus of a scene's compound over frequency, at its temperature; in the direct
 //! form, the complex stiffness of its links.
 
+use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 use asperity::scene::Scene;
@@ -130,20 +131,4 @@ fn title(responses: &Responses) -> String {
 /// Five digits.
 fn short(value: f64) -> String {
     decimals::short(value, 5)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn frequencies_are_angular_unless_in_hertz() {
-        assert_eq!(Frequencies::parse("1..1e5"), Ok(Frequencies((1.0, 1e5))));
-        for hertz in ["0.5..10Hz", "0.5Hz..10 Hz"] {
-            assert_eq!(Frequencies::parse(hertz), Ok(Frequencies((0.5 * TAU, 10.0 * TAU))), "{hertz}");
-        }
-        for wrong in ["1", "2..1", "0..1", "1..inf", "a..b"] {
-            assert!(Frequencies::parse(wrong).unwrap_err().contains("1..1e5"), "{wrong}");
-        }
-    }
 }

@@ -6,7 +6,7 @@ use asperity_study::fit::FitOptions;
 use asperity_study::surface::{ProfileReading, SurfaceOptions};
 use clap::Args;
 
-use super::values::picture;
+use super::values::{example, picture};
 
 #[derive(Debug, Args)]
 #[command(after_help = example!("asperity fit docs/guide/dma.csv --wlf 7.52,119.75,293.15 -o compound.csv"))]
