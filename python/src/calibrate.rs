@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use asperity_study::calibration::{
     Calibration, CalibrationOptions, FitCovariance, FreeParameter, calibrate_scene, chi_square_per_degree,
 };
+use asperity_study::files::ColumnOptions;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -22,6 +23,7 @@ pub(crate) fn calibrate<'py>(
     py: Python<'py>,
     scene: &Scene,
     data: PathBuf,
+    columns: Vec<(String, String)>,
     free: Vec<(String, f64, f64)>,
     method: Option<&str>,
     way: Option<f64>,
@@ -38,6 +40,7 @@ pub(crate) fn calibrate<'py>(
         set: parsed(&scene.settings),
         free: free.into_iter().map(parameter).collect::<PyResult<_>>()?,
         data,
+        columns: ColumnOptions { columns },
         sliding: sliding(method, way, points, error, distance)?,
     };
     let text = scene.text.clone();

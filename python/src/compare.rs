@@ -12,9 +12,14 @@ use crate::errors::Raise as _;
 
 /// Compares a table with the measurements in a file.
 #[pyfunction]
-pub(crate) fn compare<'py>(py: Python<'py>, table: PathBuf, data: PathBuf) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn compare<'py>(
+    py: Python<'py>,
+    table: PathBuf,
+    data: PathBuf,
+    columns: Vec<(String, String)>,
+) -> PyResult<Bound<'py, PyDict>> {
     let swept = SweepTable::read(&table).map_err(|error| error.raise())?;
-    let comparison = Comparison::new(&swept, &table, &data).map_err(|error| error.raise())?;
+    let comparison = Comparison::new(&swept, &table, &data, &columns).map_err(|error| error.raise())?;
     let place = |point: &OperatingPoint| (point.speed, point.load, point.temperature);
     let (worst, left_out) = (PyList::empty(py), PyList::empty(py));
     for (row, friction, deviations) in comparison.worst_first() {

@@ -27,6 +27,7 @@ pub(crate) fn rank<'py>(
     weights: Option<PathBuf>,
     samples: (usize, u64),
     data: Option<PathBuf>,
+    columns: Vec<(String, String)>,
     method: Option<&str>,
     way: Option<f64>,
     points: Option<u32>,
@@ -43,7 +44,7 @@ pub(crate) fn rank<'py>(
         let (all, done) = (plan.sweeps() as f64, AtomicUsize::new(0));
         let told = || task.report((1 + done.fetch_add(1, Ordering::Relaxed)) as f64 / all);
         let found = plan.find(&weights, &task.stop(), &told)?;
-        let measured = data.as_deref().map(|data| measured_ranking(&plan, &found, data)).transpose()?;
+        let measured = data.as_deref().map(|data| measured_ranking(&plan, &found, data, &columns)).transpose()?;
         let warnings: Vec<String> = plan.warnings().into_iter().chain(found.ranking.warnings()).collect();
         Ok((found.ranking, measured, warnings))
     })?;

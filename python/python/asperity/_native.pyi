@@ -40,6 +40,7 @@ def rank(
     weights: Path | None,
     samples: tuple[int, int],
     data: Path | None,
+    columns: list[tuple[str, str]],
     method: str | None,
     way: float | None,
     points: int | None,
@@ -63,7 +64,7 @@ def converge(
     distance: float | None,
     progress: _Progress,
 ) -> dict[str, Any]: ...
-def compare(table: Path, data: Path) -> dict[str, Any]: ...
+def compare(table: Path, data: Path, columns: list[tuple[str, str]]) -> dict[str, Any]: ...
 
 _Treatment = tuple[float | None, float | None, bool, bool, tuple[float, float] | None]
 
@@ -72,6 +73,7 @@ def surface_of(scene: Scene, treatment: _Treatment) -> dict[str, Any]: ...
 def calibrate(
     scene: Scene,
     data: Path,
+    columns: list[tuple[str, str]],
     free: list[tuple[str, float, float]],
     method: str | None,
     way: float | None,
@@ -92,6 +94,7 @@ def fit(
     shear: bool,
     units: list[tuple[str, str]],
     sheet: str | None,
+    columns: list[tuple[str, str]],
     ignored: list[str],
     weight: str,
     vertical: str,
