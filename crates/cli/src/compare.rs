@@ -10,10 +10,9 @@ use asperity_study::picture::Stroke;
 use asperity_study::sweep::SweepTable;
 
 use super::cli::Compare;
-use super::files::{check_outputs, name_of, named, print_beside};
-use super::measured_friction::off;
+use super::files::{self, check_outputs, name_of, named, print_beside};
 use super::picture;
-use super::terminal::{labelled, lines, note, warn};
+use super::terminal::{labelled, lines, warn};
 
 /// Measurements that are off the most are named up to this many.
 const WORST: usize = 5;
@@ -23,8 +22,8 @@ pub(crate) fn compare(command: &Compare) -> Result<(), Error> {
     let path = command.output.clone().unwrap_or_else(|| command.table.with_extension("compare.svg"));
     check_outputs([&path], vec![command.table.clone(), command.data.clone()])?;
     let table = SweepTable::read(&command.table)?;
-    let comparison = Comparison::new(&table, &command.table, &command.data)?;
-    comparison.notes.iter().for_each(|text| note(text));
+    let comparison = Comparison::new(&table, &command.table, &command.data, &command.columns.columns)?;
+    files::tell(&comparison.notes);
     comparison.left_out_in_words().iter().for_each(|text| warn(text));
     comparison.check(&command.data)?;
     let rows: Vec<Measured> = comparison.within.iter().map(|(row, _)| *row).collect();
@@ -44,7 +43,7 @@ fn summary(command: &Compare, comparison: &Comparison, picture: &Path) -> String
         ("Chi square", format!("{}, {per_measurement} per measurement", rounded(chi_square, 4))),
     ];
     let worst = comparison.worst_first();
-    let worst = worst.iter().take(WORST).map(|(row, friction, deviations)| off(row, *friction, *deviations));
+    let worst = worst.iter().take(WORST).map(|(row, friction, deviations)| row.off(*friction, *deviations));
     rows.extend(labelled("Worst", worst));
     rows.push(("Written", named(picture)));
     lines(&rows)

@@ -13,7 +13,7 @@ use asperity_study::fit::{
 use super::cli::{Fit, FitVertical, FitWeight};
 use super::files::{self, check_outputs, name_of, named, picture_beside, print_beside};
 use super::picture;
-use super::terminal::{LabelledLine, lines, note, warn, with_flags};
+use super::terminal::{LabelledLine, lines, warn, with_flags};
 use super::{NOT_REACHED, SUCCESS};
 
 /// `asperity fit` failed.
@@ -72,7 +72,7 @@ pub(crate) fn fit(command: &Fit) -> Result<u8, FitError> {
     let read: Vec<PathBuf> = std::iter::once(&command.data).chain(&command.shifts).cloned().collect();
     check_outputs([&command.output].into_iter().chain(&picture), read)?;
     let fitted = fit_moduli(&command.into())?;
-    fitted.notes().iter().for_each(|text| note(text));
+    files::tell(fitted.notes());
     fitted.warnings().iter().for_each(|text| warn(text));
     files::write(&command.output, with_flags(&fitted.file()))?;
     if let Some(path) = &picture {

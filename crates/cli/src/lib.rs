@@ -19,7 +19,6 @@
 //! | `cli` | files | the command line: commands and their options |
 //! | `picture` | files | draws pictures, as SVG or PNG |
 //! | `plot` | cli, files, picture, terminal | `plot` |
-//! | `measured_friction` | | how far measured friction is off that of a model |
 //! | `elements` | files, npz | the masses of a run as arrays |
 //! | `simulate` | cli, elements, files, picture, result_file, terminal | `simulate` of a scene |
 //! | `patch` | cli, files, picture, result_file, simulate, terminal | `simulate` of a patch |
@@ -29,8 +28,8 @@
 //! | `rank` | cli, files, picture, terminal | `rank` |
 //! | `converge` | cli, files, interrupt, picture, table_file, terminal | `converge` |
 //! | `fit` | cli, files, picture, terminal | `fit` |
-//! | `calibrate` | cli, files, interrupt, measured_friction, picture, table_file, terminal | `calibrate` |
-//! | `compare` | cli, files, measured_friction, picture, terminal | `compare` |
+//! | `calibrate` | cli, files, interrupt, picture, table_file, terminal | `calibrate` |
+//! | `compare` | cli, files, picture, terminal | `compare` |
 //! | `material` | cli, files, picture, terminal | `material` |
 //! | `surface` | cli, files, picture, terminal | `surface` |
 //! | `pack` | cli, files, picture, terminal | `pack` |
@@ -50,7 +49,6 @@ mod fit;
 mod interrupt;
 mod lock;
 mod material;
-mod measured_friction;
 mod npz;
 mod output;
 mod pack;

@@ -6,7 +6,7 @@ use asperity::outputs::OutputType;
 use asperity::patch::{Patch, PatchRun, PatchVariable};
 
 use crate::cli::Simulate;
-use crate::files::{check_outputs, load_patch, named, print_beside};
+use crate::files::{check_outputs, load_patch, named, print_beside, tell};
 use crate::picture;
 use crate::result_file::CsvWriter;
 use crate::simulate::{NOT_STARTED, ended_at};
@@ -25,6 +25,7 @@ pub(crate) fn simulate(command: &Simulate, patch_file: &Path, motion_file: &Path
     let output = command.output(patch_file);
     check_outputs([&output].into_iter().chain(&command.plot), taken)?;
     let motion = MotionFile::read(motion_file, &patch)?;
+    tell(&motion.notes);
     let mut recorder = PatchRecorder::new(&patch, &motion, &output, command)?;
     let mut run = PatchRun::new(&patch, &motion.start()).context(NOT_STARTED)?;
     recorder.row(&mut run, motion.values(&motion.rows()[0]))?;

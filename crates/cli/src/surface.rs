@@ -123,13 +123,12 @@ fn read(command: &Surface) -> Result<(scene::Surface, Vec<PathBuf>), SurfaceErro
             return Err(SurfaceError::SceneHasOptions { path: path.clone() });
         }
         let scene = load_without_run(path, &[], |_| false)?;
-        scene.notes.iter().filter(|read| !read.assumed).for_each(|read| note(&read.text));
         let files = scene.sources(path);
         return Ok((scene.surface, files));
     }
     let loaded = scene::Surface::load(path, &command.reading.options(), &Instruments).map_err(Error::from)?;
     loaded.warnings.iter().for_each(|warning| warn(warning));
-    loaded.notes.iter().for_each(|read| note(&read.text));
+    files::tell(loaded.notes.into_iter().map(|note| note.of(name_of(path).as_ref()).text));
     Ok((loaded.surface, vec![path.clone()]))
 }
 

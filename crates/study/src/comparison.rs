@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use asperity::element::{Load, OperatingPoint, Quantity};
+use asperity::tables::GivenColumns;
 
 use crate::Error;
 use crate::calibration::{CurveGrid, Measured, Measurements, left_out_in_words};
@@ -41,12 +42,12 @@ pub enum NoFriction {
 const CURVE: u32 = 60;
 
 impl Comparison {
-    /// Of the `table` at `path` and the measurements in the file `data`.
+    /// Of the `table` at `path` and the measurements in the file `data`, with columns that are said.
     ///
     /// # Errors
     /// Where the table is over forces, or the measurements cannot be read.
-    pub fn new(table: &SweepTable, path: &Path, data: &Path) -> Result<Self, Error> {
-        let measurements = measured_beside(&table.header, path, data)?;
+    pub fn new(table: &SweepTable, path: &Path, data: &Path, columns: &GivenColumns) -> Result<Self, Error> {
+        let measurements = measured_beside(&table.header, path, data, columns)?;
         let curves = SweptFriction { table };
         let (mut within, mut left_out) = (Vec::<(Measured, f64)>::new(), Vec::<(Measured, NoFriction)>::new());
         for &row in &measurements.rows {
@@ -103,7 +104,12 @@ impl Comparison {
 ///
 /// # Errors
 /// Where the table is over forces, or the measurements cannot be read, or say nothing of the temperature that they need.
-pub fn measured_beside(header: &SweepHeader, path: &Path, data: &Path) -> Result<Measurements, Error> {
+pub fn measured_beside(
+    header: &SweepHeader,
+    path: &Path,
+    data: &Path,
+    columns: &GivenColumns,
+) -> Result<Measurements, Error> {
     let Load::Pressure { area } = header.load else {
         return Err(Error::in_file(
             path,
@@ -111,7 +117,7 @@ pub fn measured_beside(header: &SweepHeader, path: &Path, data: &Path) -> Result
             "a table over forces: expected one over pressures, as `asperity sweep --pressures` makes",
         ));
     };
-    let mut measurements = Measurements::read(data, area, &[])?;
+    let mut measurements = Measurements::read(data, area, columns)?;
     let temperatures = &header.grid.temperatures;
     if temperatures.len() > 1 && !measurements.has_temperature() {
         return Err(Error::in_file(

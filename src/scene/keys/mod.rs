@@ -217,6 +217,18 @@ impl Key {
 /// The path of a file that can go into the FMU with the scene.
 pub(super) const PATH: &str = "a relative path of a file beside or below the scene file, without `..` and backslashes";
 
+/// The path of such a file, or a table of it.
+pub(super) const TABLE_FILE: &str =
+    "a relative path of a file beside or below the scene file, without `..` and backslashes; or { path, columns }";
+
+/// The keys of a table in a file whose columns are said.
+pub(super) const TABLE: &[Key] = &[
+    key("path", Allowed::Text(PATH), "File of the table").required(),
+    key("columns", Allowed::Text(ROLES), "Columns by what they hold, where their names do not say it"),
+];
+/// What `columns` of a table holds.
+pub(super) const ROLES: &str = "{ role = \"…\" }, the names or the numbers of columns as texts, by what they hold";
+
 /// What the reader gets for a key that is not in the table; it accepts no value.
 pub(super) const NONE: Key = key("", Allowed::Text("no such key"), "");
 

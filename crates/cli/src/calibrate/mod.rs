@@ -22,7 +22,7 @@ use super::files::{self, check_outputs, is_standard_output, load_without_run, na
 use super::interrupt::Farewell;
 use super::picture;
 use super::table_file::TableFile;
-use super::terminal::{self, note, warn};
+use super::terminal::{self, warn};
 use super::{NOT_REACHED, SUCCESS};
 
 /// Points of a curve.
@@ -35,6 +35,7 @@ impl From<&Calibrate> for CalibrationOptions {
             set: command.set.to_vec(),
             free: command.free.clone(),
             data: command.data.clone(),
+            columns: command.columns.clone(),
             sliding: command.sliding,
         }
     }
@@ -78,7 +79,7 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, Error> {
     let options = command.into();
     let free = FreeScene::new(&options, &text, scene)?;
     let measurements = free.measurements()?;
-    measurements.notes.iter().for_each(|text| note(text));
+    files::tell(&measurements.notes);
     let outputs = Outputs::new(command, free.scene())?;
     let (kept, known) = match &outputs.table {
         Some(table) => {

@@ -9,7 +9,6 @@ use asperity_study::calibration::{
 use asperity_study::decimals::short;
 
 use crate::files::{name_of, named};
-use crate::measured_friction::off;
 use crate::terminal::{LabelledLine, labelled, lines};
 
 /// From this on a correlation is said.
@@ -189,7 +188,7 @@ fn far_off(calibration: &Calibration) -> Vec<String> {
     let deviation = |measured: &Measured| {
         let model = calibration.friction_at(&measured.point)?;
         let deviations = (model - measured.friction) / (scale * measured.sigma_or_assumed());
-        (deviations.abs() > FAR_OFF).then(|| (deviations, off(measured, model, deviations)))
+        (deviations.abs() > FAR_OFF).then(|| (deviations, measured.off(model, deviations)))
     };
     let mut found: Vec<(f64, String)> = calibration.measurements.rows.iter().filter_map(deviation).collect();
     found.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use asperity::tables::Dimension;
 use asperity_study::calibration::FreeParameter;
+use asperity_study::files::ColumnOptions;
 use asperity_study::sweep::SlidingOptions;
 use asperity_study::values::Values;
 use clap::Args;
@@ -24,6 +25,8 @@ pub(crate) struct Calibrate {
     /// friction; of temperature and of the standard deviation of friction if it has them. Rows of one point are repeats.
     #[arg(long, value_name = "MEASURED.csv")]
     pub(crate) data: PathBuf,
+    #[command(flatten)]
+    pub(crate) columns: ColumnOptions,
     /// A number of the scene to fit, by its key as for --set, within bounds; its logarithm where they are positive and a
     /// decade apart. May be repeated, up to 12 times.
     #[arg(long, value_name = "KEY=LOW..HIGH", value_parser = free_parameter, required = true)]
@@ -65,6 +68,8 @@ pub(crate) struct Compare {
     /// The measured friction, as for asperity calibrate.
     #[arg(long, value_name = "MEASURED.csv")]
     pub(crate) data: PathBuf,
+    #[command(flatten)]
+    pub(crate) columns: ColumnOptions,
     /// The plot to write, as SVG or PNG according to the file name. Default: the table's name with .compare.svg.
     #[arg(short, long, value_name = "OUT.svg", value_parser = picture())]
     pub(crate) output: Option<PathBuf>,

@@ -4,12 +4,13 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use asperity::scene::{Depth, LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt};
+use asperity_study::files::given_column;
 use asperity_study::fit::WlfConstants;
 use clap::Args;
 
 use super::values::{
-    FitVertical, FitWeight, column_unit, count, expansion, fit_error, frequency, given_column, length, picture,
-    poisson_ratio, temperature, wavelengths, wlf_constants,
+    FitVertical, FitWeight, column_unit, count, expansion, fit_error, frequency, length, picture, poisson_ratio,
+    temperature, wavelengths, wlf_constants,
 };
 
 #[derive(Debug, Args)]

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use asperity_study::files::ColumnOptions;
 use asperity_study::sweep::SweepOptions;
 use clap::{ArgGroup, Args};
 
@@ -35,6 +36,8 @@ pub(crate) struct Rank {
     /// beside, and the order by Kendall's rank correlation.
     #[arg(long, value_name = "MEASURED.csv")]
     pub(crate) data: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) columns: ColumnOptions,
     /// The table to write, a row for each point and scene, - for standard output. Default: rank.csv.
     #[arg(short, long, value_name = "TABLE.csv", default_value = "rank.csv")]
     pub(crate) output: PathBuf,

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use asperity::tables::Dimension;
 use asperity_study::contact::SteadyState;
+use asperity_study::files::ColumnOptions;
 use asperity_study::sweep::{Over, SlidingOptions, SweepOptions};
 use asperity_study::values::Values;
 use clap::{ArgGroup, Args};
@@ -58,6 +59,8 @@ pub(crate) struct Sweep {
     /// Measured friction, as for asperity calibrate, drawn in the same colours into the maps of --over.
     #[arg(long, value_name = "MEASURED.csv", requires = "over")]
     pub(crate) data: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) columns: ColumnOptions,
     /// Also plots the master curve: friction over a_T v, the speed at the reference temperature of material.wlf.
     #[arg(long, value_name = "OUT.svg", value_parser = picture(), conflicts_with = "shard")]
     pub(crate) master: Option<PathBuf>,

@@ -89,14 +89,6 @@ pub(super) fn poisson_ratio(text: &str) -> Result<f64, String> {
     number(text, |ratio| (0.0..=0.5).contains(ratio), "a number from 0 to 0.5")
 }
 
-/// The key of a role, and the name or number of its column.
-pub(super) fn given_column(text: &str) -> Result<(String, String), String> {
-    let parted = text.split_once('=').map(|(key, name)| (key.trim().to_owned(), name.trim().to_owned()));
-    parted
-        .filter(|(key, name)| !key.is_empty() && !name.is_empty())
-        .ok_or_else(|| "expected ROLE=COLUMN, such as speed=v2".into())
-}
-
 /// The name of a column and its unit.
 pub(super) fn column_unit(text: &str) -> Result<(String, Unit), String> {
     let parted = text.rsplit_once('=').and_then(|(name, unit)| Some((name.trim().to_owned(), Unit::parse(unit)?)));

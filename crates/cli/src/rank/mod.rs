@@ -10,9 +10,9 @@ use asperity_study::rank::{self, RankFound, RankPlan, RankScene, Weights, measur
 use asperity_study::uncertainty::SampleOptions;
 
 use super::cli::Rank;
-use super::files::{check_outputs, load_without_run, picture_beside, print_beside, write};
+use super::files::{self, check_outputs, load_without_run, picture_beside, print_beside, write};
 use super::picture;
-use super::terminal::{self, note, warn};
+use super::terminal::{self, warn};
 use super::{NOT_REACHED, SUCCESS};
 
 /// Ranks scenes, writes the table and the picture.
@@ -25,9 +25,11 @@ pub(crate) fn rank(command: &Rank) -> Result<u8, Error> {
     let plan = RankPlan::new(scenes, command.options.clone(), samples(command))?;
     plan.warnings().iter().for_each(|warning| warn(warning));
     let weights = command.weights.as_deref().map(Weights::read).transpose()?.unwrap_or_default();
+    files::tell(&weights.notes);
     let found = found(&plan, &weights)?;
-    let measured = command.data.as_deref().map(|data| measured_ranking(&plan, &found, data)).transpose()?;
-    measured.iter().flat_map(|measured| &measured.notes).for_each(|text| note(text));
+    let columns = &command.columns.columns;
+    let measured = command.data.as_deref().map(|data| measured_ranking(&plan, &found, data, columns)).transpose()?;
+    files::tell(measured.iter().flat_map(|measured| &measured.notes));
     found.ranking.warnings().iter().for_each(|warning| warn(warning));
     write(&command.output, table(&found.ranking))?;
     if let Some(path) = &picture {

@@ -17,11 +17,11 @@ use asperity_study::progress::Stop;
 use asperity_study::sweep::{SweepHeader, SweepPlan, SweepRow, SweepTable, master_picture, sweep_picture, verdict};
 
 use super::cli::Sweep;
-use super::files::{check_outputs, default_output, load_without_run, named, picture_beside, print_beside, read};
+use super::files::{self, check_outputs, default_output, load_without_run, named, picture_beside, print_beside, read};
 use super::interrupt::Farewell;
 use super::picture;
 use super::table_file::TableFile;
-use super::terminal::{self, LabelledLine, lines, note, warn};
+use super::terminal::{self, LabelledLine, lines, warn};
 
 /// Computes a table or merges several.
 pub(crate) fn sweep(command: &Sweep) -> Result<(), Error> {
@@ -237,8 +237,9 @@ fn maps(command: &Sweep, header: &SweepHeader, output: &Path) -> Result<Option<M
             named(output)
         )));
     }
-    let maps = Maps::new(over, header, output, command.data.as_deref())?;
-    maps.notes.iter().for_each(|text| note(text));
+    let data = command.data.as_deref().map(|data| (data, &command.columns.columns[..]));
+    let maps = Maps::new(over, header, output, data)?;
+    files::tell(&maps.notes);
     Ok(Some(maps))
 }
 

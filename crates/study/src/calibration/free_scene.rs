@@ -9,6 +9,7 @@ use asperity::scene::{Scene, Setting, did_you_mean, similar_keys};
 use super::measurements::Measurements;
 use super::problem::FreeParameter;
 use crate::error::Error;
+use crate::files::ColumnOptions;
 use crate::settings::edited;
 use crate::sweep::{Method, SlidingOptions, fingerprint, relevant};
 
@@ -133,7 +134,7 @@ impl<'a> FreeScene<'a> {
     /// Where the table cannot be read, or its temperatures do not go with the scene.
     pub fn measurements(&self) -> Result<Measurements, Error> {
         let path = &self.options.data;
-        let mut measurements = Measurements::read(path, self.area, &[])?;
+        let mut measurements = Measurements::read(path, self.area, &self.options.columns.columns)?;
         for row in &mut measurements.rows {
             row.point.way = row.point.way.or(self.options.sliding.way);
             let checked = self.options.sliding.check_way(&self.scene, row.point.way);
@@ -177,6 +178,8 @@ pub struct CalibrationOptions {
     pub free: Vec<FreeParameter>,
     /// The table of measured friction.
     pub data: PathBuf,
+    /// Its columns whose names do not say what they hold.
+    pub columns: ColumnOptions,
     /// How steady sliding is found.
     pub sliding: SlidingOptions,
 }
