@@ -56,7 +56,9 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
     read_file(path).map_err(Error::io("read", path))
 }
 
-/// Which columns of a table hold what, where their names do not say it.
+// Which columns of a table hold what, where their names do not say it. Not a doc comment: that would be the description of
+// the commands that have it.
+#[expect(missing_docs, reason = "clap would print it")]
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, clap::Args)]
 pub struct ColumnOptions {
     /// Which column of the data is which, by its name or number, as in speed=v2. May be repeated.
