@@ -28,7 +28,11 @@ pub(crate) fn rank<'py>(
         let (all, done) = (plan.sweeps() as f64, AtomicUsize::new(0));
         let told = || task.report((1 + done.fetch_add(1, Ordering::Relaxed)) as f64 / all);
         let found = plan.find(&task.stop(), &told)?;
-        let measured = options.data.as_deref().map(|data| measured_ranking(&plan, &found, data)).transpose()?;
+        let measured = options
+            .data
+            .as_deref()
+            .map(|data| measured_ranking(&plan, &found, data, &options.columns.columns))
+            .transpose()?;
         let warnings: Vec<String> = plan.warnings().into_iter().chain(found.ranking.warnings()).collect();
         Ok((found.ranking, measured, warnings))
     })?;

@@ -76,6 +76,49 @@ def test_a_map_keeps_its_bits(block):
         block.with_map(heights[0], 2e-5)
 
 
+def test_axes_of_a_map_count_by_their_names(block):
+    pd = pytest.importorskip("pandas")
+    heights = np.arange(6.0).reshape(2, 3)
+    frame = pd.DataFrame(heights, pd.Index([0.0, 2e-4], name="y"), pd.Index([0.0, 1e-4, 2e-4], name="x"))
+    for turned in (frame, frame.T, frame.T[::-1]):
+        kept, spacing = block.with_map(turned, (1e-4, 2e-4), periodic=False).map
+        assert np.array_equal(kept, heights) and spacing == (1e-4, 2e-4)
+    with pytest.raises(ValueError, match="along x"):
+        block.with_map(frame, 2e-4, periodic=False)
+
+
+def test_masked_heights_are_missing(block):
+    heights = np.ma.masked_greater(np.array([[0.0, 1e-6, 9.0, 1e-6]] * 4), 1.0)
+    with pytest.raises(asperity.SceneError, match="nan"):
+        block.with_map(heights, 1e-4, periodic=False)
+
+
+def test_dates_and_spans_are_seconds(small):
+    pd = pytest.importorskip("pandas")
+    pose = {"u": [0.0, 0.0, 1e-4], "w": [0.0, -1e-5, -1e-5]}
+    seconds = [0.0, 0.01, 0.02]
+    times = [
+        pd.to_timedelta(seconds, unit="s"),
+        pd.date_range("2026-01-01", periods=3, freq="10ms"),
+        np.array([0, 10, 20], "timedelta64[ms]"),
+    ]
+    for time in times:
+        assert small.with_motion({"time": time, **pose}).duration == 0.02
+    assert small.with_motion(pd.DataFrame(pose, pd.Index(seconds, name="time"))).duration == 0.02
+    with pytest.raises(TypeError, match="time \\[ms\\]"):
+        small.with_motion({"time [ms]": times[0], **pose})
+
+
+def test_what_is_no_scene_is_refused_by_its_name(small, tmp_path):
+    (tmp_path / "latin.toml").write_bytes("# \u00b5".encode("latin-1"))
+    with pytest.raises(asperity.SceneError, match=r"latin\.toml"):
+        asperity.Scene.from_toml(tmp_path / "latin.toml")
+    with pytest.raises(TypeError, match="keys: expected a dictionary"):
+        asperity.Scene.from_dict([1])
+    with pytest.raises(TypeError, match="scenes: expected scenes"):
+        asperity.rank([small, 1.0], [1.0], [3e5])
+
+
 def test_a_spectrum_and_a_prony_series_come_in_as_arrays(block):
     q = np.geomspace(1e5, 1e8, 40)
     scene = block.with_spectrum(q, 1e-6 * q**-3.6, longest=2e-5)

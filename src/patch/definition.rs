@@ -11,7 +11,7 @@ use crate::scene::{
     read_file,
 };
 use crate::table::TableError;
-use crate::tables::canonical;
+use crate::tables::{ReadingNote, canonical};
 
 /// Why a patch is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -133,6 +133,11 @@ impl Patch {
     /// The patch's name.
     pub fn name(&self) -> &str {
         &self.file.name
+    }
+
+    /// How the file of points was read.
+    pub fn notes(&self) -> &[ReadingNote] {
+        &self.file.notes
     }
 
     /// What it is, in a sentence.

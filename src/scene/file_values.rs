@@ -14,7 +14,6 @@ use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Table, Value};
 
 use super::error::{Location, Problem, SceneError};
-use super::files::carried_name;
 use super::values::{closest, similar_word};
 use super::{CanonicalFiles, FileFormats, LoadedProfile, ProfileOptions, read_file};
 
@@ -98,13 +97,8 @@ impl NamedFiles {
     }
 
     /// The file at `path` below a `folder`, or what an FMU carries in its place; and which of both was read.
-    pub(super) fn read(
-        &mut self,
-        folder: &Path,
-        path: &Path,
-        options: Option<&ProfileOptions>,
-    ) -> io::Result<(PathBuf, Arc<[u8]>)> {
-        let (file, carried) = (folder.join(path), folder.join(carried_name(path, options)));
+    pub(super) fn read(&mut self, folder: &Path, path: &Path, carried_name: &Path) -> io::Result<(PathBuf, Arc<[u8]>)> {
+        let (file, carried) = (folder.join(path), folder.join(carried_name));
         match self.bytes(&file) {
             Ok(bytes) => Ok((file, bytes)),
             Err(error) => self.bytes(&carried).map(|bytes| (carried, bytes)).map_err(|_| error),

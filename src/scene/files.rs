@@ -15,7 +15,7 @@ use super::height_map::Seam;
 use super::material::SERIES;
 use super::profile::ProfileOptions;
 use super::surface::{Surface, check_points};
-use crate::tables::{ContentError, Dimension, FileKind, ReadTable, ReadingNote, Role, canonical};
+use crate::tables::{ContentError, Dimension, FileKind, GivenColumns, ReadTable, ReadingNote, Role, canonical};
 
 /// The formats of files that a scene is read with.
 ///
@@ -25,14 +25,20 @@ pub trait FileFormats: fmt::Debug + Send + Sync {
     /// A surface.
     fn surface(&self, bytes: &[u8], options: &ProfileOptions) -> Result<LoadedProfile, ContentError>;
 
-    /// A table of a kind; columns that are said to be those of roles, by the keys of these.
-    fn table(&self, bytes: &[u8], kind: &FileKind, columns: &[(String, String)]) -> Result<ReadTable, ContentError>;
+    /// A table of a kind.
+    fn table(&self, bytes: &[u8], kind: &FileKind, columns: &GivenColumns) -> Result<ReadTable, ContentError>;
 
     /// The relaxation times and moduli of tension of a Prony series.
-    fn series(&self, bytes: &[u8], elastic: ElasticConstants) -> Result<ReadTable, ContentError>;
+    fn series(
+        &self,
+        bytes: &[u8],
+        elastic: ElasticConstants,
+        columns: &GivenColumns,
+    ) -> Result<ReadTable, ContentError>;
 
     /// The isotropic power spectrum of a surface.
-    fn spectrum(&self, bytes: &[u8], convention: Convention) -> Result<ReadTable, ContentError>;
+    fn spectrum(&self, bytes: &[u8], convention: Convention, columns: &GivenColumns)
+    -> Result<ReadTable, ContentError>;
 }
 
 /// What relates the moduli of a file to those of the scene.
@@ -77,15 +83,15 @@ impl FileFormats for CanonicalFiles {
         Ok(LoadedProfile { surface, warnings: Vec::new(), notes: Vec::new() })
     }
 
-    fn table(&self, bytes: &[u8], kind: &FileKind, _: &[(String, String)]) -> Result<ReadTable, ContentError> {
+    fn table(&self, bytes: &[u8], kind: &FileKind, _: &GivenColumns) -> Result<ReadTable, ContentError> {
         kind.read_canonical(bytes)
     }
 
-    fn series(&self, bytes: &[u8], _: ElasticConstants) -> Result<ReadTable, ContentError> {
+    fn series(&self, bytes: &[u8], _: ElasticConstants, _: &GivenColumns) -> Result<ReadTable, ContentError> {
         SERIES.read_canonical(bytes)
     }
 
-    fn spectrum(&self, bytes: &[u8], _: Convention) -> Result<ReadTable, ContentError> {
+    fn spectrum(&self, bytes: &[u8], _: Convention, _: &GivenColumns) -> Result<ReadTable, ContentError> {
         SPECTRUM.read_canonical(bytes)
     }
 }
@@ -116,17 +122,17 @@ impl SceneFile {
         Self { carried_name: path.clone(), path, content: Content::Itself }
     }
 
-    pub(super) fn of_table(path: PathBuf, table: ReadTable) -> Self {
+    pub(super) fn of_table(NamedTable { path, columns: given }: NamedTable, table: ReadTable) -> Self {
         let columns = table.columns.into_iter().map(|column| (column.key, column.dimension, column.values));
         let content = Content::Columns(Arc::new(columns.collect()));
-        Self { carried_name: carried_name(&path, None), path, content }
+        Self { carried_name: NamedTable::carried_name(&path, &given), path, content }
     }
 
     pub(super) fn of_surface(path: PathBuf, options: &ProfileOptions, surface: &Surface) -> Self {
         let columns = [("x", surface.x()), ("z", surface.z())];
         let columns = columns.into_iter().map(|(key, values)| (key, Dimension::Length, values.to_vec()));
         let content = Content::Columns(Arc::new(columns.collect()));
-        Self { carried_name: carried_name(&path, Some(options)), path, content }
+        Self { carried_name: options.carried_name(&path), path, content }
     }
 
     /// Its bytes in an FMU; `folder` is the scene's.
@@ -145,20 +151,41 @@ impl SceneFile {
     }
 }
 
+/// A table in a file, as a scene names it.
+#[derive(Debug)]
+pub(super) struct NamedTable {
+    /// Relative to the scene's folder.
+    pub(super) path: PathBuf,
+    /// Columns whose names do not say what they are.
+    pub(super) columns: Vec<(String, String)>,
+}
+
+impl NamedTable {
+    /// What an FMU carries of a table is named by.
+    pub(super) fn carried_name(path: &Path, columns: &GivenColumns) -> PathBuf {
+        carried_name(path, None, (!columns.is_empty()).then(|| format!("{columns:?}")))
+    }
+}
+
+impl ProfileOptions {
+    /// What an FMU carries of a profile is named by.
+    pub(super) fn carried_name(&self, path: &Path) -> PathBuf {
+        let as_read = Self { line: None, periodic: false, ..self.clone() };
+        carried_name(path, self.line, (as_read != Self::default()).then(|| format!("{as_read:?}")))
+    }
+}
+
 /// `road.x3p.line-3.csv` of the third line of `road.x3p`: what is carried is text, and one file may be read in several ways.
-pub(super) fn carried_name(path: &Path, options: Option<&ProfileOptions>) -> PathBuf {
+fn carried_name(path: &Path, line: Option<usize>, as_read: Option<String>) -> PathBuf {
     let is_text = path.extension().is_some_and(|ending| ["csv", "txt", "dat"].iter().any(|text| ending == *text));
     let mut name = path.as_os_str().to_owned();
-    let as_read = options.map(|options| ProfileOptions { line: None, periodic: false, ..options.clone() });
-    let as_read = as_read.filter(|options| *options != ProfileOptions::default());
-    let line = options.and_then(|options| options.line);
     if let Some(line) = line {
         name.push(format!(".line-{line}"));
     }
     if let Some(options) = &as_read {
         // Fowler, Noll and Vo's hash.
         let hash = |hash: u32, byte: u8| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193);
-        name.push(format!(".{:08x}", format!("{options:?}").bytes().fold(0x811c_9dc5, hash)));
+        name.push(format!(".{:08x}", options.bytes().fold(0x811c_9dc5, hash)));
     }
     if !is_text || line.is_some() || as_read.is_some() {
         name.push(".csv");

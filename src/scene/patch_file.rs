@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::error::{Problem, SceneError};
 use super::values::Word;
 use super::{Extrapolation, FileValues, FmuOptions};
+use crate::tables::ReadingNote;
 
 /// The most elements of a patch.
 pub(super) const MAX_ELEMENTS: i64 = 1_000_000;
@@ -41,6 +42,8 @@ pub struct PatchFile {
     pub outputs: Vec<PatchGroup>,
     /// What its FMU's description says for simple importers.
     pub fmu: FmuOptions,
+    /// How the file of points was read.
+    pub notes: Vec<ReadingNote>,
     /// The values that it was read from.
     pub values: Arc<FileValues>,
 }

@@ -5,6 +5,7 @@
 //! comments behind `#`, a line of names in SI units, `speed [m/s],pressure [Pa]`, rows with commas.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use super::error::ContentError;
 use super::range::{ANY, NumberRange};
@@ -41,6 +42,9 @@ pub enum Others {
     /// So are other tables than the longest.
     Tables,
 }
+
+/// The columns that are said to be those of roles: keys of roles, and names or numbers from 1.
+pub type GivenColumns = [(String, String)];
 
 /// What a column may hold.
 #[derive(Clone, Copy, Debug)]
@@ -183,7 +187,9 @@ impl FileKind {
         let falls = column.values.windows(2).position(|pair| pair[1] <= pair[0]);
         falls.map_or(Ok(()), |row| {
             let [before, found] = [row, row + 1].map(|row| column.in_si_units(column.values[row]));
-            let expected = format!("more than {before}, that of the row before: they must rise");
+            let is_jump = column.values[row] == column.values[row + 1];
+            let jump = if is_jump { ", and what jumps between two rows has no rate" } else { "" };
+            let expected = format!("more than {before}, that of the row before: they must rise{jump}");
             Err(ContentError::value(table.lines.get(row + 1).copied(), &column.label(), &found, &expected))
         })
     }
@@ -207,6 +213,14 @@ pub struct ReadingNote {
     pub text: String,
     /// Whether something was assumed that the file does not say.
     pub assumed: bool,
+}
+
+impl ReadingNote {
+    /// The note with the name of the file.
+    #[must_use]
+    pub fn of(self, file: &Path) -> Self {
+        Self { text: format!("{}: {}", file.display(), self.text), ..self }
+    }
 }
 
 /// The numbers of a file.

@@ -12,7 +12,8 @@ mod units;
 
 pub use error::{ContentError, assignment, shortened};
 pub use kind::{
-    FileKind, Others, Presence, ReadColumn, ReadTable, ReadingNote, Role, UnitRule, canonical, canonical_name,
+    FileKind, GivenColumns, Others, Presence, ReadColumn, ReadTable, ReadingNote, Role, UnitRule, canonical,
+    canonical_name,
 };
 pub use range::{ABOVE_ZERO, ANY, FINITE, LARGEST, NOT_NEGATIVE, NumberRange, POSITIVE, SMALLEST};
 pub use text::{fields, quoted, unquoted};

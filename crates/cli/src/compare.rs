@@ -11,9 +11,9 @@ use asperity_study::sweep::SweepTable;
 use clap::Args;
 
 use super::cli::values::{self, example};
-use super::files::{check_outputs, name_of, named, print_beside};
+use super::files::{self, check_outputs, name_of, named, print_beside};
 use super::picture;
-use super::terminal::{labelled, lines, note, warn};
+use super::terminal::{labelled, lines, warn};
 
 #[derive(Debug, Args)]
 #[command(after_help = example!("asperity compare friction.csv --data docs/guide/measured.csv"))]
@@ -37,7 +37,7 @@ pub(crate) fn compare(command: &Compare) -> Result<(), Error> {
     check_outputs([&path], vec![command.table.clone(), command.options.data.clone()])?;
     let table = SweepTable::read(&command.table)?;
     let comparison = Comparison::new(&table, &command.table, &command.options)?;
-    comparison.notes.iter().for_each(|text| note(text));
+    files::tell(&comparison.notes);
     comparison.left_out_in_words().iter().for_each(|text| warn(text));
     comparison.check(&command.options.data)?;
     let rows: Vec<Measured> = comparison.within.iter().map(|(row, _)| *row).collect();

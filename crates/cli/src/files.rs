@@ -2,6 +2,7 @@
 
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use asperity::model::EvenSliding;
 use asperity::patch::Patch;
@@ -22,11 +23,11 @@ pub(crate) fn picture_beside(table: &Path, named: Option<&PathBuf>) -> Option<Pa
     named.cloned().or_else(|| (!is_stream(table)).then(|| table.with_extension("svg")))
 }
 
-/// Reads a scene, its keys overridden by `--set`, and prints its warnings and what was assumed in reading its tables.
+/// Reads a scene, its keys overridden by `--set`, and prints its warnings and how the files were read that it names.
 pub(crate) fn load(path: &Path, set: &[Setting]) -> Result<Scene, Error> {
     let scene = files::load_scene(path, set).map_err(of_set)?;
     scene.warnings.iter().for_each(|warning| warn(warning));
-    print_assumptions(&scene);
+    tell(scene.notes.iter().map(|read| &read.text));
     Ok(scene)
 }
 
@@ -52,12 +53,20 @@ pub(crate) fn load_without_run(
         unused.extend(EvenSliding::warning(&scene));
     }
     scene.warnings.iter().filter(|warning| !unused.contains(warning)).for_each(|text| warn(text));
-    print_assumptions(&scene);
+    tell(scene.notes.iter().map(|read| &read.text));
     Ok(scene)
 }
 
-fn print_assumptions(scene: &Scene) {
-    scene.notes.iter().filter(|read| read.assumed).for_each(|read| note(&read.text));
+/// Prints how files were read, of each once.
+pub(crate) fn tell<T: AsRef<str>>(notes: impl IntoIterator<Item = T>) {
+    static TOLD: Mutex<Vec<String>> = Mutex::new(Vec::new());
+    let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
+    for text in notes {
+        if !told.iter().any(|other| other == text.as_ref()) {
+            note(text.as_ref());
+            told.push(text.as_ref().to_owned());
+        }
+    }
 }
 
 /// How the tables of a scene were read, as lines of a summary.
@@ -65,9 +74,11 @@ pub(crate) fn table_lines(scene: &Scene) -> Vec<LabelledLine> {
     labelled("Tables", scene.notes.iter().map(|read| read.text.clone()))
 }
 
-/// Reads a patch, its keys overridden by `--set`.
+/// Reads a patch, its keys overridden by `--set`, and prints how the file of its points was read.
 pub(crate) fn load_patch(path: &Path, set: &[Setting]) -> Result<Patch, Error> {
-    files::load_patch(path, set).map_err(of_set)
+    let patch = files::load_patch(path, set).map_err(of_set)?;
+    tell(patch.notes().iter().map(|read| &read.text));
+    Ok(patch)
 }
 
 /// Refuses an output that would overwrite one of `others`, by whatever name.

@@ -13,7 +13,7 @@ use super::cli::Fit;
 use super::files::{self, check_outputs, name_of, named, picture_beside, print_beside};
 use super::output::{NOT_REACHED, SUCCESS};
 use super::picture;
-use super::terminal::{LabelledLine, lines, note, warn, with_flags};
+use super::terminal::{LabelledLine, lines, warn, with_flags};
 
 /// Reads the moduli, puts those of several temperatures together, fits, writes the terms and the plot, and prints a
 /// summary. Where the requested error cannot be reached, the best fit is written, with a warning and an exit status of
@@ -23,7 +23,7 @@ pub(crate) fn fit(command: &Fit) -> Result<u8, Error> {
     let read: Vec<PathBuf> = std::iter::once(&command.data).chain(&command.options.shifts).cloned().collect();
     check_outputs([&command.output].into_iter().chain(&picture), read)?;
     let fitted = fit_moduli(&command.data, &command.options)?;
-    fitted.notes().iter().for_each(|text| note(text));
+    files::tell(fitted.notes());
     fitted.warnings().iter().for_each(|text| warn(text));
     files::write(&command.output, with_flags(&fitted.table().text()))?;
     if let Some(path) = &picture {

@@ -10,7 +10,7 @@ use asperity_study::motion::MotionFile;
 use asperity_study::patch_history::PatchHistory;
 use asperity_study::{Context as _, Error};
 
-use crate::files::{check_outputs, load_patch, named, print_beside};
+use crate::files::{check_outputs, load_patch, named, print_beside, tell};
 use crate::picture;
 use crate::result_file::CsvWriter;
 use crate::simulate::{NOT_STARTED, Simulate, ended_at};
@@ -24,6 +24,7 @@ pub(crate) fn simulate(command: &Simulate, patch_file: &Path, motion_file: &Path
     let output = command.output(patch_file);
     check_outputs([&output].into_iter().chain(&command.plot), taken)?;
     let motion = MotionFile::read(motion_file, &patch)?;
+    tell(&motion.notes);
     let mut recorder = PatchRecorder::new(&patch, &motion, &output, command)?;
     let mut run = PatchRun::new(&patch, &motion.start()).context(NOT_STARTED)?;
     recorder.row(&mut run, motion.values(&motion.rows()[0]))?;

@@ -6,8 +6,11 @@ use std::path::PathBuf;
 
 use asperity::outputs::{OutputEntry, catalogue};
 use asperity::patch::{self, PatchKind, PatchOutputEntry};
-use asperity::scene::{Absent, KeyEntry, Unit, patch_keys, scene_keys};
-use asperity_study::Error;
+use asperity::scene::{Absent, KeyEntry, MOTION, POINTS, SOFTENING, Unit, patch_keys, scene_keys};
+use asperity::tables::{Dimension, Role, Unit as TableUnit, UnitRule};
+use asperity_study::calibration::FRICTION;
+use asperity_study::motion::PATCH_MOTION;
+use asperity_study::{Error, fit, rank};
 use clap::{Arg, Args, Command};
 
 use super::cli::values::example;
@@ -69,6 +72,49 @@ times) and `{ absolute = 2.0 }` (normal, the standard deviation in SI units or a
 `\"surface\" = \"seed\"`: [what is not known](decide.md).
 ";
 
+/// What stands above the names of columns.
+const COLUMNS: &str = "
+## Columns of files
+
+A column is what its name says: by one of these names or symbols, whole, where case, blanks and `_` do not count, or by
+two of them behind each other. Its unit stands beside it in brackets, `speed [mm/s]`, or in the row below the names. What
+else a file has is left out, which is told. A column with another name is said to be one of these: in a scene by
+`{ path = \"…\", columns = { modulus = \"E_1\" } }` in place of the path, of a profile by the key `columns`; of data by
+`--column speed=v2`, in Python by `columns={\"speed\": \"v2\"}`; each with its name or its number from 1.
+";
+
+/// Kinds of files, and what their columns may hold.
+const FILES: [(&str, &[Role]); 11] = [
+    ("A profile: `surface.path`, `asperity surface`", &asperity_formats::profile::ROLES),
+    ("A spectrum: `surface.fine.spectrum`", asperity_formats::SPECTRUM.roles),
+    ("A softening: `surface.fine.softening`", SOFTENING.roles),
+    ("A Prony series: `material.prony`", asperity_formats::SERIES.roles),
+    ("A motion: `excitation.file`", MOTION.roles),
+    ("Points of a patch: `patch.path`", POINTS.roles),
+    ("A motion of a patch: `asperity simulate --motion`", PATCH_MOTION.roles),
+    ("Moduli: `asperity fit`", &fit::ROLES),
+    ("Shift factors: `asperity fit --shifts`", fit::SHIFTS.roles),
+    ("Measured friction: `--data` of `asperity calibrate`, `compare`, `rank` and `sweep`", FRICTION.roles),
+    ("Weights: `asperity rank --weights`", rank::WEIGHTS.roles),
+];
+
+/// A table for each kind of file.
+fn column_tables() -> String {
+    let mut text = String::new();
+    for (title, roles) in FILES {
+        let _ = writeln!(text, "\n### {title}\n\n| column | unit | names and symbols |\n|---|---|---|");
+        for role in roles {
+            let unit = match (role.dimension, role.unit) {
+                (Dimension::Number, _) => String::new(),
+                (dimension, UnitRule::Named) => format!("{}, named", TableUnit::si(dimension)),
+                (dimension, _) => TableUnit::si(dimension).to_string(),
+            };
+            let _ = writeln!(text, "| `{}` | {unit} | {} |", role.key, cell(role.names));
+        }
+    }
+    text
+}
+
 /// The page, of a `program` with these commands.
 pub(super) fn page(mut program: Command) -> String {
     let mut page = HEAD.to_owned();
@@ -78,6 +124,8 @@ pub(super) fn page(mut program: Command) -> String {
     page += &output_tables(&outputs_of_scenes());
     page += "\n## Outputs of a patch\n\nBy the groups of `[fmu] outputs`; those of `elements` are of each element, `element[i,j].…`. *only* names the key\nof `[patch]` without which there is no such output.\n";
     page += &output_tables(&outputs_of_patches());
+    page += COLUMNS;
+    page += &column_tables();
     page += "\n## Commands\n\nAll of them take `-q`, `--quiet`: results and warnings alone, neither notes nor progress; and `-v`,\n`--verbose`: every note where only some or their number would be printed. The examples run in a checkout of the\nrepository.\n";
     program.build();
     for of in program.get_subcommands().filter(|of| !of.is_hide_set() && of.get_name() != "help") {

@@ -78,13 +78,12 @@ fn read(command: &Surface) -> Result<(scene::Surface, Vec<PathBuf>), Error> {
             return Err(Error::value(problem).context(path.display()));
         }
         let scene = load_without_run(path, &[], |_| false)?;
-        scene.notes.iter().filter(|read| !read.assumed).for_each(|read| note(&read.text));
         let files = scene.sources(path);
         return Ok((scene.surface, files));
     }
     let loaded = scene::Surface::load(path, &command.reading.options(), &Instruments)?;
     loaded.warnings.iter().for_each(|warning| warn(warning));
-    loaded.notes.iter().for_each(|read| note(&read.text));
+    files::tell(loaded.notes.into_iter().map(|note| note.of(name_of(path).as_ref()).text));
     Ok((loaded.surface, vec![path.clone()]))
 }
 

@@ -21,7 +21,7 @@ pub mod workbook;
 mod x3p;
 
 use asperity::scene::{Convention, ElasticConstants, FileFormats, LoadedProfile, ProfileOptions};
-use asperity::tables::{ContentError, FileKind, ReadTable};
+use asperity::tables::{ContentError, FileKind, GivenColumns, ReadTable};
 
 pub use series::SERIES;
 pub use spectrum::SPECTRUM;
@@ -41,17 +41,27 @@ impl FileFormats for Instruments {
         }
     }
 
-    fn table(&self, bytes: &[u8], kind: &FileKind, columns: &[(String, String)]) -> Result<ReadTable, ContentError> {
+    fn table(&self, bytes: &[u8], kind: &FileKind, columns: &GivenColumns) -> Result<ReadTable, ContentError> {
         let read = |bytes: &[u8]| text::read(&text::decode(bytes)?, kind, columns).map(|(table, _)| table);
         in_text(bytes, read, |table| &mut table.notes)
     }
 
-    fn series(&self, bytes: &[u8], elastic: ElasticConstants) -> Result<ReadTable, ContentError> {
-        in_text(bytes, |bytes| series::read_series(bytes, elastic, &[]), |table| &mut table.notes)
+    fn series(
+        &self,
+        bytes: &[u8],
+        elastic: ElasticConstants,
+        columns: &GivenColumns,
+    ) -> Result<ReadTable, ContentError> {
+        in_text(bytes, |bytes| series::read_series(bytes, elastic, columns), |table| &mut table.notes)
     }
 
-    fn spectrum(&self, bytes: &[u8], convention: Convention) -> Result<ReadTable, ContentError> {
-        in_text(bytes, |bytes| spectrum::read_spectrum(bytes, convention, &[]), |table| &mut table.notes)
+    fn spectrum(
+        &self,
+        bytes: &[u8],
+        convention: Convention,
+        columns: &GivenColumns,
+    ) -> Result<ReadTable, ContentError> {
+        in_text(bytes, |bytes| spectrum::read_spectrum(bytes, convention, columns), |table| &mut table.notes)
     }
 }
 

@@ -4,12 +4,10 @@ use std::f64::consts::{PI, TAU};
 
 use asperity::scene::{self, Convention, LEAST_DENSITY, RoughnessSpectrum};
 use asperity::tables::{
-    CYCLES, ContentError, Dimension, FileKind, POSITIVE, ReadColumn, ReadTable, ReadingNote, Role, Unit,
+    CYCLES, ContentError, Dimension, FileKind, GivenColumns, POSITIVE, ReadColumn, ReadTable, ReadingNote, Role, Unit,
 };
 
-use crate::text::decode;
-
-use crate::text::{GivenColumns, read};
+use crate::text::{decode, read};
 
 const DENSITY: asperity::tables::NumberRange = POSITIVE.down_to(LEAST_DENSITY);
 const ROLES: [Role; 5] = [

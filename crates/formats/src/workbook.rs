@@ -307,43 +307,48 @@ fn ods_sheets(bytes: &[u8]) -> Result<Vec<(String, String)>, WorkbookError> {
     let mut archive = ZipArchive::new(Cursor::new(bytes))?;
     let read = archive.by_name("content.xml")?.read_to_string(&mut content);
     read.map_err(|source| WorkbookError::Part { part: "content.xml".to_owned(), source })?;
-    check_spans(&content)?;
+    let percent = check_spans(&content)?;
     let error = |error| WorkbookError::Content(calamine::Error::Ods(error));
     let mut workbook = Ods::new(Cursor::new(bytes)).map_err(error)?;
     let names = workbook.sheet_names();
-    names.into_iter().map(|name| of_range(&workbook.worksheet_range(&name).map_err(error)?, name)).collect()
+    let read = |(index, name): (usize, String)| {
+        let range = workbook.worksheet_range(&name).map_err(error)?;
+        of_range(&range, name, percent.get(index).unwrap_or(&BTreeSet::new()))
+    };
+    names.into_iter().enumerate().map(read).collect()
 }
 
 /// Checks the rectangle of each sheet of an OpenDocument, whose rows and cells say how often they are repeated: its reader
-/// makes all of it.
-fn check_spans(content: &str) -> Result<(), WorkbookError> {
-    let mut reader = quick_xml::Reader::from_str(content);
-    let (mut rows, mut column, mut widest) = (0_u64, 0_u64, 0_u64);
-    loop {
-        let event = reader.read_event()?;
-        let element = match &event {
-            Event::Start(element) | Event::Empty(element) => element,
-            Event::Eof => return Ok(()),
-            _ => continue,
-        };
-        match element.name().0 {
-            "table:table" => (rows, widest) = (0, 0),
-            "table:table-row" => {
-                rows = rows.saturating_add(repeats(element, "table:number-rows-repeated"));
-                column = 0;
-            }
-            "table:table-cell" | "table:covered-table-cell" => {
-                column = column.saturating_add(repeats(element, "table:number-columns-repeated"));
-                if holds_value(element) {
-                    widest = widest.max(column);
-                    if widest.saturating_mul(rows) > MOST_CELLS {
-                        return Err(WorkbookError::TooManyCells("of the OpenDocument".to_owned()));
-                    }
+/// makes all of it. The places of each sheet's cells in the format of per cent.
+fn check_spans(content: &str) -> Result<Vec<BTreeSet<(u32, u32)>>, WorkbookError> {
+    let (mut top, mut rows, mut column, mut widest) = (0_u64, 0_u64, 0_u64, 0_u64);
+    let (mut percent, mut is_too_wide) = (Vec::<BTreeSet<(u32, u32)>>::new(), false);
+    each_element(content, |element| match element.name().0 {
+        "table:table" => {
+            (top, rows, widest) = (0, 0, 0);
+            percent.push(BTreeSet::new());
+        }
+        "table:table-row" => {
+            (top, column) = (rows, 0);
+            rows = rows.saturating_add(repeats(element, "table:number-rows-repeated"));
+        }
+        "table:table-cell" | "table:covered-table-cell" => {
+            let left = column;
+            column = column.saturating_add(repeats(element, "table:number-columns-repeated"));
+            if holds_value(element) {
+                widest = widest.max(column);
+                is_too_wide |= widest.saturating_mul(rows) > MOST_CELLS;
+                let is_percent = attribute(element, "office:value-type").is_some_and(|kind| kind == "percentage");
+                if let Some(cells) = percent.last_mut().filter(|_| is_percent && !is_too_wide) {
+                    let places =
+                        (top..rows).flat_map(|row| (left..column).map(move |column| (row as u32, column as u32)));
+                    cells.extend(places);
                 }
             }
-            _ => (),
         }
-    }
+        _ => (),
+    })?;
+    if is_too_wide { Err(WorkbookError::TooManyCells("of the OpenDocument".to_owned())) } else { Ok(percent) }
 }
 
 fn repeats(element: &BytesStart<'_>, key: &str) -> u64 {
@@ -360,15 +365,25 @@ fn old_sheets(bytes: &[u8]) -> Result<Vec<(String, String)>, WorkbookError> {
     let error = |error| WorkbookError::Content(calamine::Error::Xls(error));
     let mut workbook = Xls::new(Cursor::new(bytes)).map_err(error)?;
     let names = workbook.sheet_names();
-    names.into_iter().map(|name| of_range(&workbook.worksheet_range(&name).map_err(error)?, name)).collect()
+    let none = BTreeSet::new();
+    names.into_iter().map(|name| of_range(&workbook.worksheet_range(&name).map_err(error)?, name, &none)).collect()
 }
 
-/// The text of a sheet that was read as a rectangle.
-fn of_range(range: &Range<Data>, name: String) -> Result<(String, String), WorkbookError> {
+/// The text of a sheet that was read as a rectangle, of whose cells some are in the format of per cent.
+fn of_range(
+    range: &Range<Data>,
+    name: String,
+    percent: &BTreeSet<(u32, u32)>,
+) -> Result<(String, String), WorkbookError> {
     let (above, before) = range.start().unwrap_or_default();
     let mut sheet = Sheet::default();
     for (row, column, value) in range.used_cells() {
-        sheet.add(&name, (above + row as u32, before + column as u32), text_of(value))?;
+        let place = (above + row as u32, before + column as u32);
+        let text = match value {
+            Data::Float(number) if percent.contains(&place) => in_percent(*number),
+            value => text_of(value),
+        };
+        sheet.add(&name, place, text)?;
     }
     sheet.text(&name).map(|text| (name, text))
 }
@@ -480,6 +495,8 @@ mod tests {
         let empty = "<table:table-row table:number-rows-repeated=\"900000\"><table:table-cell \
                      table:number-columns-repeated=\"16384\"/></table:table-row>";
         assert_eq!(text(&ods(&format!("{row}{empty}"))), "1.0\n");
+        let percent = "<table:table-cell office:value-type=\"percentage\" office:value=\"0.05\"/>";
+        assert_eq!(text(&ods(&format!("<table:table-row>{number}{percent}</table:table-row>"))), "1.0\t5.0%\n");
         let far = format!("{empty}<table:table-row>{number}{number}</table:table-row>");
         assert!(matches!(sheets(&ods(&far)), Err(WorkbookError::TooManyCells(_))));
         let many = "<table:table-row table:number-rows-repeated=\"1000\"><table:table-cell office:value-type=\"float\" \

@@ -3,12 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use asperity::element::{Load, OperatingPoint, Quantity};
+use asperity::tables::GivenColumns;
 use clap::Args;
 use serde::{Deserialize, Serialize};
 
 use crate::Error;
 use crate::calibration::{CurveGrid, Measured, Measurements, in_words, left_out_in_words};
 use crate::decimals::rounded;
+use crate::files::ColumnOptions;
 use crate::sweep::{SweepHeader, SweepTable, way_of};
 
 // What a table is compared with. Not a doc comment: that would be the description of the command.
@@ -18,6 +20,9 @@ pub struct CompareOptions {
     /// The measured friction, as for asperity calibrate.
     #[arg(long, value_name = "MEASURED.csv")]
     pub data: PathBuf,
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub columns: ColumnOptions,
 }
 
 /// Measurements and the friction of a table there.
@@ -58,7 +63,7 @@ impl Comparison {
     /// # Errors
     /// Where the table is over forces, or the measurements cannot be read.
     pub fn new(table: &SweepTable, path: &Path, options: &CompareOptions) -> Result<Self, Error> {
-        let measurements = measured_beside(&table.header, path, &options.data)?;
+        let measurements = measured_beside(&table.header, path, &options.data, &options.columns.columns)?;
         let curves = SweptFriction { table };
         let (mut within, mut left_out) = (Vec::<(Measured, f64)>::new(), Vec::<(Measured, NoFriction)>::new());
         for &row in &measurements.rows {
@@ -127,7 +132,12 @@ pub fn off_in_words(measured: &Measured, model: f64, deviations: f64) -> String 
 ///
 /// # Errors
 /// Where the table is over forces, or the measurements cannot be read, or say nothing of the temperature that they need.
-pub fn measured_beside(header: &SweepHeader, path: &Path, data: &Path) -> Result<Measurements, Error> {
+pub fn measured_beside(
+    header: &SweepHeader,
+    path: &Path,
+    data: &Path,
+    columns: &GivenColumns,
+) -> Result<Measurements, Error> {
     let Load::Pressure { area } = header.load else {
         return Err(Error::in_file(
             path,
@@ -135,7 +145,7 @@ pub fn measured_beside(header: &SweepHeader, path: &Path, data: &Path) -> Result
             "a table over forces: expected one over pressures, as `asperity sweep --pressures` makes",
         ));
     };
-    let mut measurements = Measurements::read(data, area, &[])?;
+    let mut measurements = Measurements::read(data, area, columns)?;
     let temperatures = &header.grid.temperatures;
     if temperatures.len() > 1 && !measurements.has_temperature() {
         return Err(Error::in_file(

@@ -5,7 +5,7 @@ use std::path::Path;
 use asperity::model::EvenSliding;
 use asperity::patch::Patch;
 use asperity::scene::{FileFormats as _, Scene, SceneFile, Setting, read_file, read_text};
-use asperity::tables::{FileKind, ReadTable};
+use asperity::tables::{FileKind, GivenColumns, ReadTable};
 use asperity_formats::Instruments;
 
 use crate::error::Error;
@@ -56,11 +56,33 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
     read_file(path).map_err(Error::io("read", path))
 }
 
+// Which columns of a table hold what, where their names do not say it. Not a doc comment: that would be the description of
+// the commands that have it.
+#[expect(missing_docs, reason = "clap would print it")]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize, clap::Args)]
+#[serde(default)]
+pub struct ColumnOptions {
+    /// Which column of the data is which, by its name or number, as in speed=v2. May be repeated.
+    #[arg(long = "column", value_name = "ROLE=COLUMN", value_parser = given_column, requires = "data")]
+    pub columns: Vec<(String, String)>,
+}
+
+/// A role and the name or the number of its column.
+///
+/// # Errors
+/// With what is expected, in words.
+pub fn given_column(text: &str) -> Result<(String, String), String> {
+    let parted = text.split_once('=').map(|(key, name)| (key.trim().to_owned(), name.trim().to_owned()));
+    parted
+        .filter(|(key, name)| !key.is_empty() && !name.is_empty())
+        .ok_or_else(|| "expected ROLE=COLUMN, such as speed=v2".into())
+}
+
 /// The table of a kind in the file at `path`, text or a workbook.
 ///
 /// # Errors
 /// Where it cannot be read, or is no such table.
-pub fn read_table(path: &Path, kind: &FileKind, columns: &[(String, String)]) -> Result<ReadTable, Error> {
+pub fn read_table(path: &Path, kind: &FileKind, columns: &GivenColumns) -> Result<ReadTable, Error> {
     Instruments.table(&bytes(path)?, kind, columns).map_err(Error::content(path))
 }
 

@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::Path;
 
 use asperity::element::{Quantity, SweepGrid, some_of};
+use asperity::tables::GivenColumns;
 
 use crate::Error;
 use crate::calibration::{Measured, left_out_in_words};
@@ -29,7 +30,12 @@ impl Maps {
     ///
     /// # Errors
     /// Where the table is not over these quantities, or the measurements cannot be read.
-    pub fn new(over: Over, header: &SweepHeader, path: &Path, data: Option<&Path>) -> Result<Self, Error> {
+    pub fn new(
+        over: Over,
+        header: &SweepHeader,
+        path: &Path,
+        data: Option<(&Path, &GivenColumns)>,
+    ) -> Result<Self, Error> {
         let load = SweptQuantity::of_load(header.load);
         if let Some(asked) = over.0.into_iter().find(|quantity| quantity.is_load() && *quantity != load) {
             let instead = Over(over.0.map(|quantity| if quantity == asked { load } else { quantity }));
@@ -57,7 +63,8 @@ impl Maps {
         }
         let all = [SweptQuantity::Speed, load, SweptQuantity::Temperature];
         let third = all.into_iter().find(|quantity| !over.0.contains(quantity)).unwrap_or(load);
-        let found = data.map(|data| measured_beside(header, path, data)).transpose()?.unwrap_or_default();
+        let found =
+            data.map(|(data, columns)| measured_beside(header, path, data, columns)).transpose()?.unwrap_or_default();
         Ok(Self { over, third, measured: found.rows, notes: found.notes })
     }
 

@@ -153,17 +153,6 @@ pub fn temperature(text: &str) -> Result<f64, String> {
     found.ok_or_else(|| "expected a temperature above 0 K, such as 293.15 (in K) or 20°C".into())
 }
 
-/// The key of a role, and the name or number of its column.
-///
-/// # Errors
-/// What was expected of the text.
-pub fn given_column(text: &str) -> Result<(String, String), String> {
-    let parted = text.split_once('=').map(|(key, name)| (key.trim().to_owned(), name.trim().to_owned()));
-    parted
-        .filter(|(key, name)| !key.is_empty() && !name.is_empty())
-        .ok_or_else(|| "expected ROLE=COLUMN, such as speed=v2".into())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from datetime import datetime, timedelta
 from functools import wraps
 from pathlib import Path
 from textwrap import wrap
@@ -17,6 +18,10 @@ P = ParamSpec("P")
 R = TypeVar("R")
 Floats = NDArray[np.float64]
 Progress = bool | Callable[[float], object]
+
+# Units of arrays that carry one, as pint, astropy and xarray write them.
+_SI = {"", "1", "dimensionless", "m", "meter", "metre", "s", "second", "N", "newton", "Pa", "pascal", "K", "kelvin"}
+_SI |= {"m/s", "m / s", "meter / second", "1/m", "1 / m", "1 / meter", "m4", "m^4", "meter ** 4"}
 
 
 def renamed(**names: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
@@ -37,8 +42,10 @@ def renamed(**names: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
 def to_toml(value: object) -> str:
     """The value as TOML: numbers, texts, flags, lists and arrays, and dictionaries as inline tables."""
+    if isinstance(value, np.datetime64 | np.timedelta64):
+        raise TypeError(f"{value!r}: expected a number, in SI units")
     if isinstance(value, np.ndarray | np.generic):
-        value = value.tolist()
+        value = plain("an array", value).tolist()
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, int | float):
@@ -57,11 +64,99 @@ def _name(key: object) -> str:
 
 
 def numbers(name: str, values: ArrayLike) -> Floats:
-    """A line of numbers."""
-    array = np.atleast_1d(np.asarray(values, dtype=np.float64))
+    """A line of numbers: masked ones are NaN, times are in seconds."""
+    array = np.atleast_1d(floats(name, values))
     if array.ndim != 1:
         raise ValueError(f"{name}: expected a line of numbers, found an array of shape {array.shape}")
     return np.ascontiguousarray(array)
+
+
+def floats(name: str, values: object) -> Floats:
+    """An array of numbers: masked ones are NaN, times are in seconds."""
+    array = plain(name, values)
+    try:
+        return np.asarray(array, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"{name}: expected numbers, found {array.dtype}: {error}") from None
+
+
+def plain(name: str, values: object) -> NDArray[Any]:
+    """An array without what numpy would drop in silence: masked values are NaN, and times are seconds.
+
+    Dates count from the first of them. Arrays with units other than SI are refused.
+    """
+    kind = getattr(values, "dtype", None)
+    unit = next((one for one in (_unit(values), _unit(kind)) if one is not None), None)
+    if unit is not None and getattr(kind, "kind", "") not in ("m", "M") and str(unit) not in _SI:
+        raise TypeError(f"{name}: expected numbers in SI units, found an array in {unit}")
+    values = getattr(values, "magnitude", values)
+    if isinstance(values, np.ma.MaskedArray):
+        if values.dtype.kind in "mM":
+            return plain(name, values.filled(np.array("NaT", values.dtype)))
+        is_whole = not np.any(np.ma.getmaskarray(values)) or values.dtype.kind not in "buif"
+        return np.asarray(values.filled() if is_whole else values.astype(np.float64).filled(np.nan))
+    array = np.asarray(values)
+    if array.dtype.kind == "M":
+        array = array - array.flat[0] if array.size else array.astype("m8[ns]")
+    if array.dtype.kind == "m":
+        return np.asarray(array / np.timedelta64(1, "s"), dtype=np.float64)
+    return _seconds(array) if _is_time(array) else array
+
+
+def _unit(values: object) -> object:
+    """The unit that an array of pint, astropy or xarray has, or a column's type."""
+    return getattr(values, "units", getattr(values, "unit", None))
+
+
+def _is_time(array: NDArray[Any]) -> bool:
+    """Whether an array has dates or spans of time, of numpy or as objects."""
+    if array.dtype.kind != "O" or not array.size:
+        return array.dtype.kind in "mM"
+    return all(isinstance(one, datetime | timedelta) for one in array.flat)
+
+
+def _seconds(array: NDArray[Any]) -> Floats:
+    """Seconds of objects of datetime, those with a zone of time among them."""
+    first = array.flat[0]
+    spans = [one if isinstance(one, timedelta) else one - first for one in array.flat]
+    return np.array([span.total_seconds() for span in spans], dtype=np.float64).reshape(array.shape)
+
+
+def lines_along_x(heights: Any, spacing: tuple[float, float]) -> Floats:
+    """Heights in the order (y, x) of rising coordinates, by the names and the coordinates that the array has."""
+    array = floats("heights", heights)
+    if array.ndim != 2:
+        raise ValueError(f"heights: expected an array of shape (ny, nx), found {array.shape}")
+    names, coordinates = _axes_of(heights)
+    if names[0] == "x" or names[1] == "y":
+        array, names, coordinates = array.T, names[::-1], coordinates[::-1]
+    if names not in (("y", "x"), ("y", None), (None, "x"), (None, None)):
+        raise ValueError(f"heights: expected axes called y and x, found {names[0]} and {names[1]}")
+    for which, (along, distance) in enumerate(zip(coordinates, spacing[::-1], strict=True)):
+        if along is None or along.size < 2:
+            continue
+        if along[1] < along[0]:
+            array, along = np.flip(array, which), along[::-1]
+        if not np.allclose(np.diff(along), distance, rtol=1e-3, atol=0.0):
+            found = f"{np.diff(along).min():g} to {np.diff(along).max():g}"
+            raise ValueError(f"heights: expected coordinates at the distance {distance:g} m, found {found} along {'yx'[which]}")
+    return array
+
+
+def _axes_of(heights: Any) -> tuple[tuple[Any, ...], list[Floats | None]]:
+    """The names of two axes, in lower case, and their coordinates; None where they have none."""
+    if hasattr(heights, "coords") and hasattr(heights, "dims"):
+        names = [None if str(name).startswith("dim_") else str(name).lower() for name in heights.dims]
+        along = [floats(str(name), heights.coords[name]) if name in heights.coords else None for name in heights.dims]
+        return tuple(names), along
+    if hasattr(heights, "index") and hasattr(heights, "columns"):
+        both = (heights.index, heights.columns)
+        names = [None if one.name is None else str(one.name).lower() for one in both]
+        # Whole numbers and names without a name of their axis count rows and columns.
+        is_axis = [one.name is not None or np.asarray(one).dtype.kind == "f" for one in both]
+        along = [floats("heights", one) if has else None for one, has in zip(both, is_axis, strict=True)]
+        return tuple(names), along
+    return (None, None), [None, None]
 
 
 def axis(name: str, values: ArrayLike) -> list[float]:
@@ -82,24 +177,64 @@ def positive(name: str, value: float) -> float:
 def given(**options: object) -> dict[str, Any]:
     """The options that are given, as plain values; what is None is left out."""
 
-    def plain(value: object) -> object:
+    def as_plain(value: object) -> object:
         if isinstance(value, np.ndarray | np.generic):
             return value.tolist()
         return str(value) if isinstance(value, Path) else value
 
-    return {name: plain(value) for name, value in options.items() if value is not None}
+    return {name: as_plain(value) for name, value in options.items() if value is not None}
 
 
-def columns_of(data: object) -> dict[str, Any]:
-    """The columns of a DataFrame, or of a mapping of names to columns."""
-    if not hasattr(data, "items"):
+def mapping(name: str, value: Any) -> Mapping[Any, Any]:
+    """A dictionary, or another mapping."""
+    if not isinstance(value, Mapping):
+        raise TypeError(f"{name}: expected a dictionary, found {type(value).__name__}")
+    return value
+
+
+def columns_of(data: object) -> dict[str, NDArray[Any]]:
+    """The columns of a DataFrame, its index among them, or of a mapping of names to columns.
+
+    Times are in seconds, which stands beside their names.
+    """
+    units: dict[str, str] = {}
+    if hasattr(data, "data_vars"):
+        units = {str(name): one.attrs["units"] for name, one in data.variables.items() if "units" in one.attrs}
+        data = data.to_dataframe()
+    if hasattr(data, "reset_index") and hasattr(data, "columns"):
+        data = _with_index(data)
+    if not hasattr(data, "items") or hasattr(data, "to_frame"):
         raise TypeError(f"expected a DataFrame or a mapping of names to columns, found {type(data).__name__}")
-    return {str(name): column for name, column in data.items()}
+    columns: dict[str, NDArray[Any]] = {}
+    for given, column in data.items():
+        name, array = str(given), plain(str(given), column)
+        if _is_time(np.asarray(column)):
+            if "[" in name or "(" in name:
+                raise TypeError(f"{name}: expected numbers in this unit, found dates or spans of time, which have their own")
+            name += " [s]"
+        elif name in units:
+            name += f" [{units[name]}]"
+        if name in columns:
+            raise ValueError(f"two columns are called {name!r}: expected names of their own")
+        columns[name] = array
+    return columns
+
+
+def _with_index(data: Any) -> Any:
+    """A DataFrame whose index is a column, unless that has no name and only counts the rows."""
+    index = data.index
+    named = any(name is not None for name in index.names)
+    return data.reset_index() if named or np.asarray(index).dtype.kind not in "iu" else data
+
+
+def given_columns(columns: Mapping[str, str | int] | None) -> list[tuple[str, str]]:
+    """Which column is which, by its name or number."""
+    return [(str(role), str(column)) for role, column in mapping("columns", columns or {}).items()]
 
 
 def table_text(data: object) -> str:
     """A table with columns as text: a DataFrame, or a mapping of names to columns."""
-    columns = {name: np.asarray(column) for name, column in columns_of(data).items()}
+    columns = columns_of(data)
     lengths = {column.shape for column in columns.values()}
     if len(lengths) != 1 or len(next(iter(lengths))) != 1:
         raise ValueError(f"expected columns of one length, found { ({n: c.shape for n, c in columns.items()}) }")
@@ -118,7 +253,8 @@ def with_units(data: object, units: Mapping[str, str]) -> dict[str, Any]:
 def _field(value: object) -> str:
     if isinstance(value, float):
         return "" if value != value else repr(value)
-    text = "" if value is None else str(value)
+    # pandas writes values that are missing so.
+    text = "" if value is None or str(value) in ("<NA>", "NaT") else str(value)
     return '"' + text.replace('"', '""') + '"' if any(c in text for c in ',"\n') else text
 
 

@@ -9,6 +9,7 @@ from os import PathLike
 from pathlib import Path
 
 from ._arguments import table_text
+from ._errors import SceneError
 
 
 class table_file:
@@ -30,6 +31,14 @@ class table_file:
     def __exit__(self, *_: object) -> None:
         if self._folder is not None:
             shutil.rmtree(self._folder, ignore_errors=True)
+
+
+def text_of(path: str | PathLike[str]) -> str:
+    """The text of a scene's or a patch's file."""
+    try:
+        return Path(path).read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise SceneError(f"{path}: expected text in UTF-8, found other bytes at {error.start}", Path(path)) from None
 
 
 def folder_of(files: Mapping[str, bytes]) -> tempfile.TemporaryDirectory[str]:

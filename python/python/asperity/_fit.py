@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
-from ._arguments import Floats, numbers, renamed
+from ._arguments import Floats, given_columns, numbers, renamed
 from ._files import table_file
 
 if TYPE_CHECKING:
@@ -125,6 +125,7 @@ def fit(
     shear: bool = False,
     units: Mapping[str, str] | None = None,
     sheet: str | None = None,
+    columns: Mapping[str, str | int] | None = None,
     ignore: Sequence[str] = (),
     weight: str = "both",
     vertical: str = "divide",
@@ -146,6 +147,7 @@ def fit(
         shear: Whether moduli whose names have no letter are of shear.
         units: Units of columns whose names have none or another one.
         sheet: The sheet of a workbook.
+        columns: Which column is which, by its name or number: ``{"storage_modulus": "E' 1"}``.
         ignore: Columns to ignore.
         weight: Which modulus the error counts, ``"storage"``, ``"loss"`` or ``"both"``.
         vertical: What becomes of the moduli of other temperatures: ``"divide"`` by a column b_T where there is one,
@@ -166,6 +168,7 @@ def fit(
         "shear": shear,
         "units": list((units or {}).items()),
         "sheet": sheet,
+        "columns": given_columns(columns),
         "ignore": list(ignore),
         "weight": weight,
         "vertical": vertical,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
-from ._arguments import Floats, Progress, axis, given, positive, shown
+from ._arguments import Floats, Progress, axis, given, given_columns, positive, shown
 from ._files import table_file
+from ._scene_text import SceneText
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -150,6 +151,7 @@ def rank(
     samples: int = 128,
     seed: int = 1,
     data: object = None,
+    columns: Mapping[str, str | int] | None = None,
     method: Literal["steady", "layer"] | None = None,
     way: float | None = None,
     points: int | None = None,
@@ -173,6 +175,7 @@ def rank(
         samples: Number of samples, where a scene has ``[uncertainty]``.
         seed: The seed of the samples.
         data: Measured friction as for :meth:`Scene.calibrate`, with a column ``scene`` of the scenes' names.
+        columns: As for :meth:`Scene.calibrate`.
         method: As for :meth:`Scene.sweep`.
         way: As for :meth:`Scene.sweep`.
         points: As for :meth:`Scene.sweep`.
@@ -183,6 +186,9 @@ def rank(
     Raises:
         SceneError, ValueError: Where the scenes, the weights or the data are refused.
     """
+    for scene in scenes:
+        if not isinstance(scene, SceneText):
+            raise TypeError(f"scenes: expected scenes, found {type(scene).__name__}")
     with ExitStack() as files:
         weights_file = None if weights is None else files.enter_context(table_file(weights))
         data_file = None if data is None else files.enter_context(table_file(data))
@@ -197,6 +203,7 @@ def rank(
                 samples=samples,
                 seed=seed,
                 data=data_file,
+                columns=given_columns(columns),
                 method=method,
                 way=None if way is None else positive("way", way),
                 points=points,

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
-from ._arguments import Progress, axis, given, numbers, positive, renamed, shown, to_toml
+from ._arguments import Progress, axis, given, given_columns, mapping, numbers, positive, renamed, shown, to_toml
 from ._files import table_file
 from ._library import options as library_options
 from ._library import warn_of_start
@@ -261,6 +261,7 @@ class Scene(SceneInputs):
         data: object,
         free: Mapping[str, tuple[float, float]],
         *,
+        columns: Mapping[str, str | int] | None = None,
         method: Method | None = None,
         way: float | None = None,
         points: int | None = None,
@@ -275,6 +276,7 @@ class Scene(SceneInputs):
                 if there are any. Names have units, as in ``"speed [mm/s]"``; without one, SI.
             free: Keys of the scene to fit, each with its bounds (low, high); of positive bounds a decade apart the
                 logarithm is fitted.
+            columns: Which column is which, by its name or number, where the names do not say it: ``{"speed": "v2"}``.
             method: As for :meth:`sweep`.
             way: As for :meth:`sweep`, where the data has no column of it.
             points: As for :meth:`sweep`.
@@ -286,11 +288,12 @@ class Scene(SceneInputs):
         """
         from ._calibration import Calibration
 
-        bounds = [(key, float(low), float(high)) for key, (low, high) in free.items()]
+        bounds = [(key, float(low), float(high)) for key, (low, high) in mapping("free", free).items()]
         with table_file(data) as path:
             slid = None if way is None else positive("way", way)
             options = given(
                 data=path,
+                columns=given_columns(columns),
                 free=bounds,
                 method=method,
                 way=slid,

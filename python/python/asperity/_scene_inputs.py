@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._arguments import numbers, table_text, to_toml, with_units
+from ._arguments import lines_along_x, numbers, table_text, to_toml, with_units
 from ._scene_text import SceneText
 
 if TYPE_CHECKING:
@@ -43,15 +43,15 @@ class SceneInputs(SceneText):
         """A copy that slides on a map of heights.
 
         Args:
-            heights: Heights, m, shape (ny, nx): lines along x, the direction of sliding, one after the other along y.
+            heights: Heights, m, shape (ny, nx): lines along x, the direction of sliding, one after the other along y. Of
+                an array that names its axes, of xarray or pandas, these count, and their coordinates have to have the
+                spacing; masked heights are missing, as NaN are.
             spacing: Distance of the points, m; or those along x and along y.
             periodic: Whether it is repeated without end along both axes; the point behind the last is then the first.
             keys: Other keys of the surface, such as ``line``, or ``fine``, which is kept where it is not given.
         """
-        array = np.asarray(heights, dtype=np.float64)
-        if array.ndim != 2:
-            raise ValueError(f"heights: expected an array of shape (ny, nx), found {array.shape}")
         dx, dy = spacing if isinstance(spacing, tuple) else (spacing, spacing)
+        array = lines_along_x(heights, (float(dx), float(dy)))
         surface = {"kind": "file", "path": "with_map.csv", "spacing": [float(dx), float(dy)], "periodic": periodic}
         units = {"x_unit": "m", "z_unit": "m"}
         text = "\n".join(",".join(map(repr, line)) for line in array.tolist()) + "\n"

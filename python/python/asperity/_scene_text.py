@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
-from ._arguments import Floats, described, numbers, to_toml
-from ._files import folder_of
+from ._arguments import Floats, described, mapping, numbers, to_toml
+from ._files import folder_of, text_of
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -46,7 +46,7 @@ class SceneText:
             SceneError: Where it is refused.
             OSError: Where it cannot be read.
         """
-        return cls(Path(path).read_text(encoding="utf-8"), path)
+        return cls(text_of(path), path)
 
     @classmethod
     def from_dict(cls, keys: Mapping[str, Any], folder: str | PathLike[str] = ".") -> Self:
@@ -56,7 +56,7 @@ class SceneText:
             keys: The keys, as a scene file has them.
             folder: Where files that they name are looked for.
         """
-        text = "".join(f"{key} = {to_toml(value)}\n" for key, value in keys.items())
+        text = "".join(f"{key} = {to_toml(value)}\n" for key, value in mapping("keys", keys).items())
         return cls(text, Path(folder) / _SCENE)
 
     # Keys

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _native
-from ._arguments import Floats
+from ._arguments import Floats, given_columns
 from ._files import table_file
 
 if TYPE_CHECKING:
@@ -105,6 +105,13 @@ class Surface:
         return f"<asperity.Surface {self.name!r}: {len(self.x)} points, rms {self['rms_height']:.4g} m, {hurst}>"
 
 
+def _columns(columns: Mapping[str, str | int] | Sequence[str]) -> dict[str, Any]:
+    """The options of the command that say the columns."""
+    if isinstance(columns, Mapping):
+        return {"column": given_columns(columns)}
+    return {"columns": [columns] if isinstance(columns, str) else [str(name) for name in columns]}
+
+
 def surface(
     data: object,
     *,
@@ -120,7 +127,7 @@ def surface(
     tilt: str | None = None,
     depth: str | None = None,
     third_column: str | None = None,
-    columns: Sequence[str] = (),
+    columns: Mapping[str, str | int] | Sequence[str] = (),
     spacing: float | Sequence[float] = (),
     line: int | None = None,
     periodic: bool = False,
@@ -143,7 +150,8 @@ def surface(
         tilt: "keep" it, or "remove" the least squares line or plane.
         depth: Whether numbers of z are heights ("up") or depths ("down"); None: by the name of their column.
         third_column: What it marks: "invalid" or "valid" points, or nothing ("ignore").
-        columns: The columns of x and z, by their names or numbers; one alone holds heights.
+        columns: The columns of x and z, by their names or numbers; one alone holds heights. Or by their axes, as in
+            ``{"z": "Texture"}``.
         spacing: The distance of points of a file without x, and of the lines of a matrix, m.
         line: The line of an areal measurement, from 1; None: the middle one.
         periodic: Whether the profile is repeated without end.
@@ -161,7 +169,7 @@ def surface(
         "tilt": tilt,
         "depth": depth,
         "third_column": third_column,
-        "columns": [columns] if isinstance(columns, str) else [str(name) for name in columns],
+        **_columns(columns),
         "spacing": np.atleast_1d(np.asarray(spacing, dtype=np.float64)).tolist(),
         "line": line,
         "periodic": periodic,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _native
-from ._arguments import Floats, given
+from ._arguments import Floats, given, given_columns
 from ._files import table_file
 from ._library import options as library_options
 from ._library import warn_of_start
@@ -229,11 +229,12 @@ class Table:
         sides = [(f"{name} [{units[name]}]", axes[name], _is_logarithmic(name, axes[name])) for name in (x, y)]
         return maps(f"{column} [{self.units[column]}]", (sides[0], sides[1]), list(zip(titles, values, strict=True)))
 
-    def compare(self, data: object) -> Comparison:
+    def compare(self, data: object, *, columns: Mapping[str, str | int] | None = None) -> Comparison:
         """Compares the table with measured friction, as ``asperity compare`` does.
 
         Args:
             data: What :meth:`Scene.calibrate` takes: the path of a table, a DataFrame or a mapping.
+            columns: As for :meth:`Scene.calibrate`.
 
         Raises:
             ValueError: Where the table is over forces, or has no friction at any of the measurements.
@@ -243,7 +244,7 @@ class Table:
         with tempfile.TemporaryDirectory(prefix="asperity-") as folder, table_file(data) as path:
             file = Path(folder) / "table.csv"
             self.to_csv(file)
-            found = _native.compare(file, given(data=path))
+            found = _native.compare(file, given(data=path, columns=given_columns(columns)))
         for text in found.pop("warnings"):
             warnings.warn(text, stacklevel=2)
         refused = found.pop("refused")

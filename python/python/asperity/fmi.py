@@ -17,7 +17,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from ._arguments import Floats, columns_of
+from ._arguments import Floats, columns_of, floats
 from ._result import Result
 from ._verification import Verification
 
@@ -49,7 +49,7 @@ def simulate(
     import fmpy
 
     description = fmpy.read_model_description(str(fmu))
-    columns = {name: np.asarray(column, dtype=np.float64) for name, column in columns_of(motion).items()}
+    columns = {name.removesuffix(" [s]"): floats(name, column) for name, column in columns_of(motion).items()}
     inputs = [variable for variable in description.modelVariables if variable.causality == "input"]
     rows = _rows(columns, [variable.name for variable in inputs])
     with _slave(fmu, description) as slave:

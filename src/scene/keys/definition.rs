@@ -204,6 +204,20 @@ impl Key {
 pub(in crate::scene) const PATH: &str =
     "a relative path of a file beside or below the scene file, without `..` and backslashes";
 
+/// The path of such a file, or a table of it.
+pub(in crate::scene) const TABLE_FILE: &str =
+    "a relative path of a file beside or below the scene file, without `..` and backslashes; or { path, columns }";
+
+/// The keys of a table in a file whose columns are said.
+pub(in crate::scene) const TABLE: &[Key] = &[
+    key("path", Allowed::Text(PATH), "File of the table").required(),
+    key("columns", Allowed::Text(ROLES), "Columns by what they hold, where their names do not say it"),
+];
+
+/// What `columns` of a table holds.
+pub(in crate::scene) const ROLES: &str =
+    "{ role = \"…\" }, the names or the numbers of columns as texts, by what they hold";
+
 /// What the reader gets for a key that is not in the table; it accepts no value.
 pub(in crate::scene) const NONE: Key = key("", Allowed::Text("no such key"), "");
 

@@ -10,7 +10,7 @@ mod scene_file;
 mod surface;
 
 pub use definition::Absent;
-pub(super) use definition::{Allowed, Form, Key, Kinds, NONE, PATH};
+pub(super) use definition::{Allowed, Form, Key, Kinds, NONE, PATH, TABLE};
 pub(super) use field::{At, Field};
 pub use list::{KeyEntry, patch_keys, scene_keys, similar_keys};
 pub(super) use list::{KeyRow, elsewhere, fields, find, range_of};

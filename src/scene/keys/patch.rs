@@ -1,6 +1,6 @@
 //! The keys of a patch file.
 
-use super::definition::{Allowed, Key, Kinds, PATH, key, kinds, number, numbers, table, whole, word};
+use super::definition::{Allowed, Key, Kinds, PATH, ROLES, key, kinds, number, numbers, table, whole, word};
 use super::scene_file::{DEPENDENCIES, INTEGERS};
 use crate::scene::patch_file::{MAX_ELEMENTS, PatchGroup, TableExtrapolation};
 use crate::scene::values::{ANY, NumberRange, POSITIVE, Word, words};
@@ -105,8 +105,14 @@ const CYLINDER: &[Key] = &[
     BACKING,
     HEAT,
 ];
-const POINTS: &[Key] =
-    &[SHAPE, key("path", Allowed::Text(PATH), "File of the points").required(), OFFSET, BACKING, HEAT];
+const POINTS: &[Key] = &[
+    SHAPE,
+    key("path", Allowed::Text(PATH), "File of the points").required(),
+    key("columns", Allowed::Text(ROLES), "Columns by what they hold, where their names do not say it"),
+    OFFSET,
+    BACKING,
+    HEAT,
+];
 
 pub(in crate::scene) const REFINE: Key =
     whole("refine", 1, 1000, "How many times finer a step is cut than it needs to be").default("1");

@@ -1,6 +1,6 @@
 //! The keys of a scene file.
 
-use super::definition::{Allowed, Key, PATH, key, number, table, whole, word};
+use super::definition::{Allowed, Key, PATH, TABLE_FILE, key, number, table, whole, word};
 use super::field::{At, FieldValue, field};
 use super::surface::SURFACE;
 use crate::scene::values::{ANY, LOOSEST_TOLERANCE, NOT_NEGATIVE, POSITIVE, words};
@@ -121,7 +121,7 @@ const MATERIAL: &[Key] = &[
         "prony",
         Allowed::Tables(
             PRONY_TERM,
-            "an array of tables, or the path of a CSV file beside the scene with relaxation_time (s) and modulus (Pa)",
+            "an array of tables, or the path of a file beside the scene with relaxation_time and modulus; or { path, columns }",
         ),
         "Prony series",
     )
@@ -355,7 +355,7 @@ pub(super) const DEPENDENCIES: Key =
 const PHASE: &[Key] = &[
     key(
         "file",
-        Allowed::Text(PATH),
+        Allowed::Text(TABLE_FILE),
         "File of the motion, with columns time, u and w, of which one that rests may be missing, in place of others",
     ),
     number("duration", POSITIVE, Unit::Second, "Duration").follows("required but of a file"),

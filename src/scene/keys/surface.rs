@@ -1,6 +1,6 @@
 //! The keys of a surface and of the roughness below its profile.
 
-use super::definition::{Allowed, Key, Kinds, PATH, key, kinds, number, numbers, table, whole, word};
+use super::definition::{Allowed, Key, Kinds, PATH, TABLE_FILE, key, kinds, number, numbers, table, whole, word};
 use super::field::{Field, FieldValue, field};
 use crate::scene::fine_roughness::Convention;
 use crate::scene::values::{ANY, NOT_NEGATIVE, POSITIVE, Word};
@@ -81,7 +81,7 @@ const FINE_ROUGHNESS: &[Key] = &[
         .parameter(wave_field!(longest of SelfAffine, Table)),
     number("shortest", POSITIVE, Unit::Meter, "Shortest wavelength of the roughness that the profile lacks")
         .parameter(wave_field!(shortest of SelfAffine, Table, Split, Continued)),
-    key("spectrum", Allowed::Text(PATH), "File of the spectrum of the roughness that the profile lacks"),
+    key("spectrum", Allowed::Text(TABLE_FILE), "File of the spectrum of the roughness that the profile lacks"),
     word::<Convention>("convention", "How that spectrum is normalised").default("\"persson\""),
     number(
         "split",

@@ -4,7 +4,7 @@ use super::surface::Findings;
 use super::table::{Result, TableReader};
 use crate::scene::keys::At;
 use crate::scene::motion_file;
-use crate::scene::{Axis, CarrierBodies, CarrierBody, FileFormats, Force, Path, Phase, Scene, Wlf};
+use crate::scene::{Axis, CarrierBodies, CarrierBody, Force, Path, Phase, Scene, Wlf};
 
 pub(super) fn read(table: &mut TableReader<'_>, scene: &mut Scene) -> Result<()> {
     for axis in Axis::ALL {
@@ -57,8 +57,11 @@ pub(super) fn read_phases(
     found: &mut Findings,
 ) -> Result<Vec<Phase>> {
     let Some(entry) = table.entry("file") else { return Ok(vec![read_phase(table, carrier, temperature)?]) };
-    let read = |formats: &dyn FileFormats, bytes: &[u8]| formats.table(bytes, &motion_file::MOTION, &[]);
-    let phases = found.read_table(&entry, read, |table| motion_file::phases(table, carrier))?;
+    let phases = found.read_table(
+        &entry,
+        |formats, bytes, columns| formats.table(bytes, &motion_file::MOTION, columns),
+        |table| motion_file::phases(table, carrier),
+    )?;
     match phases.iter().find_map(|phase| motion_file::obstacle(phase, carrier, temperature)) {
         Some(expected) => Err(entry.refuse(format_args!("a file with {expected}"))),
         None => Ok(phases),

@@ -4,7 +4,7 @@ use super::surface::Findings;
 use super::table::{Entry, Result, TableReader};
 use crate::scene::fine_roughness::{Convention, SOFTENING};
 use crate::scene::keys::SurfaceKind;
-use crate::scene::{FileFormats, FineRoughness, FineWaves, RoughnessSpectrum, Scene, Softening, Surface};
+use crate::scene::{FineRoughness, FineWaves, RoughnessSpectrum, Scene, Softening, Surface};
 
 /// The forms: the key by which each is told, the first one that is there, and its other keys.
 const FORMS: [(&str, &[&str]); 5] = [
@@ -44,10 +44,11 @@ pub(super) fn read(
         creep_speed: table.optional_number("creep_speed")?,
         hysteresis: table.entry("hysteresis").map_or(Ok(true), |entry| entry.flag())?,
         softening: match table.entry("softening") {
-            Some(entry) if entry.is_text() => {
-                let read = |formats: &dyn FileFormats, bytes: &[u8]| formats.table(bytes, &SOFTENING, &[]);
-                found.read_table(&entry, read, |table| Ok((Softening::of_table(table), Vec::new())))?
-            }
+            Some(entry) if entry.is_file() => found.read_table(
+                &entry,
+                |formats, bytes, columns| formats.table(bytes, &SOFTENING, columns),
+                |table| Ok((Softening::of_table(table), Vec::new())),
+            )?,
             Some(entry) => Softening::Factor(entry.number()?),
             None => Softening::Factor(1.0),
         },
@@ -82,9 +83,11 @@ fn read_waves(
             let convention: Convention = table.optional_choice("convention")?.unwrap_or_default();
             let file = table.required("spectrum")?;
             let (longest, shortest) = (table.number("longest")?, table.number("shortest")?);
-            let read = |formats: &dyn FileFormats, bytes: &[u8]| formats.spectrum(bytes, convention);
-            let spectrum =
-                found.read_table(&file, read, |table| Ok((RoughnessSpectrum::of_table(table), Vec::new())))?;
+            let spectrum = found.read_table(
+                &file,
+                |formats, bytes, columns| formats.spectrum(bytes, convention, columns),
+                |table| Ok((RoughnessSpectrum::of_table(table), Vec::new())),
+            )?;
             FineWaves::Table { spectrum, longest, shortest }
         }
         "split" => {

@@ -313,15 +313,18 @@ fn read_material(table: &mut TableReader<'_>, scene: &mut Scene, found: &mut Fin
 /// The Prony series, in the scene or in a file.
 fn read_prony(entry: &Entry<'_>, scene: &mut Scene, found: &mut Findings) -> Result<()> {
     let Some(material) = &mut scene.material else { return Ok(()) };
-    if !entry.is_text() {
+    if !entry.is_file() {
         let elements = entry.elements()?;
         material.prony = vec![PronyTerm::default(); elements.len()];
         return fill_each(&elements, scene, At::FIRST);
     }
     let Material { poisson_ratio, equilibrium_modulus, .. } = *material;
     let elastic = ElasticConstants { poisson_ratio, equilibrium_modulus };
-    let read = |formats: &dyn FileFormats, bytes: &[u8]| formats.series(bytes, elastic);
-    material.prony = found.read_table(entry, read, |table| Ok((PronyTerm::of_table(table), Vec::new())))?;
+    material.prony = found.read_table(
+        entry,
+        |formats, bytes, columns| formats.series(bytes, elastic, columns),
+        |table| Ok((PronyTerm::of_table(table), Vec::new())),
+    )?;
     Ok(())
 }
 

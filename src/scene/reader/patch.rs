@@ -13,7 +13,7 @@ use crate::scene::patch_file::{
     Backing, FaceHeat, FaceShape, Grid, MAX_ELEMENTS, PatchFile, PatchGroup, TableExtrapolation,
 };
 use crate::scene::{CanonicalFiles, FileFormats, FmuOptions, SceneError, read_file, read_text};
-use crate::tables::{ContentError, Dimension, FileKind, Others, POSITIVE, Role};
+use crate::tables::{ContentError, Dimension, FileKind, GivenColumns, Others, POSITIVE, ReadingNote, Role};
 
 const POINT_ROLES: [Role; 4] = [
     Role::new("x", "position x, x position", Dimension::Length),
@@ -93,6 +93,7 @@ impl PatchFile {
             refine: u32::try_from(refine).unwrap_or(1),
             outputs,
             fmu,
+            notes: face.notes,
             values: Arc::new(values),
         })
     }
@@ -105,23 +106,25 @@ struct FaceKeys {
     offset: [f64; 3],
     backing: Option<Backing>,
     heat: Option<FaceHeat>,
+    notes: Vec<ReadingNote>,
 }
 
 fn read_face(entry: &Entry<'_>) -> Result<FaceKeys> {
     let mut table = entry.open()?;
     let kind = table.required("shape")?.choice::<ShapeKind>()?;
     table.use_keys(kind)?;
+    let mut notes = Vec::new();
     let shape = match kind {
         ShapeKind::Flat => FaceShape::Flat(read_grid(&mut table)?),
         ShapeKind::Cylinder => read_cylinder(&mut table)?,
-        ShapeKind::Points => read_points(&table.required("path")?)?,
+        ShapeKind::Points => read_points(&table.required("path")?, &surface::read_roles(&mut table)?, &mut notes)?,
     };
     let transport = kind != ShapeKind::Points && table.flag("transport")?;
     let offset = table.entry("offset").map(|entry| read_offset(&entry)).transpose()?.unwrap_or_default();
     let backing = table.optional_table("backing", read_backing)?;
     let heat = table.optional_table("heat", read_heat)?;
     table.finish()?;
-    Ok(FaceKeys { shape, transport, offset, backing, heat })
+    Ok(FaceKeys { shape, transport, offset, backing, heat, notes })
 }
 
 fn read_heat(table: &mut TableReader<'_>) -> Result<FaceHeat> {
@@ -168,25 +171,31 @@ fn read_offset(entry: &Entry<'_>) -> Result<[f64; 3]> {
     numbers.try_into().map_err(|_| entry.refuse_count(count, "three numbers"))
 }
 
-fn read_points(entry: &Entry<'_>) -> Result<FaceShape> {
+fn read_points(entry: &Entry<'_>, columns: &GivenColumns, notes: &mut Vec<ReadingNote>) -> Result<FaceShape> {
     let (path, source) = (surface::read_path(entry)?, entry.source());
     let (file, bytes) = read_file(&source.values.folder().join(&path))
         .map(|bytes| (source.values.folder().join(&path), bytes))
         .map_err(|error| entry.unreadable(&error))?;
-    let points = parse_points(&bytes, source.values.formats);
-    let points = points.map_err(|error| error.in_file(file).named_by(entry.location(), entry.path()))?;
+    let points = parse_points(&bytes, source.values.formats, columns);
+    let (points, read) = points.map_err(|error| error.in_file(file).named_by(entry.location(), entry.path()))?;
+    notes.extend(read.into_iter().map(|note| note.of(&path)));
     Ok(FaceShape::Points { path, points })
 }
 
-fn parse_points(bytes: &[u8], formats: &dyn FileFormats) -> std::result::Result<Vec<[f64; 4]>, ContentError> {
-    let table = formats.table(bytes, &POINTS, &[])?;
+fn parse_points(
+    bytes: &[u8],
+    formats: &dyn FileFormats,
+    columns: &GivenColumns,
+) -> std::result::Result<(Vec<[f64; 4]>, Vec<ReadingNote>), ContentError> {
+    let table = formats.table(bytes, &POINTS, columns)?;
     let rows = table.lines.len();
     if rows as i64 > MAX_ELEMENTS {
         let expected = format!("1 to {MAX_ELEMENTS}, one an element");
         return Err(ContentError::value(table.line, "rows", &rows.to_string(), &expected));
     }
     let columns = ["x", "y", "z", "area"].map(|key| table.values(key));
-    Ok((0..rows).map(|row| columns.map(|column| column[row])).collect())
+    let points = (0..rows).map(|row| columns.map(|column| column[row])).collect();
+    Ok((points, table.notes))
 }
 
 fn default_outputs() -> Vec<PatchGroup> {

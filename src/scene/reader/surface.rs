@@ -5,15 +5,15 @@ use std::sync::Arc;
 
 use super::table::{Entry, Result, TableReader};
 use crate::scene::file_values::NamedFiles;
-use crate::scene::files::with_seams;
+use crate::scene::files::{NamedTable, with_seams};
 use crate::scene::height_map::Seam;
-use crate::scene::keys::{PATH, SurfaceKind};
+use crate::scene::keys::{PATH, SurfaceKind, TABLE};
 use crate::scene::surface::{Coordinate, check_points};
 use crate::scene::{
     FileFormats, Layer, LoadedProfile, MOST_HEIGHTS, ProfileOptions, SceneFile, SelfAffine, Surface, line_note,
     warnings,
 };
-use crate::tables::{ContentError, ReadTable, ReadingNote};
+use crate::tables::{ContentError, GivenColumns, ReadTable, ReadingNote};
 
 /// A number of points that is whole but for rounding is that number.
 const ROUNDING: f64 = 1.0e-9;
@@ -30,8 +30,7 @@ pub(super) struct Findings {
 impl Findings {
     /// Adds how the file at `path` was read.
     pub(super) fn add_notes(&mut self, path: &FilePath, notes: Vec<ReadingNote>) {
-        let named = |note: ReadingNote| ReadingNote { text: format!("{}: {}", path.display(), note.text), ..note };
-        for note in notes.into_iter().map(named) {
+        for note in notes.into_iter().map(|note| note.of(path)) {
             if !self.notes.contains(&note) {
                 self.notes.push(note);
             }
@@ -43,18 +42,20 @@ impl Findings {
     pub(super) fn read_table<T>(
         &mut self,
         entry: &Entry<'_>,
-        read: impl Fn(&dyn FileFormats, &[u8]) -> std::result::Result<ReadTable, ContentError>,
+        read: impl Fn(&dyn FileFormats, &[u8], &GivenColumns) -> std::result::Result<ReadTable, ContentError>,
         make: impl Fn(&ReadTable) -> std::result::Result<(T, Vec<ReadingNote>), ContentError>,
     ) -> Result<T> {
-        let (path, values) = (read_path(entry)?, entry.source().values);
-        let (file, bytes) = self.named.read(values.folder(), &path, None).map_err(|error| entry.unreadable(&error))?;
-        let made =
-            read(values.formats, &bytes).and_then(|table| make(&table).map(|(content, notes)| (table, content, notes)));
+        let (named, values) = (read_named(entry)?, entry.source().values);
+        let carried = NamedTable::carried_name(&named.path, &named.columns);
+        let (file, bytes) =
+            self.named.read(values.folder(), &named.path, &carried).map_err(|error| entry.unreadable(&error))?;
+        let made = read(values.formats, &bytes, &named.columns)
+            .and_then(|table| make(&table).map(|(content, notes)| (table, content, notes)));
         let refused = |error: ContentError| error.in_file(file).named_by(entry.location(), entry.path());
         let (mut table, content, notes) = made.map_err(refused)?;
-        self.add_notes(&path, std::mem::take(&mut table.notes));
-        self.add_notes(&path, notes);
-        self.add_file(SceneFile::of_table(path, table));
+        self.add_notes(&named.path, std::mem::take(&mut table.notes));
+        self.add_notes(&named.path, notes);
+        self.add_file(SceneFile::of_table(named, table));
         Ok(content)
     }
 
@@ -65,8 +66,9 @@ impl Findings {
             return Ok(profile.clone());
         }
         let values = entry.source().values;
+        let carried = options.carried_name(path);
         let (file, bytes) =
-            self.named.read(values.folder(), path, Some(options)).map_err(|error| entry.unreadable(&error))?;
+            self.named.read(values.folder(), path, &carried).map_err(|error| entry.unreadable(&error))?;
         let read = values.formats.surface(&bytes, options).and_then(|read| with_seams(read, options));
         let read = read.map_err(|error| error.in_file(file).named_by(entry.location(), entry.path()))?;
         let profile = Arc::new(read);
@@ -242,6 +244,26 @@ fn read_spacing(table: &mut TableReader<'_>) -> Result<Vec<f64>> {
     let numbers = entry.number_or_numbers()?;
     let expected = "a number, of a column of heights, or two along x and y, of a matrix of heights";
     if (1..=2).contains(&numbers.len()) { Ok(numbers) } else { Err(entry.refuse_count(numbers.len(), expected)) }
+}
+
+/// The table that a key names: by the path of its file, or with columns whose names do not say what they are,
+/// `{ path = "…", columns = { … } }`.
+pub(super) fn read_named(entry: &Entry<'_>) -> Result<NamedTable> {
+    if !entry.is_table() {
+        return Ok(NamedTable { path: read_path(entry)?, columns: Vec::new() });
+    }
+    let mut table = entry.open_with(TABLE)?;
+    table.check_keys()?;
+    let path = read_path(&table.required("path")?)?;
+    let columns = read_roles(&mut table)?;
+    table.finish()?;
+    Ok(NamedTable { path, columns })
+}
+
+/// The columns of a table by what they hold.
+pub(super) fn read_roles(table: &mut TableReader<'_>) -> Result<Vec<(String, String)>> {
+    let Some(entry) = table.entry("columns") else { return Ok(Vec::new()) };
+    entry.texts_by_name().ok_or_else(|| entry.refuse_type())
 }
 
 /// Only files beside or below the scene can go into the FMU with it.

@@ -134,6 +134,15 @@ impl<'a> Entry<'a> {
         self.value.is_str()
     }
 
+    pub(super) fn is_table(&self) -> bool {
+        self.value.is_table()
+    }
+
+    /// Whether it names a file: by its path, or in a table.
+    pub(super) fn is_file(&self) -> bool {
+        self.is_text() || self.is_table()
+    }
+
     pub(super) fn choice<T: Word>(&self) -> Result<T> {
         self.value.as_str().and_then(T::parse).ok_or_else(|| self.refuse(words::<T>()))
     }
@@ -171,8 +180,13 @@ impl<'a> Entry<'a> {
 
     /// The table that it is; its keys are not checked before [`check_keys`](TableReader::check_keys).
     pub(super) fn open(&self) -> Result<TableReader<'a>> {
+        self.open_with(self.key.keys())
+    }
+
+    /// The table that it is, which has these keys.
+    pub(super) fn open_with(&self, keys: &'static [Key]) -> Result<TableReader<'a>> {
         let table = self.value.as_table().ok_or_else(|| self.refuse("a table"))?;
-        let (source, path, keys) = (self.source, self.path.clone(), self.key.keys());
+        let (source, path) = (self.source, self.path.clone());
         Ok(TableReader { source, path, table, keys, asked: Vec::new() })
     }
 

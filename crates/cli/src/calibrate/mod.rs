@@ -25,7 +25,7 @@ use super::interrupt::Farewell;
 use super::output::{NOT_REACHED, SUCCESS};
 use super::picture;
 use super::table_file::TableFile;
-use super::terminal::{self, note, warn};
+use super::terminal::{self, warn};
 
 #[derive(Debug, Args)]
 #[command(after_help = example!(
@@ -92,7 +92,7 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, Error> {
     let text = read_text(&command.scene).map_err(Error::io("read", &command.scene))?;
     let free = FreeScene::new(&command.options, edited(&text, &command.set), scene)?;
     let measurements = free.measurements()?;
-    measurements.notes.iter().for_each(|text| note(text));
+    files::tell(&measurements.notes);
     let outputs = Outputs::new(command, free.scene())?;
     let (kept, known) = match &outputs.table {
         Some(table) => {

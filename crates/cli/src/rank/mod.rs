@@ -11,10 +11,10 @@ use asperity_study::rank::{self, RankFound, RankOptions, RankPlan, RankScene, me
 use clap::{ArgGroup, Args};
 
 use super::cli::values::{self, Set, example};
-use super::files::{check_outputs, load_without_run, picture_beside, print_beside, write};
+use super::files::{self, check_outputs, load_without_run, picture_beside, print_beside, write};
 use super::output::{NOT_REACHED, SUCCESS};
 use super::picture;
-use super::terminal::{self, note, warn};
+use super::terminal::{self, warn};
 
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("over").required(true).args(["speeds"])))]
@@ -51,8 +51,12 @@ pub(crate) fn rank(command: &Rank) -> Result<u8, Error> {
     let plan = RankPlan::new(scenes, options)?;
     plan.warnings().iter().for_each(|warning| warn(warning));
     let found = found(&plan)?;
-    let measured = options.data.as_deref().map(|data| measured_ranking(&plan, &found, data)).transpose()?;
-    measured.iter().flat_map(|measured| &measured.notes).for_each(|text| note(text));
+    let measured = options
+        .data
+        .as_deref()
+        .map(|data| measured_ranking(&plan, &found, data, &options.columns.columns))
+        .transpose()?;
+    measured.iter().for_each(|measured| files::tell(&measured.notes));
     found.ranking.warnings().iter().for_each(|warning| warn(warning));
     write(&command.output, table(&found.ranking))?;
     if let Some(path) = &picture {

@@ -11,6 +11,7 @@ use asperity::scene::{Scene, Wlf};
 use asperity::table::{Cell, Column, Header, Table, TableError};
 use asperity::tables::Dimension;
 use asperity_study::Error;
+use asperity_study::files::ColumnOptions;
 use asperity_study::friction_map::Maps;
 use asperity_study::progress::Stop;
 use asperity_study::sweep::{
@@ -22,12 +23,14 @@ use asperity_study::values::Values;
 use clap::{ArgGroup, Args};
 
 use super::cli::values::{self, Set, count, example};
-use super::files::{check_outputs, default_output, load_without_run, named, picture_beside, print_beside, read, write};
+use super::files::{
+    self, check_outputs, default_output, load_without_run, named, picture_beside, print_beside, read, write,
+};
 use super::interrupt::Farewell;
 use super::output::is_stream;
 use super::picture;
 use super::table_file::TableFile;
-use super::terminal::{self, LabelledLine, lines, note, warn};
+use super::terminal::{self, LabelledLine, lines, warn};
 
 /// Options of a sweep that --merge does not take.
 const OF_A_SCENE: [&str; 15] = [
@@ -75,6 +78,8 @@ pub(crate) struct Sweep {
     /// Measured friction, as for asperity calibrate, drawn in the same colours into the maps of --over.
     #[arg(long, value_name = "MEASURED.csv", requires = "over")]
     pub(crate) data: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) columns: ColumnOptions,
     /// Also plots the master curve: friction over a_T v, the speed at the reference temperature of material.wlf.
     #[arg(long, value_name = "OUT.svg", value_parser = values::picture(), conflicts_with = "shard")]
     pub(crate) master: Option<PathBuf>,
@@ -350,8 +355,9 @@ fn maps(command: &Sweep, header: &SweepHeader, output: &Path) -> Result<Option<M
             named(output)
         )));
     }
-    let maps = Maps::new(over, header, output, command.data.as_deref())?;
-    maps.notes.iter().for_each(|text| note(text));
+    let data = command.data.as_deref().map(|data| (data, &command.columns.columns[..]));
+    let maps = Maps::new(over, header, output, data)?;
+    files::tell(&maps.notes);
     Ok(Some(maps))
 }
 

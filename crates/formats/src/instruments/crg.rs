@@ -1,9 +1,10 @@
 //! OpenCRG (ASAM, formerly Daimler): a road as long sections beside each other, heights along a reference line, as text
 //! or binary. A long section is read as a line along x; a slope or a bank of the reference line is left out, and said.
 
-use super::{Areal, check_size, check_step, refuse};
 use asperity::tables::{ContentError, ReadingNote};
 
+use super::shared::{check_size, check_step, refuse};
+use crate::profile::Areal;
 use crate::text::number;
 
 const KIND: &str = "an OpenCRG file";

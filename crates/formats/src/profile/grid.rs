@@ -5,7 +5,7 @@ use asperity::scene::{
 };
 use asperity::tables::{ContentError, ReadingNote, Unit};
 
-use super::{MeasuredPoints, MeasuredSurface, sentinels};
+use super::points::{MeasuredPoints, MeasuredSurface, take_out};
 
 /// An areal measurement: lines along x, one after the other along y.
 #[derive(Debug)]
@@ -219,7 +219,7 @@ impl Areal {
     fn known_heights(&self, missing: Missing) -> Result<Vec<f64>, MapError> {
         let mut all = MeasuredPoints { z: self.heights.clone(), ..MeasuredPoints::default() };
         // Numbers that stand for no height are gaps too; they are counted below.
-        sentinels::take_out(&mut all, Missing::Fill)?;
+        take_out(&mut all, Missing::Fill)?;
         let (mut heights, nx) = (all.z, self.x.len());
         let Some(first) = heights.iter().position(|z| z.is_nan()) else { return Ok(heights) };
         if missing == Missing::Refuse {

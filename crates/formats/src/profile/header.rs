@@ -6,7 +6,7 @@
 use asperity::scene::ProfileOptions;
 use asperity::tables::{ContentError, Dimension, ReadingNote, Unit, shortened};
 
-use super::MeasuredPoints;
+use super::points::MeasuredPoints;
 use crate::text::{Block, Line, number};
 
 /// Keys of the number of points of a line, of the number of lines, and of the distance of points; in lower case, blanks,

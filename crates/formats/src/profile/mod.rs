@@ -3,78 +3,23 @@
 
 mod grid;
 mod header;
-mod sentinels;
+mod points;
 mod text;
 
 #[cfg(test)]
 mod tests;
 
 use asperity::scene::{
-    Coordinate, Depth, HeightMap, LengthUnit, LoadedProfile, MapError, Missing, ProfileOptions, Surface, Tilt,
-    check_points, remove_tilt,
+    Coordinate, Depth, LengthUnit, LoadedProfile, Missing, ProfileOptions, Surface, Tilt, check_points, remove_tilt,
 };
-use asperity::tables::{ContentError, ReadingNote, Unit};
+use asperity::tables::{ContentError, Unit};
 
 use crate::text::decode;
 
 pub use grid::Areal;
+pub use points::{MeasuredPoints, MeasuredSurface};
 use text::Content;
 pub use text::ROLES;
-
-/// A surface as it was measured: the line that the options choose, and the map that it is taken of, or why there is
-/// none.
-#[derive(Debug)]
-pub struct MeasuredSurface {
-    /// The line along x.
-    pub line: MeasuredPoints,
-    /// The map, or what is expected of one; `None` of a single line.
-    pub map: Option<Result<HeightMap, MapError>>,
-}
-
-/// Points as they stand in a file.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct MeasuredPoints {
-    /// Positions.
-    pub x: Vec<f64>,
-    /// Heights; NaN where one is missing.
-    pub z: Vec<f64>,
-    /// The lines of the points in the file; none where it has no lines.
-    pub lines: Vec<usize>,
-    /// The units of x and z that the file names.
-    pub units: [Option<Unit>; 2],
-    /// Whether x follows from a spacing, which is in m whatever the units are.
-    pub is_spaced: bool,
-    /// Whether they grow downwards, as far as the file tells.
-    pub is_depth: bool,
-    /// How they were read.
-    pub notes: Vec<ReadingNote>,
-}
-
-impl MeasuredPoints {
-    /// Adds a point in a line of the file.
-    fn push(&mut self, line: usize, x: f64, z: f64) {
-        self.x.push(x);
-        self.z.push(z);
-        self.lines.push(line);
-    }
-
-    /// Turns points whose x falls.
-    fn turn(&mut self) {
-        self.x.reverse();
-        self.z.reverse();
-        self.lines.reverse();
-        let text = "x falls throughout: the points are taken from the last to the first".to_owned();
-        self.notes.push(ReadingNote { text, assumed: false });
-    }
-
-    /// Refuses point `i`, by its line or else by its number from 1.
-    pub fn refuse(&self, i: usize, axis: &str, given: &str, expected: &str) -> ContentError {
-        match self.lines.get(i) {
-            Some(&line) => ContentError::value(Some(line), axis, given, expected),
-            None => ContentError::value(None, &format!("{axis}[{}]", i + 1), given, expected),
-        }
-    }
-}
 
 /// The surface of a text.
 pub fn read_text(bytes: &[u8], options: &ProfileOptions) -> Result<LoadedProfile, ContentError> {
@@ -120,7 +65,7 @@ fn check_line(options: &ProfileOptions) -> Result<(), ContentError> {
 
 /// Takes out what stands for no height, turns depths over, and converts to metres.
 fn in_metres(raw: &mut MeasuredPoints, options: &ProfileOptions) -> Result<(), ContentError> {
-    sentinels::take_out(raw, options.missing)?;
+    points::take_out(raw, options.missing)?;
     if options.turns_over(std::mem::take(&mut raw.is_depth)) {
         raw.z.iter_mut().for_each(|z| *z = -*z);
     }

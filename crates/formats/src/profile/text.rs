@@ -6,11 +6,11 @@ use std::borrow::Cow;
 use asperity::scene::{LengthUnit, Missing, ProfileOptions, ThirdColumn};
 use asperity::tables::{ANY, ContentError, Dimension, ReadingNote, Role, Unit, shortened};
 
-use super::MeasuredPoints;
 use super::grid::{Areal, refuse_lines};
 use super::header::{Settings, Size};
+use super::points::MeasuredPoints;
 use crate::text::{
-    Block, Decimal, Head, Line, UsedColumn, behind_note, chosen, decimal_of, find, is_missing, is_number,
+    Block, Decimal, Head, Line, Separator, UsedColumn, behind_note, chosen, decimal_of, find, is_missing, is_number,
     left_out_words, unit_beside,
 };
 
@@ -463,8 +463,22 @@ impl<'a> Table<'_, 'a> {
         decimal_of(&[self.block], self.text, &(0..self.block.columns).map(column).collect::<Vec<_>>())
     }
 
+    /// Refuses a matrix below a line that has a field for each column: names, and the first column may count the lines.
+    fn check_unlabelled(&self) -> Result<(), ContentError> {
+        let is_label = |(_, line): &&Line<'_>| {
+            let fields = self.block.separator.split(line);
+            let words = fields.iter().filter(|field| !field.is_empty() && !is_number(field)).count();
+            matches!(self.block.separator, Separator::Letter(_)) && words == self.block.columns
+        };
+        let Some((line, text)) = self.block.above.iter().find(is_label) else { return Ok(()) };
+        let expected = "heights alone, without names above them and without a column that counts the lines; or numbers that \
+                        rise evenly, positions, as first row and column";
+        Err(ContentError::value(Some(*line), "names of a matrix", &format!("\"{}\"", shortened(text)), expected))
+    }
+
     /// A matrix of heights: a row is a line along x. Its first row and column may be their positions.
     fn matrix(&self) -> Result<Areal, ContentError> {
+        self.check_unlabelled()?;
         let decimal = self.decimal_of_matrix()?;
         let columns = self.block.columns;
         let mut heights = Vec::with_capacity(self.block.rows * columns);

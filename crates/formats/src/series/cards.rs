@@ -2,9 +2,9 @@
 //!
 //! Their numbers have no units: times are taken in s, and E_0 stands in a comment, with its unit.
 
-use super::{ModulusKind, WrittenSeries, WrittenTerm, note};
 use asperity::tables::{ContentError, POSITIVE, ReadingNote, shortened};
 
+use super::written::{ModulusKind, WrittenSeries, WrittenTerm, note};
 use crate::text::{Decimal, Line};
 
 /// The series in the cards of a text; `None` where there are none.

@@ -3,18 +3,16 @@
 use std::borrow::Cow;
 
 use asperity::tables::{
-    ContentError, Dimension, FileKind, NumberRange, Others, Presence, ReadColumn, ReadTable, ReadingNote, Role, Unit,
-    UnitRule, shortened,
+    ContentError, Dimension, FileKind, GivenColumns, NumberRange, Others, Presence, ReadColumn, ReadTable, ReadingNote,
+    Role, Unit, UnitRule, shortened,
 };
 
 use super::blocks::Block;
+use super::decimals::{UsedColumn, decimal_of};
 use super::head::Head;
 use super::lines::Line;
 use super::names::{self, Heading, chosen, unit_beside};
-use super::numbers::{Decimal, UsedColumn, decimal_of};
-
-/// The columns that are said to be those of roles: keys, and names or numbers from 1.
-pub type GivenColumns = [(String, String)];
+use super::numbers::Decimal;
 
 /// Reads the table of a kind in a text; the lines above it, comments without their sign.
 ///
@@ -44,6 +42,9 @@ pub fn read<'a>(
         }
         lines.push(row.line);
     }
+    if kind.rises {
+        notes.extend(without_repeats(&mut columns, &mut lines));
+    }
     let left_out = left_out(&head.names, &columns);
     if kind.others == Others::Refused {
         choice.check_others(text, &left_out)?;
@@ -61,7 +62,10 @@ fn only_block<'a>(text: &'a str, kind: &FileKind, notes: &mut Vec<ReadingNote>) 
     let mut blocks = Block::all(text, false);
     let longest = (0..blocks.len()).max_by_key(|&i| blocks[i].rows);
     let Some(block) = longest.map(|i| blocks.swap_remove(i)) else {
-        let expected = format!("at least one row of numbers: {}", kind.expected);
+        let is_clock =
+            |line: &str| line.matches(':').count() > 1 && line.contains(|letter: char| letter.is_ascii_digit());
+        let clock = if text.lines().any(is_clock) { ", times in seconds and not as of a clock" } else { "" };
+        let expected = format!("at least one row of numbers{clock}: {}", kind.expected);
         return Err(ContentError::value(Some(text.lines().count().max(1)), "rows", "0", &expected));
     };
     blocks.sort_by_key(|other| other.first);
@@ -81,6 +85,24 @@ fn only_block<'a>(text: &'a str, kind: &FileKind, notes: &mut Vec<ReadingNote>) 
         ));
     }
     Ok(block)
+}
+
+/// Takes out rows that are all the same as the one before: a file of a run may have its events twice.
+fn without_repeats(columns: &mut [ReadColumn], lines: &mut Vec<usize>) -> Option<ReadingNote> {
+    let is_new = |row: usize| row == 0 || columns.iter().any(|column| column.values[row - 1] != column.values[row]);
+    let kept: Vec<bool> = (0..lines.len()).map(is_new).collect();
+    let repeats = kept.iter().filter(|is_kept| !**is_kept).count();
+    if repeats == 0 {
+        return None;
+    }
+    let mut keep = kept.iter().copied();
+    lines.retain(|_| keep.next().unwrap_or(true));
+    for column in columns {
+        let mut keep = kept.iter().copied();
+        column.values.retain(|_| keep.next().unwrap_or(true));
+    }
+    let text = format!("{repeats} rows that are those before them once more are taken as one");
+    Some(ReadingNote { text, assumed: false })
 }
 
 /// A column as one that is read.
@@ -439,6 +461,15 @@ mod tests {
         assert_eq!((table.values("time"), table.values("pressure")), (&[0.002][..], &[3e5][..]));
         let error = read(text, &LOADS, &given(&[("time", "t_3")])).map_or_else(|error| error.key, |_| String::new());
         assert_eq!(error, "columns");
+    }
+
+    /// Rows that stand there twice are one; a jump is refused.
+    #[test]
+    fn rows_of_one_time_are_one_or_refused() {
+        let kind = FileKind { rises: true, ..LOADS };
+        let read = |text: &str| read(text, &kind, &[]).map(|(table, _)| table.values("time").to_vec());
+        assert_eq!(read("t,p\n1,2\n1,2\n3,4\n"), Ok(vec![1.0, 3.0]));
+        assert_eq!(read("t,p\n1,2\n1,3\n3,4\n").map_err(|error| error.line), Err(Some(3)));
     }
 
     /// An empty last column is left out; all else must be as many.

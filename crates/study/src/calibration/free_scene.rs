@@ -12,6 +12,7 @@ use serde::Deserialize;
 use super::measurements::Measurements;
 use super::problem::FreeParameter;
 use crate::error::Error;
+use crate::files::ColumnOptions;
 use crate::sweep::{Method, SlidingOptions, fingerprint, relevant};
 use crate::values::Values;
 
@@ -26,6 +27,9 @@ pub struct CalibrationOptions {
     /// friction; of temperature and of the standard deviation of friction if it has them. Rows of one point are repeats.
     #[arg(long, value_name = "MEASURED.csv")]
     pub data: PathBuf,
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub columns: ColumnOptions,
     /// A number of the scene to fit, by its key as for --set, within bounds; its logarithm where they are positive and a
     /// decade apart. May be repeated, up to 12 times.
     #[arg(long, value_name = "KEY=LOW..HIGH", value_parser = FreeParameter::parse, required = true)]
@@ -174,7 +178,7 @@ impl<'a> FreeScene<'a> {
     /// Where the table cannot be read, or its temperatures do not go with the scene.
     pub fn measurements(&self) -> Result<Measurements, Error> {
         let path = &self.options.data;
-        let mut measurements = Measurements::read(path, self.area, &[])?;
+        let mut measurements = Measurements::read(path, self.area, &self.options.columns.columns)?;
         for row in &mut measurements.rows {
             row.point.way = row.point.way.or(self.options.sliding.way);
             let checked = self.options.sliding.check_way(&self.scene, row.point.way);

@@ -6,7 +6,7 @@ use std::path::Path;
 use asperity::element::{Load, OperatingPoint, some_of};
 use asperity::scene::FileFormats as _;
 use asperity::tables::{
-    ABOVE_ZERO, ANY, ContentError, Dimension, FileKind, Others, POSITIVE, ReadColumn, ReadTable, Role,
+    ABOVE_ZERO, ANY, ContentError, Dimension, FileKind, GivenColumns, Others, POSITIVE, ReadColumn, ReadTable, Role,
 };
 use asperity_formats::Instruments;
 
@@ -139,7 +139,7 @@ impl Measurements {
     ///
     /// # Errors
     /// [`ContentError`] with the line, what was expected and what was found.
-    pub fn parse(bytes: &[u8], area: f64, columns: &[(String, String)]) -> Result<Self, ContentError> {
+    pub fn parse(bytes: &[u8], area: f64, columns: &GivenColumns) -> Result<Self, ContentError> {
         Self::of_table(&Instruments.table(bytes, &FRICTION, columns)?, area)
     }
 
@@ -157,12 +157,9 @@ impl Measurements {
                 force.values.iter().map(|force| to_pressure * force).collect()
             }
             (None, None) => {
-                return Err(ContentError::value(
-                    table.line,
-                    "columns",
-                    "neither pressure nor force",
-                    FRICTION.expected,
-                ));
+                let way = "or columns = { pressure = \"NAME\" }, { normal_force = \"NAME\" } (--column pressure=NAME)";
+                let expected = format!("{}; {way}", FRICTION.expected);
+                return Err(ContentError::value(table.line, "columns", "neither pressure nor force", &expected));
             }
         };
         let frictions = match (table.column("friction"), table.column("tangential_force")) {
@@ -195,7 +192,7 @@ impl Measurements {
     ///
     /// # Errors
     /// Where the file cannot be read, or the table in it is refused.
-    pub fn read(path: &Path, area: f64, columns: &[(String, String)]) -> Result<Self, Error> {
+    pub fn read(path: &Path, area: f64, columns: &GivenColumns) -> Result<Self, Error> {
         let mut read = Self::parse(&files::bytes(path)?, area, columns).map_err(Error::content(path))?;
         if let Some(told) = read.notes.first_mut() {
             *told = format!("{}: {told}", files::name_of(path));
@@ -234,10 +231,10 @@ fn check_loads(table: &ReadTable, pressure: &ReadColumn, force: &ReadColumn, are
     let per_area = Load::Pressure { area }.at_force(1.0);
     let differs = |(pressure, force): (&f64, &f64)| (per_area * force / pressure - 1.0).abs() > ROUNDING;
     let Some(row) = pressure.values.iter().zip(&force.values).position(differs) else { return Ok(()) };
-    let given = format!("{} Pa beside {} N", pressure.values[row], force.values[row]);
+    let given = format!("{} Pa beside {} N", rounded(pressure.values[row], 6), rounded(force.values[row], 6));
     let expected = format!(
         "{} Pa, that of this force on the scene's whole layer, {area:.6e} m²; or one of both columns",
-        per_area * force.values[row]
+        rounded(per_area * force.values[row], 6)
     );
     Err(ContentError::value(table.lines.get(row).copied(), &pressure.label(), &given, &expected))
 }

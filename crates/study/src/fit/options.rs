@@ -8,7 +8,8 @@ use asperity::tables::{Dimension, Unit};
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Deserializer, de};
 
-use crate::values::{above_zero, given_column, number, temperature};
+use crate::files::given_column;
+use crate::values::{above_zero, number, temperature};
 
 /// The constants of the equation of Williams, Landel and Ferry, without the temperature.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]

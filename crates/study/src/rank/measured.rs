@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use asperity::element::{Load, OperatingPoint};
+use asperity::tables::GivenColumns;
 
 use super::plan::{RankFound, RankPlan};
 use crate::calibration::{Measured, Measurements, left_out_in_words};
@@ -46,10 +47,17 @@ type Compared = (Measured, f64);
 ///
 /// # Errors
 /// Where the file is no such table, names scenes that are not ranked, or has no point at which two of them were measured.
-pub fn measured_ranking(plan: &RankPlan, found: &RankFound, path: &Path) -> Result<MeasuredRanking, Error> {
+pub fn measured_ranking(
+    plan: &RankPlan,
+    found: &RankFound,
+    path: &Path,
+    columns: &GivenColumns,
+) -> Result<MeasuredRanking, Error> {
     let refused = |problem: String| Error::in_file(path, None, problem);
     let csv = csv::read(path)?;
-    let column = csv.column(SCENE).map_err(Error::content(path))?;
+    let (of_scenes, columns): (Vec<_>, Vec<_>) = columns.iter().cloned().partition(|(key, _)| key == SCENE);
+    let name = of_scenes.first().map_or(SCENE, |(_, name)| name);
+    let column = csv.column(name).map_err(Error::content(path))?;
     let labels = plan.labels();
     let mut lines: BTreeMap<usize, usize> = BTreeMap::new();
     for row in &csv.rows {
@@ -71,7 +79,7 @@ pub fn measured_ranking(plan: &RankPlan, found: &RankFound, path: &Path) -> Resu
         let Load::Pressure { area } = table.header.load else {
             return Err(refused("the ranking is over forces: expected one over pressures".to_owned()));
         };
-        let measurements = Measurements::read(path, area, &[])?;
+        let measurements = Measurements::read(path, area, &columns)?;
         notes.extend(measurements.notes.iter().filter(|note| !notes.contains(*note)).cloned().collect::<Vec<_>>());
         for mut row in measurements.rows.into_iter().filter(|row| lines.get(&row.line) == Some(&scene)) {
             if let (None, [only]) = (row.point.temperature, &table.header.grid.temperatures[..]) {

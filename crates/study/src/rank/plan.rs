@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::ranking::{Frictions, Ranking};
 use super::weights::Weights;
 use crate::Error;
-use crate::files::name_of;
+use crate::files::{ColumnOptions, name_of};
 use crate::progress::{Stop, Stopped};
 use crate::sweep::{SweepOptions, SweepPlan, SweepTable};
 use crate::uncertainty::{Drawn, Refused, SampleOptions, Sampler, UncertainScene, Uncertainty};
@@ -40,6 +40,9 @@ pub struct RankOptions {
     /// beside, and the order by Kendall's rank correlation.
     #[arg(long, value_name = "MEASURED.csv")]
     pub data: Option<PathBuf>,
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub columns: ColumnOptions,
 }
 
 /// A scene to rank.
@@ -284,7 +287,7 @@ mod tests {
     const TEN_PER_CENT: &str = "[uncertainty]\n'friction.shear_strength' = { relative = 0.1 }\n";
 
     fn of(sweep: SweepOptions) -> RankOptions {
-        RankOptions { sweep, weights: None, samples: 64, seed: 1, data: None }
+        RankOptions { sweep, weights: None, samples: 64, seed: 1, data: None, columns: ColumnOptions::default() }
     }
 
     fn plan(scenes: Vec<RankScene>) -> RankPlan {
@@ -368,17 +371,17 @@ mod tests {
         let write = |rows: &str| std::fs::write(&path, format!("scene;speed [mm/s];pressure [Pa];mu\n{rows}")).unwrap();
         // b above a above c is computed.
         write("# comment\na;100;3e4;0,5\nb.toml;100;3e4;0,6\nc;100;3e4;0,55\nb;100;3e4;0,7\na;1e5;3e4;0,1\n");
-        let ranking = measured_ranking(&plan, &found, &path).unwrap();
+        let ranking = measured_ranking(&plan, &found, &path, &[]).unwrap();
         assert_eq!((ranking.points, ranking.tau), (1, Some(1.0 / 3.0)));
         assert!((ranking.scenes[1].measured - 0.65).abs() < 1e-12, "{ranking:?}");
         let computed = ranking.scenes[1].computed / ranking.scenes[0].computed;
         assert!((computed / (7.0 / 6.5) - 1.0).abs() < 1e-3, "{computed}");
         assert!(ranking.notes.iter().any(|note| note.contains("line 7 (100 m/s, 30000 Pa)")), "{:?}", ranking.notes);
         write("a;100;3e4;0,5\nx;100;3e4;0,6\n");
-        let error = measured_ranking(&plan, &found, &path).unwrap_err().to_string();
+        let error = measured_ranking(&plan, &found, &path, &[]).unwrap_err().to_string();
         assert!(error.contains("line 3: scene = \"x\": expected one of a, b, c, or its file"), "{error}");
         write("a;100;3e4;0,5\nb;500;3e4;0,6\n");
-        let error = measured_ranking(&plan, &found, &path).unwrap_err().to_string();
+        let error = measured_ranking(&plan, &found, &path, &[]).unwrap_err().to_string();
         assert!(error.contains("at which at least two"), "{error}");
         std::fs::remove_dir_all(folder).unwrap();
     }

@@ -6,7 +6,7 @@ use asperity::element::{Load, OperatingPoint, some_of};
 use asperity::tables::{ABOVE_ZERO, Dimension, FileKind, NOT_NEGATIVE, Others, ReadTable, Role};
 
 use crate::error::Error;
-use crate::files::read_table;
+use crate::files::{name_of, read_table};
 
 const ROLES: [Role; 5] = [
     Role::new("weight", "weights, w, share, part, gewicht", Dimension::Number).within(NOT_NEGATIVE),
@@ -40,6 +40,8 @@ pub struct Weights {
     /// The file; none where all points weigh the same.
     path: Option<PathBuf>,
     rows: Vec<Weight>,
+    /// How it was read.
+    pub notes: Vec<String>,
 }
 
 /// A weight of all points that have what it says.
@@ -60,7 +62,8 @@ impl Weights {
     /// Where it is no such table.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let table = read_table(path, &WEIGHTS, &[])?;
-        Ok(Self { path: Some(path.to_owned()), rows: rows(&table) })
+        let notes = table.notes.iter().map(|note| note.clone().of(Path::new(&name_of(path))).text).collect();
+        Ok(Self { path: Some(path.to_owned()), rows: rows(&table), notes })
     }
 
     /// The weights of `points`, 1 of each without a table.
@@ -151,7 +154,7 @@ mod tests {
 
     fn weights(text: &str) -> Result<Vec<f64>, String> {
         let table = Instruments.table(text.as_bytes(), &WEIGHTS, &[]).map_err(|error| error.to_string())?;
-        let weights = Weights { path: Some("w.csv".into()), rows: rows(&table) };
+        let weights = Weights { path: Some("w.csv".into()), rows: rows(&table), notes: Vec::new() };
         weights.of(&points(), PASCAL).map_err(|error| error.to_string())
     }
 

@@ -5,7 +5,8 @@ use clap::Args;
 use serde::Deserialize;
 
 use crate::Error;
-use crate::values::{count, ends, given_column, length};
+use crate::files::given_column;
+use crate::values::{count, ends, length};
 
 /// The shortest and the longest of some waves, m.
 pub type Wavelengths = [f64; 2];

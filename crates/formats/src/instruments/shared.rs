@@ -1,6 +1,46 @@
-//! Numbers at places of a file's bytes; nothing is read beyond their end.
+//! What the readers of instruments' files share: checks of what a file says of itself, and numbers at places of its bytes,
+//! of which nothing is read beyond their end.
 
-use asperity::tables::ContentError;
+use asperity::tables::{ContentError, Dimension, Unit};
+
+/// The most heights of a file.
+const MOST: usize = 1 << 28;
+
+/// Refuses a size that no file can have, before memory is taken for it.
+pub(super) fn check_size(kind: &str, size: [usize; 2]) -> Result<(), ContentError> {
+    let count = size[0].checked_mul(size[1]).filter(|&count| count > 0 && count <= MOST);
+    let error = || {
+        ContentError::value(
+            None,
+            "size",
+            &format!("{} × {}", size[0], size[1]),
+            &format!("{kind} of up to {MOST} heights"),
+        )
+    };
+    count.map(|_| ()).ok_or_else(error)
+}
+
+/// Refuses a step that is none.
+pub(super) fn check_step(kind: &str, step: f64) -> Result<f64, ContentError> {
+    let expected = format!("a distance of points above 0 in {kind}");
+    if step > 0.0 && step.is_finite() {
+        Ok(step)
+    } else {
+        Err(ContentError::value(None, "spacing", &format!("{step:?}"), &expected))
+    }
+}
+
+/// The unit of length that a file names at `key`.
+pub(super) fn length_unit(key: &str, text: &str) -> Result<Unit, ContentError> {
+    let unit = Unit::parse(text).filter(|unit| unit.dimension == Dimension::Length);
+    let expected = format!("a unit of length: {}", Dimension::Length.units());
+    unit.ok_or_else(|| ContentError::value(None, key, &format!("\"{text}\""), &expected))
+}
+
+/// The error of a file that is known but cannot be read.
+pub(super) fn refuse(kind: &str, what: &str) -> ContentError {
+    ContentError::value(None, "", kind, what)
+}
 
 /// The bytes of a file of some kind.
 #[derive(Clone, Copy, Debug)]

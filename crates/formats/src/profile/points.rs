@@ -1,9 +1,63 @@
-//! Numbers that stand for a height that was not measured: -9999, 1e38 and the like.
+//! Points as they stand in a file, and numbers in them that stand for a height that was not measured: -9999, 1e38 and the
+//! like.
 
-use asperity::scene::Missing;
-use asperity::tables::{ContentError, ReadingNote};
+use asperity::scene::{HeightMap, MapError, Missing};
+use asperity::tables::{ContentError, ReadingNote, Unit};
 
-use super::MeasuredPoints;
+/// A surface as it was measured: the line that the options choose, and the map that it is taken of, or why there is
+/// none.
+#[derive(Debug)]
+pub struct MeasuredSurface {
+    /// The line along x.
+    pub line: MeasuredPoints,
+    /// The map, or what is expected of one; `None` of a single line.
+    pub map: Option<Result<HeightMap, MapError>>,
+}
+
+/// Points as they stand in a file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeasuredPoints {
+    /// Positions.
+    pub x: Vec<f64>,
+    /// Heights; NaN where one is missing.
+    pub z: Vec<f64>,
+    /// The lines of the points in the file; none where it has no lines.
+    pub lines: Vec<usize>,
+    /// The units of x and z that the file names.
+    pub units: [Option<Unit>; 2],
+    /// Whether x follows from a spacing, which is in m whatever the units are.
+    pub is_spaced: bool,
+    /// Whether they grow downwards, as far as the file tells.
+    pub is_depth: bool,
+    /// How they were read.
+    pub notes: Vec<ReadingNote>,
+}
+
+impl MeasuredPoints {
+    /// Adds a point in a line of the file.
+    pub(super) fn push(&mut self, line: usize, x: f64, z: f64) {
+        self.x.push(x);
+        self.z.push(z);
+        self.lines.push(line);
+    }
+
+    /// Turns points whose x falls.
+    pub(super) fn turn(&mut self) {
+        self.x.reverse();
+        self.z.reverse();
+        self.lines.reverse();
+        let text = "x falls throughout: the points are taken from the last to the first".to_owned();
+        self.notes.push(ReadingNote { text, assumed: false });
+    }
+
+    /// Refuses point `i`, by its line or else by its number from 1.
+    pub fn refuse(&self, i: usize, axis: &str, given: &str, expected: &str) -> ContentError {
+        match self.lines.get(i) {
+            Some(&line) => ContentError::value(Some(line), axis, given, expected),
+            None => ContentError::value(None, &format!("{axis}[{}]", i + 1), given, expected),
+        }
+    }
+}
 
 /// Numbers that instruments are known to write so, beside those of nines and the largest; others are told by standing
 /// there more than once.
