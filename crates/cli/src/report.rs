@@ -96,9 +96,10 @@ impl<'a> Task<'a> {
     fn new(command: &'a Report, path: &'a Path, folder: &Path) -> Result<Self, Error> {
         let scene = load(path, &command.set)?;
         Benchmark::check(&scene, &command.options).context(path.display())?;
-        let peers = peers_of(command, path, &scene)?;
         let taken: Vec<PathBuf> = scene.sources(path).into_iter().chain(command.peers.clone()).collect();
-        Ok(Self { command, path, scene, folder: Folder::new(folder, &taken)?, peers })
+        let folder = Folder::new(folder, &taken)?;
+        let peers = peers_of(command, path, &scene)?;
+        Ok(Self { command, path, scene, folder, peers })
     }
 
     /// The files that are read.
