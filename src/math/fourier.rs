@@ -20,10 +20,10 @@ pub enum FourierDirection {
 /// and a cyclic one of length M ≥ 2N - 1, a power of two, once padded. Takes O(N log N) for every N, prime or not.
 ///
 /// ```
-/// use asperity::math::{Direction, fourier};
+/// use asperity::math::{FourierDirection, fourier};
 /// use nalgebra::Complex;
 ///
-/// let sums = fourier(&[1.0, 2.0, 6.0].map(Complex::from), Direction::Forward);
+/// let sums = fourier(&[1.0, 2.0, 6.0].map(Complex::from), FourierDirection::Forward);
 /// assert!((sums[0] - Complex::from(9.0)).norm() < 1e-14);
 /// ```
 pub fn fourier(values: &[Complex<f64>], direction: FourierDirection) -> Vec<Complex<f64>> {

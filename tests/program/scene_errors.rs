@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::patch::Patch;
 use asperity::scene::{Problem, Scene, SceneError};
+use asperity_formats::Instruments;
 
 use crate::common::assert_names;
 
@@ -101,7 +102,7 @@ impl Folder {
 
     fn load(&self, text: &str) -> Result<Scene, SceneError> {
         self.write("scene.toml", text);
-        Scene::load(&self.0.join("scene.toml"))
+        Scene::parse_with(text, &self.0.join("scene.toml"), &Instruments, &[])
     }
 
     /// Why the scene of that `text` is refused.

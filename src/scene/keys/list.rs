@@ -44,7 +44,8 @@ fn find_below(keys: &'static [Key], at: At, path: &str) -> Option<(&'static Key,
 /// `[1]`.
 pub fn similar_keys(given: &str) -> Vec<String> {
     let all = rows(ROOT).into_iter().chain(rows(PATCH_ROOT)).map(|row| row.path.replace("[]", "[1]"));
-    closest(given, all)
+    let similar = closest(given, all);
+    if similar.is_empty() { elsewhere(ROOT, Form::Material, given) } else { similar }
 }
 
 /// The paths of keys with the name at the end of `given`, which is none of the file's, in its other tables; none where
