@@ -228,7 +228,8 @@ impl Files {
             "super" => Some([&module[..module.len().checked_sub(supers)?], &path[supers..]].concat()),
             _ if self.0.contains_key(&below[..=module.len()]) => Some(below),
             first => {
-                let is_it = |imported: &&Vec<String>| imported.len() > 1 && imported.last().unwrap() == first;
+                // What has the name of its package, as pythonize::pythonize, begins with that.
+                let is_it = |imported: &&Vec<String>| imported.last().unwrap() == first && imported[0] != first;
                 let imported = self.0[module].imported.iter().map(|(_, path)| path).find(is_it)?;
                 Some([&self.absolute(module, imported)?[..], &path[1..]].concat())
             }

@@ -8,6 +8,7 @@ use asperity_study::calibration::{
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
+use pythonize::pythonize;
 
 use crate::background::in_background;
 use crate::errors::Raise as _;
@@ -52,24 +53,13 @@ fn as_dictionary<'py>(py: Python<'py>, calibration: &Calibration, text: String) 
     let statistics = &calibration.statistics;
     let correlation: Vec<Vec<f64>> =
         statistics.correlation.row_iter().map(|row| row.iter().copied().collect()).collect();
-    let rows = PyList::empty(py);
-    for one in calibration.parameters() {
-        let row = PyDict::new(py);
-        row.set_item("key", one.key)?;
-        row.set_item("before", one.before)?;
-        row.set_item("value", one.value)?;
-        row.set_item("standard_error", one.standard_error)?;
-        row.set_item("interval", one.interval)?;
-        row.set_item("is_identifiable", one.is_identifiable)?;
-        rows.append(row)?;
-    }
     let measured = PyList::empty(py);
     for row in &calibration.measurements.rows {
         let (point, model) = (row.point, calibration.friction_at(&row.point));
         measured.append((point.speed, point.load, point.temperature, row.friction, row.sigma, model))?;
     }
     let found = PyDict::new(py);
-    found.set_item("parameters", rows)?;
+    found.set_item("parameters", pythonize(py, &calibration.parameters())?)?;
     found.set_item("correlation", correlation)?;
     found.set_item("chi_square", chi_square_per_degree(statistics.chi_square, statistics.degrees))?;
     found.set_item("is_whole", calibration.is_whole())?;

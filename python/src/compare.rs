@@ -1,6 +1,6 @@
 //! A table of a sweep beside measured friction.
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use asperity::element::OperatingPoint;
 use asperity_study::comparison::{CompareOptions, Comparison};
@@ -9,18 +9,15 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::errors::Raise as _;
-use crate::options::Options;
+use crate::found::Picture;
 
 /// Compares a table with what is measured.
-#[pyfunction]
 pub(crate) fn compare<'py>(
     py: Python<'py>,
-    table: PathBuf,
-    options: Options<CompareOptions>,
+    swept: &SweepTable,
+    options: &CompareOptions,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let options = options.0;
-    let swept = SweepTable::read(&table).map_err(|error| error.raise())?;
-    let comparison = Comparison::new(&swept, &table, &options).map_err(|error| error.raise())?;
+    let comparison = Comparison::new(swept, Path::new("table"), options).map_err(|error| error.raise())?;
     let place = |point: &OperatingPoint| (point.speed, point.load, point.temperature);
     let (worst, left_out) = (PyList::empty(py), PyList::empty(py));
     for (row, friction, deviations) in comparison.worst_first() {
@@ -39,28 +36,8 @@ pub(crate) fn compare<'py>(
     found.set_item("left_out", left_out)?;
     found.set_item("chi_square", comparison.chi_square())?;
     found.set_item("sigma_assumed", comparison.within.iter().any(|(row, _)| row.sigma.is_none()))?;
-    found.set_item("curves", curves(py, &comparison)?)?;
+    found.set_item("picture", Picture(comparison.picture(swept.header.scene())).into_pyobject(py)?)?;
     found.set_item("warnings", comparison.left_out_in_words().into_iter().collect::<Vec<_>>())?;
     found.set_item("notes", &comparison.notes)?;
     Ok(found)
-}
-
-/// Of each curve its pressure and temperature, the table's points along it, and the lines of the measurements on it.
-fn curves<'py>(py: Python<'py>, comparison: &Comparison) -> PyResult<Bound<'py, PyList>> {
-    let curves = PyList::empty(py);
-    for condition in &comparison.grid.conditions {
-        for pressure in &comparison.grid.pressures {
-            let is_on = |point: &OperatingPoint| comparison.grid.is_on(point, pressure, condition);
-            let swept = comparison.swept.iter().filter(|(point, _)| is_on(point));
-            let mut points: Vec<(f64, f64)> = swept.map(|(point, friction)| (point.speed, *friction)).collect();
-            points.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let on = comparison.within.iter().filter(|(row, _)| is_on(&row.point));
-            let lines: Vec<usize> = on.map(|(row, _)| row.line).collect();
-            if !lines.is_empty() {
-                let temperature = condition.temperature.map(|cluster| cluster.mean);
-                curves.append((pressure.mean, temperature, points, lines))?;
-            }
-        }
-    }
-    Ok(curves)
 }

@@ -10,6 +10,7 @@ use pyo3::types::PyDict;
 
 use crate::background::in_background;
 use crate::errors::Raise as _;
+use crate::found::Picture;
 use crate::options::Options;
 use crate::scene::Scene;
 
@@ -23,8 +24,11 @@ pub(crate) fn contact<'py>(
     let options = options.0;
     let scene = Arc::clone(&scene.scene);
     let solved = in_background(py, None, move |_| solve_contact(&scene, options))?;
-    let SolvedContact { slide, fields, problem, warnings, .. } = solved.map_err(|error| error.raise())?;
+    let solved = solved.map_err(|error| error.raise())?;
+    let picture = Picture(solved.picture()).into_pyobject(py)?;
+    let SolvedContact { slide, fields, problem, warnings, .. } = solved;
     let found = PyDict::new(py);
+    found.set_item("picture", picture)?;
     let (friction, separation) = (slide.friction(), slide.contact.separation);
     for (name, value) in [
         ("friction", friction),

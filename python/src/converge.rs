@@ -5,13 +5,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use asperity_study::Error;
-use asperity_study::converge::{ConvergenceOptions, ConvergenceStudy, Ended, Findings};
+use asperity_study::converge::{ConvergenceOptions, ConvergenceStudy, Ended, Findings, picture};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::background::{Task, in_background};
 use crate::errors::Raise as _;
+use crate::found::{Picture, columns};
 use crate::options::Options;
 use crate::scene::Scene;
 
@@ -41,7 +42,7 @@ pub(crate) fn converge<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let options = options.0;
-    let (data, file) = (Arc::clone(&scene.scene), scene.file.clone());
+    let (data, file, name) = (Arc::clone(&scene.scene), scene.file.clone(), scene.scene.name.clone());
     let found = in_background(py, progress, move |task| {
         let study = ConvergenceStudy::new(&data, &file, options)?;
         Ok(find(&study, task)?.map(|findings| (study, findings)))
@@ -49,7 +50,9 @@ pub(crate) fn converge<'py>(
     let found = found.map_err(|error: Error| error.raise())?;
     // It is only stopped where nobody waits.
     let (study, findings) = found.ok_or_else(|| PyValueError::new_err("stopped"))?;
-    as_dictionary(py, &study, &findings)
+    let found = as_dictionary(py, &study, &findings)?;
+    found.set_item("picture", Picture(picture(&name, &findings.runs)).into_pyobject(py)?)?;
+    Ok(found)
 }
 
 fn as_dictionary<'py>(py: Python<'py>, study: &ConvergenceStudy, findings: &Findings) -> PyResult<Bound<'py, PyDict>> {
@@ -60,7 +63,9 @@ fn as_dictionary<'py>(py: Python<'py>, study: &ConvergenceStudy, findings: &Find
     }
     let ladder = findings.ladder();
     let coarsest = verdict.coarsest.map(|halvings| Some(ladder.get(halvings?)?.dimensions.spacing));
-    found.set_item("text", study.table(findings).text())?;
+    let table = study.table(findings);
+    found.set_item("text", table.text())?;
+    found.set_item("columns", columns(py, &table)?)?;
     found.set_item("parts", study.parts().name())?;
     found.set_item("is_converged", verdict.is_converged())?;
     found.set_item("verdict", verdict.sentence())?;

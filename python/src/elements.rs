@@ -9,6 +9,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::found::Picture;
 use crate::scene::Scene;
 
 /// Numbers of a row: time, u, w, F_x, F_z.
@@ -60,6 +61,7 @@ pub(crate) fn moment<'py>(
     let row = history.row_at(time).ok_or_else(|| PyValueError::new_err("the run has no rows"))?;
     let (instant, elements) = (history.rows()[row], history.elements(row).collect::<Vec<_>>());
     let found = PyDict::new(py);
+    found.set_item("picture", Picture(history.picture(row)).into_pyobject(py)?)?;
     for (name, value) in [("time", instant.time), ("u", instant.u), ("w", instant.w), ("slides", history.slides(row))] {
         found.set_item(name, value)?;
     }

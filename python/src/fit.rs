@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 
 use crate::background::in_background;
 use crate::errors::Raise as _;
+use crate::found::{Numbers, Picture};
 use crate::options::Options;
 
 /// A Prony series fitted to measured moduli.
@@ -17,9 +18,6 @@ pub(crate) struct Fit(FittedModuli);
 
 /// Of a decade: where it begins (rad/s), rows, E'' over that of E', errors of E' and E''.
 type Decade = (f64, usize, f64, f64, f64);
-
-/// An array of numbers.
-type Numbers<'py> = Bound<'py, PyArray1<f64>>;
 
 #[pymethods]
 impl Fit {
@@ -84,6 +82,11 @@ impl Fit {
             [storage, loss]
         });
         Ok(PyArray1::from_iter(py, values))
+    }
+
+    /// The moduli, and how the errors add up.
+    fn picture(&self) -> Picture {
+        Picture(self.0.picture())
     }
 
     /// The file of Prony terms.

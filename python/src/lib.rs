@@ -9,6 +9,7 @@ mod converge;
 mod elements;
 mod errors;
 mod fit;
+mod found;
 mod options;
 mod pack;
 mod patch;
@@ -28,8 +29,6 @@ mod _native {
     #[pymodule_export]
     use super::calibrate::{calibrate, with_covariance};
     #[pymodule_export]
-    use super::compare::compare;
-    #[pymodule_export]
     use super::contact::contact;
     #[pymodule_export]
     use super::converge::converge;
@@ -37,6 +36,8 @@ mod _native {
     use super::elements::{animate, moment};
     #[pymodule_export]
     use super::fit::{Fit, fit};
+    #[pymodule_export]
+    use super::found::{Picture, curves};
     #[pymodule_export]
     use super::patch::{Patch, PatchRun, PatchState};
     #[pymodule_export]
@@ -50,7 +51,7 @@ mod _native {
     #[pymodule_export]
     use super::surface::{surface, surface_of};
     #[pymodule_export]
-    use super::sweep::{pack_table, quantile, sweep};
+    use super::sweep::{Table, pack_table, sweep};
 
     #[pymodule_init]
     fn init(module: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {

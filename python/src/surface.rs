@@ -13,6 +13,7 @@ use pyo3::types::PyDict;
 
 use crate::background::in_background;
 use crate::errors::Raise as _;
+use crate::found::Picture;
 use crate::options::Options;
 use crate::scene::Scene;
 
@@ -51,14 +52,13 @@ fn as_dictionary<'py>(
     treated: &TreatedSurface,
     (warnings, notes): (Vec<String>, Vec<String>),
 ) -> PyResult<Bound<'py, PyDict>> {
-    let TreatedSurface { read, surface, analysis, .. } = treated;
+    let TreatedSurface { surface, analysis, .. } = treated;
     let found = PyDict::new(py);
     found.set_item("x", surface.x().to_pyarray(py))?;
     found.set_item("z", surface.z().to_pyarray(py))?;
-    found.set_item("read", (read.x().to_pyarray(py), read.z().to_pyarray(py)))?;
+    found.set_item("picture", Picture(treated.picture()).into_pyobject(py)?)?;
     let json = serde_json::to_string(analysis).map_err(|error| PyValueError::new_err(error.to_string()))?;
     found.set_item("analysis", json)?;
-    found.set_item("law", pairs(py, &analysis.law_curve()))?;
     let bands: Vec<[f64; 2]> = analysis.spectrum.iter().map(|band| [band.wave_number, band.density]).collect();
     found.set_item("spectrum", pairs(py, &bands))?;
     found.set_item("isotropic", treated.isotropic().map(|points| pairs(py, points)))?;

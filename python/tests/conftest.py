@@ -55,6 +55,11 @@ def block():
     return asperity.Scene.from_toml(SCENES / "sweep" / "block.toml")
 
 
+def names(figure):
+    """What the legends of a figure name."""
+    return [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+
+
 def program(*arguments, folder, allowed=(0,)):
     """Runs the program: the one that ASPERITY_PROGRAM names, else the command of this package."""
     named = os.environ.get("ASPERITY_PROGRAM")

@@ -55,17 +55,12 @@ def test_a_map_is_drawn_over_two_quantities(block):
     table = block.sweep(np.geomspace(1e-3, 10.0, 9), [1e5, 2e5], [283.15, 293.15, 303.15])
     figure = table.plot_map("speed", "temperature")
     # Two maps and the scale.
-    assert len(figure.axes) == 3 and figure.axes[0].get_xscale() == "log" and figure.axes[1].get_title() == "200000 Pa"
+    assert len(figure.axes) == 3 and figure.axes[0].get_xscale() == "log" and figure.axes[1].get_title() == "200 kPa"
     figure.draw_without_rendering()
-    with pytest.raises(ValueError, match="expected two of"):
+    assert table.plot_map("speed", "temperature", "contact_ratio").axes[2].get_title(loc="left") == "contact_ratio"
+    with pytest.raises(ValueError, match="over pressure, not over force"):
         table.plot_map("speed", "force")
+    with pytest.raises(ValueError, match="expected two of"):
+        table.plot_map("speed", "speed")
     with pytest.raises(ValueError, match="at least 2 values"):
         block.sweep([0.1, 1.0], [1e5]).plot_map("speed", "pressure")
-
-
-def test_the_ridge_of_a_map_is_exact_for_a_parabola():
-    from asperity._plots import _top
-
-    x = np.array([0.0, 1.0, 2.5, 3.0, 5.0])
-    assert _top(x, 1.0 - (x - 2.2) ** 2) == pytest.approx(2.2)
-    assert _top(x, x) is None and _top(x, np.full(5, np.nan)) is None

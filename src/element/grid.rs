@@ -1,5 +1,7 @@
 //! The points of a sweep: speeds, loads and temperatures.
 
+use serde::Serialize;
+
 use crate::scene::{SMALLEST, is_possible};
 use crate::table::{Cell, Column, Table, TableError};
 
@@ -66,7 +68,7 @@ impl Load {
 }
 
 /// A point of a sweep.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct OperatingPoint {
     /// Sliding speed, m/s.
     pub speed: f64,

@@ -107,7 +107,7 @@ impl From<String> for Cell {
 
 impl Cell {
     /// As it stands in a file, quotation marks apart.
-    fn text(&self) -> String {
+    pub fn text(&self) -> String {
         match self {
             Self::Number(number) => numbers::cell(*number),
             Self::Word(word) => word.clone(),
@@ -115,7 +115,7 @@ impl Cell {
     }
 
     /// Its number, NaN where there is none; `None` of another word.
-    fn number(&self) -> Option<f64> {
+    pub fn number(&self) -> Option<f64> {
         match self {
             Self::Number(number) => Some(*number),
             Self::Word(word) => numbers::parsed(word),
@@ -214,6 +214,11 @@ impl Table {
     /// The columns.
     pub fn columns(&self) -> &[Column] {
         &self.columns
+    }
+
+    /// The cells of the column at a place, row by row.
+    pub fn cells(&self, column: usize) -> impl Iterator<Item = &Cell> {
+        self.rows.iter().map(move |row| &row.cells[column])
     }
 
     /// The number of rows.

@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use asperity_study::Error;
-use asperity_study::calibration::{self, Measured, ModelCurves, chi_square_per_degree};
+use asperity_study::calibration::chi_square_per_degree;
 use asperity_study::comparison::{CompareOptions, Comparison, off_in_words};
 use asperity_study::decimals::rounded;
-use asperity_study::picture::Stroke;
 use asperity_study::sweep::SweepTable;
 use clap::Args;
 
@@ -40,9 +39,7 @@ pub(crate) fn compare(command: &Compare) -> Result<(), Error> {
     files::tell(&comparison.notes);
     comparison.left_out_in_words().iter().for_each(|text| warn(text));
     comparison.check(&command.options.data)?;
-    let rows: Vec<Measured> = comparison.within.iter().map(|(row, _)| *row).collect();
-    let swept = ModelCurves { name: "swept", stroke: Stroke::Solid, points: comparison.swept.clone() };
-    picture::write(&calibration::picture(table.header.scene(), &comparison.grid, &rows, &[swept]), &path)?;
+    picture::write(&comparison.picture(table.header.scene()), &path)?;
     print_beside([&path], &summary(command, &comparison, &path))
 }
 

@@ -8,9 +8,10 @@ use clap::Args;
 use serde::{Deserialize, Serialize};
 
 use crate::Error;
-use crate::calibration::{CurveGrid, Measured, Measurements, in_words, left_out_in_words};
+use crate::calibration::{self, CurveGrid, Measured, Measurements, ModelCurves, in_words, left_out_in_words};
 use crate::decimals::rounded;
 use crate::files::ColumnOptions;
+use crate::picture::{Picture, Stroke};
 use crate::sweep::{SweepHeader, SweepTable, way_of};
 
 // What a table is compared with. Not a doc comment: that would be the description of the command.
@@ -98,6 +99,13 @@ impl Comparison {
     /// Sum of the squared deviations of the table from the measurements.
     pub fn chi_square(&self) -> f64 {
         self.within.iter().map(|pair| deviation(pair).powi(2)).sum()
+    }
+
+    /// The measurements, and the curves of the table, which is of `scene`.
+    pub fn picture(&self, scene: &str) -> Picture {
+        let rows: Vec<Measured> = self.within.iter().map(|(row, _)| *row).collect();
+        let swept = ModelCurves { name: "swept", stroke: Stroke::Solid, points: self.swept.clone() };
+        calibration::picture(scene, &self.grid, &rows, &[swept])
     }
 
     /// How many measurements are left out, which, and why; `None` where none is.

@@ -1,4 +1,5 @@
-//! The maps of a table: friction over two of speed, load and temperature, one for each value of the third.
+//! The maps of a table: friction, or another column, over two of speed, load and temperature, one for each value of the
+//! third.
 
 use std::fmt;
 use std::path::Path;
@@ -13,13 +14,14 @@ use crate::picture::{
     Axis, Colour, ColourScale, Colours, ContourLine, Fill, Fit, GridField, Mark, Panel, Picture, Point, Row, Shape,
     Stroke, Symbol, Tick,
 };
-use crate::sweep::{Over, SweepHeader, SweepTable, SweptQuantity, is_converged, way_of};
+use crate::sweep::{Over, SweepColumn, SweepHeader, SweepRow, SweepTable, SweptQuantity, is_converged, way_of};
 
 /// The maps that are asked for, and what was measured.
 #[derive(Debug)]
 pub struct Maps {
     over: Over,
     third: SweptQuantity,
+    column: Option<SweepColumn>,
     measured: Vec<Measured>,
     /// How the measurements were read.
     pub notes: Vec<String>,
@@ -65,7 +67,13 @@ impl Maps {
         let third = all.into_iter().find(|quantity| !over.0.contains(quantity)).unwrap_or(load);
         let found =
             data.map(|(data, columns)| measured_beside(header, path, data, columns)).transpose()?.unwrap_or_default();
-        Ok(Self { over, third, measured: found.rows, notes: found.notes })
+        Ok(Self { over, third, column: None, measured: found.rows, notes: found.notes })
+    }
+
+    /// The same maps of another column than friction, if there is one.
+    #[must_use]
+    pub fn of_column(self, column: Option<SweepColumn>) -> Self {
+        Self { column, ..self }
     }
 
     /// The picture, and in words which measurements it has no place for.
@@ -77,7 +85,8 @@ impl Maps {
         let thirds = self.thirds(grid);
         let values: Vec<_> = thirds.iter().map(|third| self.values(table, *third)).collect();
         let all = values.iter().flatten().copied().flatten().chain(places.iter().map(|(_, place)| place.value));
-        let scale = Axis::linear(("friction", ""), all, Fit::Tight);
+        let of = self.column.as_ref().map_or(("friction", ""), SweepColumn::of);
+        let scale = Axis::linear(of, all, Fit::Tight);
         let frame =
             Frame { x, y, lines: self.over.0.map(|quantity| quantity.values(grid)), scale, count: thirds.len() };
         let panel = |((index, third), values): ((usize, &Option<f64>), &Vec<Option<f64>>)| {
@@ -118,13 +127,17 @@ impl Maps {
         if values.is_empty() { vec![None] } else { values.iter().copied().map(Some).collect() }
     }
 
-    /// Friction on the grid of a panel.
+    /// Friction, or what else is drawn, on the grid of a panel.
     fn values(&self, table: &SweepTable, third: Option<f64>) -> Vec<Option<f64>> {
         let grid = &table.header.grid;
+        let value = |row: &SweepRow| match &self.column {
+            Some(column) => column.value(row),
+            None => row.value(Quantity::Friction),
+        };
         let mut found = vec![None; grid.count()];
         for row in table.rows.iter().filter(|row| row.is_result()) {
             if let Some(index) = grid.index(&row.point) {
-                found[index] = row.value(Quantity::Friction);
+                found[index] = value(row);
             }
         }
         let [x, y] = self.over.0.map(|quantity| quantity.values(grid));

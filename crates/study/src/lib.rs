@@ -32,7 +32,7 @@
 //! | [`contact`] | decimals, implausible, picture, steady, sweep, values | the contact of a surface in steady sliding |
 //! | [`converge`] | contact, decimals, error, picture, steady, sweep, values | whether area and friction depend on spacing, length or chance |
 //! | [`calibration`] | csv, decimals, error, files, implausible, picture, progress, settings, steady, sweep, uncertainty, values | free numbers of a scene from measured friction: models, least squares, errors, plans |
-//! | [`comparison`] | calibration, decimals, sweep | a table of a sweep beside measured friction |
+//! | [`comparison`] | calibration, decimals, picture, sweep | a table of a sweep beside measured friction |
 //! | [`friction_map`] | calibration, comparison, picture, sweep | a table's friction over two of its quantities |
 //! | [`rank`] | calibration, comparison, csv, decimals, error, files, picture, progress, sweep, uncertainty, values | scenes in the order of their friction, and how sure that is |
 //! | [`fit`] | decimals, error, files, picture, values | Prony series and shift factors from measured moduli |

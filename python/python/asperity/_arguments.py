@@ -6,38 +6,19 @@ import json
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import datetime, timedelta
-from functools import wraps
 from pathlib import Path
 from textwrap import wrap
-from typing import Any, ParamSpec, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-P = ParamSpec("P")
-R = TypeVar("R")
 Floats = NDArray[np.float64]
 Progress = bool | Callable[[float], object]
 
 # Units of arrays that carry one, as pint, astropy and xarray write them.
 _SI = {"", "1", "dimensionless", "m", "meter", "metre", "s", "second", "N", "newton", "Pa", "pascal", "K", "kelvin"}
 _SI |= {"m/s", "m / s", "meter / second", "1/m", "1 / m", "1 / meter", "m4", "m^4", "meter ** 4"}
-
-
-def renamed(**names: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Refuses keywords that a function had, by the names that they have now: ``renamed(old="new")``."""
-
-    def of(function: Callable[P, R]) -> Callable[P, R]:
-        @wraps(function)
-        def checked(*args: P.args, **kwargs: P.kwargs) -> R:
-            for old, new in names.items():
-                if old in kwargs:
-                    raise TypeError(f"{function.__name__}: {old} is now {new}")
-            return function(*args, **kwargs)
-
-        return checked
-
-    return of
 
 
 def to_toml(value: object) -> str:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from . import _native
+
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
@@ -54,9 +56,6 @@ class LeftOut(NamedTuple):
     why: str
 
 
-Line = tuple[float, float | None, list[tuple[float, float]], list[int]]
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Comparison:
     """How far the table of a sweep is from measured friction.
@@ -76,13 +75,13 @@ class Comparison:
     chi_square: float
     sigma_assumed: bool
     notes: list[str]
-    _curves: list[Line]
+    _picture: _native.Picture
 
     @classmethod
     def _of(cls, found: dict[str, Any]) -> Comparison:
         points = tuple(Compared(*one) for one in found.pop("worst"))
         left_out = tuple(LeftOut(*one) for one in found.pop("left_out"))
-        return cls(points=points, left_out=left_out, _curves=found.pop("curves"), **found)
+        return cls(points=points, left_out=left_out, _picture=found.pop("picture"), **found)
 
     @property
     def chi_square_per_measurement(self) -> float:
@@ -97,18 +96,9 @@ class Comparison:
 
     def plot(self) -> Figure:
         """Draws the measurements with bars of a standard deviation, and the table's curves, with matplotlib."""
-        from ._plots import compared
+        from ._plots import drawn
 
-        measured = {one.line: (one.speed, one.measured, one.sigma) for one in self.points}
-        curves = [
-            (
-                f"{pressure:.4g} Pa" + ("" if kelvin is None else f", {kelvin:.5g} K"),
-                swept,
-                [measured[line] for line in lines],
-            )
-            for pressure, kelvin, swept, lines in self._curves
-        ]
-        return compared(self.scene, curves)
+        return drawn(self._picture)
 
     def __repr__(self) -> str:
         per_one = f"χ² {self.chi_square_per_measurement:.4g} per measurement"

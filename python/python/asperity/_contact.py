@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from . import _native
 from ._arguments import Floats
 
 if TYPE_CHECKING:
@@ -48,18 +49,20 @@ class Contact:
     flash_mean: float | None
     surface_rise: float | None
     status: str
+    _picture: _native.Picture
 
     @classmethod
     def _of(cls, found: dict[str, Any]) -> Contact:
         shape = (len(found["y"]), len(found["x"]))
         fields = {name: found[name].reshape(shape) for name in ("height", "pressure", "gap")}
-        return cls(**{**found, **fields})
+        picture = found.pop("picture")
+        return cls(**{**found, **fields}, _picture=picture)
 
     def plot(self) -> Figure:
-        """Draws it with matplotlib: curves along a profile, maps of pressure and gap over a map."""
-        from ._plots import contact
+        """Draws curves along a profile with matplotlib; over a map pressure, gap, and where on the heights it is."""
+        from ._plots import drawn
 
-        return contact(self.x, self.y, self.height, self.pressure, self.gap)
+        return drawn(self._picture)
 
     def __repr__(self) -> str:
         friction = "none" if self.friction is None else f"{self.friction:.4g}"

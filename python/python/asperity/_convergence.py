@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import _native
 from ._arguments import Floats
 
 if TYPE_CHECKING:
@@ -44,17 +44,20 @@ class Convergence:
     units: dict[str, str]
     status: np.ndarray[Any, np.dtype[np.object_]]
     _columns: dict[str, Floats]
+    _picture: _native.Picture
 
     @classmethod
     def _of(cls, found: dict[str, Any]) -> Convergence:
-        head, *rows = csv.reader(line for line in found["text"].splitlines() if not line.startswith("#"))
-        names = [name.split(" [")[0] for name in head]
-        columns = dict(zip(names, zip(*rows, strict=True), strict=True))
-        status = np.array(columns.pop("status"), dtype=object)
-        floats = {name: np.array([float(text or "nan") for text in texts]) for name, texts in columns.items()}
-        units = {name: full.partition(" [")[2].rstrip("]") for name, full in zip(names, head, strict=True)}
-        coarsest = tuple(found.pop("coarsest"))
-        return cls(**found, coarsest=coarsest, units=units, status=status, _columns=floats)
+        columns = {name: (unit, values) for name, unit, values in found.pop("columns")}
+        units = {name: unit for name, (unit, _) in columns.items()}
+        _, status = columns.pop("status")
+        # Seeds, which have 64 bits, are words.
+        floats = {
+            name: np.array([value or "nan" if isinstance(value, str) else value for value in values], dtype=np.float64)
+            for name, (_, values) in columns.items()
+        }
+        found |= {"coarsest": tuple(found["coarsest"]), "_picture": found.pop("picture")}
+        return cls(**found, units=units, status=np.array(status, dtype=object), _columns=floats)
 
     def __getitem__(self, name: str) -> Floats:
         """A column, shape (runs,)."""
@@ -85,9 +88,9 @@ class Convergence:
 
     def plot(self) -> Figure:
         """Draws friction and area over the spacing with matplotlib, beside Persson's theory."""
-        from ._plots import studied
+        from ._plots import drawn
 
-        return studied(self._columns)
+        return drawn(self._picture)
 
     def __repr__(self) -> str:
         return f"<asperity.Convergence: {len(self)} runs; {self.verdict}>"

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
-from ._arguments import Floats, given_columns, numbers, renamed
+from ._arguments import Floats, given_columns, numbers
 from ._files import table_file
 
 if TYPE_CHECKING:
@@ -95,23 +95,15 @@ class Fit:
         Path(path).write_text(self._native.text(), encoding="utf-8")
 
     def plot(self) -> Figure:
-        """Draws points and fit with matplotlib."""
-        from ._plots import stacked
+        """Draws points and fit with matplotlib, and how the errors add up."""
+        from ._plots import drawn
 
-        points = self.points
-        at = np.geomspace(points[:, 0].min(), points[:, 0].max(), 200)
-        fitted = self.complex_modulus(at)
-        panels = []
-        for column, (name, values) in enumerate((("E'", fitted.real), ("E''", fitted.imag)), start=1):
-            measured = (f"{name} measured", points[:, 0], points[:, column])
-            panels.append((f"{name} [Pa]", [(f"{name} fitted", at, values), measured]))
-        return stacked(f"{len(self.moduli)} terms, {100 * self.error:.2g} %", "ω [rad/s]", panels, log=True)
+        return drawn(self._native.picture(), f"{len(self.moduli)} terms, {100 * self.error:.2g} %")
 
     def __repr__(self) -> str:
         return f"<asperity.Fit: {len(self.moduli)} terms, error {100 * self.error:.3g} %>"
 
 
-@renamed(error="fit_error")
 def fit(
     data: object,
     fit_error: float = 0.02,
@@ -177,7 +169,7 @@ def fit(
     with table_file(data) as path:
         native = _native.fit(path, options)
     for text in native.warnings:
-        warnings.warn(text, stacklevel=3)
+        warnings.warn(text, stacklevel=2)
     if native.error > fit_error:
-        warnings.warn(f"the error asked for, {fit_error:g}, cannot be reached: it is {native.error:.3g}", stacklevel=3)
+        warnings.warn(f"the error asked for, {fit_error:g}, cannot be reached: it is {native.error:.3g}", stacklevel=2)
     return Fit(native)

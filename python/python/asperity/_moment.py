@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import _native
 from ._arguments import Floats
 
 if TYPE_CHECKING:
@@ -50,18 +51,20 @@ class Moment:
     profile: tuple[Floats, Floats]
     heights: tuple[float, float]
     spacing: float
+    _picture: _native.Picture
 
     @classmethod
     def _of(cls, name: str, found: dict[str, Any]) -> Moment:
         load_name, load_unit = found.pop("load_unit")
         touch = np.array(found.pop("touch"))
-        return cls(name=name, load_name=load_name, load_unit=load_unit, touch=touch, **found)
+        picture = found.pop("picture")
+        return cls(name=name, load_name=load_name, load_unit=load_unit, touch=touch, _picture=picture, **found)
 
     def plot(self) -> Figure:
         """Draws masses, profile and loads with matplotlib."""
-        from ._plots import moment
+        from ._plots import drawn
 
-        return moment(self)
+        return drawn(self._picture)
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{np.sum(self.touch == touch)} {touch}" for touch in ("sticks", "slips", "free"))

@@ -1,253 +1,422 @@
-"""Figures with matplotlib, which is not asked to show them: a notebook does, and ``savefig`` writes them."""
+"""Pictures with matplotlib, which is not asked to show them: a notebook does, and ``savefig`` writes them.
+
+A picture is plain data, which the command draws too: rows of panels, each with two axes and marks, all sizes in pixels.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import _native
 from ._arguments import Floats
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ._moment import Moment
+Data = dict[str, Any]
+Colour = tuple[float, float, float]
 
-Curve = tuple[str, Any, Any]
+# Pixels of a picture in an inch, and one in points: its text is then as large as matplotlib's own.
+_INCH = 128.0
+_POINT = 72.0 / _INCH
+# Of titles, of text, and of what stands beside points, points.
+_TITLE, _TEXT, _LABEL = 12.0, 10.0, 8.0
+# The height of a line of text and of a title, and the space left of a panel, right of it and below it, pixels.
+_LINE, _HEAD, _LEFT, _RIGHT, _BELOW = 26.0, 36.0, 84.0, 28.0, 62.0
+# The width of a scale, the space left of it and that of its numbers, pixels.
+_BAR, _GAP, _NUMBERS = 16.0, 14.0, 64.0
+_INK = (0.16, 0.16, 0.16)
+_SYMBOLS = {"Disc": "o", "Square": "s", "Triangle": "^", "Diamond": "D", "Cross": "x"}
+_STROKES: dict[str, Any] = {"Solid": "-", "Dashed": (0, (4.0, 2.5)), "Dotted": (0, (1.2, 2.4))}
 
 
-def stacked(title: str, x_title: str, panels: Sequence[tuple[str, Sequence[Curve]]], log: bool = False) -> Figure:
-    """Panels of curves above each other, over one axis."""
+def drawn(picture: _native.Picture, title: str = "") -> Figure:
+    """Draws a picture, with this title where it has none."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(7.0, 1.0 + 2.2 * len(panels)), layout="constrained")
-    figure.suptitle(title)
-    all_axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
-    for axes, (y_title, curves) in zip(all_axes, panels, strict=True):
-        for name, x, y in curves:
-            axes.plot(x, y, label=name, marker="o" if len(x) < 40 and log else None)
-        axes.set_ylabel(y_title)
-        axes.grid(alpha=0.3)
-        if log:
-            axes.set_xscale("log")
-        if len(curves) > 1:
-            axes.legend()
-    all_axes[-1].set_xlabel(x_title)
+    data = picture.data()
+    title = data["title"] or title
+    bars: list[Data] = []
+    rows = [_Row(row, bars) for row in data["rows"]]
+    width = max((row.width for row in rows), default=_LEFT)
+    named: set[str] = set()
+    for row in rows:
+        row.name(width, named)
+    head = _HEAD if title else 0.0
+    height = head + sum(row.height for row in rows)
+    figure = Figure(figsize=(width / _INCH, height / _INCH))
+    if title:
+        figure.suptitle(title, fontsize=_TITLE, y=1.0 - head / 2.0 / height, va="center")
+    page, top, scales = _Page(figure, width, height), head, []
+    for row in rows:
+        scales += row.draw(page, top)
+        top += row.height
+    for left, top, up, scale in scales:
+        _scale(page.axes(left, top, (_BAR, up)), scale)
     return figure
 
 
-def swept(y_title: str, curves: Sequence[tuple[str, Floats, Floats, Any]]) -> Figure:
-    """Curves over the speed: name, speeds, values, and which of them are steady; the others are hollow."""
-    from matplotlib.figure import Figure
+@dataclass(frozen=True)
+class _Page:
+    """A figure on which places are pixels from its upper left corner."""
 
-    figure = Figure(figsize=(7.0, 3.2), layout="constrained")
-    axes = figure.subplots()
-    for name, speeds, values, steady in curves:
-        (line,) = axes.plot(speeds, values, label=name, marker="o")
-        if not np.all(steady):
-            axes.plot(speeds[~steady], values[~steady], "o", color=line.get_color(), markerfacecolor="white")
-    axes.set(xscale="log", xlabel="speed [m/s]", ylabel=y_title)
-    axes.grid(alpha=0.3)
-    if len(curves) > 1:
-        axes.legend()
-    return figure
+    figure: Figure
+    width: float
+    height: float
 
+    def axes(self, left: float, top: float, size: tuple[float, float]) -> Axes:
+        across, up = size
+        x, y = left / self.width, 1.0 - (top + up) / self.height
+        return self.figure.add_axes((x, y, across / self.width, up / self.height))
 
-Side = tuple[str, Floats, bool]
+    def text(self, left: float, top: float, text: str, **how: Any) -> None:
+        how = {"va": "center", "fontsize": _TEXT, **how}
+        self.figure.text(left / self.width, 1.0 - top / self.height, text, **how)
 
 
-def maps(title: str, sides: tuple[Side, Side], panels: Sequence[tuple[str, Floats]]) -> Figure:
-    """Values over two sides (title, values, whether logarithmic) in colours, with contour lines and the largest of each
-    row."""
-    from matplotlib.figure import Figure
+class _Row:
+    """Panels side by side, and what stands above them."""
 
-    (x_title, x, x_log), (y_title, y, y_log) = sides
-    values = np.concatenate([panel.ravel() for _, panel in panels])
-    values = values[np.isfinite(values)]
-    low, high = (values.min(), values.max()) if len(values) else (0.0, 1.0)
-    levels = np.linspace(low, high if high > low else low + 1.0, 65)
-    figure = Figure(figsize=(1.0 + 4.0 * len(panels), 3.6), layout="constrained")
-    all_axes = figure.subplots(1, len(panels), squeeze=False)[0]
-    for axes, (name, panel) in zip(all_axes, panels, strict=True):
-        known = np.ma.masked_invalid(panel)
-        colours = axes.contourf(x, y, known, levels=levels)
-        lines = axes.contour(x, y, known, levels=levels[8:-1:8], colors="black", linewidths=0.8)
-        axes.clabel(lines, fontsize="small")
-        tops = [(top, at) for top, at in zip((_top(np.log(x) if x_log else x, row) for row in panel), y, strict=True)]
-        ridge = np.array([(np.exp(top) if x_log else top, at) for top, at in tops if top is not None])
-        if len(ridge):
-            axes.plot(*ridge.T, "o", color="#d55e00", markeredgecolor="white", label=f"largest over {x_title}")
-        axes.set(xlabel=x_title, ylabel=y_title, title=name, xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
-        axes.set_xscale("log" if x_log else "linear")
-        axes.set_yscale("log" if y_log else "linear")
-    figure.colorbar(colours, ax=list(all_axes), label=title, format="%.3g")
-    return figure
+    def __init__(self, row: Data, bars: list[Data]) -> None:
+        self.row, self.panels = row, row["panels"]
+        # A scale stands beside the last of the panels that it belongs to.
+        self.with_bar: list[bool] = []
+        for panel in reversed(self.panels):
+            scale = panel["scale"]
+            self.with_bar.insert(0, scale is not None and scale not in bars)
+            bars += [scale] if self.with_bar[0] else []
+        self.sides = [self._sides(panel, bar) for panel, bar in zip(self.panels, self.with_bar, strict=True)]
+        self.width = sum(map(sum, self.sides)) + sum(panel["size"][0] for panel in self.panels)
+        self.tall = max((panel["size"][1] for panel in self.panels), default=0.0)
+        self.has_title = any(panel["title"] for panel in self.panels) or any(self.with_bar)
+        self.has_axes = any(panel["frame"] == "Axes" for panel in self.panels)
+        self.legend: list[list[tuple[str, Any]]] = []
+
+    def _sides(self, panel: Data, bar: bool) -> tuple[float, float]:
+        """The space on the left and on the right of a panel."""
+        names = max((_width(tick["name"]) for tick in panel["y"]["named"]), default=0.0)
+        beside = max((_width(tick["name"]) for tick in panel["beside"]), default=0.0)
+        left = {"Axes": max(_LEFT, names + _RIGHT), "Line": 8.0, "None": 0.0}[panel["frame"]]
+        right = {"Axes": _RIGHT, "Line": 8.0, "None": 0.0}[panel["frame"]]
+        title = _width(panel["scale"]["axis"]["title"]) if bar else 0.0
+        return left, max(right, beside + 16.0 if beside else 0.0) + (_GAP + max(title, _BAR + _NUMBERS) if bar else 0.0)
+
+    def name(self, width: float, named: set[str]) -> None:
+        """Lines of a legend of what is not `named` above, within a width."""
+        room = 0.0
+        for name, handle in _legend(self.panels, named):
+            wide = _width(name) + 60.0
+            if not self.legend or wide > room:
+                self.legend.append([])
+                room = width - _LEFT
+            self.legend[-1].append((name, handle))
+            room -= wide
+
+    @property
+    def above(self) -> float:
+        lines = bool(self.row["note"]) + len(self.legend) + self.has_title
+        return (_HEAD if self.row["title"] else 0.0) + _LINE * lines + 8.0
+
+    @property
+    def height(self) -> float:
+        return self.above + self.tall + (_BELOW if self.has_axes else 8.0)
+
+    def draw(self, page: _Page, top: float) -> list[tuple[float, float, float, Data]]:
+        """Draws the row; returns its scales, each with its place and height."""
+        line = top
+        if self.row["title"]:
+            page.text(page.width / 2.0, line + _HEAD / 2.0, self.row["title"], fontsize=_TITLE, ha="center")
+            line += _HEAD
+        first = min(_LEFT, self.sides[0][0]) if self.sides else 0.0
+        if self.row["note"]:
+            page.text(first, line + _LINE / 2.0, self.row["note"])
+            line += _LINE
+        for entries in self.legend:
+            names, handles = [name for name, _ in entries], [handle for _, handle in entries]
+            place = (first / page.width, 1.0 - (line + _LINE / 2.0) / page.height)
+            close = {"borderpad": 0.0, "borderaxespad": 0.0, "handletextpad": 0.5, "columnspacing": 1.4}
+            page.figure.legend(
+                handles, names, loc="center left", bbox_to_anchor=place, ncols=len(names), frameon=False, **close
+            )
+            line += _LINE
+        top, left, scales = top + self.above, 0.0, []
+        for panel, bar, (before, behind) in zip(self.panels, self.with_bar, self.sides, strict=True):
+            across, up = panel["size"]
+            _panel(page.axes(left + before, top, (across, up)), panel)
+            left += before + across + behind
+            if bar:
+                wide = behind - max(_width(panel["scale"]["axis"]["title"]), _BAR + _NUMBERS)
+                scales.append((left - behind + wide, top, up, panel["scale"]))
+        return scales
 
 
-def _top(x: Floats, row: Floats) -> float | None:
-    """The vertex of the parabola through the largest value and its neighbours; None at an end, or beside a gap."""
-    if not np.isfinite(row).any():
-        return None
-    i = int(np.nanargmax(row))
-    if i in (0, len(row) - 1) or not np.isfinite(row[i - 1 : i + 2]).all():
-        return None
-    rise, fall = (row[i] - row[i - 1]) / (x[i] - x[i - 1]), (row[i] - row[i + 1]) / (x[i + 1] - x[i])
-    part = rise / (rise + fall) if rise + fall > 0.0 else 0.5
-    return float((x[i - 1] + x[i]) / 2.0 + part * (x[i + 1] - x[i - 1]) / 2.0)
+def _width(text: str) -> float:
+    """The width of a text, pixels."""
+    from matplotlib.textpath import TextPath
+
+    return float(TextPath((0.0, 0.0), text, size=_TEXT).get_extents().width) / _POINT if text.strip() else 0.0
 
 
-def contact(x: Floats, y: Floats, heights: Floats, pressures: Floats, gaps: Floats) -> Figure:
-    """A contact: curves along a profile, maps over a map."""
-    from matplotlib.figure import Figure
-
-    if len(y) == 1:
-        rubber = ("rubber", x, (heights + gaps)[0])
-        panels = [("height [m]", [rubber, ("surface", x, heights[0])]), ("pressure [Pa]", [("", x, pressures[0])])]
-        figure = stacked("contact", "x [m]", panels)
-        _caption(figure.axes[0], 1.0)
-        return figure
-    figure = Figure(figsize=(10.0, 4.0), layout="constrained")
-    figure.suptitle("the rubber slides along x", fontsize="medium")
-    fields = (("pressure [Pa]", pressures), ("gap [m]", gaps))
-    for axes, (title, values) in zip(figure.subplots(1, 2), fields, strict=True):
-        extent = (x[0], x[-1], y[0], y[-1])
-        image = axes.imshow(values, origin="lower", extent=extent, aspect="equal")
-        figure.colorbar(image, ax=axes, label=title)
-        axes.set_xlabel("x [m]")
-        axes.set_ylabel("y [m]")
-    return figure
+def _rgb(colour: Iterable[int]) -> Colour:
+    red, green, blue = (part / 255.0 for part in colour)
+    return red, green, blue
 
 
-def _caption(axes: Axes, slides: float) -> None:
-    """Says above a contact which way it slides, and how many times as large as lengths its heights are drawn."""
-    from matplotlib.figure import Figure
+def _legend(panels: list[Data], named: set[str]) -> list[tuple[str, Any]]:
+    """The names that are new, each with all that has it; in ink where that has several colours."""
+    marks: dict[str, list[Data]] = {}
+    for panel in panels:
+        for mark in panel["marks"]:
+            if mark["name"] and mark["name"] not in named:
+                marks.setdefault(mark["name"], []).append(mark)
+    named |= set(marks)
+    found = []
+    for name, its in marks.items():
+        colours = {tuple(mark["colour"]) for mark in its}
+        kinds: dict[str, Data] = {}
+        for mark in its:
+            kinds.setdefault(next(iter(mark["shape"])), mark)
+        found.append((name, tuple(_key(mark, _INK if len(colours) > 1 else None) for mark in kinds.values())))
+    return found
+
+
+def _key(mark: Data, colour: Colour | None) -> Any:
+    """What stands for a mark in a legend."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    ((kind, shape),) = mark["shape"].items()
+    colour = colour or _rgb(mark["colour"])
+    if kind == "Line":
+        return Line2D([], [], **_stroke(shape, colour))
+    if kind == "Points":
+        return Line2D([], [], **_look(shape, colour))
+    if kind == "Arrows":
+        return Line2D([], [], color=colour, marker=">", markevery=[1])
+    return Patch(color=colour, alpha=shape.get("opacity"), linewidth=0.0)
+
+
+def _panel(axes: Axes, panel: Data) -> None:
+    """Draws a panel into axes of its size."""
+    for which in "xy":
+        _axis(axes, which, panel[which])
+    if panel["title"]:
+        axes.set_title(panel["title"], fontsize=_TEXT, pad=5.0)
+    axes.spines[["top", "right"]].set_visible(panel["frame"] == "Line")
+    if panel["frame"] == "Axes":
+        axes.grid(color="#e1e1e1", linewidth=0.6, axis="x" if panel["y"]["named"] else "both")
+        axes.set_axisbelow(True)
+    elif panel["frame"] == "Line":
+        axes.set(xticks=[], yticks=[], xlabel="", ylabel="")
+    else:
+        axes.set_axis_off()
+    room = _Room(axes)
+    for mark in panel["marks"]:
+        ((kind, shape),) = mark["shape"].items()
+        _KINDS[kind](_Pen(axes, panel, _rgb(mark["colour"]), room), shape)
+    for tick in panel["beside"]:
+        axes.text(
+            1.0 + 8.0 / panel["size"][0], tick["at"], tick["name"], transform=axes.get_yaxis_transform(), va="center"
+        )
+
+
+def _axis(axes: Axes, which: str, axis: Data) -> None:
+    """The scale, the ends, the title and the ticks of an axis."""
+    scale = "log" if axis["is_logarithmic"] else "linear"
+    axes.set(**{f"{which}scale": scale, f"{which}lim": (axis["low"], axis["high"]), f"{which}label": axis["title"]})
+    _ticks(axes.xaxis if which == "x" else axes.yaxis, axis)
+
+
+def _ticks(of: Any, axis: Data) -> None:
+    """Names of ticks: as given, in the prefixed unit of a linear axis, as plain numbers on a short logarithmic one."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    factor = axis["factor"]
+    if axis["named"]:
+        of.set_ticks([tick["at"] for tick in axis["named"]], labels=[tick["name"] for tick in axis["named"]])
+    elif not axis["is_logarithmic"]:
+        of.set_major_formatter(FuncFormatter(lambda value, _: f"{value / factor:.6g}"))
+    elif axis["high"] <= 101.0 * axis["low"] and 1e-3 <= axis["low"] and axis["high"] < 1e5:
+        of.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        of.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        of.set_minor_formatter(NullFormatter())
+
+
+def _scale(axes: Axes, scale: Data) -> None:
+    """A bar of colours."""
+    from matplotlib.cm import ScalarMappable
 
     figure = axes.get_figure()
-    # It takes its room from the axes.
-    axes.set_title("heights", loc="left", fontsize="medium")
-    if isinstance(figure, Figure):
-        figure.draw_without_rendering()
-    box = axes.get_window_extent()
-    scales = [
-        size / (high - low) for size, (low, high) in ((box.width, axes.get_xlim()), (box.height, axes.get_ylim()))
-    ]
-    way = {1.0: ", the rubber slides \N{RIGHTWARDS ARROW}", -1.0: ", the rubber slides \N{LEFTWARDS ARROW}"}
-    text = f"heights drawn {scales[1] / scales[0]:.2g} times as large as lengths"
-    axes.set_title(text + way.get(float(np.sign(slides)), ""), loc="left", fontsize="medium")
+    assert figure is not None
+    bar = figure.colorbar(ScalarMappable(**_colours(scale)), cax=axes)
+    _ticks(bar.ax.yaxis, scale["axis"])
+    axes.set_title(scale["axis"]["title"], loc="left", fontsize=_TEXT, pad=5.0)
 
 
-# Entries of a legend beside a title.
-_CLOSE = {"handlelength": 1.0, "columnspacing": 0.8, "handletextpad": 0.4}
+def _colours(scale: Data | None, without: Colour = _INK) -> Data:
+    """The colours of a scale and what they stand for; what has no value has the colour `without`."""
+    from matplotlib import colormaps
+    from matplotlib.colors import LinearSegmentedColormap, LogNorm, Normalize
 
-# How a mass is drawn by what it does: colour, marker, and whether it is full.
-_TOUCHES = {"sticks": ("#0072b2", "s", True), "slips": ("#d55e00", "o", True), "free": ("#8c8c8c", "o", False)}
-
-
-def moment(found: Moment) -> Figure:
-    """The masses of a layer on its profile, and their loads and flash temperatures below."""
-    from matplotlib.figure import Figure
-
-    rows = 2 + (found.flash is not None)
-    figure = Figure(figsize=(9.0, 1.0 + 2.0 * rows), layout="constrained")
-    figure.suptitle(f"{found.name}, t = {found.time:.4g} s")
-    layer, *bars = figure.subplots(rows, 1, sharex=True)
-    low, high = found.heights
-    x, z = found.profile
-    layer.fill_between(found.x, np.clip(found.z, low, high), high, color="#cfd6de", label="rubber")
-    layer.fill_between(x, low, np.clip(z, low, high), color="#b9b4ab", label="profile")
-    layer.plot(x, z, color="#282828", linewidth=0.8)
-    colours = np.array([_TOUCHES[touch][0] for touch in found.touch])
-    for touch, (colour, marker, full) in _TOUCHES.items():
-        its = found.touch == touch
-        face = colour if full else "none"
-        layer.plot(found.x[its], found.z[its], marker, color=colour, markerfacecolor=face, markersize=3, label=touch)
-    layer.set(ylim=(low, high), xlim=(x[0], x[-1]), ylabel="z [m]")
-    layer.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=5, fontsize="small", frameon=False, **_CLOSE)
-    width = 0.8 * found.spacing
-    bars[0].bar(found.x, found.load, width, color=colours)
-    bars[0].set_ylabel(f"{found.load_name} [{found.load_unit}]")
-    if found.flash is not None:
-        bars[1].bar(found.x, found.flash, width, color="#cc79a7")
-        bars[1].set_ylabel("flash [K]")
-    bars[-1].set_xlabel("x [m]")
-    _caption(layer, found.slides)
-    return figure
+    if scale is None:
+        return {}
+    ends = {"Blues": ["white", "#0072b2"], "Greys": ["#5a5a5a", "white"]}.get(scale["colours"])
+    colours = LinearSegmentedColormap.from_list("", ends) if ends else colormaps["viridis"]
+    axis = scale["axis"]
+    norm = (LogNorm if axis["is_logarithmic"] else Normalize)(axis["low"], axis["high"])
+    return {"cmap": colours.with_extremes(bad=without), "norm": norm}
 
 
-def compared(
-    title: str, curves: Sequence[tuple[str, Sequence[tuple[float, float]], Sequence[tuple[float, float, float]]]]
-) -> Figure:
-    """Friction of a table over the speed, and the measurements on each curve with bars of a standard deviation."""
-    from matplotlib.figure import Figure
+class _Room:
+    """Where labels stand in a panel: none where another one is."""
 
-    figure = Figure(figsize=(7.0, 4.0), layout="constrained")
-    axes = figure.subplots()
-    for name, swept, measured in curves:
-        (line,) = axes.plot(*np.array(swept).T, label=name)
-        speeds, friction, sigma = np.array(measured).T
-        axes.errorbar(speeds, friction, sigma, fmt="o", color=line.get_color(), markerfacecolor="white")
-    axes.set(xscale="log", xlabel="speed [m/s]", ylabel="friction [1]", title=title)
-    axes.grid(alpha=0.3)
-    axes.legend()
-    return figure
+    def __init__(self, axes: Axes) -> None:
+        self._axes = axes
+        self._taken: list[tuple[float, float, float, float]] = []
+
+    def has(self, x: float, y: float, text: str) -> bool:
+        """Whether there is room around a place for a text, which then takes it."""
+        across, up = (float(number) for number in self._axes.transData.transform((x, y)))
+        dots = self._axes.figure.dpi / _INCH
+        half, high = dots * (_width(text) / 2.0 + 4.0), dots * _LINE / 2.0
+        box = (across - half, up - high, across + half, up + high)
+        left, low, right, top = self._axes.bbox.extents
+        inside = left < box[0] and box[2] < right and low < box[1] and box[3] < top
+        if not inside or any(
+            box[0] < other[2] and other[0] < box[2] and box[1] < other[3] and other[1] < box[3] for other in self._taken
+        ):
+            return False
+        self._taken.append(box)
+        return True
 
 
-# Columns of Persson's theory: of friction and of area.
-_THEORIES = {
-    "friction": {
-        "Persson's hysteresis, ridges": "persson_friction_1d",
-        "Persson's hysteresis, isotropic": "persson_friction_2d",
-    },
-    "area": {"Persson, ridges": "persson_area_1d", "Persson, isotropic": "persson_area_2d"},
+@dataclass(frozen=True)
+class _Pen:
+    """What draws the marks of a panel."""
+
+    axes: Axes
+    panel: Data
+    colour: Colour
+    room: _Room
+
+    def shown(self, points: Any, numbers: int = 2) -> tuple[Floats, Any]:
+        """The points, of so many numbers, that the axes can show, and which they are."""
+        places = np.array(points, dtype=np.float64).reshape(-1, numbers)
+        is_shown = np.isfinite(places).all(axis=1)
+        for column in range(places.shape[1]):
+            if self.panel["xy"[column % 2]]["is_logarithmic"]:
+                is_shown &= places[:, column] > 0.0
+        return places[is_shown], is_shown
+
+
+def _look(shape: Data, colour: Colour) -> Data:
+    """How symbols look: full, white within, or open."""
+    face = {"Full": colour, "Hollow": "white", "Ring": "none"}[shape["fill"]]
+    width = 0.0 if shape["radius"] < 3.0 and shape["fill"] == "Full" else 1.1
+    width = 1.5 if shape["symbol"] == "Cross" else width
+    size = 2.0 * shape["radius"] * _POINT
+    return {
+        "linestyle": "none",
+        "color": colour,
+        "marker": _SYMBOLS[shape["symbol"]],
+        "markersize": size,
+        "markerfacecolor": face,
+        "markeredgewidth": width,
+    }
+
+
+def _stroke(shape: Data, colour: Colour) -> Data:
+    """How lines look."""
+    return {"color": colour, "linestyle": _STROKES[shape["stroke"]], "linewidth": 1.2 * shape["width"] * _POINT}
+
+
+def _line(pen: _Pen, shape: Data) -> None:
+    points, _ = pen.shown(shape["points"])
+    pen.axes.plot(*points.T, **_stroke(shape, pen.colour))
+
+
+def _area(pen: _Pen, shape: Data) -> None:
+    outline, _ = pen.shown(shape["outline"])
+    pen.axes.fill(*outline.T, color=pen.colour, alpha=shape["opacity"], linewidth=0.0)
+
+
+def _points(pen: _Pen, shape: Data) -> None:
+    points, is_shown = pen.shown(shape["points"])
+    if shape["values"]:
+        values = np.array(shape["values"], dtype=np.float64)[is_shown]
+        size = (2.0 * shape["radius"] * _POINT) ** 2
+        colours = _colours(pen.panel["scale"])
+        marker = _SYMBOLS[shape["symbol"]]
+        x, y = points.T
+        pen.axes.scatter(x, y, size, values, marker=marker, edgecolors=[pen.colour], zorder=2.5, **colours)
+    else:
+        pen.axes.plot(*points.T, clip_on=False, zorder=2.5, **_look(shape, pen.colour))
+    labels = np.array(shape["labels"], dtype=object)[is_shown] if shape["labels"] else []
+    for (x, y), label in zip(points, labels, strict=False):
+        if label and pen.room.has(x, y, label):
+            above = (0.0, shape["radius"] * _POINT + 1.0)
+            pen.axes.annotate(
+                label, (x, y), above, textcoords="offset points", ha="center", color=pen.colour, fontsize=_LABEL
+            )
+
+
+def _boxes(pen: _Pen, shape: Data) -> None:
+    from matplotlib.collections import PolyCollection
+
+    corners, is_shown = pen.shown(shape["boxes"], 4)
+    x, y, to_x, to_y = corners.T
+    outlines = list(np.array([[x, y], [to_x, y], [to_x, to_y], [x, to_y]]).transpose(2, 0, 1))
+    values = np.array(shape["values"], dtype=np.float64)[is_shown] if shape["values"] else None
+    how: Data = {"facecolors": [pen.colour]} if values is None else {"array": values, **_colours(pen.panel["scale"])}
+    pen.axes.add_collection(PolyCollection(outlines, linewidths=0.0, **how), autolim=False)
+
+
+def _heat(pen: _Pen, shape: Data) -> None:
+    values = np.array(shape["values"], dtype=np.float64).reshape(-1, shape["columns"])
+    between = [np.geomspace if pen.panel[which]["is_logarithmic"] else np.linspace for which in "xy"]
+    x, y = (
+        edges(pen.panel[which]["low"], pen.panel[which]["high"], count + 1)
+        for edges, which, count in zip(between, "xy", values.shape[::-1], strict=True)
+    )
+    colours = _colours(pen.panel["scale"], pen.colour)
+    if between == [np.linspace, np.linspace]:
+        extent = (x[0], x[-1], y[0], y[-1])
+        pen.axes.imshow(values, origin="lower", extent=extent, aspect="auto", zorder=0.6, **colours)
+    else:
+        pen.axes.pcolormesh(x, y, np.ma.masked_invalid(values), rasterized=True, zorder=0.6, **colours)
+
+
+def _contours(pen: _Pen, lines: list[Data]) -> None:
+    for line in lines:
+        points, _ = pen.shown(line["points"])
+        behind = _colours(pen.panel["scale"])
+        shade = behind["cmap"](behind["norm"](line["value"])) if behind else (1.0, 1.0, 1.0)
+        colour = _INK if np.dot(shade[:3], (0.299, 0.587, 0.114)) > 0.55 else (1.0, 1.0, 1.0)
+        pen.axes.plot(*points.T, color=colour, linewidth=0.8)
+        x, y = points[len(points) // 2].tolist()
+        if pen.room.has(x, y, line["label"]):
+            # As a gap in the line.
+            box = {"facecolor": shade, "edgecolor": "none", "pad": 1.0}
+            pen.axes.text(x, y, line["label"], ha="center", va="center", color=colour, fontsize=9.0, bbox=box)
+
+
+def _arrows(pen: _Pen, shape: Data) -> None:
+    x, y, to_x, to_y = pen.shown(shape["arrows"], 4)[0].T
+    how: Data = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 2.0, "units": "dots"}
+    pen.axes.quiver(x, y, to_x - x, to_y - y, color=pen.colour, edgecolor="white", linewidth=0.5, zorder=3.0, **how)
+
+
+_KINDS: dict[str, Callable[[_Pen, Any], None]] = {
+    "Line": _line,
+    "Area": _area,
+    "Points": _points,
+    "Boxes": _boxes,
+    "Heat": _heat,
+    "Contours": _contours,
+    "Arrows": _arrows,
 }
-
-
-def studied(columns: dict[str, Floats]) -> Figure:
-    """Friction and area of a study over the spacing."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7.0, 6.0), layout="constrained")
-    doubled, split, seeds = columns["length_factor"] != 1, columns["split_factor"] != 1, columns["seed_shift"] != 0
-    ladder = ~(doubled | split | seeds)
-    spacing = columns["spacing"]
-    all_axes = figure.subplots(2, 1, sharex=True)
-    for axes, name in zip(all_axes, ("friction", "area"), strict=True):
-        axes.plot(spacing[ladder], columns[name][ladder], "o-", label="this scene")
-        others = (("twice the length", doubled), ("another split", split), ("other seeds", seeds))
-        for label, runs in others:
-            if np.any(runs):
-                axes.plot(spacing[runs], columns[name][runs], "o", markerfacecolor="none", label=label)
-        for label, column in _THEORIES[name].items():
-            axes.plot(spacing[ladder], columns[column][ladder], "--", label=label)
-        axes.set(xscale="log", yscale="log", ylabel=f"{name} [1]")
-        axes.grid(alpha=0.3)
-        axes.legend(fontsize="small")
-    all_axes[-1].set_xlabel("spacing [m]")
-    return figure
-
-
-def surface(
-    name: str, used: tuple[Floats, Floats], read: tuple[Floats, Floats] | None, spectrum: Floats, law: Floats
-) -> Figure:
-    """A profile, also as it was read, and its power spectrum with the power law."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7.0, 6.0), layout="constrained")
-    figure.suptitle(name)
-    above, below = figure.subplots(2, 1)
-    if read is not None:
-        above.plot(*read, ".", markersize=2, color="#e69f00", label="as read")
-    above.plot(*used, label="profile" if read is None else "smoothed")
-    above.set(xlabel="x [m]", ylabel="z [m]")
-    # Beyond a cut-off there are rounding errors alone.
-    drawn = spectrum[spectrum[:, 1] > 1e-16 * np.max(spectrum[:, 1], initial=0.0)]
-    below.plot(*drawn.T, label="power spectrum")
-    if len(law):
-        below.plot(*law.T, "--", label="power law")
-    below.set(xscale="log", yscale="log", xlabel="wave number [rad/m]", ylabel="power spectrum [m³]")
-    for axes in (above, below):
-        axes.grid(alpha=0.3)
-        axes.legend()
-    return figure

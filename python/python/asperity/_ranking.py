@@ -90,37 +90,40 @@ class Ranking:
 
     @classmethod
     def _of(cls, found: dict[str, Any]) -> Ranking:
-        def array(name: str) -> Floats:
-            return np.array(found[name], dtype=np.float64)
+        scenes, points, count = found["scenes"], found["points"], len(found["scenes"])
 
-        def bands(name: str) -> Floats:
-            return np.array([5 * [np.nan] if band is None else band for band in found[name]], dtype=np.float64)
+        def array(values: object) -> Floats:
+            return np.array(values, dtype=np.float64)
 
-        count = len(found["scenes"])
+        def bands(values: list[tuple[float, ...] | None]) -> list[Sequence[float]]:
+            return [5 * [np.nan] if band is None else band for band in values]
+
         ties = np.full((count, count), np.nan)
-        for one, other, part in found["ties"]:
-            ties[one, other] = ties[other, one] = part
+        for pair in found["pairs"]:
+            one, other = pair["scenes"]
+            ties[one, other] = ties[other, one] = pair["ties"]
+        keys = ("speed", "load", "temperature")
+        at = [(*(point["point"][key] for key in keys), point["weight"]) for point in points]
         measured = found["measured"] or {"scenes": [], "tau": None, "notes": []}
-        by_point = [[5 * [np.nan] if band is None else band for band in point] for point in found["point_bands"]]
         return cls(
-            scenes=tuple(found["scenes"]),
+            scenes=tuple(scene["label"] for scene in scenes),
             order=tuple(found["order"]),
-            friction=array("friction"),
-            friction_bands=bands("friction_bands"),
-            index=array("index"),
-            index_bands=bands("index_bands"),
-            largest=array("largest"),
-            above=array("above"),
+            friction=array([scene["friction"] for scene in scenes]),
+            friction_bands=array(bands([scene["friction_band"] for scene in scenes])),
+            index=array([scene["index"] for scene in scenes]),
+            index_bands=array(bands([scene["index_band"] for scene in scenes])),
+            largest=array([scene["largest"] for scene in scenes]),
+            above=array(found["above"]),
             ties=ties,
             is_sure=found["is_sure"],
             samples=found["samples"],
             failed=found["failed"],
             redrawn=found["redrawn"],
-            points=array("points"),
-            point_friction=array("point_friction"),
-            point_bands=np.array(by_point, dtype=np.float64),
-            point_largest=array("point_largest"),
-            measured=tuple(MeasuredScene(*one) for one in measured["scenes"]),
+            points=array(at),
+            point_friction=array([point["friction"] for point in points]),
+            point_bands=array([bands(point["bands"]) for point in points]),
+            point_largest=array([point["largest"] for point in points]),
+            measured=tuple(MeasuredScene(*one.values()) for one in measured["scenes"]),
             tau=measured["tau"],
             notes=tuple(measured["notes"]),
         )

@@ -94,17 +94,20 @@ class Result:
             names: The columns; none for F_x and F_z.
             x: The column on the horizontal axis.
         """
-        from ._plots import stacked
+        from ._plots import drawn
 
         chosen = names or tuple(name for name in ("F_x", "F_z") if name in self.columns)
         panels: dict[str, list[str]] = {}
         for name in chosen:
             panels.setdefault(self.units[name], []).append(name)
+
+        def values(name: str) -> Floats:
+            return np.asarray(self[name], dtype=np.float64)
+
         curves = [
-            (f"{' and '.join(group)} [{unit}]", [(name, self[x], self[name]) for name in group])
-            for unit, group in panels.items()
+            (", ".join(group), unit, [(name, values(name)) for name in group]) for unit, group in panels.items()
         ]
-        return stacked(self.name, f"{x} [{self.units[x]}]", curves)
+        return drawn(_native.curves(self.name, (x, self.units[x], values(x)), curves))
 
     def animate(self, path: str | PathLike[str]) -> Path:
         """Writes the page for a browser that ``asperity simulate --animate`` writes, and returns its path.

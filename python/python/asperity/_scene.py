@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
-from ._arguments import Progress, axis, given, given_columns, mapping, numbers, positive, renamed, shown, to_toml
+from ._arguments import Progress, axis, given, given_columns, mapping, numbers, positive, shown, to_toml
 from ._files import table_file
 from ._library import options as library_options
 from ._library import warn_of_start
@@ -40,7 +40,6 @@ class Scene(SceneInputs):
         SceneError: Where a key or a value is refused: with file, line and key.
     """
 
-    @renamed(points="rows")
     def simulate(
         self,
         rows: int = 50,
@@ -78,12 +77,11 @@ class Scene(SceneInputs):
         found = _native.simulate(scene._native, given(rows=rows, times=also_at), elements, shown(progress))
         (columns, units), (of_masses, mass_units), instants, said = found
         for text in said:
-            warnings.warn(text, stacklevel=3)
+            warnings.warn(text, stacklevel=2)
         length = len(columns["time"])
         fields = {name: values.reshape(length, -1) for name, values in of_masses.items()}
         return Result(scene.name, columns, {**mass_units, **units}, fields, scene.profile, scene, instants)
 
-    @renamed(error="friction_error")
     def sweep(
         self,
         speeds: ArrayLike,
@@ -126,7 +124,7 @@ class Scene(SceneInputs):
         """
         from ._table import Table
 
-        text, said, matters, drawn = _native.sweep(
+        swept, said = _native.sweep(
             self._native,
             given(
                 speeds=axis("speeds", speeds),
@@ -144,12 +142,12 @@ class Scene(SceneInputs):
             shown(progress),
         )
         for warning in said:
-            warnings.warn(warning, stacklevel=3)
-        table = Table(text, matters, dict(drawn))
+            warnings.warn(warning, stacklevel=2)
+        table = Table._of(swept)
         failed = [status for status in table.status.ravel() if status not in ("steady", "full contact")]
         if failed:
             text = f"{len(failed)} of {table.status.size} points are not steady or failed, the first: {failed[0]}"
-            warnings.warn(f"{text}; Table.status says which", stacklevel=3)
+            warnings.warn(f"{text}; Table.status says which", stacklevel=2)
         return table
 
     def contact(
@@ -303,7 +301,7 @@ class Scene(SceneInputs):
             )
             found = _native.calibrate(self._native, options)
         for text in found["warnings"]:
-            warnings.warn(text, stacklevel=3)
+            warnings.warn(text, stacklevel=2)
         settings = {one["key"]: to_toml(one["value"]) for one in found["parameters"]}
         return Calibration._of(found, self._changed(settings))
 

@@ -91,10 +91,9 @@ class Surface:
 
     def plot(self) -> Figure:
         """Draws the profile and its spectrum with matplotlib, before smoothing too."""
-        from ._plots import surface
+        from ._plots import drawn
 
-        read = None if self.analysis["removed"] is None else self._found["read"]
-        return surface(self.name, (self.x, self.z), read, self.spectrum, self._pairs("law"))
+        return drawn(self._found["picture"], self.name)
 
     def _pairs(self, name: str) -> Floats:
         pairs: Floats = self._found[name].reshape(-1, 2)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import tempfile
 import warnings
 from collections.abc import Mapping, Sequence
@@ -34,7 +33,6 @@ class Table:
     ``table["friction"]`` is a column, an array of shape (speeds, loads, temperatures), nan where a point has no value.
 
     Attributes:
-        text: The table as ``asperity sweep`` writes it.
         speeds: Speeds, m/s, shape (nv,).
         load: What the loads are: "pressure" (Pa) or "force" (N).
         loads: Mean pressures, Pa, or forces, N, shape (np,).
@@ -46,48 +44,45 @@ class Table:
 
     def __init__(self, text: str, matters: str = "", drawn: Mapping[str, Sequence[float]] | None = None) -> None:
         """The table of this text; of one with samples what matters, as text, and what was drawn."""
-        self.text = text
-        self._matters = matters
-        self._drawn = {name: np.array(values) for name, values in (drawn or {}).items()}
-        self._samples: dict[str, Floats] = {}
-        lines = [line for line in text.splitlines() if line and not line.startswith("#")]
-        if not lines:
-            raise ValueError("expected the text of a table, found no rows")
-        head, *rows = csv.reader(lines)
-        names = [name.split(" [")[0] for name in head]
-        self.units = {name: full.partition(" [")[2].rstrip("]") for name, full in zip(names, head, strict=True)}
-        if any(len(row) != len(head) for row in rows) or not rows:
-            raise ValueError("expected the text of a table of asperity sweep, found rows of other lengths")
-        columns = dict(zip(names, zip(*rows, strict=True), strict=True))
+        given = [(name, list(values)) for name, values in (drawn or {}).items()]
+        self._fill(_native.Table(text, matters, given))
+
+    @classmethod
+    def _of(cls, native: _native.Table) -> Table:
+        table = cls.__new__(cls)
+        table._fill(native)
+        return table
+
+    def _fill(self, native: _native.Table) -> None:
+        self._native = native
+        columns = {name: (unit, values) for name, unit, values in native.columns()}
+        self.units = {name: unit for name, (unit, _) in columns.items()}
         self.load = "pressure" if "pressure" in columns else "force"
-        missing = {"speed", self.load, "status", "friction"} - set(columns)
-        if missing:
-            raise ValueError(f"expected the text of a table of asperity sweep, found none of {sorted(missing)}")
-        kelvin = columns.get("temperature", ("",) * len(rows))
-        axes = [np.unique(_floats(values)) for values in (columns["speed"], columns[self.load], kelvin)]
-        self.speeds, self.loads, self.temperatures = axes
-        places = tuple(
-            np.searchsorted(axis, _floats(values))
-            for axis, values in zip(axes, (columns["speed"], columns[self.load], kelvin), strict=True)
-        )
-        shape = tuple(map(len, axes))
-        self.status = np.full(shape, "", dtype=object)
-        self.status[places] = columns["status"]
-        self._columns: dict[str, Floats] = {}
-        for name in names:
-            if name.endswith("_samples"):
-                values = np.array([_floats(text.split(";")) for text in columns[name]])
-                samples = np.full((*shape, values.shape[1]), np.nan)
-                samples[places] = values
-                self._samples[name.removesuffix("_samples")] = np.moveaxis(samples, -1, 0)
-            elif name not in ("speed", self.load, "temperature", "status"):
-                self._columns[name] = np.full(shape, np.nan)
-                self._columns[name][places] = _floats(columns[name])
+        at = [np.asarray(columns[name][1]) for name in ("speed", self.load, "temperature")]
+        self.speeds, self.loads, self.temperatures = map(np.unique, at)
+        axes = (self.speeds, self.loads, self.temperatures)
+        self._places = tuple(np.searchsorted(axis, values) for axis, values in zip(axes, at, strict=True))
+        self.status = np.full(tuple(map(len, axes)), "", dtype=object)
+        self.status[self._places] = columns["status"][1]
+        of_points = {name: values for name, (_, values) in columns.items() if not isinstance(values, list)}
+        own = ("speed", self.load, "temperature")
+        self._columns = {name: self._on_grid(values) for name, values in of_points.items() if name not in own}
+
+    def _on_grid(self, values: Floats) -> Floats:
+        """The values of the rows at their points."""
+        found = np.full((*self.status.shape, *values.shape[1:]), np.nan)
+        found[self._places] = values
+        return found
+
+    @property
+    def text(self) -> str:
+        """The table as ``asperity sweep`` writes it."""
+        return self._native.text
 
     @classmethod
     def read(cls, path: str | PathLike[str]) -> Table:
         """The table in a file that ``asperity sweep`` or :meth:`to_csv` wrote."""
-        return cls(Path(path).read_text(encoding="utf-8"))
+        return cls._of(_native.Table.read(Path(path)))
 
     def __getitem__(self, name: str) -> Floats:
         """A column, shape (speeds, loads, temperatures)."""
@@ -144,12 +139,14 @@ class Table:
         """
         import xarray as xr
 
-        if not self._samples:
+        rows = {name: values.reshape(len(self._places[0]), -1) for name, values in self._native.samples()}
+        if not rows:
             raise ValueError("expected the table of a sweep with samples")
+        samples = {name: np.moveaxis(self._on_grid(values), -1, 0) for name, values in rows.items()}
         names, coordinates = self._coordinates()
-        data: dict[str, Any] = {name: (("sample", *names), values) for name, values in self._samples.items()}
-        data |= {name: ("sample", values) for name, values in self._drawn.items()}
-        coordinates["sample"] = np.arange(1, 1 + len(self._samples["friction"]))
+        data: dict[str, Any] = {name: (("sample", *names), values) for name, values in samples.items()}
+        data |= {name: ("sample", values) for name, values in self._native.drawn()}
+        coordinates["sample"] = np.arange(1, 1 + len(samples["friction"]))
         return xr.Dataset(data, coords=coordinates)
 
     @property
@@ -160,14 +157,12 @@ class Table:
         Raises:
             ValueError: Of a table that was not just swept with samples.
         """
-        import io
-
         import pandas as pd
 
-        if not self._matters:
+        matters = self._native.matters()
+        if matters is None:
             raise ValueError("expected a table that was just swept with samples")
-        frame = pd.read_csv(io.StringIO(self._matters))
-        return frame.rename(columns={name: name.split(" [")[0] for name in frame.columns})
+        return pd.DataFrame({name: values for name, _, values in matters})
 
     def quantile(self, probability: float, scene: Scene, *, progress: Progress = False) -> Table:
         """The table of one sample: of the one whose mean friction over the table is the quantile of a probability.
@@ -184,23 +179,17 @@ class Table:
         """
         from ._arguments import shown
 
-        return Table(_native.quantile(scene._native, self.text, probability, shown(progress)))
+        return Table._of(self._native.quantile(scene._native, probability, shown(progress)))
 
     def plot(self, column: str = "friction") -> Figure:
         """Draws a column over the speed with matplotlib, a curve for each load and temperature.
 
         Points that are not steady are hollow.
         """
-        from ._plots import swept
+        from ._plots import drawn
 
-        unit = "Pa" if self.load == "pressure" else "N"
-        found = np.isin(self.status, ("steady", "full contact"))
-        curves = [
-            (_label(load, unit, kelvin), self.speeds, self[column][:, j, k], found[:, j, k])
-            for k, kelvin in enumerate(self.temperatures)
-            for j, load in enumerate(self.loads)
-        ]
-        return swept(f"{column} [{self.units[column]}]", curves)
+        self[column]
+        return drawn(self._native.picture(column))
 
     def plot_map(self, x: str = "speed", y: str = "temperature", column: str = "friction") -> Figure:
         """Draws a column in colours over two of speed, load and temperature, with contour lines.
@@ -211,23 +200,10 @@ class Table:
         Raises:
             ValueError: Where these are not two of them, or one has a single value.
         """
-        from ._plots import maps
+        from ._plots import drawn
 
-        names = ("speed", self.load, "temperature")
-        if x == y or not {x, y} <= set(names):
-            raise ValueError(f"x = {x!r}, y = {y!r}: expected two of {', '.join(names)}")
-        axes = dict(zip(names, (self.speeds, self.loads, self.temperatures), strict=True))
-        for name in (x, y):
-            if len(axes[name]) < 2:
-                raise ValueError(f"{name}: expected at least 2 values along each side of a map, found {len(axes[name])}")
-        (third,) = set(names) - {x, y}
-        units = {"speed": "m/s", "pressure": "Pa", "force": "N", "temperature": "K"}
-        found = np.isin(self.status, ("steady", "full contact"))
-        values = np.where(found, self[column], np.nan)
-        values = np.moveaxis(values, [names.index(third), names.index(y), names.index(x)], [0, 1, 2])
-        titles = ["" if np.isnan(value) else f"{value:g} {units[third]}" for value in axes[third]]
-        sides = [(f"{name} [{units[name]}]", axes[name], _is_logarithmic(name, axes[name])) for name in (x, y)]
-        return maps(f"{column} [{self.units[column]}]", (sides[0], sides[1]), list(zip(titles, values, strict=True)))
+        self[column]
+        return drawn(self._native.map(x, y, column))
 
     def compare(self, data: object, *, columns: Mapping[str, str | int] | None = None) -> Comparison:
         """Compares the table with measured friction, as ``asperity compare`` does.
@@ -241,10 +217,8 @@ class Table:
         """
         from ._comparison import Comparison
 
-        with tempfile.TemporaryDirectory(prefix="asperity-") as folder, table_file(data) as path:
-            file = Path(folder) / "table.csv"
-            self.to_csv(file)
-            found = _native.compare(file, given(data=path, columns=given_columns(columns)))
+        with table_file(data) as path:
+            found = self._native.compare(given(data=path, columns=given_columns(columns)))
         for text in found.pop("warnings"):
             warnings.warn(text, stacklevel=2)
         refused = found.pop("refused")
@@ -275,21 +249,9 @@ class Table:
             warn_of_start(_native.pack_table(file, Path(path), given, {"flat_names": flat_names, "references": references}))
         return Path(path)
 
-    def __reduce__(self) -> tuple[type[Table], tuple[str, str, dict[str, Floats]]]:
-        return type(self), (self.text, self._matters, self._drawn)
+    def __reduce__(self) -> tuple[Any, tuple[_native.Table]]:
+        return Table._of, (self._native,)
 
     def __repr__(self) -> str:
         sizes = f"{len(self.speeds)} speeds, {len(self.loads)} loads, {len(self.temperatures)} temperatures"
         return f"<asperity.Table: {sizes}; {', '.join(self.columns)}>"
-
-
-def _is_logarithmic(name: str, values: Floats) -> bool:
-    return name == "speed" or (name != "temperature" and bool(values[-1] >= 10.0 * values[0]))
-
-
-def _label(load: float, unit: str, kelvin: float) -> str:
-    return f"{load:g} {unit}" + ("" if np.isnan(kelvin) else f", {kelvin:g} K")
-
-
-def _floats(texts: Sequence[str]) -> Floats:
-    return np.array([float(text) if text else np.nan for text in texts], dtype=np.float64)

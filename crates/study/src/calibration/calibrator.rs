@@ -6,6 +6,7 @@ use std::sync::{Mutex, PoisonError};
 
 use asperity::element::OperatingPoint;
 use asperity::scene::Scene;
+use serde::Serialize;
 
 use super::fit::{Fitted, Tolerance, map_space, minimise, starts_by_theory};
 use super::free_scene::FreeScene;
@@ -247,7 +248,7 @@ pub struct Calibration {
 }
 
 /// A number that was fitted.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CalibratedParameter {
     /// The path of its key.
     pub key: String,

@@ -164,7 +164,7 @@ pub fn picture(title: &str, grid: &CurveGrid, measured: &[Measured], curves: &[M
             })
             .collect(),
     };
-    Picture::side_by_side(("speed", "m/s"), vec![("friction coefficient", panels)]).titled(title)
+    Picture::side_by_side(("speed", "m/s"), vec![(("friction coefficient", ""), panels)]).titled(title)
 }
 
 #[cfg(test)]

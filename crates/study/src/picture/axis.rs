@@ -1,11 +1,12 @@
 //! An axis of a panel: its quantity and unit, its ends, its ticks and their names.
 
-use serde::Serialize;
+use serde::ser::SerializeStruct as _;
+use serde::{Deserialize, Serialize, Serializer};
 
 use crate::decimals::{prefix, short};
 
 /// An axis, or a scale of colours.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct Axis {
     /// What it is of; empty for nothing.
     pub quantity: String,
@@ -22,7 +23,7 @@ pub struct Axis {
 }
 
 /// A place of an axis with a name.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tick {
     /// In the unit of the axis.
     pub at: f64,
@@ -49,6 +50,22 @@ const DIGITS: [f64; 9] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0];
 const SHORT: f64 = 2.0;
 /// A relative difference that counts as rounding.
 const ROUNDING: f64 = 1e-9;
+
+/// With what those who draw it elsewhere need besides: its title, and the factor of the unit's prefix there.
+impl Serialize for Axis {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut axis = serializer.serialize_struct("Axis", 8)?;
+        axis.serialize_field("quantity", &self.quantity)?;
+        axis.serialize_field("unit", &self.unit)?;
+        axis.serialize_field("is_logarithmic", &self.is_logarithmic)?;
+        axis.serialize_field("low", &self.low)?;
+        axis.serialize_field("high", &self.high)?;
+        axis.serialize_field("named", &self.named)?;
+        axis.serialize_field("title", &self.title())?;
+        axis.serialize_field("factor", &self.prefix().1)?;
+        axis.end()
+    }
+}
 
 impl Axis {
     fn new((quantity, unit): (&str, &str), (low, high): (f64, f64), is_logarithmic: bool) -> Self {

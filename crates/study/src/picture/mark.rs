@@ -1,16 +1,16 @@
 //! Marks of a panel: lines, areas, points and the like, each with its name in the legend and its colour.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A place, in the units of the axes.
 pub type Point = [f64; 2];
 
 /// Red, green and blue.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Colour(pub [u8; 3]);
 
 /// One of a panel's marks.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mark {
     /// In the legend, where marks of the same name stand once, and in ink where they have several colours; empty for none.
     pub name: String,
@@ -21,7 +21,7 @@ pub struct Mark {
 }
 
 /// What is drawn. Points that an axis cannot show are left out.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Shape {
     /// Straight from point to point.
     Line {
@@ -80,7 +80,7 @@ pub enum Shape {
 }
 
 /// A line of equal values.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContourLine {
     /// Which value.
     pub value: f64,
@@ -91,7 +91,7 @@ pub struct ContourLine {
 }
 
 /// How a line is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Stroke {
     /// Without gaps.
     Solid,
@@ -102,7 +102,7 @@ pub enum Stroke {
 }
 
 /// What is drawn at a point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "they are what their names say")]
 pub enum Symbol {
     Disc,
@@ -113,7 +113,7 @@ pub enum Symbol {
 }
 
 /// How a symbol is filled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Fill {
     /// With its colour.
     Full,

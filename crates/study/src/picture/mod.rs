@@ -5,7 +5,7 @@ mod axis;
 mod field;
 mod mark;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::decimals::rounded;
 
@@ -14,7 +14,7 @@ pub(crate) use field::GridField;
 pub use mark::{Colour, ContourLine, Fill, Mark, Point, Shape, Stroke, Symbol, xs, ys};
 
 /// A picture.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Picture {
     /// Above all; empty for none.
     pub title: String,
@@ -23,7 +23,7 @@ pub struct Picture {
 }
 
 /// Panels side by side, below the names of their marks that are not named above.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Above the row; empty for none.
     pub title: String,
@@ -34,7 +34,7 @@ pub struct Row {
 }
 
 /// Marks over two axes.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Panel {
     /// Above the panel; empty for none.
     pub title: String,
@@ -55,7 +55,7 @@ pub struct Panel {
 }
 
 /// What is drawn around the marks of a panel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Frame {
     /// Both axes, with ticks and titles.
     Axes,
@@ -66,7 +66,7 @@ pub enum Frame {
 }
 
 /// The colours of values.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ColourScale {
     /// What has colours, from the first to the last.
     pub axis: Axis,
@@ -75,7 +75,7 @@ pub struct ColourScale {
 }
 
 /// Colours of a scale.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Colours {
     /// From dark violet to yellow.
     Viridis,
@@ -128,13 +128,13 @@ impl Picture {
     }
 
     /// Rows of panels side by side: the horizontal axes are the same logarithmic one, the vertical ones the same linear one
-    /// of a number along each row. The titles of the first row's panels stand for those below them too.
-    pub fn side_by_side(x: Of<'_>, rows: Vec<(&str, Vec<TitledMarks>)>) -> Self {
+    /// along each row. The titles of the first row's panels stand for those below them too.
+    pub fn side_by_side(x: Of<'_>, rows: Vec<(Of<'_>, Vec<TitledMarks>)>) -> Self {
         let all = rows.iter().flat_map(|(_, panels)| panels).flat_map(|(_, marks)| xs(marks));
         let x = Axis::logarithmic(x, all.collect::<Vec<_>>());
-        let row = |(number, (quantity, panels)): (usize, (&str, Vec<TitledMarks>))| {
+        let row = |(number, (of, panels)): (usize, (Of<'_>, Vec<TitledMarks>))| {
             let y = panels.iter().flat_map(|(_, marks)| ys(marks)).collect::<Vec<_>>();
-            let y = Axis::linear((quantity, ""), y, Fit::Round);
+            let y = Axis::linear(of, y, Fit::Round);
             let width = if panels.len() == 1 { 694.0 } else { 354.0 };
             let panel = |(title, marks): (String, Vec<Mark>)| {
                 let title = if number == 0 { title } else { String::new() };

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use asperity::element::{Load, OperatingPoint};
 use asperity::tables::GivenColumns;
+use serde::Serialize;
 
 use super::plan::{RankFound, RankPlan};
 use crate::calibration::{Measured, Measurements, left_out_in_words};
@@ -17,7 +18,7 @@ use crate::files::name_of;
 const SCENE: &str = "scene";
 
 /// Measured friction beside that of the scenes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MeasuredRanking {
     /// The scenes that were measured, in the order that they were given in.
     pub scenes: Vec<MeasuredScene>,
@@ -30,7 +31,7 @@ pub struct MeasuredRanking {
 }
 
 /// A scene that was measured: means over the points at which all were.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MeasuredScene {
     /// What it is called.
     pub label: String,

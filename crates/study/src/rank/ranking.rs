@@ -5,6 +5,7 @@ use crate::decimals::real;
 use crate::error::Error;
 use crate::sweep::quantile;
 use asperity::element::{Load, OperatingPoint, some_of};
+use serde::Serialize;
 
 /// The quantiles of a band.
 pub const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
@@ -17,9 +18,10 @@ pub type Band = [f64; 5];
 pub(super) type Frictions = Vec<Vec<Option<f64>>>;
 
 /// Scenes in their order.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ranking {
     /// What presses.
+    #[serde(skip)]
     pub load: Load,
     /// The points that were asked for.
     pub points: Vec<RankedPoint>,
@@ -38,7 +40,7 @@ pub struct Ranking {
 }
 
 /// A point, and which scene has the largest friction there.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RankedPoint {
     /// The point.
     pub point: OperatingPoint,
@@ -54,7 +56,7 @@ pub struct RankedPoint {
 }
 
 /// A scene, by its weighted mean.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RankedScene {
     /// What it is called.
     pub label: String,
@@ -71,7 +73,7 @@ pub struct RankedScene {
 }
 
 /// Two scenes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Pair {
     /// Their indices.
     pub scenes: [usize; 2],

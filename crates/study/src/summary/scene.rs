@@ -442,6 +442,6 @@ fn friction_picture(scene: &Scene) -> Option<Picture> {
     };
     let curves: Vec<Mark> = FineFrictionCurve::around(scene).into_iter().enumerate().map(curve).collect();
     let title = format!("friction below the profile, mu_h, under {} MPa", MIDDLE / 1e6);
-    let rows = vec![("friction coefficient", vec![(title, curves.clone())])];
+    let rows = vec![(("friction coefficient", ""), vec![(title, curves.clone())])];
     (!curves.is_empty()).then(|| Picture::side_by_side(("speed", "m/s"), rows))
 }

@@ -4,7 +4,7 @@
 use asperity::element::{OperatingPoint, Quantity};
 use asperity::scene::Wlf;
 
-use super::{Matters, Sampled, SweepRow, SweepTable, is_converged};
+use super::{Matters, Sampled, SweepColumn, SweepRow, SweepTable, is_converged};
 use crate::decimals::as_given;
 use crate::picture::{Axis, Colour, Fill, Fit, Mark, Panel, Picture, Point, Stroke, Tick};
 use crate::uncertainty::Index;
@@ -12,11 +12,30 @@ use crate::uncertainty::Index;
 /// Friction over speed: a panel for each temperature, a colour for each load; with one load, one panel and a colour for
 /// each temperature.
 pub fn sweep_picture(table: &SweepTable) -> Picture {
-    let panels = match table.header.grid.loads[..] {
-        [_] => panels_of_loads(table),
-        _ => panels_of_temperatures(table),
+    picture(table, ("speed", "m/s"), &panels(table), |point| point.speed)
+}
+
+/// A column of the table over speed, in the panels of [`sweep_picture`].
+pub fn column_picture(table: &SweepTable, column: &SweepColumn) -> Picture {
+    let hollow = Hollow::of(table);
+    let marks = |(look, Group { name, rows }): (usize, &Group<'_>)| {
+        let points = |is_drawn: fn(&SweepRow) -> bool| -> Vec<Point> {
+            let drawn = rows.iter().filter(|row| is_drawn(row));
+            drawn.filter_map(|row| Some([row.point.speed, column.value(row)?])).collect()
+        };
+        let (steady, other) = (points(SweepRow::is_result), points(|row| !row.is_result()));
+        let line = Mark::line(name, look, steady.clone());
+        let (full, hollow_points) = match hollow {
+            Hollow::NotSteady => (steady, other),
+            Hollow::NotConverged => (Vec::new(), [steady, other].concat()),
+        };
+        let symbols = Mark::symbols(name, look, full, Fill::Full);
+        let all = [line, symbols, Mark::symbols(hollow.name(), look, hollow_points, Fill::Hollow)];
+        all.into_iter().filter(|mark| mark.points().next().is_some())
     };
-    picture(table, ("speed", "m/s"), &panels, |point| point.speed)
+    let panel = |(title, groups): GroupedPanel<'_>| (title, groups.iter().enumerate().flat_map(marks).collect());
+    let panels = panels(table).into_iter().map(panel).collect();
+    Picture::side_by_side(("speed", "m/s"), vec![(column.of(), panels)]).titled(table.header.scene())
 }
 
 /// Friction over the speed at the reference temperature of the compound's shift, a_T v: a panel for each load, a colour for
@@ -45,7 +64,7 @@ pub fn over_ways(ways: &[f64], tables: &[SweepTable]) -> Picture {
         (title, grid.speeds.iter().enumerate().flat_map(curve).collect())
     };
     let panels = grid.points().step_by(grid.speeds.len()).map(panel).collect();
-    Picture::side_by_side(("way", "m"), vec![("friction coefficient", panels)]).titled(first.header.scene())
+    Picture::side_by_side(("way", "m"), vec![(("friction coefficient", ""), panels)]).titled(first.header.scene())
 }
 
 /// Bars of what matters in the mean over all points.
@@ -82,6 +101,10 @@ struct Group<'a> {
 
 /// The title of a panel, and what has a colour in it.
 type GroupedPanel<'a> = (String, Vec<Group<'a>>);
+
+fn panels(table: &SweepTable) -> Vec<GroupedPanel<'_>> {
+    if table.header.grid.loads.len() == 1 { panels_of_loads(table) } else { panels_of_temperatures(table) }
+}
 
 fn panels_of_loads(table: &SweepTable) -> Vec<GroupedPanel<'_>> {
     let panel = |&load: &f64| {
@@ -136,13 +159,13 @@ fn picture(
     };
     let fine =
         is_there(table, Quantity::FineHysteresis).then_some(("of it below the profile", Quantity::FineHysteresis));
-    let mut rows = vec![("friction coefficient", row(Quantity::Friction, None))];
+    let mut rows = vec![(("friction coefficient", ""), row(Quantity::Friction, None))];
     let has_parts = is_there(table, Quantity::Adhesion);
     if has_parts || fine.is_some() {
-        rows.push(("hysteresis", row(Quantity::Hysteresis, fine)));
+        rows.push((("hysteresis", ""), row(Quantity::Hysteresis, fine)));
     }
     if has_parts {
-        rows.push(("adhesion", row(Quantity::Adhesion, None)));
+        rows.push((("adhesion", ""), row(Quantity::Adhesion, None)));
     }
     Picture::side_by_side(x_of, rows).titled(table.header.scene())
 }

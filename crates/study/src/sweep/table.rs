@@ -84,11 +84,37 @@ impl SweepHeader {
         self.keys.text_of("fingerprint").unwrap_or_default()
     }
 
+    /// A column of numbers by its name; `None` where there is none.
+    pub fn column(&self, name: &str) -> Option<SweepColumn> {
+        let table = self.table();
+        let at = table.columns().iter().position(|column| column.name == name && !column.has_words)?;
+        Some(SweepColumn { column: table.columns()[at].clone(), at })
+    }
+
     /// The table, without rows.
     pub fn table(&self) -> Table {
         let quantities = Quantity::ALL.iter().map(|quantity| quantity.column(self.load));
         let own = OperatingPoint::columns(self.load).into_iter().chain([PointStatus::column()]).chain(quantities);
         Table::new(self.keys.clone(), own.chain(self.samples.iter().flat_map(|_| columns_of_samples())))
+    }
+}
+
+/// A column of numbers of a sweep's table.
+#[derive(Clone, Debug)]
+pub struct SweepColumn {
+    column: Column,
+    at: usize,
+}
+
+impl SweepColumn {
+    /// Its name and its unit, that of a number apart.
+    pub fn of(&self) -> (&str, &str) {
+        (&self.column.name, if self.column.unit == "1" { "" } else { &self.column.unit })
+    }
+
+    /// The value of a row; `None` where it has none.
+    pub fn value(&self, row: &SweepRow) -> Option<f64> {
+        row.cells()[self.at].number().filter(|number| !number.is_nan())
     }
 }
 
