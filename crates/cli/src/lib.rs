@@ -20,7 +20,7 @@
 //! | `picture` | files | draws pictures, as SVG or PNG |
 //! | `plot` | cli, files, picture, terminal | `plot` |
 //! | `simulate` | cli, files, npz, picture, result_file, terminal | `simulate` of a scene |
-//! | `patch` | cli, files, picture, result_file, simulate, terminal | `simulate` of a patch |
+//! | `patch` | files, picture, result_file, simulate, terminal | `simulate` of a patch |
 //! | `describe` | cli, files, picture, simulate, terminal | `describe` |
 //! | `contact` | cli, files, npz, picture, terminal | `contact` |
 //! | `sweep` | cli, files, interrupt, output, picture, table_file, terminal | `sweep` |

@@ -32,19 +32,19 @@
 //! | [`contact`] | decimals, implausible, picture, steady, sweep, values | the contact of a surface in steady sliding |
 //! | [`converge`] | contact, decimals, error, picture, steady, sweep, values | whether area and friction depend on spacing, length or chance |
 //! | [`calibration`] | csv, decimals, error, files, implausible, picture, progress, settings, steady, sweep, uncertainty, values | free numbers of a scene from measured friction: models, least squares, errors, plans |
-//! | [`comparison`] | calibration, decimals, picture, sweep | a table of a sweep beside measured friction |
+//! | [`comparison`] | calibration, decimals, files, picture, sweep | a table of a sweep beside measured friction |
 //! | [`friction_map`] | calibration, comparison, picture, sweep | a table's friction over two of its quantities |
 //! | [`rank`] | calibration, comparison, csv, decimals, error, files, picture, progress, sweep, uncertainty, values | scenes in the order of their friction, and how sure that is |
 //! | [`fit`] | decimals, error, files, picture, values | Prony series and shift factors from measured moduli |
 //! | [`material`] | decimals, error, picture, values | moduli of a scene's compound, or stiffnesses of its links, over frequency |
-//! | [`surface`] | decimals, error, picture, values | numbers, spectra and power laws of a surface; smoothed, split and made periodic |
+//! | [`surface`] | decimals, files, picture, values | numbers, spectra and power laws of a surface; smoothed, split and made periodic |
 //! | [`summary`] | decimals, error, picture, runner, steady | what there is in a scene, a patch or a table, in lines |
 //! | [`run_figures`] | decimals, implausible, summary | forces and friction of a run, what it cost, and what would make it cheaper |
 //! | [`robustness`] | | a catalogue of perturbations of a scene, and the judge of perturbed runs |
 //! | [`pack`] | decimals, error, files, html, picture, robustness, runner, summary, sweep | scenes, tables and patches as FMUs |
 //! | [`motion`] | error, files | the motion that a patch is moved along |
 //! | [`check`] | csv, decimals, error, picture, progress, runner, summary, sweep | elements and patches against what was swept |
-//! | [`benchmark`] | csv, decimals, error, picture, progress, robustness, runner, values | what the runs of a scene cost and how accurate they are |
+//! | [`benchmark`] | csv, decimals, picture, progress, robustness, runner, values | what the runs of a scene cost and how accurate they are |
 
 pub mod benchmark;
 pub mod calibration;
