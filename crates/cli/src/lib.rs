@@ -99,7 +99,7 @@ pub(crate) enum Command {
     Fit(cli::Fit),
     /// Plots the complex modulus of a scene's compound over frequency, or the complex stiffness of its links.
     Material(material::Material),
-    /// Benchmarks a scene: accuracy, run time and robustness, as tables, plots and an HTML page.
+    /// Benchmarks a scene: accuracy, run time and robustness, as tables, plots and a summary.
     Report(cli::Report),
     /// Analyses a measured profile or a scene's surface: heights, slopes, spectrum and Hurst exponent.
     Surface(cli::Surface),
