@@ -33,12 +33,13 @@ use super::table_file::TableFile;
 use super::terminal::{self, LabelledLine, lines, warn};
 
 /// Options of a sweep that --merge does not take.
-const OF_A_SCENE: [&str; 15] = [
+const OF_A_SCENE: [&str; 16] = [
     "speeds",
     "pressures",
     "forces",
     "temperatures",
     "method",
+    "way",
     "points",
     "friction_error",
     "distance",
