@@ -183,5 +183,5 @@ fn invalid_studies_are_refused() {
     assert!(refused(&scene, &scene, &FULL, 1).contains("will not write"));
     assert!(!path.exists());
     fs::write(&path, "time,u,w\n0,0,0\n").unwrap();
-    assert!(asked(&[], 1).contains("not the table of a study"));
+    assert!(asked(&[], 1).contains("--force"));
 }

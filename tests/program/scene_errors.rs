@@ -248,8 +248,8 @@ fn files_of_a_prony_series() {
     let text = spoiled(MATERIAL, 12, "prony = 'compound.csv'");
     assert_eq!(folder.refusal(&text), "12: material.prony = 'compound.csv': unreadable");
     for (table, refusal) in [
-        ("1e-5,5e6\n-1,1\n", "compound.csv:2: column 1 (relaxation_time) = \"-1\": 1e-30 1e30"),
-        ("tau,E\n1,x\n", "compound.csv:2: column 2 (E) = \"x\": 0 1e-30 1e30"),
+        ("1e-5,5e6\n-1,1\n", "compound.csv:2: column 1 = \"-1\": 1e-30 1e30"),
+        ("tau,E\n1,x\n", "compound.csv:2: column 2 \"E\" = \"x\": 0 1e-30 1e30"),
         ("tau,E\n", "compound.csv:1: rows = 0"),
     ] {
         folder.write("compound.csv", table);
@@ -290,7 +290,7 @@ fn files_of_fine_roughness() {
     assert_eq!(folder.refusal(&table), "16: surface.fine.spectrum = 'psd.csv': unreadable");
     folder.write("psd.csv", "q [1/mm],C [m^4]\n1,1e-18\n0.5,1e-25\n");
     let falling = folder.refusal_of_file(&table, "surface.fine.spectrum", 16);
-    assert_eq!(falling, "psd.csv:3: column 1 (q [1/mm]) = 500.0 1/m: 1000.0");
+    assert_eq!(falling, "psd.csv:3: column 1 \"q [1/mm]\" = 500.0 1/m: 1000.0");
     // 2π/q from 6.28 mm to 62.8 µm.
     folder.write("psd.csv", "q [1/mm],C [m^4]\n1,1e-18\n100,1e-25\n");
     let covered = "0.006283185307179587 6.283185307179586e-5";

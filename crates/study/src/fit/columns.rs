@@ -38,13 +38,13 @@ pub const ROLES: [Role; 20] = {
         ),
         Role::new(
             "storage_modulus",
-            "E', storage, E stor, E storage, E prime, dynamic storage modulus, dyn storage modulus, tensile storage \
+            "E', storage modulus, storage, E stor, E storage, E prime, dynamic storage modulus, dyn storage modulus, tensile storage \
              modulus, young's storage modulus, elastic modulus E', speichermodul",
             Pressure,
         ),
         Role::new(
             "loss_modulus",
-            "E'', loss, E loss, E double prime, E doubleprime, dynamic loss modulus, dyn loss modulus, tensile loss \
+            "E'', loss modulus, loss, E loss, E double prime, E doubleprime, dynamic loss modulus, dyn loss modulus, tensile loss \
              modulus, young's loss modulus, verlustmodul",
             Pressure,
         ),
@@ -62,7 +62,7 @@ pub const ROLES: [Role; 20] = {
         ),
         Role::new(
             "complex_modulus",
-            "|E*|, complex, abs E*, E star, magnitude of E*, complex young's modulus, complex tensile modulus, dynamic \
+            "|E*|, complex modulus, complex, abs E*, E star, magnitude of E*, complex young's modulus, complex tensile modulus, dynamic \
              modulus, komplexer modul",
             Pressure,
         ),
@@ -103,7 +103,7 @@ pub const ROLES: [Role; 20] = {
         Role::new("set", "set number, set no, set id", Number),
         Role::new(
             "relaxation_modulus",
-            "E(t), E relax, E relaxation, tensile relaxation modulus, young's relaxation modulus, relaxation modulus of \
+            "E(t), relaxation modulus, E relax, E relaxation, tensile relaxation modulus, young's relaxation modulus, relaxation modulus of \
              tension, E",
             Pressure,
         ),
