@@ -21,7 +21,7 @@ use super::model::{FmuRun, RunState};
 use super::provisional::LastStep;
 use super::state::{Clock, FmuState};
 use super::variables::VariableTable;
-use asperity::scene::{Extrapolation, Value};
+use asperity::scene::Value;
 
 /// FMU states by handle. A handle is a number that no other state of the process has or had; it is looked up and never
 /// dereferenced, so that of a state that was freed is refused, as are those of other instances.
@@ -130,7 +130,7 @@ pub(super) fn read(
     for state in run.iter().chain(last.as_ref().map(|last| &last.run)) {
         check_outputs(parameters.definition().restore(state)?.as_mut(), variables)?;
     }
-    if last.is_some() && parameters.definition().extrapolation() == Extrapolation::Hold {
+    if last.is_some() && !parameters.definition().input_rule().extrapolates() {
         return Err(RestoreError::Invalid("its last step was not extrapolated"));
     }
     Ok(FmuState { lifecycle, parameters, inputs, clock, last_step, run, last })

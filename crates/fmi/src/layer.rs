@@ -14,7 +14,7 @@ use super::variables::VariableRef;
 use asperity::model::{FlashKernel, Reduction, Replacement};
 use asperity::outputs::{self, Output, Variable};
 use asperity::scene::{
-    Extrapolation, FmuOptions, Force, Input, LinkKind, OutputGroup, Parameter, ParameterError, Path, Scene, SceneFile,
+    FmuOptions, Force, Input, InputRule, LinkKind, OutputGroup, Parameter, ParameterError, Path, Scene, SceneFile,
     Value,
 };
 use asperity::simulation::{Motion, Simulation, Start};
@@ -73,8 +73,8 @@ impl FmuModel for Arc<Scene> {
         Arc::make_mut(self).set_parameter(parameter, value)
     }
 
-    fn extrapolation(&self) -> Extrapolation {
-        self.extrapolation
+    fn input_rule(&self) -> InputRule {
+        self.input_rule
     }
 
     fn input_scales(&self) -> InputScales {

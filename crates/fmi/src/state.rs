@@ -101,14 +101,23 @@ impl InstanceState {
         result
     }
 
+    /// Why inputs were held at their values, the first time.
+    pub(super) fn take_held(&mut self) -> Option<String> {
+        self.stepper.take_held()
+    }
+
+    /// The slot of an input whose new values come more seldom than steps, and how far apart, s.
+    pub(super) fn slow_input(&self) -> Option<(usize, f64)> {
+        self.inputs.slow_input(self.scales.as_ref()?)
+    }
+
     fn advance(&mut self, clock: Clock, h: f64) -> Result<(), Error> {
         let definition = self.parameters.definition();
-        let extrapolation = definition.extrapolation();
         let scales = *self.scales.get_or_insert_with(|| definition.input_scales());
-        let step = CommunicationStep { time: self.clock.time, h, extrapolation };
+        let step = CommunicationStep { time: self.clock.time, h, rule: definition.input_rule() };
         let run = self.run.as_mut().ok_or(Error::NoRun)?.as_mut();
         self.repeated_from = self.stepper.advance(run, &self.inputs, &step, &scales)?;
-        self.inputs.complete_step(h);
+        self.inputs.complete_step(&step);
         self.clock = clock;
         Ok(())
     }

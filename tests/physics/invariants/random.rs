@@ -130,7 +130,7 @@ fn cases_of(scales: Scales, method: Method) -> impl Strategy<Value = Case> {
                 fine: None,
                 friction,
                 solver,
-                extrapolation: Extrapolation::Linear,
+                rule: InputRule::default(),
                 temperature_input: false,
                 outputs: GROUPS.to_vec(),
                 fmu: FmuOptions::default(),
