@@ -5,6 +5,7 @@
 //! only where it can continue bit for bit. The checksum detects truncation and accidental changes. A forged string can
 //! at most forge a run: lengths, modes, numbers and the profile are checked against the scene.
 
+use std::ptr;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -30,8 +31,15 @@ pub(super) struct FmuStates {
     states: BTreeMap<usize, FmuState>,
 }
 
-/// The next handle. The first is far from small numbers and from addresses, which a master might pass by mistake.
-static NEXT_HANDLE: AtomicUsize = AtomicUsize::new(usize::MAX / 3);
+/// A handle that no other state of the process has or had. It follows from an address in this library, so that FMUs of
+/// other libraries have others, but is far from small numbers and from addresses, which a master might pass by mistake.
+fn new_handle() -> usize {
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    /// Spreads addresses that are near each other: 2⁶⁴ over the golden ratio (Knuth).
+    const SPREAD: u64 = 0x9E37_79B9_7F4A_7C15;
+    let base = (ptr::from_ref(&COUNT).addr() as u64).wrapping_mul(SPREAD) as usize;
+    base.wrapping_add(COUNT.fetch_add(1, Ordering::Relaxed)).max(1)
+}
 
 impl FmuStates {
     /// The state `handle`, to be written over.
@@ -41,7 +49,7 @@ impl FmuStates {
 
     /// Keeps `state` under a new handle, which it returns.
     pub(super) fn keep_new(&mut self, state: FmuState) -> usize {
-        let handle = NEXT_HANDLE.fetch_add(1, Ordering::Relaxed);
+        let handle = new_handle();
         self.states.insert(handle, state);
         handle
     }

@@ -55,6 +55,11 @@ impl Stepper {
     /// The states that it keeps at most.
     pub(super) const STATES: usize = 3;
 
+    /// Whether it has the states that it keeps from the first provisional step on.
+    pub(super) fn has_states(&self) -> bool {
+        self.last.is_some() || self.start.is_some()
+    }
+
     /// The last step, where it is provisional.
     pub(super) fn last(&self) -> Option<&LastStep> {
         self.last.as_ref()
