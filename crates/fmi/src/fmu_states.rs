@@ -5,9 +5,9 @@
 //! only where it can continue bit for bit. The checksum detects truncation and accidental changes. A forged string can
 //! at most forge a run: lengths, modes, numbers and the profile are checked against the scene.
 
-use std::ptr;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::ptr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

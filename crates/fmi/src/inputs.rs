@@ -446,7 +446,7 @@ mod tests {
 
     /// Does a step from 0 in the first two slots and returns where it ends.
     fn ends(inputs: &mut Inputs, h: f64, extrapolation: Extrapolation) -> [f64; 2] {
-        let ends = [0, 1].map(|slot| inputs.rate_from(0.0, slot, "u", &step(h, extrapolation)).unwrap() * h);
+        let ends = [0, 1].map(|slot| inputs.target(slot, "u", &step(h, extrapolation)).unwrap());
         inputs.complete_step(&step(h, extrapolation));
         ends
     }

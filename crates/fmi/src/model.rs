@@ -131,6 +131,9 @@ pub struct Experiment {
 
 /// A run of a model.
 pub trait FmuRun: Debug {
+    /// Allows the steps that follow, together, the work of a call.
+    fn allow_work(&mut self) {}
+
     /// Follows the inputs over a communication step; the run is as it was where that fails.
     fn advance(&mut self, inputs: &Inputs, step: &CommunicationStep) -> Result<(), Error>;
 

@@ -79,6 +79,7 @@ impl Stepper {
         step: &CommunicationStep,
         scales: &InputScales,
     ) -> Result<Option<f64>, Error> {
+        run.allow_work();
         let corrected = self.last.as_ref().and_then(|last| last.step.corrected(inputs, scales));
         let is_one = inputs.parts(step, scales).is_one();
         if corrected.is_none() && is_one {
@@ -139,6 +140,7 @@ impl Stepper {
             (Err(error), None) => return Err(error),
             // What was extrapolated cannot be done: that the inputs stay where they are is as good a prediction.
             (Err(error), Some(held)) => {
+                run.allow_work();
                 run.advance(inputs, &held.step())?;
                 if matches!(self.held, Held::Never) {
                     self.held = Held::Untold(error.to_string());

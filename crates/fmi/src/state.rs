@@ -338,12 +338,12 @@ mod tests {
     #[test]
     fn the_stop_time_may_be_overshot_by_rounding_alone() {
         // 100 steps of 1 ms in single precision.
-        let (mut time, mut clock) = (0.0_f32, Clock::new(0.0, Some(0.1)).unwrap());
+        let (mut time, mut single) = (0.0_f32, Clock::new(0.0, Some(0.1)).unwrap());
         for _ in 0..100 {
-            clock = clock.step(f64::from(time), f64::from(1e-3_f32)).unwrap().unwrap();
+            single = single.step(f64::from(time), f64::from(1e-3_f32)).unwrap().unwrap();
             time += 1e-3;
         }
-        assert!(clock.time > 0.1);
+        assert!(single.time > 0.1);
         assert!(clock(9.9).step(9.9, 0.1 + 1e-12).is_ok());
         assert!(matches!(clock(9.9).step(9.9, 0.2), Err(Error::BeyondStop { .. })));
         assert!(Clock::new(0.0, None).unwrap().step(0.0, 1e9).is_ok());
