@@ -28,7 +28,10 @@ fn what_is_left_out_is_absent() {
     );
     assert_eq!((layer.initial, &layer.roughness), (Initial::Relaxed, &Vec::new()));
     assert_eq!(layer.links, ByLink::default());
-    assert_eq!((&scene.description, &scene.friction, scene.input_rule.extrapolation), (&None, &None, Extrapolation::Linear));
+    assert_eq!(
+        (&scene.description, &scene.friction, scene.input_rule.extrapolation),
+        (&None, &None, Extrapolation::Linear)
+    );
     let defaults = Solver {
         method: Method::Event,
         relative_tolerance: 1e-6,
