@@ -7,7 +7,7 @@ use super::friction_table::FrictionTable;
 use super::law::{Law, LawAtSpeed};
 use super::quantity::Quantity;
 use crate::outputs::{Dependencies, Output, Variable, variable};
-use crate::scene::{Extrapolation, Parameter, ParameterError, Problem, TableExtrapolation, Value};
+use crate::scene::{Extrapolation, InputRule, Parameter, ParameterError, Problem, TableExtrapolation, Value};
 
 /// The definition of an element, as a [`Scene`](crate::scene::Scene) is that of a layer: a table and the parameters
 /// that a master may set.
@@ -19,7 +19,7 @@ pub struct PointContact {
     temperature: f64,
     table_extrapolation: TableExtrapolation,
     /// How the carrier moves on when a master gives no rates.
-    pub extrapolation: Extrapolation,
+    pub input_rule: InputRule,
 }
 
 impl PointContact {
@@ -32,7 +32,7 @@ impl PointContact {
             clearance: Clearance::new(&table),
             table: Arc::new(table),
             table_extrapolation: TableExtrapolation::Refuse,
-            extrapolation: Extrapolation::default(),
+            input_rule: InputRule::default(),
         }
     }
 
@@ -74,7 +74,10 @@ impl PointContact {
     /// Its parameters.
     pub fn parameters(&self) -> Vec<Parameter> {
         let temperature = (self.table.grid.temperatures.len() > 1).then_some(Parameter::TEMPERATURE);
-        temperature.into_iter().chain([Parameter::TABLE_EXTRAPOLATION, Parameter::EXTRAPOLATION]).collect()
+        temperature
+            .into_iter()
+            .chain([Parameter::TABLE_EXTRAPOLATION, Parameter::EXTRAPOLATION, Parameter::INTERVAL])
+            .collect()
     }
 
     /// The value of a parameter.
@@ -82,7 +85,8 @@ impl PointContact {
         match parameter {
             Parameter::TEMPERATURE => Value::Real(self.temperature),
             Parameter::TABLE_EXTRAPOLATION => Value::Text(self.table_extrapolation.word().into()),
-            _ => Value::Text(self.extrapolation.word().into()),
+            Parameter::INTERVAL => Value::Real(self.input_rule.interval),
+            _ => Value::Text(self.input_rule.extrapolation.word().into()),
         }
     }
 
@@ -111,9 +115,12 @@ impl PointContact {
                 None => return refuse(parameter.allowed()),
             },
             (Parameter::EXTRAPOLATION, Value::Text(word)) => match Extrapolation::from_word(word) {
-                Some(extrapolation) => self.extrapolation = extrapolation,
+                Some(extrapolation) => self.input_rule.extrapolation = extrapolation,
                 None => return refuse(parameter.allowed()),
             },
+            (Parameter::INTERVAL, &Value::Real(interval)) => {
+                self.input_rule.interval = Parameter::INTERVAL.check_number(interval)?;
+            }
             _ => return refuse(format!("a parameter of the element: {}", self.names().join(", "))),
         }
         Ok(())

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use super::face::{Face, FixedPoints, Section, Tread};
 use crate::element::{Clearance, FrictionTable, Load, Node, Quantity, ResampledLaw};
 use crate::scene::{
-    Backing, CanonicalFiles, Extrapolation, FaceHeat, FaceShape, FileFormats, FmuOptions, Grid, NotDoubled, POINTS,
-    Parameter, ParameterError, PatchFile, PatchGroup, Problem, SceneError, Setting, TableExtrapolation, Value,
+    Backing, CanonicalFiles, Extrapolation, FaceHeat, FaceShape, FileFormats, FmuOptions, Grid, InputRule, NotDoubled,
+    POINTS, Parameter, ParameterError, PatchFile, PatchGroup, Problem, SceneError, Setting, TableExtrapolation, Value,
     read_file,
 };
 use crate::table::TableError;
@@ -61,7 +61,7 @@ pub struct Patch {
     backing: Option<Backing>,
     heat: Option<FaceHeat>,
     /// How the body moves on when a master gives no rates.
-    pub extrapolation: Extrapolation,
+    pub input_rule: InputRule,
 }
 
 /// Where a number of a backing or of heat is.
@@ -122,7 +122,7 @@ impl Patch {
             table_extrapolation: file.table_extrapolation,
             refine: file.refine,
             backing: file.backing,
-            extrapolation: file.extrapolation,
+            input_rule: file.input_rule,
             files: file.files().into(),
             clearance: Clearance::new(&table),
             table: Arc::new(table),
@@ -342,7 +342,7 @@ impl Patch {
 
     /// The parameters.
     pub fn parameters(&self) -> Vec<Parameter> {
-        let others = [Parameter::TABLE_EXTRAPOLATION, Parameter::EXTRAPOLATION, Parameter::REFINE];
+        let others = [Parameter::TABLE_EXTRAPOLATION, Parameter::EXTRAPOLATION, Parameter::INTERVAL, Parameter::REFINE];
         let reals =
             REALS.map(|(parameter, _)| parameter).into_iter().filter(|&parameter| self.real(parameter).is_some());
         others.into_iter().chain(reals).collect()
@@ -359,7 +359,8 @@ impl Patch {
         match parameter {
             Parameter::TABLE_EXTRAPOLATION => Value::Text(self.table_extrapolation.word().into()),
             Parameter::REFINE => Value::Integer(i32::try_from(self.refine).unwrap_or(i32::MAX)),
-            Parameter::EXTRAPOLATION => Value::Text(self.extrapolation.word().into()),
+            Parameter::EXTRAPOLATION => Value::Text(self.input_rule.extrapolation.word().into()),
+            Parameter::INTERVAL => Value::Real(self.input_rule.interval),
             _ => Value::Real(self.real(parameter).unwrap_or(0.0)),
         }
     }
@@ -376,7 +377,7 @@ impl Patch {
         let text = text.trim();
         let value = match parameter {
             Parameter::REFINE => text.parse().ok().map(Value::Integer),
-            _ if real_of(parameter).is_some() => text.parse().ok().map(Value::Real),
+            _ if parameter == Parameter::INTERVAL || real_of(parameter).is_some() => text.parse().ok().map(Value::Real),
             _ => None,
         };
         self.set_parameter(parameter, value.unwrap_or_else(|| Value::Text(text.to_owned())))
@@ -402,7 +403,10 @@ impl Patch {
                 self.table_extrapolation = TableExtrapolation::from_word(word).ok_or_else(refused)?;
             }
             (Parameter::EXTRAPOLATION, Value::Text(word)) => {
-                self.extrapolation = Extrapolation::from_word(word).ok_or_else(refused)?;
+                self.input_rule.extrapolation = Extrapolation::from_word(word).ok_or_else(refused)?;
+            }
+            (Parameter::INTERVAL, &Value::Real(interval)) => {
+                self.input_rule.interval = parameter.check_number(interval)?;
             }
             (Parameter::REFINE, &Value::Integer(refine)) => {
                 let allowed = u32::try_from(refine).ok().filter(|refine| (1..=1000).contains(refine));

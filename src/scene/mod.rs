@@ -64,7 +64,7 @@ pub use patch_file::{Backing, FaceHeat, FaceShape, Grid, NotDoubled, PatchFile, 
 pub use profile::{Depth, LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
 pub use reader::POINTS;
 pub use self_affine::SelfAffine;
-pub use settings::{DependencyList, Extrapolation, FmuOptions, IntegerType, Method, OutputGroup, Solver};
+pub use settings::{DependencyList, Extrapolation, FmuOptions, InputRule, IntegerType, Method, OutputGroup, Solver};
 pub use spectrum::{PowerLaw, Spectrum, SpectrumBand};
 pub use surface::{Coordinate, MeanLine, PointsError, Surface, UnfitPoints, check_points, remove_tilt};
 pub use values::{LOOSEST_TOLERANCE, Unit, Value, is_possible};
@@ -93,7 +93,7 @@ pub struct Scene {
     /// The integrator's settings.
     pub solver: Solver,
     /// How the carrier moves on when a master gives no rates.
-    pub extrapolation: Extrapolation,
+    pub input_rule: InputRule,
     /// Whether the layer's temperature is an input.
     pub temperature_input: bool,
     /// The output groups, in the order of [`OutputGroup::ALL`], each once.

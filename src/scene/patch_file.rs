@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::error::{Problem, SceneError};
 use super::values::Word;
-use super::{Extrapolation, FileValues, FmuOptions};
+use super::{FileValues, FmuOptions, InputRule};
 use crate::tables::ReadingNote;
 
 /// The most elements of a patch.
@@ -35,7 +35,7 @@ pub struct PatchFile {
     /// How slip heats every element, if it does.
     pub heat: Option<FaceHeat>,
     /// How the body moves when a master gives no rates.
-    pub extrapolation: Extrapolation,
+    pub input_rule: InputRule,
     /// How many times finer a step is cut than it needs to be.
     pub refine: u32,
     /// Groups of outputs, in the order of the variables.

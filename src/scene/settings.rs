@@ -80,6 +80,23 @@ impl Extrapolation {
     }
 }
 
+/// How inputs go on where a master gives values alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct InputRule {
+    /// Within a communication step.
+    pub extrapolation: Extrapolation,
+    /// How far apart a master's new values come, s: each is gone to over that time, a delay of as much. 0: they come with
+    /// every step.
+    pub interval: f64,
+}
+
+impl InputRule {
+    /// Whether inputs go to values that have not come yet.
+    pub fn extrapolates(&self) -> bool {
+        self.interval == 0.0 && self.extrapolation == Extrapolation::Linear
+    }
+}
+
 /// The groups of output variables that a scene may ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]

@@ -28,7 +28,10 @@ fn what_is_left_out_is_absent() {
     );
     assert_eq!((layer.initial, &layer.roughness), (Initial::Relaxed, &Vec::new()));
     assert_eq!(layer.links, ByLink::default());
-    assert_eq!((&scene.description, &scene.friction, scene.extrapolation), (&None, &None, Extrapolation::Linear));
+    assert_eq!(
+        (&scene.description, &scene.friction, scene.input_rule.extrapolation),
+        (&None, &None, Extrapolation::Linear)
+    );
     let defaults = Solver {
         method: Method::Event,
         relative_tolerance: 1e-6,
@@ -62,7 +65,7 @@ fn reads_settings() {
     assert_eq!((friction.coulomb, friction.shear_force), (Some(1.0), None));
     assert_eq!((scene.solver.relative_tolerance, scene.solver.max_steps), (1e-3, Some(1000)));
     assert_eq!((scene.solver.absolute_tolerance, scene.absolute_tolerance()), (Some(1e-9), 1e-9));
-    assert_eq!((scene.layer.initial, scene.extrapolation), (Initial::Undeformed, Extrapolation::Hold));
+    assert_eq!((scene.layer.initial, scene.input_rule.extrapolation), (Initial::Undeformed, Extrapolation::Hold));
     assert_eq!(scene.outputs, [OutputGroup::Forces, OutputGroup::Solver, OutputGroup::Elements]);
 }
 

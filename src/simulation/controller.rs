@@ -48,8 +48,11 @@ pub(super) struct WorkLimit {
     pub tried: u64,
     max_steps: u64,
     /// What is left of it: steps times the masses that take them.
-    mass_steps: u64,
+    pub mass_steps: u64,
 }
+
+/// What a step costs beside its masses, in masses.
+const STEP: u64 = 10;
 
 impl WorkLimit {
     pub(super) fn new(max_steps: u64, max_mass_steps: u64) -> Self {
@@ -61,7 +64,7 @@ impl WorkLimit {
         if self.tried >= self.max_steps {
             return Err(SimulationError::TooManySteps { time, steps: self.max_steps });
         }
-        let left = self.mass_steps.checked_sub(masses as u64);
+        let left = self.mass_steps.checked_sub(masses as u64 + STEP);
         self.mass_steps = left.ok_or(SimulationError::TooMuchWork { time, steps: self.tried })?;
         self.tried += 1;
         Ok(())

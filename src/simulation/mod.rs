@@ -60,7 +60,7 @@ pub struct Simulation {
     /// Processor time since the start, s. It is not part of the run's state: a run restored from another's state keeps
     /// its own.
     run_time: f64,
-    /// Of the run and of the reference run, in each motion: see [`limit_work`](Self::limit_work).
+    /// What is left to the run, and to the reference run: see [`limit_work`](Self::limit_work).
     max_mass_steps: u64,
     /// What may stop it.
     interrupt: Option<Interrupt>,
@@ -335,6 +335,7 @@ impl Simulation {
             sampler.show(run, reference, end);
         }
         self.end_reference_run();
+        self.max_mass_steps = work.mass_steps;
         Ok(reached.then_some(self.run.context.state.s))
     }
 
@@ -427,7 +428,8 @@ impl Simulation {
         self.run_time
     }
 
-    /// Limits the work of each motion, beside `solver.max_steps`: the steps that are tried times the masses that take them.
+    /// Limits the work of the motions that follow, beside `solver.max_steps`: the steps that are tried times the masses that
+    /// take them, and a little for each step.
     pub fn limit_work(&mut self, max_mass_steps: u64) {
         self.max_mass_steps = max_mass_steps;
     }

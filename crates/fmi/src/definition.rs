@@ -74,7 +74,10 @@ impl Definition {
         // The table of a patch may have any name.
         let found = resources::find(location, library, &[SCENE_FILE, PATCH_FILE, TABLE_FILE])?;
         let path = &found.path;
-        check_memory("reading the resources", READING.saturating_mul(size_of_files_beside(path)))?;
+        check_memory(
+            "reading the resources",
+            READING.saturating_mul(size_of_files_beside(path)).saturating_add(DERIVED),
+        )?;
         let definition = if path.ends_with(TABLE_FILE) {
             PointContact::new(FrictionTable::load(path)?).into()
         } else if path.ends_with(PATCH_FILE) {
@@ -87,6 +90,9 @@ impl Definition {
         Ok((definition, found))
     }
 }
+
+/// Memory for what a scene derives of no file, the spectra and kernels of roughness and layer above all.
+const DERIVED: usize = 8 << 20;
 
 /// Memory for each byte of a file that is read: its text, the numbers in it, what is computed from them.
 const READING: usize = 16;

@@ -10,7 +10,7 @@ use super::resources::TABLE_FILE;
 use super::variables::VariableRef;
 use asperity::element::{self, Element, PointContact};
 use asperity::outputs::{Output, Variable};
-use asperity::scene::{Extrapolation, Input, Parameter, ParameterError, Value};
+use asperity::scene::{Input, InputRule, Parameter, ParameterError, Value};
 use asperity::simulation::Start;
 
 impl FmuModel for PointContact {
@@ -50,8 +50,8 @@ impl FmuModel for PointContact {
         self.set_parameter(parameter, value)
     }
 
-    fn extrapolation(&self) -> Extrapolation {
-        self.extrapolation
+    fn input_rule(&self) -> InputRule {
+        self.input_rule
     }
 
     fn input_scales(&self) -> InputScales {

@@ -7,6 +7,7 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::ptr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -21,7 +22,7 @@ use super::model::{FmuRun, RunState};
 use super::provisional::LastStep;
 use super::state::{Clock, FmuState};
 use super::variables::VariableTable;
-use asperity::scene::{Extrapolation, Value};
+use asperity::scene::Value;
 
 /// FMU states by handle. A handle is a number that no other state of the process has or had; it is looked up and never
 /// dereferenced, so that of a state that was freed is refused, as are those of other instances.
@@ -30,8 +31,15 @@ pub(super) struct FmuStates {
     states: BTreeMap<usize, FmuState>,
 }
 
-/// The next handle. The first is far from small numbers and from addresses, which a master might pass by mistake.
-static NEXT_HANDLE: AtomicUsize = AtomicUsize::new(usize::MAX / 3);
+/// A handle that no other state of the process has or had. It follows from an address in this library, so that FMUs of
+/// other libraries have others, but is far from small numbers and from addresses, which a master might pass by mistake.
+fn new_handle() -> usize {
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    /// Spreads addresses that are near each other: 2⁶⁴ over the golden ratio (Knuth).
+    const SPREAD: u64 = 0x9E37_79B9_7F4A_7C15;
+    let base = (ptr::from_ref(&COUNT).addr() as u64).wrapping_mul(SPREAD) as usize;
+    base.wrapping_add(COUNT.fetch_add(1, Ordering::Relaxed)).max(1)
+}
 
 impl FmuStates {
     /// The state `handle`, to be written over.
@@ -41,7 +49,7 @@ impl FmuStates {
 
     /// Keeps `state` under a new handle, which it returns.
     pub(super) fn keep_new(&mut self, state: FmuState) -> usize {
-        let handle = NEXT_HANDLE.fetch_add(1, Ordering::Relaxed);
+        let handle = new_handle();
         self.states.insert(handle, state);
         handle
     }
@@ -130,7 +138,7 @@ pub(super) fn read(
     for state in run.iter().chain(last.as_ref().map(|last| &last.run)) {
         check_outputs(parameters.definition().restore(state)?.as_mut(), variables)?;
     }
-    if last.is_some() && parameters.definition().extrapolation() == Extrapolation::Hold {
+    if last.is_some() && !parameters.definition().input_rule().extrapolates() {
         return Err(RestoreError::Invalid("its last step was not extrapolated"));
     }
     Ok(FmuState { lifecycle, parameters, inputs, clock, last_step, run, last })

@@ -23,6 +23,8 @@ pub(super) struct Instance {
     pub(super) texts: Vec<CString>,
     /// Whether it has warned of derivatives of inputs that it does not use.
     pub(super) warned_of_orders: bool,
+    /// Whether it has warned of an input whose values come more seldom than steps.
+    warned_of_interval: bool,
     /// Values looked up by a call that is under way.
     pub(super) found: Vec<Value>,
     fmu_states: FmuStates,
@@ -64,6 +66,7 @@ impl Instance {
             outputs: OutputCache::default(),
             texts: Vec::new(),
             warned_of_orders: false,
+            warned_of_interval: false,
             found: Vec::new(),
             fmu_states: FmuStates::default(),
             state_memory,
@@ -165,6 +168,7 @@ impl Instance {
         self.outputs.invalidate();
         self.log_repetition(repeated);
         self.log.extend(records);
+        self.log_input_warnings();
         self.log_warnings();
         Ok(())
     }
@@ -184,6 +188,7 @@ impl Instance {
         self.outputs.invalidate();
         self.texts.clear();
         self.warned_of_orders = false;
+        self.warned_of_interval = false;
         self.log = Log::new(self.logging);
         Ok(())
     }
@@ -257,6 +262,27 @@ impl Instance {
                 let text = format!("t = {start} s: the step from here is done again, to the values that came");
                 self.log.add(Message::record(category, text));
             }
+        }
+    }
+
+    /// Of inputs that a master sets in another way than it could, each once.
+    fn log_input_warnings(&mut self) {
+        let time = self.state.clock.time;
+        if let Some(reason) = self.state.take_held() {
+            self.warn(format!(
+                "t = {time} s: the inputs were held over the step, for they could not be extrapolated: {reason}; this is \
+                 said once a run"
+            ));
+        }
+        let rule = self.state.parameters.definition().input_rule();
+        let slow = self.state.slow_input().filter(|_| rule.interval == 0.0 && !self.warned_of_interval);
+        if let Some((slot, seconds)) = slow {
+            self.warned_of_interval = true;
+            let name = self.variables.input_name(slot).unwrap_or_default();
+            self.warn(format!(
+                "t = {time} s: new values of {name} come every {seconds} s alone, and each is taken for a jump within one \
+                 step; input.interval = {seconds} has it gone to over that time"
+            ));
         }
     }
 

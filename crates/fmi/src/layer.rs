@@ -14,7 +14,7 @@ use super::variables::VariableRef;
 use asperity::model::{FlashKernel, Reduction, Replacement};
 use asperity::outputs::{self, Output, Variable};
 use asperity::scene::{
-    Extrapolation, FmuOptions, Force, Input, LinkKind, OutputGroup, Parameter, ParameterError, Path, Scene, SceneFile,
+    FmuOptions, Force, Input, InputRule, LinkKind, OutputGroup, Parameter, ParameterError, Path, Scene, SceneFile,
     Value,
 };
 use asperity::simulation::{Motion, Simulation, Start};
@@ -73,8 +73,8 @@ impl FmuModel for Arc<Scene> {
         Arc::make_mut(self).set_parameter(parameter, value)
     }
 
-    fn extrapolation(&self) -> Extrapolation {
-        self.extrapolation
+    fn input_rule(&self) -> InputRule {
+        self.input_rule
     }
 
     fn input_scales(&self) -> InputScales {
@@ -206,8 +206,9 @@ fn farthest(scene: &Scene) -> f64 {
     SHARE * steps.fold(scene.layer.spacing, f64::min) / f64::EPSILON
 }
 
-/// The work of a communication step where no `solver.max_steps` is given: steps times masses, of the run and of the
-/// reference run each. It takes some seconds at most; a master that diverges would wait for minutes otherwise.
+/// The work of a call where no `solver.max_steps` is given, that of a step which is done again in it: steps times masses,
+/// of the run and of the reference run each. It takes some seconds at most; a master that diverges would wait for minutes
+/// otherwise.
 const MAX_MASS_STEPS: u64 = 500_000;
 
 /// A run of the layer.
@@ -224,6 +225,12 @@ struct LayerRun {
 }
 
 impl FmuRun for LayerRun {
+    fn allow_work(&mut self) {
+        if self.scene.solver.max_steps.is_none() {
+            self.simulation.limit_work(MAX_MASS_STEPS);
+        }
+    }
+
     fn advance(&mut self, inputs: &Inputs, step: &CommunicationStep) -> Result<(), Error> {
         for input in [Input::U, Input::W] {
             let target = inputs.target(input as usize, input.name(), step)?;
@@ -318,10 +325,7 @@ impl FmuRun for LayerRun {
 }
 
 impl LayerRun {
-    fn new(scene: &Arc<Scene>, mut simulation: Simulation, start: Option<f64>) -> Self {
-        if scene.solver.max_steps.is_none() {
-            simulation.limit_work(MAX_MASS_STEPS);
-        }
+    fn new(scene: &Arc<Scene>, simulation: Simulation, start: Option<f64>) -> Self {
         Self {
             scene: Arc::clone(scene),
             variables: outputs::variables(scene),

@@ -10,6 +10,7 @@
 //! | `lifecycle` | states of an instance and the functions allowed in each |
 //! | `error` | errors with the status that each returns; panics; memory that the system would refuse |
 //! | `resources` | the file of the scene, table or patch in the FMU's resources |
+//! | `history` | the values that an input had |
 //! | `inputs` | inputs as a master sets them, and where they go in a communication step |
 //! | `variables` | the table of variables by value reference |
 //! | `log` | messages by category |
@@ -30,6 +31,7 @@ mod element;
 mod error;
 mod exports;
 mod fmu_states;
+mod history;
 mod inputs;
 mod instance;
 mod layer;

@@ -13,7 +13,7 @@ use super::log::Message;
 use super::variables::{Kind, VariableRef, VariableTable};
 use asperity::element::ElementState;
 use asperity::patch::PatchState;
-use asperity::scene::{self, Extrapolation, FmuOptions, IntegerType, Parameter, ParameterError, Value};
+use asperity::scene::{self, FmuOptions, InputRule, IntegerType, Parameter, ParameterError, Value};
 use asperity::simulation::SimulationState;
 
 /// A file that an FMU carries: its path relative to the definition's own, and what is in it.
@@ -83,8 +83,8 @@ pub trait FmuModel: Debug {
         VariableTable::new(self.inputs().into_iter().chain(calculated).chain(parameters).collect())
     }
 
-    /// How inputs are extrapolated where the master gives no derivatives.
-    fn extrapolation(&self) -> Extrapolation;
+    /// How inputs go on where the master gives no derivatives.
+    fn input_rule(&self) -> InputRule;
 
     /// When values that come are those that inputs went to.
     fn input_scales(&self) -> InputScales;
@@ -131,6 +131,9 @@ pub struct Experiment {
 
 /// A run of a model.
 pub trait FmuRun: Debug {
+    /// Allows the steps that follow, together, the work of a call.
+    fn allow_work(&mut self) {}
+
     /// Follows the inputs over a communication step; the run is as it was where that fails.
     fn advance(&mut self, inputs: &Inputs, step: &CommunicationStep) -> Result<(), Error>;
 

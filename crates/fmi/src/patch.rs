@@ -10,7 +10,7 @@ use super::model::{CarriedFile, Experiment, FmuModel, FmuRun, RunState};
 use super::resources::PATCH_FILE;
 use super::variables::VariableRef;
 use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchRun, PatchStart, PatchVariable, Pose};
-use asperity::scene::{Extrapolation, FmuOptions, Parameter, ParameterError, PatchGroup, Unit, Value, is_possible};
+use asperity::scene::{FmuOptions, InputRule, Parameter, ParameterError, PatchGroup, Unit, Value, is_possible};
 
 /// The slot of the first angle, after those of the position.
 const ANGLES: usize = 3;
@@ -95,8 +95,8 @@ impl FmuModel for Patch {
         self.set_parameter(parameter, value)
     }
 
-    fn extrapolation(&self) -> Extrapolation {
-        self.extrapolation
+    fn input_rule(&self) -> InputRule {
+        self.input_rule
     }
 
     /// A temperature is held.

@@ -1,6 +1,6 @@
 //! The last step of a run where it went to extrapolated values: once the values at its end are known and are others, it
 //! is done again from its start, straight to them. The course of the inputs is then the piecewise linear one through the
-//! values given, and the last step alone is a prediction.
+//! values given, and the last step alone is a prediction. Where that cannot be done the inputs are held at their values.
 
 use serde::{Deserialize, Serialize};
 
@@ -23,8 +23,19 @@ pub(super) struct Stepper {
     last: Option<LastStep>,
     /// Where the state at the start of the next step is kept.
     start: Option<RunState>,
-    /// Where the state before the call is kept while a step is done again.
+    /// Where the state before the call is kept while a step is done again, or in parts.
     before: Option<RunState>,
+    /// Why inputs were held for the first time, until that is taken.
+    held: Held,
+}
+
+/// Whether inputs were held because they could not be extrapolated.
+#[derive(Debug, Default)]
+enum Held {
+    #[default]
+    Never,
+    Untold(String),
+    Told,
 }
 
 impl LastStep {
@@ -43,6 +54,11 @@ impl LastStep {
 impl Stepper {
     /// The states that it keeps at most.
     pub(super) const STATES: usize = 3;
+
+    /// Whether it has the states that it keeps from the first provisional step on.
+    pub(super) fn has_states(&self) -> bool {
+        self.last.is_some() || self.start.is_some()
+    }
 
     /// The last step, where it is provisional.
     pub(super) fn last(&self) -> Option<&LastStep> {
@@ -63,19 +79,32 @@ impl Stepper {
         step: &CommunicationStep,
         scales: &InputScales,
     ) -> Result<Option<f64>, Error> {
+        run.allow_work();
         let corrected = self.last.as_ref().and_then(|last| last.step.corrected(inputs, scales));
-        let provisional = ProvisionalStep::new(inputs, step, scales);
-        let Some(corrected) = corrected else {
-            self.follow(run, inputs, step, provisional)?;
+        let is_one = inputs.parts(step, scales).is_one();
+        if corrected.is_none() && is_one {
+            self.follow(run, inputs, step, scales)?;
             return Ok(None);
-        };
-        let began = self.last.as_ref().map(|last| last.step.step().time);
+        }
+        let began = self.last.as_ref().filter(|_| corrected.is_some()).map(|last| last.step.step().time);
         save(run, &mut self.before);
-        let result = self.repeat(run, &corrected).and_then(|()| self.follow(run, inputs, step, provisional));
+        let repeated = corrected.map_or(Ok(()), |corrected| self.repeat(run, &corrected));
+        let result = repeated.and_then(|()| self.follow(run, inputs, step, scales));
         if let (Err(_), Some(before)) = (&result, &self.before) {
             run.set_state(before)?;
         }
         result.map(|()| began)
+    }
+
+    /// Why inputs were held at their values, the first time.
+    pub(super) fn take_held(&mut self) -> Option<String> {
+        match std::mem::replace(&mut self.held, Held::Told) {
+            Held::Untold(reason) => Some(reason),
+            other => {
+                self.held = other;
+                None
+            }
+        }
     }
 
     /// Does the last step again.
@@ -98,15 +127,27 @@ impl Stepper {
         run: &mut dyn FmuRun,
         inputs: &Inputs,
         step: &CommunicationStep,
-        provisional: Option<ProvisionalStep>,
+        scales: &InputScales,
     ) -> Result<(), Error> {
-        let Some(provisional) = provisional else {
-            run.advance(inputs, step)?;
+        let Some(provisional) = ProvisionalStep::new(inputs, step, scales) else {
+            inputs.parts(step, scales).try_for_each(|(inputs, part)| run.advance(&inputs, &part))?;
             self.start = self.last.take().map(|last| last.run).or(self.start.take());
             return Ok(());
         };
         save(run, &mut self.start);
-        run.advance(inputs, step)?;
+        let provisional = match (run.advance(inputs, step), provisional.held(scales)) {
+            (Ok(()), _) => provisional,
+            (Err(error), None) => return Err(error),
+            // What was extrapolated cannot be done: that the inputs stay where they are is as good a prediction.
+            (Err(error), Some(held)) => {
+                run.allow_work();
+                run.advance(inputs, &held.step())?;
+                if matches!(self.held, Held::Never) {
+                    self.held = Held::Untold(error.to_string());
+                }
+                held
+            }
+        };
         let spare = self.last.take().map(|last| last.run);
         self.last = self.start.take().map(|run| LastStep { step: provisional, run });
         self.start = Some(spare.unwrap_or_else(|| run.save()));

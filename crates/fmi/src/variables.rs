@@ -166,6 +166,12 @@ impl VariableTable {
         inputs
     }
 
+    /// The name of the input in a slot.
+    pub(super) fn input_name(&self, slot: usize) -> Option<&str> {
+        let input = self.variables.iter().find(|variable| variable.role == Role::Input(slot))?;
+        Some(&input.name)
+    }
+
     /// The variable with the value reference `reference`.
     pub fn entry(&self, reference: u32) -> Option<&VariableRef> {
         self.variables.get(usize::try_from(reference).ok()?)

@@ -1,7 +1,7 @@
 //! The keys of a patch file.
 
 use super::definition::{Allowed, Key, Kinds, PATH, ROLES, key, kinds, number, numbers, table, whole, word};
-use super::scene_file::{DEPENDENCIES, INTEGERS};
+use super::scene_file::{DEPENDENCIES, INTEGERS, INTERVAL};
 use crate::scene::patch_file::{MAX_ELEMENTS, PatchGroup, TableExtrapolation};
 use crate::scene::values::{ANY, NumberRange, POSITIVE, Word, words};
 use crate::scene::{Extrapolation, Unit};
@@ -10,7 +10,7 @@ pub(in crate::scene) const PATCH_ROOT: &[Key] = &[
     key("name", Allowed::Text("a text"), "Name of the patch").required(),
     table("table", TABLE).required(),
     key("patch", Allowed::Kinds(&[SHAPE], kinds::<ShapeKind>), "").required(),
-    table("input", &[EXTRAPOLATION]),
+    table("input", &[EXTRAPOLATION, INTERVAL]),
     table("solver", SOLVER),
     table("fmu", FMU),
 ];

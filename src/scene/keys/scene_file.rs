@@ -332,9 +332,19 @@ const SOLVER: &[Key] = &[
 const INPUT: &[Key] = &[
     word::<Extrapolation>("extrapolation", "How the carrier moves when no rates are given: linear or hold")
         .default("\"linear\"")
-        .parameter(field!(|scene, _| scene.extrapolation)),
+        .parameter(field!(|scene, _| scene.input_rule.extrapolation)),
+    INTERVAL.parameter(field!(|scene, _| scene.input_rule.interval)),
     key("temperature", Allowed::Flag, "Whether the layer's temperature is an input").default("false").material(),
 ];
+
+/// A parameter of elements and patches, too.
+pub(super) const INTERVAL: Key = number(
+    "interval",
+    NOT_NEGATIVE,
+    Unit::Second,
+    "Time between new values of inputs without rates, over which each is gone to, late by it; 0: in every step",
+)
+.default("0");
 
 /// Beside them any number of the scene by its path: they are read by what draws samples.
 const UNCERTAINTY: &[Key] =

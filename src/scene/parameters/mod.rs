@@ -32,6 +32,8 @@ impl Parameter {
     pub const RELATIVE_TOLERANCE: Self = Self::new("solver.relative_tolerance");
     /// How what moves goes on when a master gives no rates.
     pub const EXTRAPOLATION: Self = Self::new("input.extrapolation");
+    /// How far apart new values of inputs come.
+    pub const INTERVAL: Self = Self::new("input.interval");
     /// What happens beyond the table of an element or a patch.
     pub const TABLE_EXTRAPOLATION: Self = Self::new("table.extrapolation");
     /// How many times finer a step of a patch is cut.

@@ -67,13 +67,14 @@ fn has_what_the_scene_names_in_its_order() {
         "solver.absolute_tolerance",
         "solver.max_steps",
         "input.extrapolation",
+        "input.interval",
     ];
     assert_eq!(names, expected);
 }
 
 #[test]
 fn a_bare_scene_has_few() {
-    assert_eq!(bare().parameters().len(), 8);
+    assert_eq!(bare().parameters().len(), 9);
 }
 
 #[test]

@@ -16,9 +16,9 @@ use super::file_values::{FileValues, Setting};
 use super::keys::{self, At, Form, KeyRow, ROOT};
 use super::values::Word;
 use super::{
-    CanonicalFiles, CarrierBodies, ElasticConstants, Extrapolation, FileFormats, FmuOptions, Foundation,
-    FoundationKind, Friction, Heat, Layer, Link, LinkKind, Material, MaxwellElement, OutputGroup, ParameterError,
-    PronyTerm, RateShear, Scene, SceneError, Solver, Surface, Wlf, read_text, warnings,
+    CanonicalFiles, CarrierBodies, ElasticConstants, FileFormats, FmuOptions, Foundation, FoundationKind, Friction,
+    Heat, InputRule, Layer, Link, LinkKind, Material, MaxwellElement, OutputGroup, ParameterError, PronyTerm,
+    RateShear, Scene, SceneError, Solver, Surface, Wlf, read_text, warnings,
 };
 use surface::Findings;
 use table::{Entry, Result, Source, TableReader};
@@ -185,7 +185,7 @@ fn unread_scene() -> Scene {
         carrier: CarrierBodies::default(),
         friction: None,
         solver: Solver::default(),
-        extrapolation: Extrapolation::default(),
+        input_rule: InputRule::default(),
         temperature_input: false,
         outputs: default_outputs(),
         fmu: FmuOptions::default(),
@@ -346,8 +346,9 @@ fn read_friction(table: &mut TableReader<'_>, scene: &mut Scene) -> Result<()> {
     Ok(())
 }
 
-fn read_input(table: &mut TableReader<'_>) -> Result<Extrapolation> {
-    Ok(table.optional_choice("extrapolation")?.unwrap_or_default())
+fn read_input(table: &mut TableReader<'_>) -> Result<InputRule> {
+    let extrapolation = table.optional_choice("extrapolation")?.unwrap_or_default();
+    Ok(InputRule { extrapolation, interval: table.optional_number("interval")?.unwrap_or(0.0) })
 }
 
 /// Whether the temperature is an input.

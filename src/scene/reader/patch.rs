@@ -73,7 +73,7 @@ impl PatchFile {
         let table_extrapolation = table.optional_choice("extrapolation")?.unwrap_or(TableExtrapolation::Hold);
         table.finish()?;
         let face = read_face(&root.required("patch")?)?;
-        let extrapolation = root.optional_table("input", read_input)?.unwrap_or_default();
+        let input_rule = root.optional_table("input", read_input)?.unwrap_or_default();
         let refine = root.optional_table("solver", |table| table.optional_whole("refine"))?.flatten().unwrap_or(1);
         let fmu = root.optional_table("fmu", |table| Ok((read_outputs(table)?, super::read_fmu_options(table)?)))?;
         let (outputs, fmu) = fmu.unwrap_or_else(|| (default_outputs(), FmuOptions::default()));
@@ -89,7 +89,7 @@ impl PatchFile {
             offset: face.offset,
             backing: face.backing,
             heat: face.heat,
-            extrapolation,
+            input_rule,
             refine: u32::try_from(refine).unwrap_or(1),
             outputs,
             fmu,

@@ -7,8 +7,8 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use asperity::scene::{
-    ByLink, CarrierBodies, CarrierBody, Extrapolation, FmuOptions, Force, Friction, Initial, Layer, Link,
-    MaxwellElement, Method, Path, RateShear, Scene, Solver, Surface,
+    ByLink, CarrierBodies, CarrierBody, FmuOptions, Force, Friction, Initial, InputRule, Layer, Link, MaxwellElement,
+    Method, Path, RateShear, Scene, Solver, Surface,
 };
 use asperity::simulation::{Motion, Start};
 use proptest::collection::vec;
@@ -130,7 +130,7 @@ fn cases_of(scales: Scales, method: Method) -> impl Strategy<Value = Case> {
                 fine: None,
                 friction,
                 solver,
-                extrapolation: Extrapolation::Linear,
+                input_rule: InputRule::default(),
                 temperature_input: false,
                 outputs: GROUPS.to_vec(),
                 fmu: FmuOptions::default(),

@@ -111,7 +111,7 @@ impl<'a> Master<'a> {
         if self.given == MasterInputs::Rates {
             set_rates(&mut self.inputs, motion, from);
         }
-        let step = CommunicationStep { time: self.carrier.time, h: to - from, extrapolation: self.scene.extrapolation };
+        let step = CommunicationStep { time: self.carrier.time, h: to - from, rule: self.scene.input_rule };
         let scales = layer_scales(self.scene);
         if let Some((last, state)) = self.last.take()
             && let Some(corrected) = last.corrected(&self.inputs, &scales)
@@ -121,9 +121,10 @@ impl<'a> Master<'a> {
             self.follow(&corrected, &last.step())?;
         }
         self.last = ProvisionalStep::new(&self.inputs, &step, &scales).map(|step| (step, self.simulation.state()));
-        let inputs = self.inputs;
-        self.follow(&inputs, &step)?;
-        self.inputs.complete_step(step.h);
+        for (inputs, part) in self.inputs.parts(&step, &scales) {
+            self.follow(&inputs, &part)?;
+        }
+        self.inputs.complete_step(&step);
         self.recorder.row(&self.simulation.snapshot());
         self.carrier = start.after(motion, to);
         Ok(())

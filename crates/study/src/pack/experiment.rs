@@ -133,13 +133,12 @@ fn rows(definition: &Definition, motion: &InputMotion, budget: Budget) -> Option
     let mut rows = vec![values.clone()];
     for (i, times) in motion.times.windows(2).enumerate() {
         motion.set(&mut inputs, &slots, i);
-        let step =
-            CommunicationStep { time: times[0], h: times[1] - times[0], extrapolation: definition.extrapolation() };
+        let step = CommunicationStep { time: times[0], h: times[1] - times[0], rule: definition.input_rule() };
         let is_over = steps.is_some_and(|steps| values[steps] > budget.0 as f64);
         if is_over || run.advance(&inputs, &step).is_err() {
             break;
         }
-        inputs.complete_step(step.h);
+        inputs.complete_step(&step);
         run.evaluate(&mut values);
         rows.push(values.clone());
     }

@@ -237,7 +237,7 @@ fn solver(scene: &Scene) -> String {
 
 fn input(scene: &Scene) -> String {
     let names: Vec<_> = scene.inputs().into_iter().map(Input::name).collect();
-    let rule = match scene.extrapolation {
+    let rule = match scene.input_rule.extrapolation {
         Extrapolation::Linear => {
             "values without rates continue at their last rate, until the next ones correct the step (linear)"
         }
