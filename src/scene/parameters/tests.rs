@@ -259,7 +259,7 @@ fn a_material_has_its_own_and_none_of_the_links() {
         assert_eq!((parameter.name().as_str(), parameter.unit()), (name, unit));
         assert!(!parameter.description().is_empty());
     }
-    assert_eq!(parameters.len(), expected.len() + 5);
+    assert_eq!(parameters.len(), expected.len() + 6);
 }
 
 #[test]

@@ -47,6 +47,7 @@ fn its_variables_have_the_names_of_a_layers() {
         "contact.ratio",
         "table.extrapolation",
         "input.extrapolation",
+        "input.interval",
     ];
     assert_eq!(names, expected);
     let warm = Grid { temperatures: vec![290.0, 300.0, 310.0], ..Grid::plain() };

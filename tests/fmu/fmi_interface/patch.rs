@@ -122,7 +122,10 @@ fn its_variables_stand_in_their_order() {
     ] {
         assert_eq!(names[index], name);
     }
-    assert_eq!(names[names.len() - 3..], ["table.extrapolation", "input.extrapolation", "solver.refine"]);
+    assert_eq!(
+        names[names.len() - 4..],
+        ["table.extrapolation", "input.extrapolation", "input.interval", "solver.refine"]
+    );
 }
 
 /// The library's own run, to rounding of the poses that the master gives.
