@@ -172,6 +172,10 @@ impl ProvisionalStep {
     }
 }
 
+/// A step that an event has cut off is shorter than this part of the longest of the last ones. Masters with uneven steps
+/// are followed exactly.
+const CUT_OFF: f64 = 0.2;
+
 impl Inputs {
     /// The value of an input.
     pub fn value(&self, slot: usize) -> f64 {
@@ -213,8 +217,9 @@ impl Inputs {
     /// The rate at which a displacement goes straight from `current`, where it is, to the target of the input called
     /// `name`. Rounding does not accumulate, since the next step starts from where this one ended.
     ///
-    /// A jump takes half the longest of the last steps at least: in a shorter step a part of it is gone, and the next one
-    /// goes on from there. Within a nanosecond it would be a loss in the dampers that stays.
+    /// In a step far shorter than the last ones, which an event has cut off, a jump takes half the longest of these: a part
+    /// of it is gone, and the next step goes on from there. Within a nanosecond it would be a loss in the dampers that
+    /// stays.
     ///
     /// # Errors
     /// As for [`target`](Self::target).
@@ -230,10 +235,11 @@ impl Inputs {
         if let Some(rate) = signal.given_rate(current) {
             return Ok(rate);
         }
-        let least = 0.5 * self.longest_step(step.h);
-        if step.h >= least {
+        let longest = self.longest_step(step.h);
+        if step.h >= CUT_OFF * longest {
             return Ok((target - current) / step.h);
         }
+        let least = 0.5 * longest;
         // The motion so far goes on, and a jump is what differs from it.
         let rate = signal.rate.unwrap_or_else(|| signal.way(step.h, least) / step.h);
         Ok(rate + (target - current - rate * step.h) / least)

@@ -55,7 +55,7 @@ fn its_variables_have_the_names_of_a_layers() {
     assert_eq!((fmu.enter(), fmu.real("material.wlf.temperature")), (OK, 300.0));
     assert_eq!(fmu.set_real("material.wlf.temperature", 305.0), OK);
     assert_eq!(fmu.set_real("material.wlf.temperature", 320.0), ERROR);
-    assert_names(&fmu.message(), "from 290.0 to 310.0");
+    assert_names(fmu.message(), "from 290.0 to 310.0");
 }
 
 #[test]

@@ -131,7 +131,7 @@ fn times_and_steps_out_of_range_are_refused_and_change_nothing() {
     fmu.bits();
     let fmu = Fmu::new();
     assert_eq!(fmu.setup(1e300), ERROR);
-    assert_names(&fmu.message(), "start | 1e300 | ±1e30");
+    assert_names(fmu.message(), "start | 1e300 | ±1e30");
 }
 
 /// Every number at both ends of its range, steps of all sizes: done with finite outputs, or refused without a change.

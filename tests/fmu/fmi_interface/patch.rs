@@ -210,7 +210,7 @@ fn parameters_out_of_range_are_refused() {
     let fmu = fmu(WHEEL);
     for refine in [0, 1001] {
         assert_eq!(fmu.set_integers(&[fmu.reference("solver.refine")], &[refine]), ERROR);
-        assert_names(&fmu.message(), "1 to 1000");
+        assert_names(fmu.message(), "1 to 1000");
     }
     assert_eq!(fmu.set_text(fmu.reference("table.extrapolation"), "guess"), ERROR);
 }

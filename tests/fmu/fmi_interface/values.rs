@@ -61,7 +61,7 @@ fn types_are_kept_apart() {
     let fmu = Fmu::initialising();
     let [u, count, rule] = ["u", "contact.count", "input.extrapolation"].map(|name| fmu.reference(name));
     assert_eq!(fmu.get_integers(&[u], &mut [0]), ERROR);
-    assert_names(&fmu.message(), "reference 0 | Real | Integer");
+    assert_names(fmu.message(), "reference 0 | Real | Integer");
     assert_eq!(fmu.get_reals(&[count], &mut [0.0]), ERROR);
     assert_eq!(fmu.get_integers(&[count], &mut [0]), OK);
     assert_eq!(

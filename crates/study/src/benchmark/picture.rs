@@ -11,6 +11,9 @@ use super::trace::{Errors, QUANTITIES};
 use crate::picture::{Fill, Ladders, Mark, Picture, Point, Shape, Stroke};
 use crate::robustness::{KEPT, ScaledQuantity, factor};
 
+/// A run that is drawn: of what, how, its tolerance, its time (s), its errors.
+type DrawnRun<'a> = (&'a str, Stroke, f64, f64, Errors);
+
 /// Errors over run time, one line for each method and, dashed, for each whole process of the `peers`, with the tolerances
 /// at its ends.
 pub fn tolerance_picture(reference: &Reference, rows: &[ToleranceRow], peers: &[Peer]) -> Picture {
@@ -21,9 +24,8 @@ pub fn tolerance_picture(reference: &Reference, rows: &[ToleranceRow], peers: &[
     let peers = peers.iter().map(|peer| (peer.name.as_str(), Stroke::Dashed, peer.tolerance, peer.time, peer.errors));
     let runs: Vec<_> = own.chain(peers).collect();
     let panels = panels(reference, |quantity, floor| {
-        let line = |(look, runs): (usize, &[(&str, Stroke, f64, f64, Errors)])| {
-            let seen =
-                |&(_, _, tolerance, time, errors): &(_, _, _, _, Errors)| Some(([time, errors[quantity]?], tolerance));
+        let line = |(look, runs): (usize, &[DrawnRun<'_>])| {
+            let seen = |&(_, _, tolerance, time, errors): &DrawnRun<'_>| Some(([time, errors[quantity]?], tolerance));
             let (points, tolerances): (Vec<Point>, Vec<f64>) = runs.iter().filter_map(seen).unzip();
             // Those between are powers of ten.
             let last = tolerances.len().saturating_sub(1);
