@@ -9,7 +9,7 @@ use crate::math::Spline;
 use crate::scene::{Axis, ByAxis, ByLink, Initial, Link, LinkKind, MaxwellElement, Scene};
 
 /// The law of a link of one kind: a spring and a damper in parallel. Its Maxwell elements add their own forces
-/// ([`Model::element_force`]).
+/// (`Model::element_force`).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LinkLaw {
     /// Stiffness c, N/m, that of the Maxwell elements replaced by springs included.
@@ -57,7 +57,7 @@ pub(super) fn link_laws(scene: &Scene, reduction: Option<&Reduction>) -> (ByLink
 }
 
 /// One Maxwell element of every link of a kind: its constants, and the indices of the elongations a_j = e - y_j of its
-/// springs in [`State::maxwell`].
+/// springs in `State::maxwell`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MaxwellRow {
     /// The kind of link.
@@ -66,9 +66,9 @@ pub struct MaxwellRow {
     pub stiffness: f64,
     /// Relaxation time τ_j, s.
     pub relaxation_time: f64,
-    /// Its index in [`Model::relaxation_times`].
+    /// Its index in `Model::relaxation_times`.
     pub time_index: usize,
-    /// Indices in [`State::maxwell`], link by link.
+    /// Indices in `State::maxwell`, link by link.
     pub range: Range<usize>,
 }
 

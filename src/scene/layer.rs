@@ -17,7 +17,7 @@ pub struct Layer {
     pub origin: f64,
     /// Height of the layer above the profile's datum at w = 0, m.
     pub clearance: f64,
-    /// Mass of one point mass, kg; in the direct form alone, see [`Scene::mass`].
+    /// Mass of one point mass, kg; in the direct form alone, see [`Scene::mass`](crate::scene::Scene::mass).
     pub mass: Option<f64>,
     /// How the links follow from the material; in the material form alone.
     pub foundation: Option<FoundationKind>,
@@ -29,7 +29,7 @@ pub struct Layer {
     pub initial: Initial,
     /// Heights h_i of the elastic body's roughness, m: k values, or none for a smooth body.
     pub roughness: Vec<f64>,
-    /// The links; in the direct form alone, see [`Scene::link`].
+    /// The links; in the direct form alone, see [`Scene::link`](crate::scene::Scene::link).
     #[serde(flatten, serialize_with = "by_name")]
     pub links: ByLink<Option<Link>>,
 }
@@ -81,13 +81,13 @@ impl Word for Initial {
 pub struct Friction {
     /// Coulomb's coefficient μ, 1.
     pub coulomb: Option<f64>,
-    /// Adhesive shear force A τ_0 of one mass in contact, N; in the direct form alone, see [`Scene::shear_force`].
+    /// Adhesive shear force A τ_0 of one mass in contact, N; in the direct form alone, see [`Scene::shear_force`](crate::scene::Scene::shear_force).
     pub shear_force: Option<f64>,
     /// Adhesive shear strength τ_0, Pa; in the material form alone.
     pub shear_strength: Option<f64>,
     /// Rate-dependent shear strength.
     pub rate_shear: Option<RateShear>,
-    /// The way D over which contacts are renewed, m, 0: at once; `None` see [`Scene::memory_way`].
+    /// The way D over which contacts are renewed, m, 0: at once; `None` see [`Scene::memory_way`](crate::scene::Scene::memory_way).
     pub memory: Option<f64>,
 }
 
@@ -96,7 +96,7 @@ pub struct Friction {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct RateShear {
     /// The largest force A τ_f0, of one mass in contact at the reference speed, N; in the direct form alone, see
-    /// [`Scene::rate_shear`].
+    /// [`Scene::rate_shear`](crate::scene::Scene::rate_shear).
     pub force: Option<f64>,
     /// The largest shear strength τ_f0, Pa; in the material form alone.
     pub strength: Option<f64>,

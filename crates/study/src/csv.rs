@@ -25,7 +25,7 @@ pub struct Csv {
 }
 
 impl Csv {
-    /// The file in a text; see [`rows`] for the separator.
+    /// The file in a text; see `rows` for the separator.
     ///
     /// # Errors
     /// [`ContentError`] where a row has more or fewer fields than there are names.

@@ -49,7 +49,7 @@ pub struct CompletedRun {
     pub time: f64,
     /// How long each phase took, s.
     pub durations: Vec<f64>,
-    /// What it says of its own error, where the scene is [`estimated`].
+    /// What it says of its own error, where the scene is `estimated`.
     pub estimate: Estimate,
     /// Its warnings.
     pub warnings: Vec<String>,

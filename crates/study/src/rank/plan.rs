@@ -30,7 +30,7 @@ pub struct RankOptions {
     /// depends on. Default: all the same.
     #[arg(long, value_name = "WEIGHTS.csv")]
     pub weights: Option<PathBuf>,
-    /// Number of samples of what is not known of the scenes, [uncertainty], drawn with common numbers.
+    /// Number of samples of what is not known of the scenes, uncertainty, drawn with common numbers.
     #[arg(long, value_name = "N", default_value_t = 128, value_parser = count)]
     pub samples: u32,
     /// The seed of the samples.
