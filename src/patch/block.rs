@@ -151,7 +151,7 @@ impl<T: Number> ElementBlock<T> {
         self.work += self.count as u64;
         std::mem::swap(&mut self.begin, &mut self.end);
         self.evaluate_at(step, law, &next, part.end);
-        self.advance_springs(step, law, (now, &next), part);
+        self.advance_springs(step, law, (now, &next), part.length());
         next
     }
 
@@ -257,28 +257,28 @@ impl<T: Number> ElementBlock<T> {
     ) {
         let is_tread = matches!(step.face, Face::Tread(_));
         self.end.set_positions(step, self.start, self.count, step.tread.entered_at(fraction));
-        self.end.set_motion(now, is_tread.then(|| step.tread.speed_at(fraction)));
+        self.end.set_motion(now, is_tread.then_some(step.tread_speed));
         // The law where the elements are now, at the temperatures that it was last set to.
         self.end.rise = self.heat.of_law;
         self.end.is_free = self.end.is_clear(law);
         if self.end.is_free { self.end.clear() } else { self.end.look_up(law) }
     }
 
-    /// Takes the springs from `begin` to `end`, those of a part of the step.
+    /// Takes the springs from `begin` to `end`, a fraction `length` of the step later.
     #[inline(always)]
     fn advance_springs(
         &mut self,
         step: &FaceMotion<'_, T>,
         law: &mut ResampledLaw,
         (now, next): (&BodyKinematics<T>, &BodyKinematics<T>),
-        part: Substep,
+        length: f64,
     ) {
         self.part_slip = [T::constant(0.0); BLOCK];
         if self.begin.is_free && self.end.is_free && self.springs.stiffness.iter().all(|k| k.value() == 0.0) {
             return;
         }
         // All elements as if their pressures changed in one segment.
-        let displacement = self.displacements(step, (now, next), part);
+        let displacement = self.displacements(step, (now, next), length);
         let Self { springs, part_slip, begin, end, count, work, .. } = self;
         // The law may have jumped since the springs followed it last, where a step begins: the motion has a kink there, and
         // the temperature given may be another.
@@ -310,7 +310,7 @@ impl<T: Number> ElementBlock<T> {
         &self,
         step: &FaceMotion<'_, T>,
         (now, next): (&BodyKinematics<T>, &BodyKinematics<T>),
-        part: Substep,
+        length: f64,
     ) -> [Lanes<T>; 2] {
         let (begin, end) = (&*self.begin, &*self.end);
         // ∫ v dt of the material under an element: of the pose's point, and of the arm from there as the body turns.
@@ -324,7 +324,7 @@ impl<T: Number> ElementBlock<T> {
         if let Face::Tread(tread) = step.face {
             // The tread runs to the rear besides, along the mean of the directions of the arc at both ends. Where a cell is
             // partly inside, its middle does not go as far as its material.
-            let travel = step.tread.travel_in(part) * tread.cell;
+            let travel = step.tread.travel * length * tread.cell;
             for axis in 0..2 {
                 for i in 0..BLOCK {
                     let rest = travel + (end.arc[i] - begin.arc[i]);

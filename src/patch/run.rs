@@ -7,7 +7,7 @@ use super::block_contacts::{BeyondTable, FaceMotion, StepSums, TooWarm, WorkCoun
 use super::definition::Patch;
 use super::face::Face;
 use super::heat::{ElementHeat, StepHeat};
-use super::motion::{PoseMotion, SlipCourse, Substeps, TreadMotion};
+use super::motion::{PoseMotion, Substeps, TreadMotion};
 use super::state::{
     MotionError, PatchMotion, PatchRestoreError, PatchStart, PatchState, Pose, Springs, Totals, check_duration,
     max_substeps, max_work,
@@ -131,12 +131,12 @@ impl PatchRun {
     /// Gives relaxed springs the stiffness of their contacts.
     fn initialize_springs(&mut self) -> Result<(), MotionError> {
         let Totals { time, rates, tread_speed, place, .. } = self.totals;
-        let tread = TreadMotion { start: place, mean_speed: tread_speed, ..TreadMotion::default() };
+        let tread = TreadMotion { start: place, travel: 0.0 };
         // The springs are evaluated at the start alone: of the motion only its rates count.
         let body = PoseMotion { start: self.totals.pose.coordinates(), change: rates, duration: 1.0 };
         let face = &self.patch.face;
-        let (substeps, work) = (Substeps::new(tread, 0.0, None, 1), WorkCounter::new(f64::MAX));
-        let step = FaceMotion { face, body, tread, substeps, heat: None, work: &work };
+        let (substeps, work) = (Substeps::new(tread, 0.0, 1), WorkCounter::new(f64::MAX));
+        let step = FaceMotion { face, body, tread, substeps, tread_speed, heat: None, work: &work };
         let springs = (&self.springs, &mut self.next);
         let sums = WorkerPool::with_threads(1, &self.law).work(&step, &mut self.law, springs, |block, law, sums| {
             block.initialize(&step, law, sums);
@@ -188,16 +188,17 @@ impl PatchRun {
             return Ok(());
         }
         check_duration(duration, self.totals.time)?;
-        let tread = self.tread_motion(transport_speed, duration);
+        let tread_speed = 0.5 * (self.totals.transport_speed + transport_speed);
+        let tread = self.tread_motion(tread_speed * duration);
         let body = PoseMotion { start, change, duration };
-        let substeps = self.substeps(tread, &body)?;
+        let substeps = self.substeps(tread, body.turn())?;
 
         let before = self.totals;
         self.set_temperature(temperature);
         let heat = self.step_heat(temperature);
         let face = Arc::clone(&self.patch.face);
         let work = WorkCounter::new(max_work(self.patch.count()));
-        let step = FaceMotion { face: &face, body, tread, substeps, heat, work: &work };
+        let step = FaceMotion { face: &face, body, tread, substeps, tread_speed, heat, work: &work };
         let (sums, tangents) = self.advance_springs(&step);
 
         // Refuse the step or take it over.
@@ -205,7 +206,7 @@ impl PatchRun {
         reached.add(&sums, duration);
         (reached.time, reached.pose, reached.rates) = (before.time + duration, end, rates);
         (reached.transport_speed, reached.tread_speed, reached.temperature) =
-            (transport_speed, tread.speed_at(1.0), temperature);
+            (transport_speed, tread_speed, temperature);
         // Just below a whole number, rounding may give 1.
         reached.place = (tread.entered_at(1.0) - tread.whole_cells()).min(1.0_f64.next_down());
         let counted = if work.is_exceeded() { Err(MotionError::TooMuchWork { time: before.time }) } else { Ok(()) };
@@ -233,29 +234,15 @@ impl PatchRun {
         Ok(pose)
     }
 
-    /// The substeps of a step in which the tread goes on and the body moves.
-    fn substeps(&self, tread: TreadMotion, body: &PoseMotion<f64>) -> Result<Substeps, MotionError> {
-        let slip = (tread.speed_change != 0.0).then(|| self.slip_course(tread, body));
-        let substeps = Substeps::new(tread, body.turn(), slip, self.patch.refine);
+    /// The substeps of a step in which the tread goes on and the body turns by an angle (rad).
+    fn substeps(&self, tread: TreadMotion, turn: f64) -> Result<Substeps, MotionError> {
+        let substeps = Substeps::new(tread, turn, self.patch.refine);
         let most = max_substeps(self.patch.count());
         let count = substeps.count(most);
         if count > most || count.is_nan() {
             return Err(MotionError::TooManySubsteps { time: self.totals.time, substeps: count, most });
         }
         Ok(substeps)
-    }
-
-    /// The slip where the body is nearest to the ground, along its heading.
-    fn slip_course(&self, tread: TreadMotion, body: &PoseMotion<f64>) -> SlipCourse {
-        let now = body.at(0.0);
-        let [ahead_x, ahead_y] = [now.rotation[0][0], now.rotation[1][0]];
-        let length = ahead_x.hypot(ahead_y).max(f64::MIN_POSITIVE);
-        let [x, y] = now.velocity([0.0, 0.0, -now.height]);
-        let along = (x * ahead_x + y * ahead_y) / length;
-        let across = (y * ahead_x - x * ahead_y) / length;
-        let slowest = self.patch.table().grid.speeds.first().copied().unwrap_or(f64::MIN_POSITIVE);
-        let speeds = [0.0, 1.0].map(|fraction| along - tread.speed_at(fraction));
-        SlipCourse { speeds, least: across.abs().max(slowest) }
     }
 
     /// Takes the springs of all elements through a step, block by block, to those in `next`; returns the sums and, where
@@ -289,13 +276,10 @@ impl PatchRun {
         self.kernel.map(|kernel| StepHeat { kernel, range: ((low - kelvin).max(0.0), (high - kelvin).max(0.0)) })
     }
 
-    /// The tread's motion over a time (s), to another speed (m/s).
-    fn tread_motion(&self, speed: f64, duration: f64) -> TreadMotion {
+    /// The tread going on by a length (m).
+    fn tread_motion(&self, length: f64) -> TreadMotion {
         match &*self.patch.face {
-            Face::Tread(tread) => {
-                let speeds = [self.totals.transport_speed, speed];
-                TreadMotion::new(self.totals.place, speeds, duration, tread.cell)
-            }
+            Face::Tread(tread) => TreadMotion { start: self.totals.place, travel: length / tread.cell },
             Face::Points(_) => TreadMotion::default(),
         }
     }
@@ -471,10 +455,10 @@ mod tests {
             for turn in [300.0_f64.min(allowed), allowed] {
                 let change = [0.0, 0.0, 0.0, -turn, 0.0, 0.0];
                 let body = PoseMotion { start: pose.coordinates(), change, duration: 1e-6 };
-                let (tread, work) = (run.tread_motion(0.0, 1e-6), WorkCounter::new(most));
-                let (substeps, heat) = (run.substeps(tread, &body).unwrap(), run.step_heat(temperature));
+                let (tread, work) = (run.tread_motion(0.0), WorkCounter::new(most));
+                let (substeps, heat) = (run.substeps(tread, turn).unwrap(), run.step_heat(temperature));
                 let face = Arc::clone(&run.patch.face);
-                let step = FaceMotion { face: &face, body, tread, substeps, heat, work: &work };
+                let step = FaceMotion { face: &face, body, tread, substeps, tread_speed: 0.0, heat, work: &work };
                 run.advance_springs(&step);
                 // A little more than that: a block of elements finds out after a part.
                 assert!(work.done() as f64 <= 1.05 * most, "{nx} x {ny} by {turn}: {} of {most}", work.done());

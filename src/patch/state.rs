@@ -322,7 +322,7 @@ pub(super) struct Totals {
     pub(super) rates: [f64; 6],
     /// The speed of the tread at the end of the last step.
     pub(super) transport_speed: f64,
-    /// That at which the last step went: the mean one where the tread turned in it.
+    /// The mean speed of the tread over the last step.
     pub(super) tread_speed: f64,
     /// The part of a cell of the tread that has entered: from 0 to below 1.
     pub(super) place: f64,

@@ -31,7 +31,7 @@ const OTHERS: [&str; 6] = [
     carrier.x = { mass = 1, stiffness = 1, damping = 1, pull = 1, start_rate = 1 }
     carrier.z = { mass = 1, stiffness = 1, damping = 1, load = 1, start_rate = 1, start = 0 }
     friction = { coulomb = 0.5, shear_force = 1 }
-    input = { extrapolation = 'hold' }
+    input = { extrapolation = 'hold', interval = 1 }
     fmu = { integers = 'real', dependencies = 'none', outputs = ['energy'] }
     [[excitation]]
     duration = 1
@@ -65,7 +65,7 @@ const OTHERS: [&str; 6] = [
     "name = 'patch'
     table = { path = 'table.csv', extrapolation = 'refuse' }
     patch = { shape = 'flat', length = 1, width = 1, nx = 1, ny = 1, transport = true, offset = [1, 0, 0] }
-    input = { extrapolation = 'hold' }
+    input = { extrapolation = 'hold', interval = 1 }
     solver = { refine = 2 }
     fmu = { outputs = [], integers = 'real', dependencies = 'none' }",
 ];
