@@ -299,12 +299,12 @@ fn files_of_fine_roughness() {
     folder.write("strain.csv", "strain,storage,loss\n0.001,1,1\n0.1,1.5,1\n");
     let softened = "hurst = 0.8, rms_slope = 1.0, longest = 1e-3, shortest = 1e-5, softening = 'strain.csv'";
     let stiffer = folder.refusal_of_file(&scene(softened), "surface.fine.softening", 16);
-    assert_eq!(stiffer, "strain.csv:3: column 2 (storage) = \"1.5\": 1e-30 1.0");
+    assert_eq!(stiffer, "strain.csv:3: column 2 \"storage\" = \"1.5\": 1e-30 1.0");
     folder.write("strain.csv", "strain,storage,loss\n0.001,1,1\n0.1,.5,1\n");
     let good = scene("spectrum = 'psd.csv', longest = 6e-3, shortest = 7e-5, softening = 'strain.csv'");
     let files = folder.load(&good).unwrap().files;
     let files: Vec<String> = files.iter().map(|file| file.path.display().to_string()).collect();
-    assert_eq!(files, ["psd.csv", "strain.csv"]);
+    assert_eq!(files, ["psd.csv", "strain.csv"], "{files:?}");
     // Of lines of 100 points over 1 mm: a quarter of the line at most, four steps of it at least.
     let line: String = (0..=100).map(|i| format!("{i}e-5,{}e-6\n", i % 7)).collect();
     folder.write("line.csv", &format!("x [m],z [m]\n{line}"));
