@@ -149,10 +149,10 @@ fn units_are_read_from_the_header() {
         ("Lateral;Height\n(Millimeters);(Micrometers)\n", 1e3, 1e6),
         ("# x_mm z_um\n", 1e3, 1e6),
         ("x [m],z [m]\n", 1.0, 1.0),
-        ("Instrument A\nX-Unit;mm\nZ-Unit;µm\n", 1e3, 1e6),
-        ("Instrument A\nUnits: x [mm] z [µm]\n", 1e3, 1e6),
-        ("Instrument A\nUnits = Microns\nspeed 0.5 mm/s\n\n", 1e6, 1e6),
-        ("Instrument A\nstylus tip 2 µm\nx,z\n", 1.0, 1.0),
+        ("Instrument\nX-Unit;mm\nZ-Unit;µm\n", 1e3, 1e6),
+        ("Instrument\nUnits: x [mm] z [µm]\n", 1e3, 1e6),
+        ("Instrument\nUnits = Microns\nspeed 0.5 mm/s\n\n", 1e6, 1e6),
+        ("Instrument\nstylus tip 2 µm\nx,z\n", 1.0, 1.0),
     ];
     for (header, x_per_metre, z_per_metre) in cases {
         let found = points(&format!("{header}0 2.5\n8.5 -1\n"));
@@ -160,7 +160,8 @@ fn units_are_read_from_the_header() {
     }
     let given = ProfileOptions { z_unit: Some(LengthUnit::Nanometre), ..options() };
     assert_eq!(points_of(b"x [mm];z [mm]\n0;1\n1;2\n", &given), [(0.0, 1e-9), (1e-3, 2e-9)]);
-    // Two words are names of columns, whatever follows.
+    // Two words are names of two columns, whatever follows.
+    assert_eq!(refusal(b"Instrument A\nX-Unit;mm\n0 2.5\n8.5 -1\n", false).0, 1);
     assert_eq!(refusal(b"Name;test\nX-Unit: mm\nZ-Unit: \xc2\xb5m\n[DATA]\n0 2.5\n8.5 -1\n", false).0, 1);
     // A unit of one axis alone is that of no other.
     assert_eq!(refusal(b"X_(microns),y1\n0,1\n1,2", false).0, 1);
