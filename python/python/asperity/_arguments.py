@@ -72,10 +72,11 @@ def plain(name: str, values: object) -> NDArray[Any]:
         raise TypeError(f"{name}: expected numbers in SI units, found an array in {unit}")
     values = getattr(values, "magnitude", values)
     if isinstance(values, np.ma.MaskedArray):
-        if values.dtype.kind in "mM":
-            return plain(name, values.filled(np.array("NaT", values.dtype)))
-        is_whole = not np.any(np.ma.getmaskarray(values)) or values.dtype.kind not in "buif"
-        return np.asarray(values.filled() if is_whole else values.astype(np.float64).filled(np.nan))
+        masked: Any = values
+        if masked.dtype.kind in "mM":
+            return plain(name, masked.filled(np.array("NaT", masked.dtype)))
+        is_whole = not np.any(np.ma.getmaskarray(masked)) or masked.dtype.kind not in "buif"
+        return np.asarray(masked.filled() if is_whole else masked.astype(np.float64).filled(np.nan))
     array = np.asarray(values)
     if array.dtype.kind == "M":
         array = array - array.flat[0] if array.size else array.astype("m8[ns]")
@@ -173,7 +174,7 @@ def mapping(name: str, value: Any) -> Mapping[Any, Any]:
     return value
 
 
-def columns_of(data: object) -> dict[str, NDArray[Any]]:
+def columns_of(data: Any) -> dict[str, NDArray[Any]]:
     """The columns of a DataFrame, its index among them, or of a mapping of names to columns.
 
     Times are in seconds, which stands beside their names.
