@@ -66,9 +66,9 @@ const PATCH: Driven = Driven {
 };
 
 impl Driven {
-    /// The size of a step, s.
+    /// The size of a step, s: half of the next at least, so that predictions go on at the rate of the last step.
     fn step(&self, step: u32) -> f64 {
-        self.h * [1.0, 2.0, 1.0, 4.0, 2.0][step as usize % 5]
+        self.h * [1.0, 2.0, 2.0, 4.0, 2.0][step as usize % 5]
     }
 
     fn set(&self, fmu: &Fmu, values: &[f64]) {
