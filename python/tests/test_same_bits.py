@@ -23,7 +23,7 @@ MOVED = [
 @pytest.mark.filterwarnings("ignore")
 def test_a_run_is_that_of_the_program(name, tmp_path):
     file = SCENES / f"{name}.toml"
-    program("simulate", file, "-o", "out.csv", "--points", 20, folder=tmp_path)
+    program("simulate", file, "-o", "out.csv", "--rows", 20, folder=tmp_path)
     written = np.genfromtxt(tmp_path / "out.csv", delimiter=",", names=True, deletechars="", dtype=np.float64)
     result = asperity.Scene.from_toml(file).simulate(rows=20)
     # Processor time is no result.
@@ -46,7 +46,7 @@ def test_a_sweep_is_that_of_the_program(name, speeds, pressures, tmp_path):
 
 def test_a_contact_is_that_of_the_program(block, tmp_path):
     at = ["--pressure", 2e5, "--speed", 0.1]
-    program("contact", block.file, *at, "-o", "out.png", "--data", "out.npz", folder=tmp_path)
+    program("contact", block.file, *at, "-o", "out.png", "--write", "out.npz", folder=tmp_path)
     written, contact = np.load(tmp_path / "out.npz"), block.contact(2e5, 0.1)
     for name in ("x", "y", "height", "pressure", "gap"):
         np.testing.assert_array_equal(getattr(contact, name), written[name])

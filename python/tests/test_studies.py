@@ -68,7 +68,7 @@ def test_a_surface_in_memory_is_the_one_of_a_file(road):
         ({"mirror": True, "taper": True}, "mirror.*taper.*expected one of them"),
         ({"tilt": "away"}, '"away": expected one of "keep", "remove"'),
         ({"wavelengths": (1e-3, 1e-5)}, "wavelengths.*expected the shortest and the longest"),
-        ({"periodic": True, "taper": True}, "taper.*periodic"),
+        ({"periodic": True, "taper": True}, "periodic"),
         ({"smooth": 1.0}, "smooth` 1.0: expected at most 0.004"),
     ]:
         with pytest.raises(ValueError, match=expected):
@@ -141,7 +141,7 @@ def test_a_comparison_is_that_of_the_program(block, tmp_path):
 
 def test_an_animation_is_that_of_the_program(small, tmp_path):
     file = small.save(tmp_path / "small.toml")
-    program("simulate", file, "-o", "out.csv", "--points", 20, "--animate", "theirs.html", folder=tmp_path)
+    program("simulate", file, "-o", "out.csv", "--rows", 20, "--animate", "theirs.html", folder=tmp_path)
     result = small.simulate(rows=20, elements=True)
     assert result.animate(tmp_path / "ours.html").read_bytes() == (tmp_path / "theirs.html").read_bytes()
     with pytest.raises(ValueError, match=r"ends in \.html"):
