@@ -89,7 +89,7 @@ def test_axes_of_a_map_count_by_their_names(block):
 
 def test_masked_heights_are_missing(block):
     heights = np.ma.masked_greater(np.array([[0.0, 1e-6, 9.0, 1e-6]] * 4), 1.0)
-    with pytest.raises(asperity.SceneError, match="nan"):
+    with pytest.raises(asperity.SceneError, match="missing"):
         block.with_map(heights, 1e-4, periodic=False)
 
 
