@@ -356,8 +356,9 @@ impl Parts {
             return h;
         }
         let (start, speed, slack) = (self.start, self.speed(), Self::ROUNDING * h);
-        let signals = self.inputs.signals.iter().filter(|signal| signal.rate.is_none());
-        let reached = signals.flat_map(|signal| signal.history.ages()).map(|age| (start - age) / speed);
+        let late = |slot: &usize| self.scales.moves(*slot) && self.inputs.signals[*slot].rate.is_none();
+        let ages = (0..MAX_INPUTS).filter(late).flat_map(|slot| self.inputs.signals[slot].history.ages());
+        let reached = ages.map(|age| (start - age) / speed);
         reached.filter(|&end| end > self.done + slack && end < h - slack).fold(h, f64::min)
     }
 

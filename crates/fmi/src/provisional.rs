@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::error::Error;
+use super::error::{Error, check_memory};
 use super::inputs::{CommunicationStep, InputScales, Inputs, ProvisionalStep};
 use super::model::{FmuRun, RunState};
 
@@ -16,9 +16,11 @@ pub(super) struct LastStep {
     pub(super) run: RunState,
 }
 
-/// Does the steps of a run, the last one again where it is to be. Nothing is allocated after the first step.
-#[derive(Debug, Default)]
+/// Does the steps of a run, the last one again where it is to be. Nothing is allocated once it keeps its states.
+#[derive(Debug)]
 pub(super) struct Stepper {
+    /// Memory of a state, bytes.
+    state_memory: usize,
     /// The last step, where it is provisional.
     last: Option<LastStep>,
     /// Where the state at the start of the next step is kept.
@@ -30,9 +32,8 @@ pub(super) struct Stepper {
 }
 
 /// Whether inputs were held because they could not be extrapolated.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 enum Held {
-    #[default]
     Never,
     Untold(String),
     Told,
@@ -55,9 +56,9 @@ impl Stepper {
     /// The states that it keeps at most.
     pub(super) const STATES: usize = 3;
 
-    /// Whether it has the states that it keeps from the first provisional step on.
-    pub(super) fn has_states(&self) -> bool {
-        self.last.is_some() || self.start.is_some()
+    /// Of a run whose states take this memory, bytes.
+    pub(super) fn new(state_memory: usize) -> Self {
+        Self { state_memory, last: None, start: None, before: None, held: Held::Never }
     }
 
     /// The last step, where it is provisional.
@@ -81,12 +82,13 @@ impl Stepper {
     ) -> Result<Option<f64>, Error> {
         run.allow_work();
         let corrected = self.last.as_ref().and_then(|last| last.step.corrected(inputs, scales));
-        let is_one = inputs.parts(step, scales).is_one();
+        let is_one = step.rule.extrapolates() || inputs.parts(step, scales).is_one();
         if corrected.is_none() && is_one {
             self.follow(run, inputs, step, scales)?;
             return Ok(None);
         }
         let began = self.last.as_ref().filter(|_| corrected.is_some()).map(|last| last.step.step().time);
+        self.keep_states(run)?;
         save(run, &mut self.before);
         let repeated = corrected.map_or(Ok(()), |corrected| self.repeat(run, &corrected));
         let result = repeated.and_then(|()| self.follow(run, inputs, step, scales));
@@ -105,6 +107,17 @@ impl Stepper {
                 None
             }
         }
+    }
+
+    /// Makes the places of the states that it keeps, the first time that one is needed: a run has asked for their memory, but
+    /// there may be less of it by now.
+    fn keep_states(&mut self, run: &dyn FmuRun) -> Result<(), Error> {
+        if self.before.is_none() {
+            check_memory("a step that may be done again", self.state_memory.saturating_mul(Self::STATES))?;
+            self.before = Some(run.save());
+            self.start.get_or_insert_with(|| run.save());
+        }
+        Ok(())
     }
 
     /// Does the last step again.
@@ -134,6 +147,7 @@ impl Stepper {
             self.start = self.last.take().map(|last| last.run).or(self.start.take());
             return Ok(());
         };
+        self.keep_states(run)?;
         save(run, &mut self.start);
         let provisional = match (run.advance(inputs, step), provisional.held(scales)) {
             (Ok(()), _) => provisional,
@@ -151,7 +165,6 @@ impl Stepper {
         let spare = self.last.take().map(|last| last.run);
         self.last = self.start.take().map(|run| LastStep { step: provisional, run });
         self.start = Some(spare.unwrap_or_else(|| run.save()));
-        self.before.get_or_insert_with(|| run.save());
         Ok(())
     }
 }

@@ -49,6 +49,7 @@ pub(super) struct FmuState {
 impl InstanceState {
     /// The state after fmi2Instantiate of a model with these variables.
     pub(super) fn new(parameters: Arc<Parameters>, variables: &VariableTable) -> Self {
+        let stepper = Stepper::new(parameters.definition().state_memory());
         Self {
             lifecycle: LifecycleState::Instantiated,
             parameters,
@@ -56,7 +57,7 @@ impl InstanceState {
             clock: Clock::default(),
             last_step: Status::Ok,
             run: None,
-            stepper: Stepper::default(),
+            stepper,
             scales: None,
             repeated_from: None,
         }
@@ -115,9 +116,6 @@ impl InstanceState {
         let definition = self.parameters.definition();
         let scales = *self.scales.get_or_insert_with(|| definition.input_scales());
         let step = CommunicationStep { time: self.clock.time, h, rule: definition.input_rule() };
-        if !self.stepper.has_states() {
-            check_memory("a step that may be done again", definition.state_memory().saturating_mul(Stepper::STATES))?;
-        }
         let run = self.run.as_mut().ok_or(Error::NoRun)?.as_mut();
         self.repeated_from = self.stepper.advance(run, &self.inputs, &step, &scales)?;
         self.inputs.complete_step(&step);
