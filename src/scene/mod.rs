@@ -93,6 +93,7 @@ pub struct Scene {
     /// The integrator's settings.
     pub solver: Solver,
     /// How the carrier moves on when a master gives no rates.
+    #[serde(flatten)]
     pub input_rule: InputRule,
     /// Whether the layer's temperature is an input.
     pub temperature_input: bool,

@@ -87,6 +87,7 @@ pub struct InputRule {
     pub extrapolation: Extrapolation,
     /// How far apart a master's new values come, s: each is gone to over that time, a delay of as much. 0: they come with
     /// every step.
+    #[serde(rename = "input_interval")]
     pub interval: f64,
 }
 
