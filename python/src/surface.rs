@@ -27,6 +27,7 @@ pub(crate) fn surface<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let (Options(reading), Options(treatment)) = (reading, treatment);
     let found = in_background(py, None, move |_| {
+        treatment.check(reading.periodic)?;
         let read = asperity::scene::Surface::load(&path, &reading.options(), &Instruments)?;
         let treated = TreatedSurface::new(read.surface, &treatment, reading.line)?;
         Ok::<_, Error>((treated, read.warnings, read.notes.into_iter().map(|note| note.text).collect()))

@@ -68,7 +68,8 @@ def test_a_surface_in_memory_is_the_one_of_a_file(road):
         ({"mirror": True, "taper": True}, "mirror.*taper.*expected one of them"),
         ({"tilt": "away"}, '"away": expected one of "keep", "remove"'),
         ({"wavelengths": (1e-3, 1e-5)}, "wavelengths.*expected the shortest and the longest"),
-        ({"periodic": True, "taper": True}, "periodic"),
+        ({"periodic": True, "taper": True}, "taper.*periodic"),
+        ({"columns": ["x", "y", "z"]}, "columns: expected those of x and z"),
         ({"smooth": 1.0}, "smooth` 1.0: expected at most 0.004"),
     ]:
         with pytest.raises(ValueError, match=expected):

@@ -108,7 +108,10 @@ def _columns(columns: Mapping[str, str | int] | Sequence[str]) -> dict[str, Any]
     """The options of the command that say the columns."""
     if isinstance(columns, Mapping):
         return {"column": given_columns(columns)}
-    return {"columns": [columns] if isinstance(columns, str) else [str(name) for name in columns]}
+    names = [columns] if isinstance(columns, str) else [str(name) for name in columns]
+    if len(names) > 2:
+        raise ValueError(f"columns: expected those of x and z, or of z alone, found {names}")
+    return {"columns": names}
 
 
 def surface(

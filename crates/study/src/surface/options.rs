@@ -39,8 +39,14 @@ pub struct SurfaceOptions {
 }
 
 impl SurfaceOptions {
-    /// Refuses options that do not go together, and lengths that are none.
-    pub(super) fn check(&self) -> Result<(), Error> {
+    /// Refuses options that do not go together or with a profile that is periodic already, and lengths that are none.
+    ///
+    /// # Errors
+    /// With the options, and what was expected.
+    pub fn check(&self, is_periodic: bool) -> Result<(), Error> {
+        if (self.mirror || self.taper) && is_periodic {
+            return Err(Error::value("`mirror` and `taper` make a profile periodic, and it is"));
+        }
         if self.smooth.is_some() && self.split.is_some() {
             return Err(Error::value("`smooth` and `split`: expected one of them"));
         }

@@ -32,10 +32,7 @@ impl TreatedSurface {
     /// # Errors
     /// Where it is periodic already, or cannot be split at that wavelength.
     pub fn new(read: Surface, options: &SurfaceOptions, line: Option<u32>) -> Result<Self, Error> {
-        options.check()?;
-        if (options.mirror || options.taper) && read.is_periodic() {
-            return Err(Error::value("`mirror` and `taper` make a profile periodic, and it is"));
-        }
+        options.check(read.is_periodic())?;
         let length = read.x()[read.x().len() - 1] - read.x()[0];
         if let Some(smooth) = options.smooth.filter(|smooth| *smooth > length) {
             return Err(Error::value(format!(
