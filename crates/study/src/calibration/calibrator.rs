@@ -1,6 +1,5 @@
-//! The course of a calibration: a first fit by the theory, the fit by steady sliding, what to measure next.
-//!
-//! What a calibration found.
+//! The course of a calibration: a first fit by the theory, the fit by steady sliding, what to measure next; and what it
+//! found.
 
 use std::sync::{Mutex, PoisonError};
 

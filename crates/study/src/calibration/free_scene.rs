@@ -1,6 +1,5 @@
-//! The scene that is calibrated: its text, its free numbers, and the measurements that go with it.
-//!
-//! What is asked of a calibration.
+//! What is asked of a calibration, and the scene that is calibrated: its text, its free numbers, and the measurements that
+//! go with it.
 
 use std::path::{Path, PathBuf};
 

@@ -213,11 +213,6 @@ impl Measurements {
         self.rows.iter().all(|row| row.sigma.is_some())
     }
 
-    /// Whether the table has ways.
-    pub fn has_way(&self) -> bool {
-        self.rows.iter().any(|row| row.point.way.is_some())
-    }
-
     /// Whether the table has temperatures.
     pub fn has_temperature(&self) -> bool {
         self.rows.iter().any(|row| row.point.temperature.is_some())

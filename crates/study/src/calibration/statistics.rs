@@ -1,4 +1,5 @@
-//! What the data say of parameters at a least square: errors, correlations, what cannot be told apart.
+//! What the data say of parameters at a least square: errors, correlations, what cannot be told apart; and which
+//! measurements would tell more.
 //!
 //! With J the derivatives of the weighted residuals by the coordinates (the logarithm, or the value over the distance of
 //! the bounds), the covariance is (JᵀJ)⁻¹, times χ² per degree of freedom where the standard deviations are assumed. A
@@ -186,15 +187,11 @@ fn student(degrees: usize) -> f64 {
     z + inverse * (first + inverse * (second + inverse * (third + inverse * fourth)))
 }
 
-// Which measurements would tell more: a D-optimal addition to those there are.
-//
-// With the information M = JᵀJ of the data, and of the bounds as if each parameter were even between them, those points
-// are added that make det M largest: first one after the other, then by exchanging one at a time (V. V. Fedorov, *Theory
-// of Optimal Experiments*, 1972) until none is better.
-//
-// The points among which those to measure next are chosen.
-
-/// Points to measure and what they would bring.
+/// Points to measure and what they would bring: a D-optimal addition to the measurements there are.
+///
+/// With the information M = JᵀJ of the data, and of the bounds as if each parameter were even between them, those points
+/// are added that make det M largest: first one after the other, then by exchanging one at a time (V. V. Fedorov, *Theory
+/// of Optimal Experiments*, 1972) until none is better.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// The points.

@@ -1,9 +1,6 @@
-//! The calibrated scene: the file that was read, its comments kept and its numbers replaced.
-//!
-//! The covariance of what was fitted, as a table beside the calibrated scene: by it the numbers are off together in the
-//! samples of a sweep.
-//!
-//! The table beside a calibration's output: the points that were found, so that nothing is found twice.
+//! What a calibration writes: the scene, which is the file that was read, its comments kept and its numbers replaced; beside
+//! it the covariance of what was fitted, by which the numbers are off together in the samples of a sweep; and the points
+//! that were found, so that nothing is found twice.
 
 use std::ops::ControlFlow;
 

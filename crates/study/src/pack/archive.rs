@@ -1,4 +1,4 @@
-//! The zip archive of an FMU.
+//! The zip archive of an FMU, and the shared libraries in it, one a platform.
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -60,8 +60,6 @@ fn options(entry: &ArchiveEntry) -> SimpleFileOptions {
         .last_modified_time(DateTime::default())
         .unix_permissions(if entry.executable { 0o755 } else { 0o644 })
 }
-
-// The shared libraries that an FMU carries, one a platform.
 
 /// A platform as FMI 2.0 names it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,4 +1,7 @@
 //! The experiment of an FMU as tables: its inputs at times, and what the program itself gets along them.
+//!
+//! It goes into `extra/org.fmi-standard.fmi-ls-ref/`: what comes with an FMU that tells what it is and shows that it runs
+//! as it should, listed in a manifest by FMI-LS-REF, the layered standard of the Modelica Association for references.
 
 use std::io;
 use std::path::Path;
@@ -306,9 +309,6 @@ impl Press {
         motion
     }
 }
-
-// extra/org.fmi-standard.fmi-ls-ref/: what comes with an FMU that tells what it is and shows that it runs as it should,
-// listed in a manifest by FMI-LS-REF, the layered standard of the Modelica Association for references.
 
 /// The folder of the layered standard.
 const FOLDER: &str = "extra/org.fmi-standard.fmi-ls-ref";

@@ -382,22 +382,6 @@ impl<'a> Search<'a> {
     }
 }
 
-// When the means of a run are steady: judged by its blocks.
-//
-// The run is divided into blocks of equal length, of which only the means of a quantity are used. The latter half of
-// the blocks, at least [`MIN_WINDOW`], is the window; those before are left to the transient. The window is steady
-// where
-//
-// - the standard error of its mean is at most the tolerance. Successive blocks may be correlated, which would make a
-//   mean seem better known than it is. So s/√n is multiplied by √((1+r)/(1-r)), r being the correlation of a block
-//   with the next; and neighbours are joined in pairs, and pairs again, as long as [`MIN_JOINED`] are left: the
-//   largest standard error of all these is taken (Flyvbjerg and Petersen, J. Chem. Phys. 91, 1989);
-// - it has no trend: the change along the straight line of least squares from the first block to the last is at most
-//   the tolerance, or no more than twice what scatter alone would make of it.
-//
-// On a periodic profile a block is a whole number of periods: in steady motion the means of all blocks are then the
-// same, and [`MIN_WINDOW`] blocks are enough.
-
 /// The fewest blocks of a window.
 pub(super) const MIN_WINDOW: usize = 3;
 /// The fewest blocks, joined ones, whose scatter or correlation is used.
@@ -405,7 +389,21 @@ const MIN_JOINED: usize = 8;
 /// The largest correlation of a block with the next that is used.
 const CORRELATED: f64 = 0.95;
 
-/// A quantity over the blocks of a window.
+/// A quantity over the blocks of a window, which says whether the means of a run are steady.
+///
+/// The run is divided into blocks of equal length, of which only the means of a quantity are used. The latter half of
+/// the blocks, at least [`MIN_WINDOW`], is the window; those before are left to the transient. The window is steady
+/// where
+///
+/// - the standard error of its mean is at most the tolerance. Successive blocks may be correlated, which would make a
+///   mean seem better known than it is. So s/√n is multiplied by √((1+r)/(1-r)), r being the correlation of a block
+///   with the next; and neighbours are joined in pairs, and pairs again, as long as [`MIN_JOINED`] are left: the
+///   largest standard error of all these is taken (Flyvbjerg and Petersen, J. Chem. Phys. 91, 1989);
+/// - it has no trend: the change along the straight line of least squares from the first block to the last is at most
+///   the tolerance, or no more than twice what scatter alone would make of it.
+///
+/// On a periodic profile a block is a whole number of periods: in steady motion the means of all blocks are then the
+/// same, and [`MIN_WINDOW`] blocks are enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Window {
     pub(super) mean: f64,

@@ -309,14 +309,12 @@ pub fn verdict(text: &str, path: &Path, scene: &str) -> Result<String, Error> {
     Ok(format!("{verdict} (at {}, {}{by})", value("pressure")?, value("speed")?))
 }
 
-// The columns of a table with samples: friction, hysteresis and area of scenes drawn from what is not known of one.
-//
-// Behind the columns of every table stand quantiles over the samples that have a result, and then all samples: those
-// without one are empty. Quantile p of n numbers is at place (n + 1/3) p + 1/3 of these as they rise, number 8 of R. J.
-// Hyndman and Y. Fan, The American Statistician 50 (1996) 361: nearly without bias for the median whatever the
-// distribution.
-
-/// The samples of a table.
+/// The samples of a table: friction, hysteresis and area of scenes drawn from what is not known of one.
+///
+/// Behind the columns of every table stand quantiles over the samples that have a result, and then all samples: those
+/// without one are empty. Quantile p of n numbers is at place (n + 1/3) p + 1/3 of these as they rise, number 8 of R. J.
+/// Hyndman and Y. Fan, The American Statistician 50 (1996) 361: nearly without bias for the median whatever the
+/// distribution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SampleHeader {
     /// How many there are.
