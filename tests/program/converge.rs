@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 
 use crate::common::scenes::SceneText;
-use crate::common::{Table, asperity, scratch};
+use crate::common::{Table, asperity, assert_names, scratch};
 
 /// Two waves of a sine under 32 masses.
 fn sine() -> SceneText {
@@ -183,5 +183,5 @@ fn invalid_studies_are_refused() {
     assert!(refused(&scene, &scene, &FULL, 1).contains("will not write"));
     assert!(!path.exists());
     fs::write(&path, "time,u,w\n0,0,0\n").unwrap();
-    assert!(asked(&[], 1).contains("--force"));
+    assert_names(asked(&[], 1), "table.csv | # asperity converge = | --force");
 }
