@@ -9,7 +9,7 @@
 //!   `controller` chooses their lengths.
 //! - `local_regions` take the mode changes of an event-driven step in steps of the masses near them alone.
 //! - `reference_run` estimates the run's error.
-//! - `rows` are those of a run along a scene's own excitation.
+//! - `rows` are those of a run along a scene's own excitation; `passed` warns of phases of it that are left at once.
 
 mod context;
 mod controller;
@@ -18,6 +18,7 @@ mod derivative_tests;
 mod event_driven;
 mod local_regions;
 mod motion;
+mod passed;
 mod reference_run;
 mod rows;
 mod run;
@@ -38,6 +39,7 @@ use context::RunContext;
 use controller::WorkLimit;
 pub use motion::Interrupt;
 pub use motion::{Inaccuracy, MethodSwitch, ModeChange, Motion, OutOfRange, SimulationError, Start};
+pub use passed::{passed_phase, passed_phases};
 use reference_run::ReferenceRun;
 pub use rows::{ResultRow, ResultRows, run};
 use run::Run;

@@ -7,6 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use asperity::model::EvenSliding;
 use asperity::patch::Patch;
 use asperity::scene::{Scene, Setting};
+use asperity::simulation::passed_phases;
 
 use super::draft::Draft;
 pub(crate) use super::draft::{print, write};
@@ -48,6 +49,7 @@ pub(crate) fn load_without_run(
 ) -> Result<Scene, Error> {
     let scene = files::load_scene(path, set).map_err(of_set)?;
     let mut unused = Vec::from_iter(scene.short_profile());
+    unused.extend(passed_phases(&scene));
     if !layer_slides(&scene) {
         unused.extend(scene.link_warnings());
         unused.extend(EvenSliding::warning(&scene));

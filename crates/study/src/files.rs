@@ -5,6 +5,7 @@ use std::path::Path;
 use asperity::model::EvenSliding;
 use asperity::patch::Patch;
 use asperity::scene::{FileFormats as _, Scene, SceneFile, Setting, read_file, read_text};
+use asperity::simulation::passed_phases;
 use asperity::tables::{FileKind, GivenColumns, ReadTable};
 use asperity_formats::Instruments;
 
@@ -21,6 +22,8 @@ pub fn parse_scene(text: &str, file: &Path, set: &[Setting]) -> Result<Scene, Er
     scene.warnings.extend(warnings);
     scene.files.extend(covariance_file(&scene).map(SceneFile::itself));
     EvenSliding::warn_of(&mut scene);
+    let passed = passed_phases(&scene);
+    scene.warnings.extend(passed);
     Ok(scene)
 }
 

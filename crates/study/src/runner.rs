@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use asperity::math::{NotEnoughMemory, check_memory};
 use asperity::outputs::{Snapshot, variables};
 use asperity::scene::{Force, Input, Phase, Scene};
-use asperity::simulation::{MethodSwitch, Motion, Simulation, SimulationError, Start};
+use asperity::simulation::{MethodSwitch, Motion, Simulation, SimulationError, Start, passed_phase};
 use clap::Args;
 use serde::{Deserialize, Serialize};
 
@@ -138,9 +138,8 @@ pub struct Runner {
     also_at: Vec<f64>,
     /// Number of phases followed so far.
     phases: usize,
-    /// Area of the layer, m², if the scene gives it.
-    area: Option<f64>,
-    /// Of phases that ended before their force was reached.
+    scene: Scene,
+    /// Of phases that ended before their force was reached, or as they began.
     warnings: Vec<String>,
     stop: Stop,
 }
@@ -166,7 +165,7 @@ impl Runner {
             rows,
             also_at: Vec::new(),
             phases: 0,
-            area: scene.layer.area(),
+            scene: scene.clone(),
             warnings: Vec::new(),
             stop,
         })
@@ -194,7 +193,8 @@ impl Runner {
         self.simulation.take_method_switches()
     }
 
-    /// The warnings since the last call: of phases that ended before their force was reached.
+    /// The warnings since the last call, without those of the scene: of phases that ended before their force was reached, or
+    /// as they began.
     pub fn take_warnings(&mut self) -> Vec<String> {
         std::mem::take(&mut self.warnings)
     }
@@ -231,13 +231,11 @@ impl Runner {
         phase: &Phase,
         mut observe: impl FnMut(InputSample, &Snapshot<'_>) -> ControlFlow<()>,
     ) -> Result<f64, SimulationError> {
-        let motion = phase.motion(self.area);
-        let force = phase.end_force(self.area);
+        let area = self.scene.layer.area();
+        let (motion, force) = (phase.motion(area), phase.end_force(area));
         let reached = self.time_of_force(&motion, force)?;
         self.phases += 1;
-        if force.is_some() && reached.is_none() {
-            self.warnings.push(missed_force(self.phases, phase));
-        }
+        self.warn_of_end(phase, force, reached);
         let duration = reached.unwrap_or(phase.duration);
         if duration <= 0.0 {
             return Ok(0.0);
@@ -255,6 +253,21 @@ impl Runner {
         self.simulation.advance_observed(&Motion { duration, ..motion }, None, &times, observe)?;
         self.carrier = InputSample { time: self.simulation.time(), ..start.after(&motion, duration) };
         Ok(duration)
+    }
+
+    /// Warns where the phase that begins now never reaches its force, or has passed it, unless the scene's warnings have that.
+    fn warn_of_end(&mut self, phase: &Phase, force: Option<f64>, reached: Option<f64>) {
+        let warning = match (force, reached) {
+            (Some(_), None) => missed_force(self.phases, phase),
+            (Some(_), Some(s)) if s <= 0.0 => {
+                let force = self.simulation.snapshot().on_carrier.z;
+                passed_phase(&self.scene, phase, self.phases - 1, force)
+            }
+            _ => return,
+        };
+        if !self.scene.warnings.contains(&warning) {
+            self.warnings.push(warning);
+        }
     }
 
     /// Times of the rows of a phase of `duration` (s) that begins now, in s from its start.
@@ -289,6 +302,7 @@ fn missed_force(number: usize, phase: &Phase) -> String {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 
@@ -302,6 +316,32 @@ mod tests {
             assert_eq!((times.len(), times.last()), (POINTS as usize, Some(&duration)));
         }
         assert!(above > 0, "no duration is rounded up");
+    }
+
+    /// Half of the sine stands in the rubber, and the second phase presses no further than the first.
+    #[test]
+    fn phases_that_end_as_they_begin_are_told_once() {
+        let text = |clearance: f64, end: f64| {
+            format!(
+                "name = 's'\nlayer = {{ masses = 8, spacing = 4e-5, width = 1e-2, foundation = 'half_space', clearance = {clearance} }}\n\
+                 material = {{ density = 1.1e3, poisson_ratio = 0.49, equilibrium_modulus = 6e6, prony = [] }}\n\
+                 surface = {{ kind = 'sinusoid', amplitude = 2e-5, wavelength = 3.2e-4 }}\n\
+                 excitation = [{{ duration = 5e-3, w_rate = -0.01, until_pressure = 5e4 }}, {{ duration = 1e-5 }}, \
+                 {{ duration = 1e-3, w_rate = -0.01, until_pressure = {end} }}]"
+            )
+        };
+        let found = |clearance: f64, end: f64| {
+            let scene = crate::files::parse_scene(&text(clearance, end), "s.toml".as_ref(), &[]).unwrap();
+            let mut runner = Runner::new(&scene, Rows::PerPhase(1), 0.0).unwrap();
+            runner.run(&scene.excitation, |_, _| ControlFlow::Continue(())).unwrap();
+            let of_scene = scene.warnings.iter().filter(|text| text.starts_with("phase 1 ")).count();
+            (of_scene, runner.take_warnings())
+        };
+        assert_eq!(found(0.0, 1e9).0, 1);
+        assert!(!found(0.0, 1e9).1.iter().any(|text| text.starts_with("phase 1 of the excitation ends as it begins")));
+        let (of_scene, of_run) = found(3e-5, 1e4);
+        assert_eq!((of_scene, of_run.len()), (0, 1), "{of_run:?}");
+        assert!(of_run[0].starts_with("phase 3 of the excitation ends as it begins"), "{of_run:?}");
     }
 
     #[test]
