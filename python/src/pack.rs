@@ -14,13 +14,13 @@ use crate::errors::Raise as _;
 use crate::options::Options;
 
 /// Writes the FMU of a `definition`, which was read from the file at `path`, with these shared libraries, each as
-/// `asperity pack --library` takes it; returns a warning. What is at `output` is what was there before, or the whole FMU.
+/// `asperity pack --library` takes it; returns warnings. What is at `output` is what was there before, or the whole FMU.
 pub(crate) fn pack(
     definition: &Definition,
     path: &Path,
     libraries: &[OsString],
     (output, Options(options)): (&Path, Options<FmuOptions>),
-) -> PyResult<Option<String>> {
+) -> PyResult<Vec<String>> {
     let files: Vec<LibraryFile> = libraries.iter().map(|text| LibraryFile::named(text)).collect();
     let mut read: Vec<PathBuf> = definition.sources(path);
     read.extend(files.iter().map(|file| file.path().to_owned()));
@@ -32,8 +32,9 @@ pub(crate) fn pack(
     let summary = summary(definition);
     let (libraries, summary) = (&libraries, &summary);
     let fmu = Fmu { definition, path, libraries, summary, picture: None, options };
-    write(output, &fmu.pack().map_err(|error| error.raise())?)?;
-    Ok(no_start(definition))
+    let (archive, left_out) = fmu.pack().map_err(|error| error.raise())?;
+    write(output, &archive)?;
+    Ok(no_start(definition).into_iter().chain(left_out).collect())
 }
 
 /// Writes a file beside its place, and puts it there.

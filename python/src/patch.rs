@@ -68,12 +68,7 @@ impl Patch {
     }
 
     /// Writes an FMU.
-    fn pack(
-        &self,
-        output: PathBuf,
-        libraries: Vec<OsString>,
-        options: Options<FmuOptions>,
-    ) -> PyResult<Option<String>> {
+    fn pack(&self, output: PathBuf, libraries: Vec<OsString>, options: Options<FmuOptions>) -> PyResult<Vec<String>> {
         pack(&self.patch.clone().into(), &self.file, &libraries, (&output, options))
     }
 }

@@ -127,12 +127,7 @@ impl Scene {
     }
 
     /// Writes an FMU. The file of the scene has to hold what the scene is.
-    fn pack(
-        &self,
-        output: PathBuf,
-        libraries: Vec<OsString>,
-        options: Options<FmuOptions>,
-    ) -> PyResult<Option<String>> {
+    fn pack(&self, output: PathBuf, libraries: Vec<OsString>, options: Options<FmuOptions>) -> PyResult<Vec<String>> {
         let definition = (*self.scene).clone().into();
         pack(&definition, &self.file, &libraries, (&output, options))
     }

@@ -188,7 +188,7 @@ pub(crate) fn pack_table(
     output: PathBuf,
     libraries: Vec<OsString>,
     options: Options<FmuOptions>,
-) -> PyResult<Option<String>> {
+) -> PyResult<Vec<String>> {
     let read = FrictionTable::load(&table).map_err(|error| PyValueError::new_err(error.to_string()))?;
     pack(&PointContact::new(read).into(), &table, &libraries, (&output, options))
 }

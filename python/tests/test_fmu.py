@@ -20,3 +20,7 @@ def test_an_fmu_proves_itself(small, tmp_path):
         found["none"]
     with pytest.raises(ValueError, match="no-references"):
         asperity.fmi.verify(small.pack(tmp_path / "without.fmu", references=False))
+    with pytest.warns(UserWarning, match="no experiment and result: the scene has no excitation"):
+        still = small.with_(excitation=[]).pack(tmp_path / "still.fmu")
+    with pytest.raises(ValueError, match="the scene has no excitation"):
+        asperity.fmi.verify(still)

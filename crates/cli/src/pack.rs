@@ -89,7 +89,9 @@ pub(crate) fn pack(command: &Pack) -> Result<(), Error> {
         picture,
         options: command.options,
     };
-    write(&command.output, fmu.pack()?)?;
+    let (archive, left_out) = fmu.pack()?;
+    write(&command.output, archive)?;
+    left_out.iter().for_each(|text| warn(text));
     let needs = [names.into_iter().collect(), needs].concat();
     let shown = if matches!(definition, Definition::Layer(_)) { needs } else { [summary, needs].concat() };
     print(&lines(&shown))?;

@@ -23,9 +23,9 @@ def program() -> Path:
     return path
 
 
-def warn_of_start(text: str | None) -> None:
-    """Warns the caller's caller of start values that do not initialise."""
-    if text is not None:
+def warn_of_packed(texts: list[str]) -> None:
+    """Warns the caller's caller of start values that do not initialise, and of what an FMU does without."""
+    for text in texts:
         warnings.warn(text, stacklevel=3)
 
 

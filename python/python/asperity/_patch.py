@@ -13,7 +13,7 @@ from . import _native
 from ._arguments import Floats, described
 from ._files import folder_of
 from ._library import options as library_options
-from ._library import warn_of_start
+from ._library import warn_of_packed
 
 PatchState = _native.PatchState
 Six = tuple[float, float, float, float, float, float]
@@ -183,7 +183,7 @@ class Patch:
             references: As for :meth:`Scene.pack`.
         """
         given = library_options() if libraries is None else [str(library) for library in libraries]
-        warn_of_start(self._patch.pack(Path(path), given, {"flat_names": flat_names, "references": references}))
+        warn_of_packed(self._patch.pack(Path(path), given, {"flat_names": flat_names, "references": references}))
         return Path(path)
 
     def __repr__(self) -> str:

@@ -15,7 +15,7 @@ from . import _native
 from ._arguments import Progress, axis, given, given_columns, mapping, numbers, positive, shown, to_toml
 from ._files import table_file
 from ._library import options as library_options
-from ._library import warn_of_start
+from ._library import warn_of_packed
 from ._scene_inputs import SceneInputs
 
 if TYPE_CHECKING:
@@ -333,5 +333,5 @@ class Scene(SceneInputs):
             raise SceneError(
                 "a key is set that stands in a file which the scene names: expected it in the text to pack"
             )
-        warn_of_start(packed._native.pack(Path(path), given, {"flat_names": flat_names, "references": references}))
+        warn_of_packed(packed._native.pack(Path(path), given, {"flat_names": flat_names, "references": references}))
         return Path(path)

@@ -15,7 +15,7 @@ from . import _native
 from ._arguments import Floats, given, given_columns
 from ._files import table_file
 from ._library import options as library_options
-from ._library import warn_of_start
+from ._library import warn_of_packed
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -246,7 +246,7 @@ class Table:
         with tempfile.TemporaryDirectory(prefix="asperity-") as folder:
             file = Path(folder) / "table.csv"
             self.to_csv(file)
-            warn_of_start(_native.pack_table(file, Path(path), given, {"flat_names": flat_names, "references": references}))
+            warn_of_packed(_native.pack_table(file, Path(path), given, {"flat_names": flat_names, "references": references}))
         return Path(path)
 
     def __reduce__(self) -> tuple[Any, tuple[_native.Table]]:

@@ -24,6 +24,7 @@ from ._verification import Verification
 __all__ = ["Verification", "simulate", "verify"]
 
 _REFERENCES = "extra/org.fmi-standard.fmi-ls-ref"
+_LEFT_OUT = "extra/org.asperity/left-out.txt"
 
 
 def simulate(
@@ -134,10 +135,12 @@ def _experiment(fmu: str | PathLike[str]) -> tuple[dict[str, Floats], dict[str, 
         named = [related.get(role, root).get("source", "") for role in ("experiment/smoke-test", "result")]
         tables = [normpath(join(_REFERENCES, unquote(source))) for source in named]
         if not all(table in names for table in tables):
-            raise ValueError(
-                f"{fmu}: expected an experiment and its result in {_REFERENCES}: an FMU of asperity pack has them, unless it "
-                "was packed with --no-references or its scene has no excitation"
+            why = (
+                f"it has {archive.read(_LEFT_OUT).decode().strip()}"
+                if _LEFT_OUT in names
+                else "an FMU of asperity pack has them, unless it was packed with --no-references"
             )
+            raise ValueError(f"{fmu}: expected an experiment and its result in {_REFERENCES}: {why}")
         experiment, result = (_columns(archive.read(table).decode()) for table in tables)
     return experiment, result, related["result"].get("description", "")
 

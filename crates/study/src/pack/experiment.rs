@@ -9,6 +9,7 @@ use std::path::Path;
 use asperity::element::{FrictionTable, Node, PointContact, Quantity};
 use asperity::patch::Patch;
 use asperity::scene::{Input, OutputGroup, Phase, Scene, Value};
+use asperity::simulation::SimulationError;
 use asperity_fmi::{CommunicationStep, Definition, Inputs, Kind, Role, VariableRef, VariableTable};
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 
@@ -44,19 +45,25 @@ pub(super) struct ExperimentTables {
     pub(super) result: String,
     /// What the result is, in a sentence.
     pub(super) description: String,
+    /// Where the experiment ends early: where, and why.
+    pub(super) early_end: Option<String>,
 }
 
-/// The tables, with the FMU's names; `None` where there is no experiment.
-pub(super) fn tables(definition: &Definition, variables: &VariableTable) -> Option<ExperimentTables> {
+/// The tables, with the FMU's names; why there is no experiment.
+pub(super) fn tables(definition: &Definition, variables: &VariableTable) -> Result<ExperimentTables, String> {
     let budget = Budget(WORK / (STEP + masses(definition)));
     let tight = tight(definition, budget);
     let columns = columns(definition, variables);
     let motion = InputMotion::new(definition, budget)?;
     let bytes = motion.times.len() * columns.len() * BYTES_OF_NUMBER;
     let motion = motion.thinned(bytes.div_ceil(BYTES));
-    let rows = rows(&tight, &motion, budget)?;
+    let (rows, end) = rows(&tight, &motion, budget)?;
+    let early_end = end.map(|why| {
+        let (reached, whole) = (motion.times[rows.len() - 1], motion.times[motion.times.len() - 1]);
+        format!("its run ends at {} of {} s: {why}", short(reached, 3), short(whole, 3))
+    });
     if rows.len() < FEWEST_ROWS {
-        return None;
+        return Err(early_end.unwrap_or_else(|| format!("it has less than {FEWEST_ROWS} rows")));
     }
     let found = tight.calculated();
     let index = |name: &str| found.iter().position(|variable| variable.name == name);
@@ -64,11 +71,13 @@ pub(super) fn tables(definition: &Definition, variables: &VariableTable) -> Opti
     let inputs = inputs.filter(|variable| matches!(variable.role, Role::Input(_))).map(|variable| &*variable.name);
     let shown: Vec<(&str, usize)> = columns.iter().filter_map(|(own, named)| Some((*named, index(own)?))).collect();
     let result_row = |row: &Vec<f64>| shown.iter().map(|&(_, i)| rounded(row[i], DIGITS) + 0.0).collect();
-    let largest = |i: usize| rows.iter().map(|row| row[i]).fold(0.0, f64::max);
-    Some(ExperimentTables {
+    // The last row has the largest error over the largest force of the whole run; at a first touch, over next to nothing.
+    let of_run = |i: usize| rows[rows.len() - 1][i];
+    Ok(ExperimentTables {
         inputs: table(inputs, &motion.times, motion.values[..rows.len()].iter().cloned()),
         result: table(shown.iter().map(|&(name, _)| name), &motion.times, rows.iter().map(result_row)),
-        description: description(index(ERROR).map(largest)),
+        description: description(index(ERROR).map(of_run)),
+        early_end,
     })
 }
 
@@ -123,29 +132,41 @@ fn columns<'a>(definition: &Definition, variables: &'a VariableTable) -> Vec<(St
     all.filter(|(own, _)| is_shown(own)).map(|(own, named)| (own.name, named.name.as_str())).collect()
 }
 
-/// The calculated variables row by row, up to where the run fails or its budget is used up; `None` where none begins.
-fn rows(definition: &Definition, motion: &InputMotion, budget: Budget) -> Option<Vec<Vec<f64>>> {
+/// The calculated variables row by row, up to where the run fails or its budget is used up, and why it ended there; why none
+/// begins.
+fn rows(
+    definition: &Definition,
+    motion: &InputMotion,
+    budget: Budget,
+) -> Result<(Vec<Vec<f64>>, Option<String>), String> {
     let slots: Vec<usize> = definition.inputs().iter().filter_map(slot).collect();
     let calculated = definition.calculated();
     let steps = calculated.iter().position(|variable| variable.name == STEPS);
     let mut inputs = Inputs::default();
     motion.set(&mut inputs, &slots, 0);
-    let mut run = definition.start(&inputs, motion.times[0]).ok()?;
+    let mut run = definition.start(&inputs, motion.times[0]).map_err(|error| error.to_string())?;
     let mut values = vec![0.0; calculated.len()];
     run.evaluate(&mut values);
     let mut rows = vec![values.clone()];
     for (i, times) in motion.times.windows(2).enumerate() {
         motion.set(&mut inputs, &slots, i);
         let step = CommunicationStep { time: times[0], h: times[1] - times[0], rule: definition.input_rule() };
-        let is_over = steps.is_some_and(|steps| values[steps] > budget.0 as f64);
-        if is_over || run.advance(&inputs, &step).is_err() {
-            break;
+        if steps.is_some_and(|steps| values[steps] > budget.0 as f64) {
+            return Ok((rows, Some(too_long(definition, budget))));
+        }
+        if let Err(error) = run.advance(&inputs, &step) {
+            return Ok((rows, Some(error.to_string())));
         }
         inputs.complete_step(&step);
         run.evaluate(&mut values);
         rows.push(values.clone());
     }
-    Some(rows)
+    Ok((rows, None))
+}
+
+/// Why a run is given up that has used up its budget.
+fn too_long(definition: &Definition, budget: Budget) -> String {
+    format!("it is too long for packing, which takes {} steps at most of {} masses", budget.0, masses(definition))
 }
 
 fn slot(input: &VariableRef) -> Option<usize> {
@@ -167,15 +188,16 @@ pub(super) struct InputMotion {
 }
 
 impl InputMotion {
-    /// That of a definition; `None` where there is none, as of a scene without an excitation.
-    pub(super) fn new(definition: &Definition, budget: Budget) -> Option<Self> {
+    /// That of a definition; why there is none, as of a scene without an excitation.
+    pub(super) fn new(definition: &Definition, budget: Budget) -> Result<Self, String> {
         let inputs = definition.inputs();
-        let motion = match definition {
+        let no_press = || "its table has no press and slide of an element".to_owned();
+        match definition {
+            Definition::Layer(scene) if scene.excitation.is_empty() => Err("the scene has no excitation".to_owned()),
             Definition::Layer(scene) => Self::of_layer(scene, budget),
-            Definition::Element(contact) => Self::of_element(contact, &inputs),
-            Definition::Patch(patch) => Self::of_patch(patch, &inputs),
-        };
-        motion.filter(|motion| motion.times.len() > 1)
+            Definition::Element(contact) => Self::of_element(contact, &inputs).ok_or_else(no_press),
+            Definition::Patch(patch) => Self::of_patch(patch, &inputs).ok_or_else(no_press),
+        }
     }
 
     /// Every `every`th row, the first and the last.
@@ -200,7 +222,7 @@ impl InputMotion {
         }
     }
 
-    fn of_layer(scene: &Scene, budget: Budget) -> Option<Self> {
+    fn of_layer(scene: &Scene, budget: Budget) -> Result<Self, String> {
         let durations = durations(scene, budget)?;
         let total: f64 = durations.iter().sum();
         let rows = Rows::Within { longest: total / f64::from(INTERVALS), parts: 1 };
@@ -219,8 +241,11 @@ impl InputMotion {
             times: samples.iter().map(|sample| sample.time).collect(),
             values: samples.iter().map(values).collect(),
         };
+        if motion.times.len() < 2 {
+            return Err("the excitation takes no time".to_owned());
+        }
         let every = motion.times.len().div_ceil(MOST_ROWS);
-        Some(motion.thinned(every))
+        Ok(motion.thinned(every))
     }
 
     fn of_element(contact: &PointContact, inputs: &[VariableRef]) -> Option<Self> {
@@ -236,15 +261,28 @@ impl InputMotion {
 }
 
 /// The durations of the phases, s; those that a force ends are found by a run within a budget, whose phases up to there
-/// count.
-fn durations(scene: &Scene, budget: Budget) -> Option<Vec<f64>> {
+/// count; why none of them is over within it.
+fn durations(scene: &Scene, budget: Budget) -> Result<Vec<f64>, String> {
     let is_open = |phase: &Phase| phase.until_force.is_some() || phase.until_pressure.is_some();
     if !scene.excitation.iter().any(is_open) {
-        return Some(scene.excitation.iter().map(|phase| phase.duration).collect());
+        return Ok(scene.excitation.iter().map(|phase| phase.duration).collect());
     }
-    let mut runner = Runner::new(&budget.limit(scene), Rows::PerPhase(1), 0.0).ok()?;
-    let run = |phase: &Phase| runner.run_phase(phase, |_, _| std::ops::ControlFlow::Continue(())).ok();
-    Some(scene.excitation.iter().map_while(run).collect())
+    let failed = |error: SimulationError| match error {
+        SimulationError::TooManySteps { .. } => too_long(&scene.clone().into(), budget),
+        error => error.to_string(),
+    };
+    let mut runner = Runner::new(&budget.limit(scene), Rows::PerPhase(1), 0.0).map_err(failed)?;
+    let mut durations = Vec::new();
+    for (i, phase) in scene.excitation.iter().enumerate() {
+        match runner.run_phase(phase, |_, _| std::ops::ControlFlow::Continue(())) {
+            Ok(duration) => durations.push(duration),
+            Err(error) if durations.iter().sum::<f64>() <= 0.0 => {
+                return Err(format!("its run ends within phase {}: {}", i + 1, failed(error)));
+            }
+            Err(_) => break,
+        }
+    }
+    Ok(durations)
 }
 
 /// A short press to the middle of a table, and a slide to and fro there.
@@ -312,10 +350,12 @@ impl Press {
 
 /// The folder of the layered standard.
 const FOLDER: &str = "extra/org.fmi-standard.fmi-ls-ref";
+/// What is left out of it and why, a line each: no part of the standard, so beside its folder.
+const LEFT_OUT_FILE: &str = "extra/org.asperity/left-out.txt";
 /// More than this is left out, the parameter set first: bytes.
 const MOST_BYTES: usize = 100_000;
 
-/// The files of the folder. `resources` are the paths of the files in resources/; `variables` have the names that the
+/// The files of the folder, and what is left out of it and why. `resources` are the paths of the files in resources/; `variables` have the names that the
 /// FMU's have.
 ///
 /// # Errors
@@ -324,12 +364,15 @@ pub(super) fn entries(
     definition: &Definition,
     variables: &VariableTable,
     (resources, has_picture): (&[&str], bool),
-) -> io::Result<Vec<ArchiveEntry>> {
+) -> io::Result<(Vec<ArchiveEntry>, Vec<String>)> {
     let mut related: Vec<Related> = resources.iter().map(|name| Related::resource(name)).collect();
     related.push(Related::new("../../documentation/index.html", "document", "What it computes, its variables"));
     related.extend(has_picture.then(|| Related::new("../../model.png", "document", "A picture of it")));
     let mut files = Vec::new();
-    if let Some(ExperimentTables { inputs, result, description }) = tables(definition, variables) {
+    let mut left_out = Vec::new();
+    let found = tables(definition, variables).map_err(|why| left_out.push(format!("no experiment and result: {why}")));
+    if let Ok(ExperimentTables { inputs, result, description, early_end }) = found {
+        left_out.extend(early_end.map(|early| format!("a part of the experiment alone: {early}")));
         related.push(Related::new(
             "experiment.csv",
             "experiment/smoke-test",
@@ -340,12 +383,21 @@ pub(super) fn entries(
     }
     let size: usize = files.iter().map(|(_, bytes)| bytes.len()).sum();
     let parameters = parameter_set(&definition.name(), variables)?;
-    if let Some(parameters) = parameters.filter(|parameters| size + parameters.len() <= MOST_BYTES) {
-        related.push(Related::new("parameters.ssv", "parameter", "The start values of all parameters"));
-        files.push(("parameters.ssv", parameters));
+    match parameters {
+        Some(parameters) if size + parameters.len() <= MOST_BYTES => {
+            related.push(Related::new("parameters.ssv", "parameter", "The start values of all parameters"));
+            files.push(("parameters.ssv", parameters));
+        }
+        Some(_) => left_out.push(format!("no set of parameters: with it there were more than {MOST_BYTES} bytes")),
+        None => (),
     }
     files.push(("fmi-ls-manifest.xml", manifest(&related)?));
-    Ok(files.into_iter().map(|(name, bytes)| ArchiveEntry::new(format!("{FOLDER}/{name}"), bytes)).collect())
+    let entry = |(name, bytes)| ArchiveEntry::new(format!("{FOLDER}/{name}"), bytes);
+    let mut entries: Vec<ArchiveEntry> = files.into_iter().map(entry).collect();
+    if !left_out.is_empty() {
+        entries.push(ArchiveEntry::new(LEFT_OUT_FILE, left_out.join("\n") + "\n"));
+    }
+    Ok((entries, left_out))
 }
 
 /// Characters of a path that stand for themselves in a URI (RFC 3986, section 3.3).
@@ -455,6 +507,44 @@ fn parameter(xml: &mut Xml, variable: &VariableRef) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn layer(masses: u32, phases: &str) -> Definition {
+        let text = format!(
+            "name = 's'\nlayer = {{ masses = {masses}, spacing = 1e-4, mass = 1e-7, clearance = 2.1e-5, \
+             vertical = {{ stiffness = 2e3, damping = 8e-3 }}, horizontal = {{ stiffness = 1e3 }} }}\n\
+             surface = {{ kind = 'sinusoid', amplitude = 2e-5, wavelength = 8e-4 }}\nexcitation = [{phases}]"
+        );
+        Scene::parse(&text, "s.toml".as_ref()).unwrap().into()
+    }
+
+    fn found(definition: &Definition) -> Result<ExperimentTables, String> {
+        tables(definition, &definition.variables())
+    }
+
+    /// At the first touch the error is that of a force that is next to nothing.
+    #[test]
+    fn the_error_of_a_result_is_that_over_the_largest_force_of_the_whole_run() {
+        let definition = layer(8, "{ duration = 5e-3, w_rate = -0.01 }");
+        let said = found(&definition).unwrap().description;
+        let budget = Budget(WORK / (STEP + 8));
+        let tight = tight(&definition, budget);
+        let (rows, _) = rows(&tight, &InputMotion::new(&definition, budget).unwrap(), budget).unwrap();
+        let error = tight.calculated().iter().position(|variable| variable.name == ERROR).unwrap();
+        assert!(rows.iter().any(|row| row[error] > 2.0 * rows[rows.len() - 1][error]));
+        let expected = format!("its estimated error is {} of the largest force", short(rows[rows.len() - 1][error], 2));
+        assert!(said.ends_with(&expected), "{said}: {expected}");
+    }
+
+    #[test]
+    fn an_experiment_that_is_left_out_or_ends_early_says_why() {
+        assert_eq!(found(&layer(8, "")).unwrap_err(), "the scene has no excitation");
+        let long = "{ duration = 1e4, w_rate = -1e-9, u_sine = { amplitude = 1e-4, frequency = 1e4 } }";
+        let why = found(&layer(8, long)).unwrap_err();
+        assert!(why.starts_with("its run ends at ") && why.contains("steps"), "{why}");
+        let until = long.replace(" }", "").replace("frequency = 1e4", "frequency = 1e4 }, until_force = 1e3 }");
+        let why = found(&layer(8, &until)).unwrap_err();
+        assert!(why.starts_with("its run ends within phase 1: it is too long for packing"), "{why}");
+    }
 
     #[test]
     fn a_path_becomes_a_uri() {

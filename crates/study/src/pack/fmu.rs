@@ -48,25 +48,30 @@ pub struct Fmu<'a> {
 }
 
 impl Fmu<'_> {
-    /// The archive: the same FMU has the same bytes.
+    /// The archive, and what it leaves out of what shows that the FMU runs as it should, and why: the same FMU has the same
+    /// bytes.
     ///
     /// # Errors
     /// Where a file cannot be read, or does not lie where an FMU can carry it.
-    pub fn pack(&self) -> Result<Vec<u8>, Error> {
+    pub fn pack(&self) -> Result<(Vec<u8>, Vec<String>), Error> {
         let identifier = self.definition.identifier();
         let binary = |library: &Library| ArchiveEntry::executable(library.place(&identifier), library.bytes.clone());
         let mut entries: Vec<ArchiveEntry> = self.libraries.iter().map(binary).collect();
         let resources = self.resources()?;
         let variables = self.variables()?;
+        let mut left_out = Vec::new();
         if self.options.references {
             let names: Vec<&str> = resources.iter().map(ArchiveEntry::name).collect();
             let references = experiment::entries(self.definition, &variables, (&names, self.picture.is_some()));
-            entries.extend(references.map_err(document("the references"))?);
+            let (references, without) = references.map_err(document("the references"))?;
+            entries.extend(references);
+            left_out = without;
         }
         entries.extend(resources);
         entries.extend(self.documents(&variables)?);
         entries.extend(self.picture.clone().map(|picture| ArchiveEntry::new("model.png", picture)));
-        zip(entries).map_err(|error| Error::value(format!("cannot pack: {error}")))
+        let archive = zip(entries).map_err(|error| Error::value(format!("cannot pack: {error}")))?;
+        Ok((archive, left_out.iter().map(|text| format!("the FMU has {text}")).collect()))
     }
 
     /// The scene or the table, under a fixed name, and the files that a scene reads.
