@@ -64,7 +64,7 @@ pub(crate) fn sweep(
         let plan = plan((*scene).clone(), &options, samples)?;
         Ok(find(&plan, task).map(|swept| {
             let found = plan.warnings(&swept.rows);
-            let warnings = plan.warning().map(str::to_owned).into_iter().chain(found).collect();
+            let warnings = plan.first_warnings().iter().cloned().chain(found).collect();
             let matters = plan.matters(&swept.rows).map(|matters| matters.table(swept.header.load));
             (Table { swept, matters, drawn: plan.drawn() }, warnings)
         }))

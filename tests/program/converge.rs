@@ -88,18 +88,24 @@ fn a_pressure_beyond_the_links_is_warned_of_once() {
     let warnings = |output: &Output| String::from_utf8_lossy(&output.stderr).matches("pressed too hard").count();
     let study = converge(&scene, &path, &["--pressure", "2e5", "--speed", "0.1", "--error", "0.5"]);
     assert_eq!(warnings(&study), 1, "{study:?}");
-    let sweep = |loads: &[&str]| {
-        let mut command = asperity();
-        command
-            .arg("sweep")
-            .arg(&scene)
-            .args(["--method", "layer", "--speeds", "0.1,1", "--force", "-o"])
-            .arg(folder.join("sweep.csv"));
-        warnings(&command.args(loads).output().unwrap())
-    };
-    assert_eq!(sweep(&["--pressures", "1e5,2e5"]), 1);
-    assert_eq!(sweep(&["--forces", "4"]), 1, "4 N on 2e-5 m² are 2e5 Pa");
-    assert_eq!(sweep(&["--pressures", "1e5"]), 0);
+    for method in ["layer", "steady"] {
+        let sweep = |loads: &[&str]| {
+            let mut command = asperity();
+            let output = folder.join("sweep.csv");
+            command
+                .arg("sweep")
+                .arg(&scene)
+                .args(["--method", method, "--speeds", "0.1,1", "--force", "-o"])
+                .arg(output);
+            warnings(&command.args(loads).output().unwrap())
+        };
+        assert_eq!(sweep(&["--pressures", "1e5,2e5"]), 1);
+        assert_eq!(sweep(&["--forces", "4"]), 1, "4 N on 2e-5 m² are 2e5 Pa");
+        assert_eq!(sweep(&["--pressures", "1e5"]), 0);
+    }
+    let mut contact = asperity();
+    contact.arg("contact").arg(&scene).args(["--pressure", "2e5", "--speed", "0.1", "-o"]).arg(folder.join("c.svg"));
+    assert_eq!(warnings(&contact.output().unwrap()), 1);
 }
 
 /// With a small error and few masses the spacing stays open; chance and length are judged nevertheless.

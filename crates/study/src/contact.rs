@@ -38,7 +38,7 @@ pub struct SolvedContact {
     pub fields: ContactFields,
     /// Why not all of the values can be relied on; `None` where they can.
     pub problem: Option<SlideProblem>,
-    /// What of it no rubber has, and why.
+    /// A pressure that is too much for linear rubber; what of it no rubber has, and why.
     pub warnings: Vec<String>,
 }
 
@@ -90,7 +90,8 @@ pub fn solve_contact(scene: &Scene, options: ContactOptions) -> Result<SolvedCon
     let area = slide.real_area.unwrap_or(slide.area);
     let rise = slide.flash_mean.map(|flash| flash + slide.surface_rise.unwrap_or(0.0));
     let found = slide.friction().map(|friction| FoundFriction { place, friction, area: Some(area), rise });
-    let warnings = implausible(scene, found);
+    let pressed = scene.hard_pressure("`pressure`", at.pressure, false);
+    let warnings = pressed.into_iter().chain(implausible(scene, found)).collect();
     Ok(SolvedContact { surface, slide, fields, problem, warnings })
 }
 

@@ -1,7 +1,7 @@
 //! Warnings of a fitted foundation: where area and friction would not be those of rubber on this surface.
 
 use super::{Foundation, FoundationKind};
-use crate::scene::{LinkKind, Phase, PowerLaw, Scene, Spectrum, Surface};
+use crate::scene::{Force, LinkKind, Phase, PowerLaw, Scene, Spectrum, Surface};
 
 /// Root mean square of r - 1 above which area and friction are off.
 const WIDE: f64 = 0.5;
@@ -59,7 +59,8 @@ impl Scene {
             self.wide_band(),
             self.coarse_spacing(foundation),
             self.waves_below_the_spacing(foundation),
-            self.hard_pressure("until_pressure", self.largest_pressure()),
+            self.hard_pressure("until_pressure", self.largest_pressure(), true),
+            self.hard_pressure("the largest load over the layer's area", self.largest_load().unwrap_or(0.0), true),
             self.short_layer(),
             steep_slopes(foundation),
         ];
@@ -106,9 +107,12 @@ impl Scene {
     }
 
     /// The warning where `pressure` (Pa), called `name` where it was asked for, is outside the range in which the links
-    /// stand for the rubber's surface; none for springs.
-    pub fn hard_pressure(&self, name: &str, pressure: f64) -> Option<String> {
-        self.foundation.as_ref()?;
+    /// stand for the rubber's surface, none for springs; or where no layer slides but steady sliding is solved for, outside
+    /// that of linear rubber.
+    pub fn hard_pressure(&self, name: &str, pressure: f64, layer_slides: bool) -> Option<String> {
+        if layer_slides {
+            self.foundation.as_ref()?;
+        }
         let modulus = self.material.as_ref()?.plane_modulus(self.material.as_ref()?.equilibrium_modulus);
         if pressure > modulus {
             return Some(format!(
@@ -116,11 +120,17 @@ impl Scene {
                  them in another unit than Pa?"
             ));
         }
+        let then = match layer_slides {
+            true => {
+                let excess = 100.0 * (2.0 * pressure / modulus).powi(2);
+                format!("in full contact friction comes out {excess:.0} % too large")
+            }
+            false => "steady sliding is that of linear rubber, which is strained too far".to_owned(),
+        };
         (pressure > HARD * modulus).then(|| {
             format!(
                 "pressed too hard: {name} = {pressure:?} Pa is more than a tenth of the plane modulus at rest, \
-                 {modulus:.3e} Pa: in full contact friction comes out {:.0} % too large",
-                100.0 * (2.0 * pressure / modulus).powi(2)
+                 {modulus:.3e} Pa: {then}"
             )
         })
     }
@@ -129,6 +139,16 @@ impl Scene {
     fn largest_pressure(&self) -> f64 {
         let pressures = self.excitation.iter().filter_map(|phase: &Phase| phase.until_pressure);
         pressures.fold(0.0, f64::max)
+    }
+
+    /// The largest load on a body along z, over the layer's area, Pa; `None` without a body.
+    fn largest_load(&self) -> Option<f64> {
+        let (body, area) = (self.carrier.z?, self.layer.area()?);
+        let most = |phase: &Phase| {
+            let Force { start, change } = phase.load(Some(area));
+            start.unwrap_or(0.0) + (change.rate * phase.duration).max(0.0) + change.amplitude.abs()
+        };
+        Some((body.load.unwrap_or(0.0) + self.excitation.iter().map(most).fold(0.0, f64::max)) / area)
     }
 
     fn short_layer(&self) -> Option<String> {
@@ -176,5 +196,36 @@ impl Surface {
     fn roll_off_wavelength(&self) -> Option<f64> {
         let given = self.self_affine().map(|law| law.roll_off);
         given.or_else(|| PowerLaw::fit(&Spectrum::new(self).bands(), None)?.roll_off_wavelength)
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    /// A tenth of M = 1e6/0.75 Pa is 0.133 MPa.
+    #[test]
+    fn pressures_above_a_tenth_of_the_modulus_are_a_warning_whatever_slides() {
+        let scene = |foundation: &str, more: &str| {
+            let text = format!(
+                "name = 's'\nlayer = {{ foundation = '{foundation}', masses = 16, spacing = 1e-4, {more} width = 1e-2 }}\n\
+                 material = {{ density = 1e3, poisson_ratio = 0.5, equilibrium_modulus = 1e6, prony = [] }}\n\
+                 surface = {{ kind = 'flat' }}\ncarrier = {{ z = {{ mass = 1, load = 1 }} }}\n\
+                 excitation = [{{ duration = 1, pressure = 2e5 }}]"
+            );
+            Scene::parse(&text, "s.toml".as_ref()).unwrap()
+        };
+        let of_links = scene("half_space", "");
+        assert_eq!(of_links.warnings.iter().filter(|text| text.contains("the largest load over")).count(), 1);
+        for layer_slides in [false, true] {
+            assert!(
+                of_links.hard_pressure("p", 2e5, layer_slides).unwrap().starts_with("pressed too hard: p = 200000.0")
+            );
+            assert_eq!(of_links.hard_pressure("p", 1.3e5, layer_slides), None);
+        }
+        let springs = scene("springs", "thickness = 1e-2,");
+        assert_eq!(springs.hard_pressure("p", 2e5, true), None);
+        assert!(springs.hard_pressure("p", 2e5, false).is_some());
     }
 }

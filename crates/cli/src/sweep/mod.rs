@@ -254,7 +254,7 @@ fn compute(command: &Sweep, path: &Path) -> Result<(), Error> {
     }
     let convergence = study_verdict(study.as_deref(), &scene.name)?;
     let plan = plan(command, scene, convergence)?;
-    plan.warning().iter().for_each(|warning| warn(warning));
+    plan.first_warnings().iter().for_each(|warning| warn(warning));
     let maps = maps(command, plan.header(), &output)?;
     let header = plan.header();
     let (file, done) = TableFile::open(&output, &header.table(), command.force, |table| rows(table, header))?;
@@ -417,7 +417,7 @@ fn sweep_ways(
         SweepPlan::new(scene.clone(), &SweepOptions { sliding, ..options.clone() }, None)
     };
     let plans = ways.iter().map(plan).collect::<Result<Vec<_>, _>>()?;
-    plans.iter().take(1).filter_map(SweepPlan::warning).for_each(warn);
+    plans.iter().take(1).flat_map(SweepPlan::first_warnings).for_each(|warning| warn(warning));
     let bar = terminal::bar((plans.len() * plans.first().map_or(0, |plan| plan.header().grid.count())) as u64);
     let tables: Vec<SweepTable> = plans.iter().map(|plan| plan.table(&Stop::default(), || bar.inc(1))).collect();
     bar.finish_and_clear();

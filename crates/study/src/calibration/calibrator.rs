@@ -91,7 +91,10 @@ impl Calibrator<'_> {
                 Ok((fitted, linearised, way)) => {
                     let statistics = Statistics::new(&problem, &fitted.places, &linearised);
                     let frictions = problem.frictions(self.model, std::slice::from_ref(&fitted.places))?.remove(0);
-                    let implausible = implausible(self.free.scene(), found_at(&problem, &frictions));
+                    let scene = self.free.scene();
+                    let largest = measurements.rows.iter().map(|row| row.point.load).fold(0.0, f64::max);
+                    let pressed = scene.hard_pressure("the largest measured pressure", largest, !self.free.is_solved());
+                    let implausible = pressed.into_iter().chain(implausible(scene, found_at(&problem, &frictions)));
                     return Ok(Calibration {
                         own: self.free.own.clone(),
                         measurements: measurements.clone(),
@@ -101,7 +104,7 @@ impl Calibrator<'_> {
                         statistics,
                         frictions,
                         left_out,
-                        implausible,
+                        implausible: implausible.collect(),
                         way,
                     });
                 }
@@ -240,7 +243,7 @@ pub struct Calibration {
     pub frictions: Vec<FrictionParts>,
     /// The points that cannot be simulated, and why.
     pub left_out: Vec<(OperatingPoint, NoSliding)>,
-    /// What of it no rubber has, and why.
+    /// A pressure that is too much for the rubber; what of it no rubber has, and why.
     pub implausible: Vec<String>,
     /// How it was fitted.
     pub way: String,

@@ -126,8 +126,7 @@ impl ConvergenceStudy {
             Method::Layer => template,
         };
         let plan = plan(&options, &template)?;
-        let warning =
-            scene.hard_pressure("`pressure`", options.at.pressure).filter(|_| matches!(method, Method::Layer));
+        let warning = scene.hard_pressure("`pressure`", options.at.pressure, matches!(method, Method::Layer));
         method.check(scene)?;
         let ConvergenceOptions { at: SteadyState { pressure, speed }, error, .. } = options;
         let SlidingOptions { way, distance, .. } = options.sliding;
@@ -157,7 +156,7 @@ impl ConvergenceStudy {
         table
     }
 
-    /// What to look at before the runs are made: a pressure that presses the layer harder than its links stand for.
+    /// What to look at before the runs are made: a pressure that presses the rubber too hard.
     pub fn warning(&self) -> Option<&str> {
         self.warning.as_deref()
     }

@@ -133,8 +133,11 @@ impl RankPlan {
 
     /// What to look at before anything is computed.
     pub fn warnings(&self) -> Vec<String> {
-        let of = |entry: &Entry| Some(format!("{}: {}", entry.label, entry.plan.warning()?));
-        self.entries.iter().filter_map(of).collect()
+        let of = |entry: &Entry| {
+            let named = |warning: &String| format!("{}: {warning}", entry.label);
+            entry.plan.first_warnings().iter().map(named).collect::<Vec<_>>()
+        };
+        self.entries.iter().flat_map(of).collect()
     }
 
     /// The points, which are the same of all scenes.

@@ -65,10 +65,10 @@ impl SweepPlan {
         &self.header
     }
 
-    /// What to look at before the points are found: a load that presses the layer harder than its links stand for, or
-    /// temperatures that are probably meant in °C.
-    pub fn warning(&self) -> Option<&str> {
-        self.own.warning.as_deref()
+    /// What to look at before the points are found: a load that presses the rubber too hard, and temperatures that are
+    /// probably meant in °C.
+    pub fn first_warnings(&self) -> &[String] {
+        &self.own.warnings
     }
 
     /// The row of a point; `interrupt` may stop it.

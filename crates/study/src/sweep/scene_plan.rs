@@ -28,9 +28,9 @@ pub(super) struct ScenePlan {
     bounds: StopBounds,
     /// Where steady sliding is solved for; else the layer slides.
     solved: Option<SolvedPoints>,
-    /// What to look at before the points are found: a load that presses the layer harder than its links stand for, or
-    /// temperatures that are probably meant in °C.
-    pub(super) warning: Option<String>,
+    /// What to look at before the points are found: a load that presses the rubber too hard, and temperatures that are
+    /// probably meant in °C.
+    pub(super) warnings: Vec<String>,
 }
 
 impl ScenePlan {
@@ -44,9 +44,10 @@ impl ScenePlan {
         }
         let (load, grid) = grid(options, &scene)?;
         let (method, in_words) = options.sliding.choose(&scene)?;
-        let pressed = if matches!(method, Method::Layer) { hard_pressure(&scene, load, &grid.loads) } else { None };
+        let pressed = hard_pressure(&scene, load, &grid.loads, matches!(method, Method::Layer));
         let cold = options.temperatures.as_ref().and_then(|values| Wlf::meant_in_celsius(&values.0));
-        let warning = pressed.or_else(|| cold.map(|cold| format!("`temperatures`: {cold}")));
+        let cold = cold.map(|cold| format!("`temperatures`: {cold}"));
+        let warnings = pressed.into_iter().chain(cold).collect();
         method.check(&scene)?;
         method.check_threads(&scene, grid.count())?;
         let scene = relevant(scene);
@@ -61,7 +62,7 @@ impl ScenePlan {
             }
             Method::Layer => None,
         };
-        Ok(Self { scene, header, bounds: options.sliding.bounds(), solved, warning })
+        Ok(Self { scene, header, bounds: options.sliding.bounds(), solved, warnings })
     }
 
     /// Tells this sweep from others.
@@ -188,13 +189,14 @@ fn rests_on(keys: Header, scene: &Scene, convergence: Option<String>) -> Header 
         .with_some("held", scene.carrier.z.map(|body| format!("load, on a carrier of {} kg", body.mass)))
 }
 
-/// The warning where the largest of `loads` presses the layer harder than its links stand for.
-fn hard_pressure(scene: &Scene, load: Load, loads: &[f64]) -> Option<String> {
+/// The warning where the largest of `loads` presses the rubber too hard.
+fn hard_pressure(scene: &Scene, load: Load, loads: &[f64], layer_slides: bool) -> Option<String> {
     let largest = loads.iter().copied().fold(0.0, f64::max);
-    match load {
-        Load::Pressure { .. } => scene.hard_pressure("the largest of `pressures`", largest),
-        Load::Force => scene.hard_pressure("the largest of `forces` over the area", largest / scene.layer.area()?),
-    }
+    let (name, pressure) = match load {
+        Load::Pressure { .. } => ("the largest of `pressures`", largest),
+        Load::Force => ("the largest of `forces` over the area", largest / scene.layer.area()?),
+    };
+    scene.hard_pressure(name, pressure, layer_slides)
 }
 
 /// Those asked for, or the scene's own; none where it has none.

@@ -88,6 +88,19 @@ fn table(plan: &SweepPlan) -> SweepTable {
     SweepTable::new(plan.header().clone(), rows(plan, &points))
 }
 
+/// 0.4 MPa are more than a tenth of M = 2e6/0.75 Pa.
+#[test]
+fn a_pressure_that_is_too_much_is_told_before_whatever_slides() {
+    for method in [SweepMethod::Layer, SweepMethod::Steady] {
+        let mut asked = options(&[1.0], None);
+        asked.sliding.method = Some(method);
+        let scene = parse_scene(FLAT, "scene.toml".as_ref(), &[]).unwrap();
+        let plan = SweepPlan::new(scene, &asked, None).unwrap();
+        let first = plan.first_warnings();
+        assert!(first.len() == 1 && first[0].contains("the largest of `pressures` = 400000.0 Pa"), "{first:?}");
+    }
+}
+
 /// Adhesion alone: friction is as log-normal as the strength. Quantiles lie within three standard errors of independent
 /// samples, and over seeds their error falls faster than N^-0.7.
 #[test]
