@@ -178,7 +178,9 @@ impl RunCost {
         let error = Accounts::new(scene).solver.then(|| {
             "leaving the output group \"solver\" out: its error estimate is a second, more accurate run".to_owned()
         });
-        let fewer = (scene.layer.masses > 1 && !scene.has_coarse_spacing()).then(|| {
+        // The masses of a scene in the direct form do not follow the spacing, so there is no such study of it.
+        let may_be_fewer = scene.layer.masses > 1 && scene.material.is_some() && !scene.has_coarse_spacing();
+        let fewer = may_be_fewer.then(|| {
             "fewer masses: `asperity converge --method layer` tells how friction depends on the spacing".to_owned()
         });
         let all = [error, self.time_stepping(scene), self.tolerance(scene), self.reduction(scene), fewer];
@@ -213,6 +215,10 @@ impl RunCost {
         const REDUCE: f64 = 1e-3;
         /// A reduction to be worth a line leaves less than this share of the variables.
         const WORTH: f64 = 0.9;
+        // A scene whose temperature is an input has to keep what counts at others.
+        if scene.temperature_input {
+            return None;
+        }
         let mut reduced = scene.clone();
         reduced.solver.reduce = REDUCE;
         let (variables, left) = (self.maxwell_variables, Model::new(&reduced).maxwell_variables());
@@ -251,4 +257,29 @@ fn energy(snapshot: &Snapshot<'_>) -> String {
 fn seconds(time: f64) -> String {
     let time = rounded(time, 2);
     with_prefix(time, time, "s")
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    /// What would be cheaper but is refused beside another key is no advice.
+    #[test]
+    fn advice_is_what_the_scene_may_have() {
+        let advice = |input: &str| {
+            let text = format!(
+                "name = 's'\nlayer = {{ foundation = 'half_space', masses = 8, spacing = 4e-5, width = 1e-2 }}\n[material]\n\
+                 density = 1e3\npoisson_ratio = 0.5\nequilibrium_modulus = 1e6\nwlf = {{ c1 = 7.5, c2 = 120, \
+                 reference_temperature = 293, temperature = 293 }}\nprony = [{{ modulus = 1e6, relaxation_time = 1e-9 }}, \
+                 {{ modulus = 1e6, relaxation_time = 1e9 }}]\n[surface]\nkind = 'sinusoid'\namplitude = 1e-5\n\
+                 wavelength = 3.2e-4\n[input]\ntemperature = {input}\n[[excitation]]\nduration = 1e-4\nw_rate = -0.01"
+            );
+            let scene = Scene::parse(&text, "s.toml".as_ref()).unwrap();
+            let mut simulation = Simulation::new(&scene, &crate::runner::start(&scene, 0.0)).unwrap();
+            let lines = RunFigures::default().statistics(&scene, &mut simulation);
+            lines.iter().any(|(_, text)| text.starts_with("solver.reduce"))
+        };
+        assert!(advice("false") && !advice("true"));
+    }
 }
