@@ -32,7 +32,7 @@ struct Changes {
     tangential: Rate,
     /// Σ|G|η with the share η of hysteresis in the friction coefficient.
     hysteresis: Rate,
-    /// The energy stored in the springs.
+    /// The energy stored in the springs: of the normal ones the slope alone.
     elastic: Rate,
 }
 
@@ -113,7 +113,8 @@ impl PatchRun {
             }
             changes.pressure = changes.pressure.larger(law.pressure);
             changes.tangential = changes.tangential + tangential;
-            changes.elastic = changes.elastic + (tangential * tangential / stiffness).times(0.5);
+            let stored = rate(0.0, normal.value * approach.slopes[0]);
+            changes.elastic = changes.elastic + (tangential * tangential / stiffness).times(0.5) + stored;
             if limits.is_beyond(here.pressure, size(here.velocity)) {
                 changes.beyond = changes.beyond + normal;
             }

@@ -49,7 +49,7 @@ pub(super) struct ElementSums {
     pub(super) tangential: f64,
     /// Σ|G|η with the share η of hysteresis in the friction coefficient, N.
     pub(super) hysteresis: f64,
-    /// The energy stored in the springs, J.
+    /// The energy stored in the tangential springs, J.
     pub(super) elastic: f64,
     /// By how much the warmest of those that bear is warmer than the temperature given, K.
     pub(super) warmest: f64,
@@ -126,6 +126,20 @@ impl PatchRun {
             sums.warmth += here.area * self.springs.rise(i);
         }
         sums
+    }
+
+    /// The energy stored in the normal springs of the elements and of their backing now, J: what it takes to press them at
+    /// the speed and the temperature that they have.
+    pub(super) fn normal_energy(&mut self) -> f64 {
+        let (totals, now) = (self.totals, self.totals.instant());
+        let mut energy = 0.0;
+        for i in 0..self.patch.count() {
+            let here = self.element_contact(i, &totals, &now, self.springs.rise_of_law(i));
+            if here.pressure * here.area > 0.0 {
+                energy += here.area * self.law.normal_energy(&here.place, here.approach);
+            }
+        }
+        energy
     }
 
     /// The pressure on element `i` now, Pa.
@@ -306,6 +320,7 @@ mod tests {
     use std::path::Path;
 
     use super::super::definition::Patch;
+    use super::super::variables::PatchOutput;
 
     use super::*;
     use crate::patch::{PatchMotion, PatchStart, Pose};
@@ -333,6 +348,39 @@ mod tests {
             let sums = run.element_sums();
             assert!(sums.pressure > largest && sums.normal > 0.0);
             assert_eq!((sums.beyond > 0.0, !run.take_warnings().is_empty()), (is_beyond, is_beyond), "{excess}");
+        }
+    }
+
+    /// Pressed on a backing, slid under the load and lifted: the work is what was lost and what is stored.
+    #[test]
+    fn work_is_what_is_dissipated_and_what_the_springs_store() {
+        for backing in ["", ", backing = { normal = 3e9, shear = 6e9 }"] {
+            let shape = format!("shape = 'flat', length = 0.01, width = 0.01, nx = 2, ny = 2{backing}");
+            let text = format!("name = 'b'\ntable = {{ path = 'winkler.table.csv' }}\npatch = {{ {shape} }}");
+            let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch");
+            let patch = Patch::parse(&text, &folder.join("b.toml")).unwrap();
+            let start =
+                PatchStart { pose: Pose { place: [0.0, 0.0, 1e-5], angles: [0.0; 3] }, ..PatchStart::default() };
+            let mut run = PatchRun::new(&patch, &start).unwrap();
+            let (mut work, mut stored) = (0.0, Vec::new());
+            for rates in
+                [[0.0, 0.0, -0.06, 0.0, 0.0, 0.0], [0.01, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.06, 0.0, 0.0, 0.0]]
+            {
+                for _ in 0..1000 {
+                    let before = run.totals.wrench;
+                    run.advance(&PatchMotion { duration: 1e-6, rates, ..PatchMotion::default() }).unwrap();
+                    let mean = |axis: usize| 0.5 * (before[axis] + run.totals.wrench[axis]) * rates[axis] * 1e-6;
+                    work -= (0..3).map(mean).sum::<f64>();
+                }
+                let variables = patch.all_variables();
+                let elastic = variables.into_iter().find(|variable| variable.output == PatchOutput::ElasticEnergy);
+                let mut energy = [0.0];
+                run.evaluate(&[elastic.unwrap()], &mut energy);
+                let lost = run.totals.slip_energy + run.totals.release_energy;
+                assert!((work - lost - energy[0]).abs() < 1e-3 * work, "{backing}: {work} {lost} {energy:?}");
+                stored.push(energy[0]);
+            }
+            assert!(stored[0] > 1e-4 && stored[2] == 0.0, "{stored:?}");
         }
     }
 

@@ -323,7 +323,7 @@ impl PatchRun {
             PatchOutput::MeanTemperature => totals.temperature + share(sums.warmth, sums.nominal_area),
             PatchOutput::Friction => share(totals.wrench[0].hypot(totals.wrench[1]), totals.wrench[2]),
             PatchOutput::Hysteresis => share(sums.hysteresis, sums.tangential),
-            PatchOutput::ElasticEnergy => sums.elastic,
+            PatchOutput::ElasticEnergy => sums.elastic + self.normal_energy(),
             PatchOutput::Tangent(row, column) => self.tangents.as_ref().map_or(0.0, |rows| rows[row][column]),
             PatchOutput::ElementPressure(i) => self.pressure_on(i),
             PatchOutput::ElementTraction(i, axis) => self.traction_on(i, axis),

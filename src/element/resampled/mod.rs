@@ -442,6 +442,35 @@ impl ResampledLaw {
         (here.0 + (there.0 - here.0) * fraction, here.1 + (there.1 - here.1) * fraction)
     }
 
+    /// The energy of the normal springs over their area at a place and an approach (m), J/m²: ∫ p over the approaches of the
+    /// face from the touch on, so that of the contact and that of its backing.
+    pub fn normal_energy(&self, place: &LawPlace<f64>, approach: f64) -> f64 {
+        /// Points and weights of Gauss's rule of four points from -1 to 1, each on both sides (M. Abramowitz, I. A. Stegun,
+        /// 25.4.30).
+        const GAUSS: [(f64, f64); 2] =
+            [(0.339_981_043_584_856, 0.652_145_154_862_546), (0.861_136_311_594_053, 0.347_854_845_137_454)];
+        let cells = || std::iter::once(place.cell).chain(place.next.map(|(next, _)| next));
+        let touch = |cell: SpeedCell| {
+            let c = self.coefficients_at(cell.index, cell.fraction(place.log_speed), 0);
+            c[START] - 2.0 / c[LOG_PRESSURE[0]]
+        };
+        let starts = |cell: SpeedCell| {
+            let start = move |i: usize| self.start(&cell, i, place.log_speed) + self.indentation(i);
+            (0..self.log_pressures.len()).map(start)
+        };
+        let (mut energy, mut from) = (0.0, cells().map(touch).fold(f64::INFINITY, f64::min));
+        while from < approach {
+            // Up to the end of an interval of the pressure, within which p is smooth.
+            let ends = cells().flat_map(starts).chain(cells().map(touch)).filter(|end| *end > from);
+            let to = ends.fold(approach, f64::min);
+            let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+            let pressure = |x: f64| self.at_place(place, middle + half * x).pressure;
+            energy += half * GAUSS.iter().map(|(x, weight)| weight * (pressure(-x) + pressure(*x))).sum::<f64>();
+            from = to;
+        }
+        energy
+    }
+
     /// The share of hysteresis in the friction coefficient, and the contact ratio, at a place and an approach (m).
     pub fn shares(&self, place: &LawPlace<f64>, approach: f64) -> (f64, f64) {
         let here = self.shares_in(&place.cell, place.log_speed, approach);
