@@ -109,7 +109,7 @@ pub(crate) enum Command {
     /// the error; 3: not all.
     Converge(converge::Converge),
     /// Fits numbers of a scene to measured friction: values, standard errors, what the data cannot tell. Exit status 0:
-    /// converged; 3: not converged, or not all identifiable; 1: refused.
+    /// converged; 3: not converged, not all identifiable, or no fit; 1: refused.
     Calibrate(calibrate::Calibrate),
     /// Compares the table of a sweep with measured friction: curves and points in one picture, and the worst points.
     Compare(compare::Compare),

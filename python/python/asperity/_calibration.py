@@ -48,7 +48,7 @@ class Calibration:
         parameters: The numbers, in the order in which they were asked for.
         correlation: Their correlations, shape (parameters, parameters).
         chi_square: χ² per degree of freedom, 1.
-        is_whole: Whether the fit has converged and all numbers are identifiable.
+        is_whole: Whether the fit has converged, all numbers are identifiable, and the scene can say the data.
         measured: The measurements, shape (n, 6): speed (m/s), pressure (Pa), temperature (K), friction, its standard
             deviation, and the friction that the scene has there; nan where there is none.
         text: The scene's text with the numbers found, and what they rest on as comments.

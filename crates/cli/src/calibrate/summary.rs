@@ -147,7 +147,11 @@ fn not_identifiable(direction: &Direction, parameters: &[FreeParameter]) -> Stri
 fn chi_square(calibration: &Calibration) -> String {
     let statistics = &calibration.statistics;
     let per_degree = chi_square_per_degree(statistics.chi_square, statistics.degrees);
-    let end = if calibration.fitted.has_converged { "converged" } else { "NOT CONVERGED" };
+    let end = match (calibration.fitted.has_converged, statistics.misfit) {
+        (false, _) => "NOT CONVERGED",
+        (true, Some(_)) => "converged, but NO FIT",
+        (true, None) => "converged",
+    };
     format!("{} per degree of freedom, of which there are {}; {end}", short(per_degree, 4), statistics.degrees)
 }
 
@@ -183,12 +187,11 @@ fn rests_on(calibration: &Calibration) -> Vec<LabelledLine> {
     labelled("Rests on", kinds.into_iter().map(row))
 }
 
-/// The measurements that are off by more than three standard deviations, the worst first.
+/// The measurements that are off by more than three standard deviations, as given or assumed, the worst first.
 fn far_off(calibration: &Calibration) -> Vec<String> {
-    let scale = calibration.statistics.scale.sqrt();
     let deviation = |measured: &Measured| {
         let model = calibration.friction_at(&measured.point)?;
-        let deviations = (model - measured.friction) / (scale * measured.sigma_or_assumed());
+        let deviations = (model - measured.friction) / measured.sigma_or_assumed();
         (deviations.abs() > FAR_OFF).then(|| (deviations, off_in_words(measured, model, deviations)))
     };
     let mut found: Vec<(f64, String)> = calibration.measurements.rows.iter().filter_map(deviation).collect();

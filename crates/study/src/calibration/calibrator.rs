@@ -299,9 +299,9 @@ impl Calibration {
         Some(self.frictions[index].friction())
     }
 
-    /// Whether the fit has converged, and all numbers are identifiable.
+    /// Whether the fit has converged, all numbers are identifiable, and the scene with them can say the data.
     pub fn is_whole(&self) -> bool {
-        self.fitted.has_converged && self.statistics.tell_all()
+        self.fitted.has_converged && self.statistics.tell_all() && self.statistics.misfit.is_none()
     }
 
     /// What is left out, and what is not as it should be.
@@ -312,6 +312,7 @@ impl Calibration {
         if !self.fitted.has_converged {
             warnings.push("the fit has not converged: other bounds or fewer parameters may help".to_owned());
         }
+        warnings.extend(self.statistics.misfit.map(|misfit| misfit.to_string()));
         for (parameter, bound) in self.problem.parameters.iter().zip(&self.statistics.at_bound) {
             if let Some(bound) = bound {
                 warnings.push(format!("{} is at its bound {}", parameter.key, short(*bound, 4)));

@@ -26,7 +26,7 @@ pub use models::{
     Task, TheoryModel,
 };
 pub use problem::{FreeParameter, FrictionMeasurement, Linearised, Problem};
-pub use statistics::{Direction, Plan, Statistics, chi_square_per_degree, plan};
+pub use statistics::{Direction, Misfit, Plan, Statistics, chi_square_per_degree, plan};
 pub use written::{
     FitCovariance, NotInCovariance, PointsTable, calibrate_scene, calibrated_text, named_covariance, with_covariance,
 };

@@ -14,7 +14,8 @@ use super::free_scene::PlanOptions;
 use super::measurements::assumed_sigma;
 use super::models::{FrictionModel, ModelError};
 use super::problem::{FreeParameter, FrictionMeasurement, Linearised, Problem, sum_of_squares};
-use crate::decimals::rounded;
+use crate::decimals::{rounded, short};
+use crate::uncertainty::CANNOT_SAY;
 use crate::values::Values;
 
 /// A singular value below this part of the largest is of a direction that is not identifiable.
@@ -42,6 +43,50 @@ impl Direction {
     }
 }
 
+/// Residuals that are larger than the errors of the measurements admit: the model is not that of what was measured, and
+/// errors of its parameters by the residuals say nothing.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Misfit {
+    /// χ² per degree of freedom, beside given standard deviations.
+    #[error(
+        "{}: chi square is {} per degree of freedom, which the standard deviations of the measurements admit with less than \
+         one in a thousand",
+        CANNOT_SAY,
+        short(*.0, 3)
+    )]
+    BeyondErrors(f64),
+    /// The root mean square of what friction is off by, over friction, where no deviations are given.
+    #[error(
+        "{}: friction is off by {:.0} % in the root mean square, more than {:.0} %",
+        CANNOT_SAY,
+        100.0 * .0,
+        100.0 * LARGEST_MISFIT
+    )]
+    Large(f64),
+}
+
+/// More than this of friction is no error of a measurement that says none.
+const LARGEST_MISFIT: f64 = 0.2;
+
+impl Misfit {
+    /// That of some residuals with so many degrees of freedom, if it is one.
+    fn new(problem: &Problem, residuals: &[f64], degrees: usize) -> Option<Self> {
+        /// The normal deviate above which one in a thousand lies.
+        const RARE: f64 = 3.090_232;
+        if problem.has_sigma {
+            let per_degree = chi_square_per_degree(sum_of_squares(residuals), degrees);
+            // Its cube root is nearly normal (E. B. Wilson, M. M. Hilferty, 1931).
+            let variance = 2.0 / (9.0 * degrees.max(1) as f64);
+            let deviate = (per_degree.cbrt() - 1.0 + variance) / variance.sqrt();
+            return (degrees > 0 && deviate > RARE).then_some(Self::BeyondErrors(per_degree));
+        }
+        let off = |(row, residual): (&FrictionMeasurement, &f64)| residual * relative_sigma(row);
+        let off: Vec<f64> = problem.rows.iter().zip(residuals).map(off).collect();
+        let rms = (sum_of_squares(&off) / off.len().max(1) as f64).sqrt();
+        (rms > LARGEST_MISFIT).then_some(Self::Large(rms))
+    }
+}
+
 /// Errors and identifiability of the parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Statistics {
@@ -49,6 +94,8 @@ pub struct Statistics {
     pub chi_square: f64,
     /// Measurements less free parameters.
     pub degrees: usize,
+    /// Where that is more than the errors of the measurements admit.
+    pub misfit: Option<Misfit>,
     /// What the squares of errors are multiplied by: 1, or χ² per degree of freedom where the deviations are assumed.
     pub scale: f64,
     /// Which parameters are at a bound: the bound.
@@ -87,6 +134,7 @@ impl Statistics {
         let mut statistics = Self {
             chi_square,
             degrees,
+            misfit: Misfit::new(problem, &linearised.residuals, degrees),
             scale,
             at_bound,
             errors: vec![None; count],
@@ -232,9 +280,14 @@ pub fn plan(
     })
 }
 
+/// Sigma over friction.
+fn relative_sigma(row: &FrictionMeasurement) -> f64 {
+    row.sigma / row.friction.abs().max(assumed_sigma(0.0))
+}
+
 /// The root mean square of sigma over friction.
 fn relative_deviation(problem: &Problem) -> f64 {
-    let square = |row: &FrictionMeasurement| (row.sigma / row.friction.abs().max(assumed_sigma(0.0))).powi(2);
+    let square = |row: &FrictionMeasurement| relative_sigma(row).powi(2);
     (problem.rows.iter().map(square).sum::<f64>() / problem.rows.len().max(1) as f64).sqrt()
 }
 
@@ -388,6 +441,22 @@ mod tests {
             rows: vec![FrictionMeasurement { point: 0, friction: 1.0, sigma: 0.1 }; rows],
             has_sigma,
         }
+    }
+
+    /// One in a thousand has a χ² of 10 degrees of freedom above 29.59, by tables.
+    #[test]
+    fn residuals_beyond_the_errors_are_no_fit() {
+        let misfit =
+            |has_sigma, square: f64| Misfit::new(&problem(11, 1, has_sigma), &[f64::sqrt(square / 11.0); 11], 10);
+        assert_eq!(misfit(true, 29.4), None);
+        assert!(matches!(misfit(true, 29.8), Some(Misfit::BeyondErrors(_))));
+        // Friction of 1 and sigma of 0.1, not given.
+        assert_eq!(misfit(false, 11.0 * 1.9_f64.powi(2)), None);
+        let large = misfit(false, 11.0 * 5.0_f64.powi(2)).unwrap();
+        assert_eq!(
+            large.to_string(),
+            "the scene cannot say this data: friction is off by 50 % in the root mean square, more than 20 %"
+        );
     }
 
     /// A line through points at -1, 0, 1: its constant has 1/3 of the variance, its slope 1/2.

@@ -13,6 +13,7 @@ use super::calibrator::{Calibration, Calibrator};
 use super::free_scene::{CalibrationOptions, FreeScene};
 use super::models::{FrictionParts, NoSliding, Outcome, Task};
 use super::problem::FreeParameter;
+use super::statistics::Misfit;
 use crate::csv;
 use crate::decimals::{plain, real, short};
 use crate::error::Error;
@@ -67,6 +68,7 @@ fn header(free: &FreeScene<'_>, calibration: &Calibration) -> Vec<String> {
     if !calibration.fitted.has_converged {
         lines.push("NOT CONVERGED: the numbers below are where the fit was given up".to_owned());
     }
+    lines.extend(statistics.misfit.map(|misfit| format!("NO FIT: {misfit}")));
     if !statistics.tell_all() {
         lines.push("NOT IDENTIFIABLE: the data do not tell all of the numbers below".to_owned());
     }
@@ -100,6 +102,8 @@ pub struct FitCovariance {
     pub left_out: Vec<(String, NotInCovariance)>,
     /// What was fitted to, in words.
     fitted_to: String,
+    /// Where the scene cannot say that.
+    misfit: Option<Misfit>,
 }
 
 /// Why a number is in no covariance.
@@ -152,6 +156,7 @@ impl FitCovariance {
             entries: told.iter().map(|&a| told.iter().map(|&b| entry(a, b)).collect()).collect(),
             left_out,
             fitted_to: format!("{} measurements of {}", problem.rows.len(), name_of(free.data())),
+            misfit: statistics.misfit,
         }
     }
 
@@ -165,6 +170,9 @@ impl FitCovariance {
              # of their natural logarithms where the scale is log, else of the numbers in the units of their keys\n",
             self.fitted_to
         );
+        if let Some(misfit) = self.misfit {
+            text += &format!("# {misfit}\n");
+        }
         for (key, why) in &self.left_out {
             text += &format!("# left out, so that samples do not vary it: {key}, {why}\n");
         }
@@ -313,12 +321,14 @@ mod tests {
             entries: vec![vec![0.04, -0.01], vec![-0.01, 0.25]],
             left_out: vec![("e".into(), NotInCovariance::AtBound(3.0)), ("f".into(), NotInCovariance::NotIdentifiable)],
             fitted_to: "5 measurements of data.csv".into(),
+            misfit: Some(Misfit::Large(0.5)),
         };
         let text = covariance.text().unwrap();
         let (comments, table): (Vec<&str>, Vec<&str>) = text.lines().partition(|line| line.starts_with('#'));
         assert_eq!(table, ["key,value,scale,a.b,c[1].d", "a.b,2e6,log,0.04,-0.01", "c[1].d,0.5,linear,-0.01,0.25"]);
-        assert!(comments[2].ends_with("e, at its bound 3, which holds it: it has no error"), "{text}");
-        assert!(comments[3].contains("f, not identifiable"), "{text}");
+        assert!(comments[2].starts_with("# the scene cannot say this data: friction is off by 50 %"), "{text}");
+        assert!(comments[3].ends_with("e, at its bound 3, which holds it: it has no error"), "{text}");
+        assert!(comments[4].contains("f, not identifiable"), "{text}");
         covariance.numbers.clear();
         assert_eq!(covariance.text(), None);
     }

@@ -52,6 +52,9 @@ impl Scale {
     }
 }
 
+/// How a comment of a file begins whose numbers do not describe what they were fitted to, and what those say who use it.
+pub const CANNOT_SAY: &str = "the scene cannot say this data";
+
 /// The columns before those of the keys.
 const COLUMNS: [&str; 3] = ["key", "value", "scale"];
 /// What is written with some digits is symmetric and positive but for this part.

@@ -7,7 +7,7 @@ use asperity::scene::{FineWaves, Scene, read_text};
 use asperity::tables::{NumberRange, POSITIVE};
 use toml::{Table, Value};
 
-use super::covariance::{Covariance, Scale};
+use super::covariance::{CANNOT_SAY, Covariance, Scale};
 use crate::error::Error;
 
 /// What is not known of a scene; empty where it does not say.
@@ -98,9 +98,9 @@ impl Uncertainty {
             uncertainty.keys.push(UncertainKey { key: key.clone(), spread });
         }
         if section.contains_key(COVARIANCE) {
-            let (covariance, moved) = fitted(scene)?;
+            let (covariance, found) = fitted(scene)?;
             uncertainty.covariance = Some(covariance);
-            warnings.extend(moved);
+            warnings.extend(found);
         }
         uncertainty.check_once(scene, section)?;
         Ok((uncertainty, warnings))
@@ -263,8 +263,9 @@ pub fn covariance_file(scene: &Scene) -> Option<PathBuf> {
     Some(scene.values.get(SECTION)?.get(COVARIANCE)?.as_str()?.into())
 }
 
-/// The covariance in the file that the section names, about what the scene says; and what was fitted as something else.
-fn fitted(scene: &Scene) -> Result<(Covariance, Option<String>)> {
+/// The covariance in the file that the section names, about what the scene says; and what to look at: numbers that were
+/// fitted as something else, and data that the scene could not say.
+fn fitted(scene: &Scene) -> Result<(Covariance, Vec<String>)> {
     let key = format!("{SECTION}.{COVARIANCE}");
     let refused = |expected: String| Error::from(scene.values.refuse(&key, expected));
     let file = covariance_file(scene).ok_or_else(|| refused("the path of a file".to_owned()))?;
@@ -289,5 +290,7 @@ fn fitted(scene: &Scene) -> Result<(Covariance, Option<String>)> {
     }
     let said = || format!("{}: {}; samples vary about what the scene says", file.display(), moved.join(", "));
     let moved = (!moved.is_empty()).then(said);
-    Ok((covariance, moved))
+    let misfit = text.lines().filter_map(|line| line.strip_prefix("# ")).find(|line| line.starts_with(CANNOT_SAY));
+    let misfit = misfit.map(|misfit| format!("{}: {misfit}", file.display()));
+    Ok((covariance, moved.into_iter().chain(misfit).collect()))
 }

@@ -126,6 +126,9 @@ fn fitted_numbers_are_read_from_their_file() {
     let said: Vec<&String> = scene.warnings.iter().filter(|warning| warning.contains("fit.csv")).collect();
     assert_eq!(said.len(), 1);
     assert!(said[0].starts_with("fit.csv: material.wlf.temperature was fitted as 300.0 and is 293.15"), "{said:?}");
+    let no_fit = "# the scene cannot say this data: friction is off by 50 %\n".to_owned();
+    let scene = read(&(no_fit + &text(["1e6", "293.15"], "material.wlf.temperature")), "").unwrap();
+    assert!(scene.warnings.iter().any(|text| text.starts_with("fit.csv: the scene cannot say this data")));
     let error = read(&text(["1e6", "1"], "friction.coulomb"), "").unwrap_err();
     assert!(error.contains("fit.csv:4: friction.coulomb"), "{error}");
     let twice = "'material.wlf.temperature' = { absolute = 1.0 }";
