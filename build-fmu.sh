@@ -66,6 +66,16 @@ output=${output:-$target/$name.fmu}
 # Other platforms have folders of their own.
 options=(--manifest-path "$root/Cargo.toml" --locked --release)
 
+# The libraries would name the folders, and so the user, of who built them.
+if [ -n "${CARGO_ENCODED_RUSTFLAGS:-}" ]; then
+    IFS=$'\037' read -ra flags <<< "$CARGO_ENCODED_RUSTFLAGS"
+else
+    read -ra flags <<< "${RUSTFLAGS:-}"
+fi
+flags+=("--remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo" "--remap-path-prefix=$root=asperity")
+CARGO_ENCODED_RUSTFLAGS=$(IFS=$'\037' && echo "${flags[*]}")
+export CARGO_ENCODED_RUSTFLAGS
+
 # What the machine itself runs: the program, and with `-p asperity-fmu` the shared library.
 build() {
     if ! [ -e "$target/release/asperity" ]; then

@@ -6,7 +6,7 @@ use std::{fs, process};
 
 use asperity_fmi::Definition;
 use asperity_study::Error;
-use asperity_study::pack::{Fmu, FmuOptions, Library, LibraryFile, no_start, summary};
+use asperity_study::pack::{Fmu, FmuOptions, Library, LibraryFile, summary, warnings};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -34,7 +34,7 @@ pub(crate) fn pack(
     let fmu = Fmu { definition, path, libraries, summary, picture: None, options };
     let (archive, left_out) = fmu.pack().map_err(|error| error.raise())?;
     write(output, &archive)?;
-    Ok(no_start(definition).into_iter().chain(left_out).collect())
+    Ok(warnings(definition, path).into_iter().chain(left_out).collect())
 }
 
 /// Writes a file beside its place, and puts it there.

@@ -304,6 +304,7 @@ pub struct PointsError {
 pub fn check_points(x: &[f64], z: &mut [f64], periodic: bool) -> Result<(), PointsError> {
     check_count(x.len(), periodic)?;
     check_order(x)?;
+    check_steps(x)?;
     if periodic { close(z) } else { Ok(()) }
 }
 
@@ -321,6 +322,20 @@ fn check_order(x: &[f64]) -> Result<(), PointsError> {
     } else {
         format!("a number > {previous:?}, the x of the point before, for x must rise")
     };
+    Err(PointsError { coordinate: Coordinate::X, index: Some(before + 1), expected })
+}
+
+/// A step that is lost in the rounding of positions and heights beside the longest one has no slope.
+fn check_steps(x: &[f64]) -> Result<(), PointsError> {
+    /// Of the longest step: two instruments in one file are some 1e6 apart.
+    const SHORTEST: f64 = 1e-12;
+    let steps = || x.windows(2).map(|pair| pair[1] - pair[0]);
+    let longest = steps().fold(0.0, f64::max);
+    let Some(before) = steps().position(|step| step < SHORTEST * longest) else { return Ok(()) };
+    let expected = format!(
+        "steps along x of at least {SHORTEST:e} of the longest one, {longest:e}; that to this point is {:e}",
+        x[before + 1] - x[before]
+    );
     Err(PointsError { coordinate: Coordinate::X, index: Some(before + 1), expected })
 }
 

@@ -260,6 +260,21 @@ mod unix {
         }
     }
 
+    /// A pipe that somebody reads is an output; to look into it would be to wait for its end.
+    #[test]
+    #[cfg(unix)]
+    fn a_named_pipe_is_written() {
+        let folder = scratch("output-files-pipe");
+        let (pipe, scene) = (folder.join("pipe"), written(folder.join("scene.toml"), FLAT));
+        run(Command::new("mkfifo").arg(&pipe));
+        let reader = std::thread::spawn({
+            let pipe = pipe.clone();
+            move || fs::read_to_string(pipe).unwrap()
+        });
+        run(asperity().args(["simulate", text(&scene), "-o", text(&pipe), "--rows", "3", "-q"]));
+        assert!(reader.join().unwrap().starts_with("time"));
+    }
+
     /// Where the disk is full the command ends with the reason.
     #[test]
     #[cfg(target_os = "linux")]

@@ -86,7 +86,8 @@ pub(crate) fn load_patch(path: &Path, set: &[Setting]) -> Result<Patch, Error> {
 /// Refuses an output that would overwrite one of `others`, by whatever name.
 pub(crate) fn check_output(output: &Path, others: &[PathBuf]) -> Result<(), Error> {
     let same = |other: &PathBuf| {
-        let is_there = || same_file::is_same_file(output, other).unwrap_or(false);
+        // To open a pipe is to wait for who is at its other end.
+        let is_there = || !is_stream(output) && !is_stream(other) && same_file::is_same_file(output, other).unwrap_or(false);
         other == output || is_there() || (place(output).is_some() && place(output) == place(other))
     };
     if others.iter().any(same) { Err(overwrites(output)) } else { Ok(()) }

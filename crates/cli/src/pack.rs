@@ -11,7 +11,7 @@ use asperity_study::Error;
 use asperity_study::check::{Doubled, Dragged, ElementCheck, PatchCheck, Sliding};
 use asperity_study::files::text;
 use asperity_study::pack::{
-    self, Fmu, FmuOptions, Library, LibraryFile, element_icon, flat_names, layer_icon, no_start, not_converged,
+    self, Fmu, FmuOptions, Library, LibraryFile, element_icon, flat_names, layer_icon, not_converged,
 };
 use asperity_study::progress::Stop;
 use asperity_study::summary::missing_backing;
@@ -76,7 +76,7 @@ pub(crate) fn pack(command: &Pack) -> Result<(), Error> {
     taken.extend([&command.check, &command.scene, &command.table, &command.patch].into_iter().flatten().cloned());
     check_outputs([&command.output], taken)?;
     let libraries = Library::read_all(&libraries).map_err(|error| with_way_to_build(error, &libraries))?;
-    no_start(&definition).iter().for_each(|warning| warn(warning));
+    pack::warnings(&definition, &path).iter().for_each(|warning| warn(warning));
     let names = command.options.flat_names.then(|| flat_names(&definition)).flatten();
     let needs = labelled("Needs", libraries.iter().filter_map(Library::needs));
     let summary = summary(command, &definition)?;

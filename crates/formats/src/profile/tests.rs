@@ -293,6 +293,7 @@ fn names_and_numbers_that_do_not_tell_are_refused() {
         ("1 0 5\n2 1 6\n3 3 5\n", 1, "columns = 3: expected two, x and z"),
         ("x,z\n0,1.5\n1,-9999\n2,1.4\n3,-9999\n", 3, "z = -9999.0 (2 times, more than 10 times the range"),
         ("x,z\n0,0\n1e-200,1\n2e-200,0\n", 2, "points = steps along x down to 1e-200 m: expected"),
+        ("x,z\n0,0\n5e-5,1e-5\n1e-4,0\n1e23,1e-5\n", 3, "x = 5e-5: expected steps along x of at least 1e-12"),
         ("x;z\n0;1,5\n1;2.5\n", 3, "z = \"2.5\": expected a number with the sign before its decimals"),
     ];
     for (text, line, message) in cases {

@@ -6,7 +6,8 @@ use std::path::Path;
 use asperity::element::{Load, OperatingPoint, some_of};
 use asperity::scene::FileFormats as _;
 use asperity::tables::{
-    ABOVE_ZERO, ANY, ContentError, Dimension, FileKind, GivenColumns, Others, POSITIVE, ReadColumn, ReadTable, Role,
+    ABOVE_ZERO, ANY, ContentError, Dimension, FileKind, GivenColumns, NOT_NEGATIVE, NumberRange, Others, POSITIVE,
+    ReadColumn, ReadTable, Role,
 };
 use asperity_formats::Instruments;
 
@@ -170,14 +171,10 @@ impl Measurements {
             }
             (friction, _) => friction.map_or(&[][..], |friction| &friction.values).to_vec(),
         };
-        if !frictions.is_empty() && frictions.iter().all(|friction| *friction < 0.0) {
-            let expected = "a coefficient above 0: friction of a slide, without the sign of its direction";
-            let line = table.lines.first().copied();
-            return Err(ContentError::value(line, "friction", &frictions[0].to_string(), expected));
-        }
         let deviation = Deviation::of(table);
         deviation.check(table, &frictions)?;
         notes.extend(deviation.note());
+        check_ranges(table, &frictions, &deviation)?;
         let value = |key: &str, row: usize| table.values(key).get(row).copied();
         let row = |i: usize| {
             let (temperature, way) = (value("temperature", i), value("way", i));
@@ -217,6 +214,31 @@ impl Measurements {
     pub fn has_temperature(&self) -> bool {
         self.rows.iter().any(|row| row.point.temperature.is_some())
     }
+}
+
+/// What friction of a slide may be, and its standard deviation.
+const FRICTIONS: NumberRange = NOT_NEGATIVE.down_to(0.0).up_to(1e3);
+const SIGMAS: NumberRange = POSITIVE.down_to(1e-9).up_to(1e3);
+
+/// Refuses friction that no slide has, and deviations that no measurement of it has, by their rows.
+fn check_ranges(table: &ReadTable, frictions: &[f64], deviation: &Deviation) -> Result<(), ContentError> {
+    let refused = |row: usize, key: &str, given: f64, expected: String| {
+        Err(ContentError::value(table.lines.get(row).copied(), key, &rounded(given, 6).to_string(), &expected))
+    };
+    for (row, &friction) in frictions.iter().enumerate() {
+        if !FRICTIONS.holds(friction) {
+            let expected = "without the sign of its direction; a row whose sign is noise is to be left out";
+            return refused(row, "friction", friction, format!("{FRICTIONS}: friction of a slide, {expected}"));
+        }
+        let written = table.values("sigma").get(row);
+        if let Some(sigma) = written.and_then(|written| deviation.sigma(*written, friction))
+            && !SIGMAS.holds(sigma)
+        {
+            let label = table.column("sigma").map(ReadColumn::label).unwrap_or_default();
+            return refused(row, &label, sigma, format!("{SIGMAS}, the standard deviation of friction"));
+        }
+    }
+    Ok(())
 }
 
 /// Refuses pressures and forces that are not the same on the layer.
@@ -448,6 +470,11 @@ mod tests {
             ("speed [m/s],v [m/s],p [Pa],mu\n1,2,3,4\n", 1, "columns"),
             ("speed [m/s],p [Pa],mu\n1,2,-3\n", 2, "friction"),
             ("speed [m/s],p [Pa],mu,std\n1,2,3,1e-300\n", 2, "column 4 \"std\""),
+            ("speed [m/s],p [Pa],mu\n1,2,0.5\n2,2,-5\n", 3, "friction"),
+            ("speed [m/s],p [Pa],mu\n1,2,0.5\n2,2,1e308\n", 3, "friction"),
+            ("speed [m/s],p [Pa],F_T [N]\n1,2,0.5e-3\n2,2,-5e-3\n", 3, "friction"),
+            ("speed [m/s],p [Pa],mu,std\n1,2,3,0.1\n1,2,3,1e-12\n", 3, "column 4 \"std\""),
+            ("speed [m/s],p [Pa],mu,std [%]\n1,2,3,5\n1,2,0,5\n", 3, "column 4 \"std [%]\""),
             ("1,2,3\n", 1, "columns"),
             ("only words\n", 1, "rows"),
         ] {

@@ -146,8 +146,21 @@ pub fn summary(definition: &Definition) -> Vec<LabelledLine> {
     }
 }
 
+/// What is to be looked at in an FMU of what was read from the file at `path`: start values that do not initialise, and files
+/// that links lead to outside of its folder.
+pub fn warnings(definition: &Definition, path: &Path) -> Vec<String> {
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let folder = folder.canonicalize().ok();
+    let linked = definition.sources(path).into_iter().filter(|file| file != path).filter_map(|file| {
+        let place = file.canonicalize().ok().filter(|place| !place.starts_with(folder.as_ref()?))?;
+        let (file, place) = (file.display(), place.display());
+        Some(format!("{file} is a link out of its folder, to {place}: the FMU carries what that file holds"))
+    });
+    no_start(definition).into_iter().chain(linked).collect()
+}
+
 /// A warning of start values that do not initialise, which masters begin with that set none.
-pub fn no_start(definition: &Definition) -> Option<String> {
+fn no_start(definition: &Definition) -> Option<String> {
     let problem = definition.start_problem()?;
     Some(format!("the FMU does not initialise at its start values: {problem}; set others before initialisation ends"))
 }
@@ -158,4 +171,35 @@ pub fn not_converged(header: &Header) -> Option<String> {
     let foundation = header.text_of("foundation").filter(|_| is_converged(header) != Some(true))?;
     let found = header.text_of("convergence").unwrap_or("no study of it: see asperity converge");
     Some(format!("the table (foundation {foundation}) is not known to be converged: {found}"))
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use crate::files::load_scene;
+
+    #[test]
+    fn files_that_links_lead_to_outside_of_the_folder_are_named() {
+        let all = std::env::temp_dir().join(format!("asperity-links-{}", std::process::id()));
+        let [folder, other] = ["scene", "secret"].map(|name| all.join(name));
+        [&folder, &other].into_iter().for_each(|path| std::fs::create_dir_all(path).unwrap());
+        let points = "x [m],z [m]\n0,0\n1e-4,1e-6\n2e-4,0\n";
+        std::fs::write(other.join("private.csv"), points).unwrap();
+        std::fs::write(folder.join("beside.csv"), points).unwrap();
+        let scene = folder.join("s.toml");
+        let text = "name = 's'\nlayer = { masses = 2, spacing = 1e-4, mass = 1e-6, vertical = { stiffness = 2e3 }, \
+                    horizontal = { stiffness = 1e3 } }\nfriction = { coulomb = 0.3 }\n\
+                    surface = { kind = 'file', path = 'road.csv' }\n";
+        std::fs::write(&scene, text).unwrap();
+        let said = |target: &Path| {
+            drop(std::fs::remove_file(folder.join("road.csv")));
+            std::os::unix::fs::symlink(target, folder.join("road.csv")).unwrap();
+            warnings(&load_scene(&scene, &[]).unwrap().into(), &scene)
+        };
+        let found = said(&other.join("private.csv"));
+        assert!(found.iter().any(|text| text.contains("road.csv") && text.contains("private.csv")), "{found:?}");
+        let found = said(&folder.join("beside.csv"));
+        assert!(!found.iter().any(|text| text.contains("link")), "{found:?}");
+        std::fs::remove_dir_all(all).unwrap();
+    }
 }

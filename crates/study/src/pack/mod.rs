@@ -7,5 +7,5 @@ mod fmu;
 mod icon;
 
 pub use archive::{Library, LibraryFile, Platform};
-pub use fmu::{Fmu, FmuOptions, flat_names, no_start, not_converged, summary};
+pub use fmu::{Fmu, FmuOptions, flat_names, not_converged, summary, warnings};
 pub use icon::{element_icon, layer_icon};

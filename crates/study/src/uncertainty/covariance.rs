@@ -57,6 +57,10 @@ pub const CANNOT_SAY: &str = "the scene cannot say this data";
 
 /// The columns before those of the keys.
 const COLUMNS: [&str; 3] = ["key", "value", "scale"];
+/// How many numbers one may have: its root takes time as their third power.
+const MOST: usize = 100;
+/// How large its file may be (bytes): as many numbers take a quarter of it.
+pub(super) const LARGEST_FILE: usize = 1 << 20;
 /// What is written with some digits is symmetric and positive but for this part.
 const ROUNDING: f64 = 1e-6;
 
@@ -71,6 +75,10 @@ impl Covariance {
             let expected = "expected key, value, scale and a column for each key, as calibrate writes them";
             return Err(table.error(format!("the columns {}: {expected}", names.join(", "))).into());
         };
+        if keys.len() > MOST {
+            let expected = format!("expected at most {MOST}, as calibrate frees a dozen at most");
+            return Err(table.error(format!("{} numbers: {expected}", keys.len())).into());
+        }
         if table.len() != keys.len() {
             let (found, expected) = (table.len(), keys.len());
             return Err(table.error(format!("{found} rows: expected {expected}, one for each column of a key")).into());
@@ -92,7 +100,11 @@ impl Covariance {
                 "linear" => Scale::Linear,
                 _ => return Err(table.cell_error(row, "scale", "", "one of \"log\", \"linear\"").into()),
             };
-            numbers.push(FittedNumber { key: key.to_owned(), value: number(row, "value")?, scale });
+            let value = number(row, "value")?;
+            if scale == Scale::Log && value <= 0.0 {
+                return Err(table.cell_error(row, "value", "", "a number above 0, whose logarithm was fitted").into());
+            }
+            numbers.push(FittedNumber { key: key.to_owned(), value, scale });
             rows.push(keys.iter().map(|key| number(row, key)).collect::<Result<Vec<f64>, _>>()?);
         }
         let root = root(&rows).map_err(|expected| table.error(format!("covariance: expected {expected}")))?;
@@ -165,6 +177,7 @@ mod tests {
             ("key,value,scale,a\n", "0 rows: expected 1, one for each"),
             ("key,value,scale,a\nb,1,log,1\n", "key = \"b\": expected the keys of the columns"),
             ("key,value,scale,a\na,1,ln,1\n", "scale = \"ln\": expected one of \"log\", \"linear\""),
+            ("key,value,scale,a\na,-1,log,1\n", "value = \"-1\": expected a number above 0, whose logarithm"),
             ("key,value,scale,a\na,x,log,1\n", "value = \"x\": expected a number"),
             ("key,value,scale,a\na,1,log,-1\n", "covariance: expected variances"),
             ("key,value,scale,a,b\na,1,log,1,0\nb,1,log,0.1,1\n", "covariance: expected a symmetric"),
@@ -173,5 +186,8 @@ mod tests {
             let error = read(text).unwrap_err();
             assert!(error.starts_with("fit.csv") && error.contains(message), "{text:?}: {error}");
         }
+        let many: String = (0..1000).map(|i| format!(",k{i}")).collect();
+        let error = read(&format!("key,value,scale{many}\n")).unwrap_err();
+        assert!(error.contains("1000 numbers: expected at most 100"), "{error}");
     }
 }

@@ -7,7 +7,7 @@ use asperity::scene::{FineWaves, Scene, read_text};
 use asperity::tables::{NumberRange, POSITIVE};
 use toml::{Table, Value};
 
-use super::covariance::{CANNOT_SAY, Covariance, Scale};
+use super::covariance::{CANNOT_SAY, Covariance, LARGEST_FILE, Scale};
 use crate::error::Error;
 
 /// What is not known of a scene; empty where it does not say.
@@ -273,6 +273,9 @@ fn fitted(scene: &Scene) -> Result<(Covariance, Vec<String>)> {
     let text = read_text(&place)
         .map_err(Error::io("read", &place))
         .map_err(|error| refused(format!("a file that can be read: {error}")))?;
+    if text.len() > LARGEST_FILE {
+        return Err(refused(format!("a file of a covariance, of at most {LARGEST_FILE} bytes, found {}", text.len())));
+    }
     let table = asperity::table::Table::parse(&text, &place)?;
     let mut covariance = Covariance::of(&table, file.clone())?;
     let mut moved = Vec::new();
