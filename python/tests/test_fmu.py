@@ -1,6 +1,7 @@
 """What an FMU carries and what ways of driving it lose."""
 
 import sys
+import zipfile
 
 import pytest
 
@@ -24,3 +25,37 @@ def test_an_fmu_proves_itself(small, tmp_path):
         still = small.with_(excitation=[]).pack(tmp_path / "still.fmu")
     with pytest.raises(ValueError, match="the scene has no excitation"):
         asperity.fmi.verify(still)
+
+
+FORGED = [
+    (lambda rows: [*rows, rows[-1]], r"result\.csv: expected \d+ rows, as the experiment"),
+    (lambda rows: rows[:3], r"result\.csv: expected \d+ rows"),
+    (lambda rows: rows[:1], r"result\.csv: expected \d+ rows"),
+    (lambda rows: [rows[0], *("9" + row for row in rows[1:])], r"result\.csv, row 2: expected time = 0"),
+    (lambda rows: [rows[0].replace("F_x", "F_q"), *rows[1:]], r"result\.csv, row 1: .*F_q"),
+    (lambda rows: [*rows[:5], "1,2", *rows[6:]], r"result\.csv, row 6: expected \d+ numbers"),
+    (lambda rows: [*rows[:5], rows[5].rpartition(",")[0] + ",inf", *rows[6:]], r"row 6: .* = 'inf': expected a number"),
+    (lambda rows: [*rows[:5], rows[5].rpartition(",")[0] + ",", *rows[6:]], r"row 6: .* = '': expected a number"),
+    (lambda rows: [rows[0], "0" * (1 << 25)], r"result\.csv: expected at most 16777216 bytes"),
+]
+
+
+def test_a_result_that_proves_nothing_is_refused(small, tmp_path):
+    packed, forged = small.pack(tmp_path / "small.fmu"), tmp_path / "forged.fmu"
+    for edit, message in FORGED:
+        with zipfile.ZipFile(packed) as archive, zipfile.ZipFile(forged, "w", zipfile.ZIP_DEFLATED) as other:
+            for name in archive.namelist():
+                content = archive.read(name)
+                if name.endswith("result.csv"):
+                    content = "".join(row + "\n" for row in edit(content.decode().splitlines())).encode()
+                other.writestr(name, content)
+        with pytest.raises(ValueError, match=message):
+            asperity.fmi.verify(forged)
+
+
+def test_an_archive_that_leaves_its_folder_is_not_unpacked(tmp_path):
+    for name in ("../a", "/a"):
+        with zipfile.ZipFile(tmp_path / "a.fmu", "w") as archive:
+            archive.writestr(name, "")
+        with pytest.raises(ValueError, match="within the archive"):
+            asperity.fmi.verify(tmp_path / "a.fmu")

@@ -6,6 +6,7 @@ from __future__ import annotations
 import csv
 import io
 import shutil
+import tempfile
 import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -25,6 +26,9 @@ __all__ = ["Verification", "simulate", "verify"]
 
 _REFERENCES = "extra/org.fmi-standard.fmi-ls-ref"
 _LEFT_OUT = "extra/org.asperity/left-out.txt"
+# Bytes, unpacked: pack writes tables of 0.1 MB, and libraries of three platforms have some 30 MB.
+_LARGEST_TABLE = 1 << 24
+_LARGEST = 1 << 30
 
 
 def simulate(
@@ -67,16 +71,17 @@ def verify(fmu: str | PathLike[str]) -> Verification:
         fmu: The FMU.
 
     Raises:
-        ValueError: Where it carries no experiment and result (FMI-LS-REF).
+        ValueError: Where it carries no experiment and result (FMI-LS-REF), these do not go with each other or with the
+            FMU, by file and row, or it is larger than 1 GiB when unpacked.
     """
     import fmpy
 
+    _check_archive(fmu)
     description = fmpy.read_model_description(str(fmu))
-    experiment, result, of_result = _experiment(fmu)
     inputs = [variable for variable in description.modelVariables if variable.causality == "input"]
+    experiment, result, of_result = _experiment(fmu, {one.name for one in _calculated(description)})
     rows = _rows(experiment, [variable.name for variable in inputs])
     units = {variable.name: variable.unit for variable in description.modelVariables}
-    del result["time"]
     scales = _scales(result, units)
     ways: list[str] = []
     differences: list[list[float]] = []
@@ -125,8 +130,21 @@ def _difference(run: Result, name: str, time: Floats, expected: Floats) -> float
     return float(np.max(np.abs(expected[own] - np.asarray(run[name], dtype=np.float64)[theirs])))
 
 
-def _experiment(fmu: str | PathLike[str]) -> tuple[dict[str, Floats], dict[str, Floats], str]:
-    """Inputs and result that an FMU carries, by the manifest's roles, and what the result is."""
+def _check_archive(fmu: str | PathLike[str]) -> None:
+    """Refuses an archive that is too large, or whose files would lie outside of the folder that it is unpacked to."""
+    with zipfile.ZipFile(fmu) as archive:
+        size = sum(one.file_size for one in archive.infolist())
+        if size > _LARGEST:
+            raise ValueError(f"{fmu}: expected at most {_LARGEST} bytes when unpacked, found {size}")
+        for name in archive.namelist():
+            if name.startswith("/") or "\\" in name or ":" in name or ".." in name.split("/"):
+                raise ValueError(f"{fmu}: {name}: expected a name within the archive, with forward slashes")
+
+
+def _experiment(
+    fmu: str | PathLike[str], outputs: set[str]
+) -> tuple[dict[str, Floats], dict[str, Floats], str]:
+    """Inputs and result that an FMU carries, by the manifest's roles, the result without its times; and what it is."""
     with zipfile.ZipFile(fmu) as archive:
         names = archive.namelist()
         manifest = f"{_REFERENCES}/fmi-ls-manifest.xml"
@@ -141,14 +159,41 @@ def _experiment(fmu: str | PathLike[str]) -> tuple[dict[str, Floats], dict[str, 
                 else "an FMU of asperity pack has them, unless it was packed with --no-references"
             )
             raise ValueError(f"{fmu}: expected an experiment and its result in {_REFERENCES}: {why}")
-        experiment, result = (_columns(archive.read(table).decode()) for table in tables)
+        experiment, result = (_columns(archive, table, f"{fmu}: {table}") for table in tables)
+    time, own, where = experiment.get("time", np.empty(0)), result.pop("time", np.empty(0)), f"{fmu}: {tables[1]}"
+    unknown = [name for name in result if name not in outputs]
+    if unknown or not result:
+        raise ValueError(f"{where}, row 1: expected columns time and outputs of the FMU, found {', '.join(unknown) or 'none'}")
+    if len(own) != len(time):
+        raise ValueError(f"{where}: expected {len(time)} rows, as the experiment {tables[0]} has, found {len(own)}")
+    for i in np.flatnonzero(own != time)[:1]:
+        raise ValueError(f"{where}, row {i + 2}: expected time = {time[i]:g}, as in the experiment {tables[0]}, found {own[i]:g}")
     return experiment, result, related["result"].get("description", "")
 
 
-def _columns(text: str) -> dict[str, Floats]:
-    head, *rows = csv.reader(io.StringIO(text))
-    values = np.array(rows, dtype=np.float64)
-    return {name: values[:, i] for i, name in enumerate(head)}
+def _columns(archive: zipfile.ZipFile, table: str, where: str) -> dict[str, Floats]:
+    """The columns of a table of finite numbers; ``where`` it is, for messages."""
+    size = archive.getinfo(table).file_size
+    if size > _LARGEST_TABLE:
+        raise ValueError(f"{where}: expected at most {_LARGEST_TABLE} bytes, found {size}")
+    try:
+        head, *rows = csv.reader(io.StringIO(archive.read(table).decode()))
+    except (csv.Error, UnicodeDecodeError, ValueError) as problem:
+        raise ValueError(f"{where}: expected a table of numbers under their names: {problem}") from None
+    if len(set(head)) != len(head):
+        raise ValueError(f"{where}, row 1: expected each column once, found {', '.join(head)}")
+    values = np.empty((len(rows), len(head)))
+    for i, row in enumerate(rows):
+        if len(row) != len(head):
+            raise ValueError(f"{where}, row {i + 2}: expected {len(head)} numbers, one for each column, found {len(row)}")
+        for j, field in enumerate(row):
+            try:
+                values[i, j] = float(field)
+            except ValueError:
+                values[i, j] = np.nan
+            if not np.isfinite(values[i, j]):
+                raise ValueError(f"{where}, row {i + 2}: {head[j]} = {field[:40]!r}: expected a number")
+    return {name: values[:, j] for j, name in enumerate(head)}
 
 
 @contextmanager
@@ -157,8 +202,9 @@ def _slave(fmu: str | PathLike[str], description: Any) -> Iterator[Any]:
     import fmpy
     from fmpy.fmi2 import FMU2Slave
 
-    folder = fmpy.extract(str(fmu))
+    folder = tempfile.mkdtemp(prefix="asperity-")
     try:
+        fmpy.extract(str(fmu), folder)
         slave = FMU2Slave(
             guid=description.guid,
             unzipDirectory=folder,
@@ -186,6 +232,10 @@ def _rows(columns: Mapping[str, Any], names: list[str]) -> Any:
     return np.column_stack([columns.get(name, np.zeros(len(time))) for name in names])
 
 
+def _calculated(description: Any) -> list[Any]:
+    return [variable for variable in description.modelVariables if variable.causality in ("output", "local")]
+
+
 def _run(
     slave: Any,
     description: Any,
@@ -200,7 +250,7 @@ def _run(
     for name, value in parameters.items():
         _set(slave, by_name[name], value)
     references = [variable.valueReference for variable in inputs]
-    outputs = [variable for variable in description.modelVariables if variable.causality in ("output", "local")]
+    outputs = _calculated(description)
     rates = np.vstack([np.diff(rows, axis=0) / np.diff(time)[:, None], np.zeros((1, rows.shape[1]))])
 
     def give(i: int) -> None:
