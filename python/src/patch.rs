@@ -28,7 +28,7 @@ pub(crate) struct Patch {
 impl Patch {
     #[new]
     fn new(file: PathBuf) -> PyResult<Self> {
-        let patch = asperity::patch::Patch::load(&file).map_err(|error| error.raise())?;
+        let patch = asperity_study::files::load_patch(&file, &[]).map_err(|error| error.raise())?;
         Ok(Self { patch, file })
     }
 

@@ -6,6 +6,7 @@ import pickle
 import asperity
 import numpy as np
 import pytest
+from asperity._arguments import axis, table_text
 from conftest import SCENES, SMALL, names
 
 
@@ -25,6 +26,27 @@ def test_a_dictionary_is_a_scene(small):
     keys = {name: small[name] for name in ("name", "layer", "surface", "friction", "fmu", "excitation")}
     keys["layer"]["masses"] = np.int64(8)
     assert asperity.Scene.from_dict(keys) == small
+
+
+def test_temperatures_may_have_their_unit():
+    assert axis("temperatures", ["20 °C", 300.0, "-5°C"]) == [268.15, 293.15, 300.0]
+    assert axis("temperatures", "20 °C") == [293.15]
+    with pytest.raises(ValueError, match="texts such as '20 °C', found '20 furlongs'"):
+        axis("temperatures", ["20 furlongs"])
+
+
+def test_a_frame_brings_the_units_that_it_keeps():
+    pd = pytest.importorskip("pandas")
+    frame = pd.DataFrame({"speed": [0.1], "pressure": [1e5], "temperature": [293.15], "friction": [1.0]})
+    frame.attrs["units"] = {"speed": "m/s", "pressure": "Pa", "temperature": "K", "friction": "1"}
+    assert table_text(frame).splitlines()[0] == "speed [m/s],pressure [Pa],temperature [K],friction"
+
+
+def test_what_is_no_file_is_not_found(tmp_path):
+    with pytest.raises(FileNotFoundError, match="no.toml"):
+        asperity.Patch(tmp_path / "no.toml")
+    with pytest.raises(FileNotFoundError):
+        asperity.Scene.from_toml(tmp_path / "no.toml")
 
 
 def test_errors_say_where():

@@ -89,6 +89,12 @@ pub fn as_given(value: f64, unit: &str) -> String {
     format!("{} {prefix}{unit}", rounded(value / factor, 12))
 }
 
+/// A temperature that was given in K, in °C where that takes fewer digits: 293.15 K was given as 20 °C.
+pub fn temperature_as_given(kelvin: f64) -> String {
+    let [kelvin, celsius] = [kelvin, kelvin - 273.15].map(|value| rounded(value, 9).to_string());
+    if celsius.len() < kelvin.len() { format!("{celsius} °C") } else { format!("{kelvin} K") }
+}
+
 /// A tenth of a number, rounded in decimal: 1e-11 for 1e-10.
 pub fn tenth(number: f64) -> f64 {
     let written = format!("{number:e}");
@@ -104,6 +110,8 @@ mod tests {
     fn loads_have_a_prefix_of_their_unit() {
         let names = [2e5, 4e4, 20.0, 0.05].map(|value| as_given(value, "Pa"));
         assert_eq!(names, ["200 kPa", "40 kPa", "20 Pa", "50 mPa"]);
+        let names = [293.15, 268.15, 300.0, 273.0, 273.15 + 0.1].map(temperature_as_given);
+        assert_eq!(names, ["20 °C", "-5 °C", "300 K", "273 K", "0.1 °C"]);
     }
 
     #[test]

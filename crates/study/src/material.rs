@@ -26,7 +26,7 @@ pub struct MaterialOptions {
     #[arg(long, value_name = "A..B[Hz]", value_parser = frequencies)]
     pub frequencies: Option<FrequencyBand>,
     /// The compound's temperature in K, in place of the scene's.
-    #[arg(long, value_name = "T", value_parser = temperature, allow_negative_numbers = true)]
+    #[arg(long, value_name = "T", value_parser = temperature, allow_hyphen_values = true)]
     pub temperature: Option<f64>,
 }
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import datetime, timedelta
@@ -142,11 +143,25 @@ def _axes_of(heights: Any) -> tuple[tuple[Any, ...], list[Floats | None]]:
 
 
 def axis(name: str, values: ArrayLike) -> list[float]:
-    """Values of an axis of a sweep, rising, each once, all above 0."""
-    found = np.unique(numbers(name, values))
+    """Values of an axis of a sweep, rising, each once, all above 0; temperatures may be texts with their unit."""
+    listed: Any = [values] if isinstance(values, str) else values
+    if name == "temperatures" and isinstance(listed, Sequence):
+        listed = [kelvin(one) if isinstance(one, str) else one for one in listed]
+    found = np.unique(numbers(name, listed))
     if found.size == 0 or not np.all(np.isfinite(found)) or found[0] <= 0.0:
         raise ValueError(f"{name}: expected numbers above 0, found {values!r}")
     return [float(value) for value in found]
+
+
+def kelvin(text: str) -> float:
+    """The temperature (K) of a text such as ``"20 °C"``."""
+    read = re.fullmatch(r"\s*([-+.\de]+)\s*(K|°C|°F)\s*", text)
+    try:
+        value = float(read[1] if read else "")
+    except ValueError:
+        raise ValueError(f"temperatures: expected numbers, in K, or texts such as '20 °C', found {text!r}") from None
+    unit = read[2] if read else ""
+    return value if unit == "K" else round(273.15 + (value if unit == "°C" else (value - 32.0) / 1.8), 9)
 
 
 def positive(name: str, value: float) -> float:
@@ -180,6 +195,9 @@ def columns_of(data: Any) -> dict[str, NDArray[Any]]:
     Times are in seconds, which stands beside their names.
     """
     units: dict[str, str] = {}
+    kept = getattr(data, "attrs", {}).get("units")
+    if isinstance(kept, Mapping):
+        units = {str(name): str(unit) for name, unit in kept.items() if unit not in ("", "1")}
     if hasattr(data, "data_vars"):
         units = {str(name): one.attrs["units"] for name, one in data.variables.items() if "units" in one.attrs}
         data = data.to_dataframe()

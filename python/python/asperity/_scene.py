@@ -105,7 +105,7 @@ class Scene(SceneInputs):
         Args:
             speeds: Speeds, m/s.
             pressures: Mean pressures, Pa; of a scene in the material form.
-            temperatures: Temperatures, K; None: the scene's own.
+            temperatures: Temperatures, K, or texts such as ``"20 °C"``; None: the scene's own.
             forces: Mean normal forces of the whole layer, N, in place of pressures.
             method: "steady" solves for steady sliding, "layer" lets the layer slide until it is steady; None: "steady"
                 where the scene can be solved for.

@@ -57,6 +57,7 @@ pub struct PlanOptions {
     pub pressures: Option<Values>,
     /// Temperatures of that grid in K. Default: 20 K beyond the data's.
     #[arg(long, value_name = "VALUES", value_parser = Values::of(Dimension::Temperature), requires = "plan")]
+    #[arg(allow_hyphen_values = true)]
     pub temperatures: Option<Values>,
 }
 

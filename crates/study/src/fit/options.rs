@@ -131,6 +131,7 @@ pub struct FitOptions {
     /// The temperature in K at which the master curve is made where no constants are given; the measured one that is
     /// nearest. Default: 293.15.
     #[arg(long, value_name = "T", value_parser = temperature, conflicts_with = "wlf")]
+    #[arg(allow_hyphen_values = true)]
     pub reference: Option<f64>,
     /// Which modulus the error counts: E' alone, E'' alone (each where the other decides what it leaves open), or both.
     #[arg(long, value_enum, default_value_t)]

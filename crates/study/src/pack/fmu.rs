@@ -150,9 +150,9 @@ pub fn summary(definition: &Definition) -> Vec<LabelledLine> {
 /// that links lead to outside of its folder.
 pub fn warnings(definition: &Definition, path: &Path) -> Vec<String> {
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    let folder = folder.canonicalize().ok();
+    let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let linked = definition.sources(path).into_iter().filter(|file| file != path).filter_map(|file| {
-        let place = file.canonicalize().ok().filter(|place| !place.starts_with(folder.as_ref()?))?;
+        let place = file.canonicalize().ok().filter(|place| !place.starts_with(&folder))?;
         let (file, place) = (file.display(), place.display());
         Some(format!("{file} is a link out of its folder, to {place}: the FMU carries what that file holds"))
     });

@@ -78,6 +78,7 @@ pub struct SweepOptions {
     pub forces: Option<Values>,
     /// Temperatures in K: a..b/n for n evenly spaced values. Default: the scene's temperature.
     #[arg(long, value_name = "VALUES", value_parser = Values::of(Dimension::Temperature))]
+    #[arg(allow_hyphen_values = true)]
     pub temperatures: Option<Values>,
     #[command(flatten)]
     #[serde(flatten)]

@@ -5,7 +5,7 @@ use asperity::element::{OperatingPoint, Quantity};
 use asperity::scene::Wlf;
 
 use super::{Matters, Sampled, SweepColumn, SweepRow, SweepTable, is_converged};
-use crate::decimals::as_given;
+use crate::decimals::{as_given, temperature_as_given};
 use crate::picture::{Axis, Colour, Fill, Fit, Mark, Panel, Picture, Point, Stroke, Tick};
 use crate::uncertainty::Index;
 
@@ -41,7 +41,7 @@ pub fn column_picture(table: &SweepTable, column: &SweepColumn) -> Picture {
 /// Friction over the speed at the reference temperature of the compound's shift, a_T v: a panel for each load, a colour for
 /// each temperature. Where friction follows the compound's times alone, temperatures lie on one curve.
 pub fn master_picture(table: &SweepTable, wlf: &Wlf) -> Picture {
-    let title = format!("a_T v in m/s, at {} K", wlf.reference_temperature);
+    let title = format!("a_T v in m/s, at {}", temperature_as_given(wlf.reference_temperature));
     let shift = |temperature: f64| Wlf { temperature, ..*wlf }.shift_factor();
     let shifted = |point: &OperatingPoint| point.temperature.map_or(1.0, shift) * point.speed;
     picture(table, (&title, ""), &panels_of_loads(table), shifted)
@@ -135,7 +135,7 @@ fn temperatures(table: &SweepTable) -> Vec<Option<f64>> {
 }
 
 fn temperature_name(kelvin: Option<f64>) -> Option<String> {
-    kelvin.map(|kelvin| format!("{kelvin} K"))
+    kelvin.map(temperature_as_given)
 }
 
 fn load_name(table: &SweepTable, load: f64) -> String {
