@@ -1,5 +1,6 @@
 //! What a sweep computes: the row of each of its points, with samples of what is not known of the scene or without.
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
@@ -116,10 +117,12 @@ impl SweepPlan {
         };
         let found: Vec<_> = rows.iter().filter_map(missing).collect();
         let (row, missing) = found.iter().max_by_key(|(_, missing)| *missing)?;
+        let why = self.samples.as_ref().and_then(Samples::problem);
         Some(format!(
-            "more than 5 % of the samples have no result at {} of the points of the table and are left out there, {missing} at {}",
+            "more than 5 % of the samples have no result at {} of the points of the table and are left out there, {missing} at {}{}",
             found.len(),
-            row.point.describe(self.header.load)
+            row.point.describe(self.header.load),
+            why.map(|why| format!("; most of them: {why}")).unwrap_or_default()
         ))
     }
 
@@ -286,6 +289,8 @@ pub(super) struct Samples {
     /// How many draws were drawn anew.
     redrawn: usize,
     options: SampleOptions,
+    /// How often a reason left a sample without a result.
+    problems: Mutex<BTreeMap<String, usize>>,
 }
 
 /// A sample.
@@ -320,7 +325,14 @@ impl Samples {
             made.map_err(|error| error.context(format!("sample {}", sample + 1)))
         };
         let all = draws.made.into_iter().enumerate().map(failed).collect::<Result<_, Error>>()?;
-        Ok(Self { groups: uncertain.groups().to_vec(), all, redrawn: draws.redrawn, options: samples })
+        let groups = uncertain.groups().to_vec();
+        Ok(Self { groups, all, redrawn: draws.redrawn, options: samples, problems: Mutex::default() })
+    }
+
+    /// Why most of the samples without a result have none, as far as they were found here.
+    fn problem(&self) -> Option<String> {
+        let problems = self.problems.lock().unwrap_or_else(PoisonError::into_inner);
+        problems.iter().max_by_key(|(_, count)| **count).map(|(problem, _)| problem.clone())
     }
 
     /// What the table's header says of them.
@@ -335,6 +347,10 @@ impl Samples {
                 return [None; Sampled::ALL.len()];
             }
             let row = sample.row(point, interrupt);
+            if !row.is_result() {
+                let mut problems = self.problems.lock().unwrap_or_else(PoisonError::into_inner);
+                *problems.entry(row.status.text().to_owned()).or_default() += 1;
+            }
             let value = |quantity| row.value(quantity).filter(|_| row.is_result());
             [Quantity::Friction, Quantity::Hysteresis, Quantity::ContactRatio].map(value)
         };
