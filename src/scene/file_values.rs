@@ -167,6 +167,52 @@ fn parts(path: &str) -> Option<Vec<PathPart<'_>>> {
     Some(parts)
 }
 
+/// How deep tables and lists may lie within each other: scenes need half of it, and each level takes stack to read.
+const DEEPEST: usize = 16;
+
+/// Where a text goes deeper than that, by brackets and the dots of keys.
+fn too_deep(text: &str) -> Option<usize> {
+    let (mut open, mut depth, mut dots) = (Vec::new(), 0, 0);
+    let mut next = 0;
+    while let Some(letter) = text[next..].chars().next() {
+        let place = next;
+        let skip = match letter {
+            '#' => text[place..].find('\n').unwrap_or(text.len() - place),
+            '"' | '\'' => quoted_length(&text[place..], letter),
+            _ => 0,
+        };
+        next += skip.max(letter.len_utf8());
+        match letter {
+            '[' | '{' => {
+                open.push(1 + dots);
+                depth += 1 + std::mem::take(&mut dots);
+            }
+            ']' | '}' => depth -= open.pop().unwrap_or(0),
+            '.' => dots += 1,
+            ',' | '=' | '\n' => dots = 0,
+            _ => (),
+        }
+        if depth + dots > DEEPEST {
+            return Some(place);
+        }
+    }
+    None
+}
+
+/// The length of the string that a text begins with, quotation marks included.
+fn quoted_length(text: &str, mark: char) -> usize {
+    let marks = if text[1..].starts_with([mark; 2].iter().collect::<String>().as_str()) { 3 } else { 1 };
+    let (mut escaped, mut row) = (false, 0);
+    for (place, letter) in text.char_indices().skip(marks) {
+        row = if letter == mark && !escaped { row + 1 } else { 0 };
+        escaped = letter == '\\' && mark == '"' && !escaped;
+        if row == marks || (marks == 1 && letter == '\n') {
+            return place + 1;
+        }
+    }
+    text.len()
+}
+
 /// Why a key cannot be set: what stands on its way.
 enum Obstacle {
     /// A list that is the name of a file.
@@ -179,6 +225,10 @@ impl FileValues {
     pub(super) fn parse(text: &str, file: &Path, formats: &'static dyn FileFormats) -> Result<Self> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let values = Self { file: file.to_owned(), text: Some(text.into()), formats, ..Self::default() };
+        if let Some(place) = too_deep(text) {
+            let reason = format!("tables and lists within each other, more than {DEEPEST} deep");
+            return Err(SceneError::new(values.place(place), "", Problem::Syntax { reason }));
+        }
         let root = text.parse().map_err(|error: toml::de::Error| {
             let location = values.place(error.span().map_or(0, |span| span.start));
             SceneError::new(location, "", Problem::Syntax { reason: error.message().trim().replace('\n', "; ") })

@@ -219,3 +219,20 @@ fn keys_are_not_set_in_a_scene_that_code_has_changed() {
     scene.layer.spacing = 1e-4;
     assert!(scene.with("layer.masses", 8).is_ok());
 }
+
+/// A host's thread may have 64 KiB of stack: what lies too deep is refused before it is read.
+#[test]
+fn nesting_is_bounded() {
+    let deep = |count: usize| [format!("a = {}", "[".repeat(count)), format!("a = {}", "{ a = ".repeat(count))];
+    let dotted = |count: usize| [format!("{} = 1", ["a"; 60].join(".").split_at(2 * count).0.trim_end_matches('.'))];
+    let refused = |text: &str| Scene::parse(text, FilePath::new("s.toml")).unwrap_err().to_string();
+    let all =
+        move || deep(20).iter().chain(&deep(5000)).chain(&dotted(20)).map(|text| refused(text)).collect::<Vec<_>>();
+    let found = std::thread::Builder::new().stack_size(64 << 10).spawn(all).unwrap().join().unwrap();
+    assert!(found.iter().all(|error| error.contains("s.toml:1") && error.contains("more than 16 deep")), "{found:?}");
+    // Brackets and dots of texts and comments do not count, nor numbers.
+    let brackets = "[".repeat(40);
+    let text = format!("name = \"{brackets} \\\" {brackets}\" # {brackets}\ndescription = '{}'", ".".repeat(40));
+    let error = refused(&format!("{text}\na = \"\"\"\n{brackets}\n\"\"\"\nb = [{}]", "1.5, ".repeat(40)));
+    assert!(!error.contains("deep"), "{error}");
+}

@@ -313,3 +313,18 @@ fn counts_beyond_the_memory_are_refused() {
         assert!(!output.exists(), "{command}");
     }
 }
+
+/// What cannot be written is no success, and no system bears a million threads.
+#[test]
+#[cfg(target_os = "linux")]
+fn help_that_is_lost_fails_and_threads_are_bounded() {
+    for arguments in [&["--help"][..], &["rank", "--help"], &["--version"]] {
+        let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let output = asperity().args(arguments).stdout(full).output().unwrap();
+        assert!(!output.status.success() && !output.stderr.is_empty(), "{arguments:?}");
+    }
+    let output = asperity().args(["describe", &sinusoid()]).env("RAYON_NUM_THREADS", "1000000").output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{said}");
+    assert_names(&said, "RAYON_NUM_THREADS");
+}

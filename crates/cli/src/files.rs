@@ -87,7 +87,8 @@ pub(crate) fn load_patch(path: &Path, set: &[Setting]) -> Result<Patch, Error> {
 pub(crate) fn check_output(output: &Path, others: &[PathBuf]) -> Result<(), Error> {
     let same = |other: &PathBuf| {
         // To open a pipe is to wait for who is at its other end.
-        let is_there = || !is_stream(output) && !is_stream(other) && same_file::is_same_file(output, other).unwrap_or(false);
+        let is_there =
+            || !is_stream(output) && !is_stream(other) && same_file::is_same_file(output, other).unwrap_or(false);
         other == output || is_there() || (place(output).is_some() && place(output) == place(other))
     };
     if others.iter().any(same) { Err(overwrites(output)) } else { Ok(()) }

@@ -65,8 +65,9 @@ mod terminal;
 
 use std::error::Error;
 use std::ffi::OsString;
+use std::io::{self, Write as _};
 
-use clap::{CommandFactory as _, Parser, Subcommand};
+use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
 /// Simulates rubber on a rough surface and packs the simulation as an FMU.
 #[derive(Debug, Parser)]
@@ -129,18 +130,81 @@ pub(crate) enum Command {
 }
 
 /// Executes a command line, the program's name first; prints its results, and the error that ended it. Returns the exit
-/// status. Does not return from `--help` and from a command line that cannot be understood.
+/// status, also of `--help` and of a command line that cannot be understood.
 pub fn execute(words: impl IntoIterator<Item = OsString>) -> u8 {
-    match run(Arguments::parse_from(words)) {
-        Ok(status) => status,
-        Err(error) => {
-            if output::is_broken_pipe(&*error) {
-                return output::BROKEN_PIPE;
-            }
-            terminal::say(&error.to_string());
-            output::FAILURE
+    let words: Vec<OsString> = words.into_iter().collect();
+    // All commands are made where one is to be explained alone: that takes longer than many a run.
+    let explained = |_| command().try_get_matches_from(&words).and_then(|found| Arguments::from_arg_matches(&found));
+    let done = match Arguments::try_parse_from(&words).or_else(explained) {
+        Ok(arguments) => bound_threads().and_then(|()| run(arguments)),
+        Err(told) => tell(&told),
+    };
+    done.unwrap_or_else(|error| {
+        if output::is_broken_pipe(&*error) {
+            return output::BROKEN_PIPE;
         }
+        terminal::say(&error.to_string());
+        output::FAILURE
+    })
+}
+
+/// Prints what is asked for by `--help`, or what is wrong with a command line.
+fn tell(told: &clap::Error) -> Result<u8, Box<dyn Error>> {
+    told.print()?;
+    io::stdout().flush()?;
+    Ok(u8::try_from(told.exit_code()).unwrap_or(output::FAILURE))
+}
+
+/// Most threads of a computation: each takes memory and a place among the system's.
+const MOST_THREADS: usize = 1024;
+
+/// Starts no more threads than a system can bear, however many `RAYON_NUM_THREADS` asks for.
+fn bound_threads() -> Result<(), Box<dyn Error>> {
+    let wanted = std::env::var("RAYON_NUM_THREADS").ok().and_then(|text| text.parse::<usize>().ok()).unwrap_or(0);
+    if wanted > MOST_THREADS {
+        terminal::warn(&format!("RAYON_NUM_THREADS = {wanted}: expected at most {MOST_THREADS}, which are started"));
+        rayon::ThreadPoolBuilder::new().num_threads(MOST_THREADS).build_global()?;
     }
+    Ok(())
+}
+
+/// Characters of a usage line.
+const SCREEN: usize = 80;
+
+/// The command line, its usage broken between arguments.
+fn command() -> clap::Command {
+    let mut command = Arguments::command();
+    command.build();
+    command.mut_subcommands(|of| {
+        let usage = of.clone().render_usage().to_string();
+        let usage = usage.strip_prefix("Usage: ").unwrap_or(&usage);
+        of.override_usage(broken(usage))
+    })
+}
+
+/// A usage line as lines: options stay beside their values, and alternatives together.
+fn broken(usage: &str) -> String {
+    let (mut depth, mut lines, mut line) = (0, Vec::new(), String::new());
+    let words = usage.split(' ').fold(Vec::<String>::new(), |mut words, word| {
+        let is_value = |before: &String| depth > 0 || (before.starts_with("--") && word.starts_with('<'));
+        match words.last_mut().filter(|before| is_value(before)) {
+            Some(before) => *before += &format!(" {word}"),
+            None => words.push(word.to_owned()),
+        }
+        depth += word.matches('<').count();
+        depth = depth.saturating_sub(word.matches('>').count());
+        words
+    });
+    for word in words {
+        if !line.is_empty() && "Usage: ".len() + line.len() + 1 + word.len() > SCREEN {
+            lines.push(std::mem::replace(&mut line, "    ".to_owned()));
+        } else if !line.is_empty() {
+            line.push(' ');
+        }
+        line += &word;
+    }
+    lines.push(line);
+    lines.join("\n   ")
 }
 
 /// Executes the command of the command line.
@@ -209,6 +273,30 @@ mod tests {
             let example = help.lines().skip(1).collect::<Vec<_>>().join(" ").replace('\\', " ");
             let parsed = Arguments::try_parse_from(example.split_whitespace());
             assert!(parsed.is_ok() && example.contains(&format!("asperity {}", of.get_name())), "{parsed:?}");
+        }
+    }
+
+    #[test]
+    fn usage_fits_a_screen() {
+        let usage = |mut of: clap::Command| of.render_usage().to_string();
+        for of in command().get_subcommands() {
+            assert!(usage(of.clone()).lines().all(|line| line.len() <= SCREEN), "{}", usage(of.clone()));
+        }
+        let long = "asperity rank [OPTIONS] --speeds <VALUES> <--pressures <VALUES>|--forces <VALUES>> <SCENE.toml>...";
+        assert!(
+            broken(long).lines().any(|line| line.trim_start().starts_with("<--pressures <VALUES>|--forces <VALUES>>"))
+        );
+    }
+
+    #[test]
+    fn temperatures_below_zero_are_values() {
+        for line in [
+            "sweep s.toml --temperatures -5°C,20°C",
+            "material s.toml --temperature -5°C",
+            "fit d.csv --reference -5°C",
+        ] {
+            let parsed = Arguments::try_parse_from(format!("asperity {line}").split_whitespace());
+            assert!(parsed.is_ok(), "{parsed:?}");
         }
     }
 

@@ -20,7 +20,7 @@ use asperity_study::uncertainty::UncertainScene;
 use clap::{ArgGroup, Args};
 use tempfile::TempDir;
 
-use super::cli::values::{count, example, share};
+use super::cli::values::{count, example, probability};
 use super::files::{self, check_outputs, load_without_run, name_of, named, print, write};
 use super::picture;
 use super::terminal::{Bars, LabelledLine, labelled, lines, note, warn};
@@ -41,7 +41,7 @@ pub(crate) struct Pack {
     pub(crate) patch: Option<PathBuf>,
     /// Of a table with samples, or of a patch with such a table: packs the sample whose mean friction over the table is this
     /// quantile, from 0 to 1. It is drawn from the scene and swept again.
-    #[arg(long, value_name = "SHARE", value_parser = share, requires = "scene", conflicts_with = "check")]
+    #[arg(long, value_name = "SHARE", value_parser = probability, requires = "scene", conflicts_with = "check")]
     pub(crate) quantile: Option<f64>,
     /// The scene that was swept: compares the element with its layer between the table's points, or elements of the
     /// patch, tilted over the table's pressures, at three speeds; along a to-and-fro motion; and the patch with one of

@@ -8,6 +8,7 @@ use std::sync::{Mutex, PoisonError};
 use asperity::scene::read_file;
 use asperity::table::{Cell, Table, TableError};
 use asperity_study::Error;
+use asperity_study::files;
 
 use super::draft::TablePlace;
 use super::files::write;
@@ -49,6 +50,13 @@ impl TableFile {
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         let written = file.write_all(Table::line(row).as_bytes()).and_then(|()| file.sync_data());
         written.map_err(unwritten(&self.place.path))
+    }
+
+    /// Writes what `change` makes of the table in the file in its place.
+    pub(crate) fn finish_with(self, change: impl FnOnce(&Table) -> Table) -> Result<(), Error> {
+        let path = &self.place.path;
+        let table = Table::parse(&files::text(path)?, path)?;
+        self.finish(&change(&table))
     }
 
     /// Writes the whole table in place of its rows as they were added.

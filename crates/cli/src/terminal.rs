@@ -169,12 +169,17 @@ fn progress(length: Option<u64>, for_terminals: &str, as_lines: &str) -> Progres
     }
 }
 
-/// The time left, once a step is done from which it can be told.
+/// The time left, once a tenth is done from which it can be told.
 fn time_left(state: &ProgressState, text: &mut dyn fmt::Write) {
-    if state.pos() > 0 && !state.eta().is_zero() {
+    if state.len().is_some_and(|all| is_told(state.pos(), all)) && !state.eta().is_zero() {
         // A text that cannot be written is not shown.
         let _ = write!(text, ", {:#} left", HumanDuration(state.eta()));
     }
+}
+
+/// Whether the time left can be told: the first steps are of other lengths than the rest.
+fn is_told(done: u64, all: u64) -> bool {
+    10 * done >= all
 }
 
 /// Draws a progress bar as lines, the first one late enough for short runs to have none.
@@ -249,6 +254,11 @@ impl TermLike for ProgressLines {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_time_left_is_told_from_a_tenth_on() {
+        assert_eq!([0, 1, 9, 10, 100].map(|done| is_told(done, 100)), [false, false, false, true, true]);
+    }
 
     #[test]
     fn long_lines_are_broken_between_words() {

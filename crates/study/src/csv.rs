@@ -85,6 +85,13 @@ pub fn line<T: AsRef<str>>(fields: impl IntoIterator<Item = T>) -> String {
     fields.join(",")
 }
 
+/// A name that somebody gave, as a field: where a spreadsheet would take it for a formula it has an apostrophe before it,
+/// which spreadsheets do not show.
+pub fn given_name(name: &str) -> String {
+    let is_formula = name.trim_start().starts_with(['=', '+', '-', '@']);
+    if is_formula { format!("'{name}") } else { name.to_owned() }
+}
+
 /// A table with this header and these rows.
 pub fn text<'a>(head: impl IntoIterator<Item = &'a str>, rows: impl IntoIterator<Item = Vec<String>>) -> String {
     std::iter::once(line(head)).chain(rows.into_iter().map(line)).map(|line| line + "\n").collect()
@@ -140,6 +147,12 @@ impl Display for Field {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_are_no_formulas() {
+        let names = ["=1+1", "+a", "-5 °C", "@x", " =b", "a=b"].map(given_name);
+        assert_eq!(names, ["'=1+1", "'+a", "'-5 °C", "'@x", "' =b", "a=b"]);
+    }
 
     #[test]
     fn fields_are_separated_as_the_header_is() {

@@ -94,9 +94,9 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, Error> {
     let measurements = free.measurements()?;
     files::tell(&measurements.notes);
     let outputs = Outputs::new(command, free.scene())?;
+    let points = PointsTable::new(&free.fingerprint()?, free.parameters());
     let (kept, known) = match &outputs.table {
         Some(table) => {
-            let points = PointsTable::new(&free.fingerprint()?, free.parameters());
             let read = |table: &_| Ok(points.points(table));
             let (file, known) = TableFile::open(table, points.empty(), command.force, read)?;
             (Some(file), known)
@@ -134,7 +134,11 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, Error> {
     });
     match failed.into_inner().unwrap_or_else(PoisonError::into_inner) {
         Some(error) => Err(error),
-        None => done,
+        None => {
+            let status = done?;
+            kept.map_or(Ok(()), |kept| kept.finish_with(|table| points.in_order(table)))?;
+            Ok(status)
+        }
     }
 }
 

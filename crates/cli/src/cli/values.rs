@@ -6,7 +6,8 @@ use std::path::PathBuf;
 
 use asperity::scene::Setting;
 use asperity::tables::{Dimension, quantity};
-pub(crate) use asperity_study::values::{count, share};
+pub(crate) use asperity_study::values::count;
+use asperity_study::values::number;
 use clap::Args;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 
@@ -45,6 +46,11 @@ pub(crate) fn seconds(text: &str) -> Result<f64, String> {
         .ok_or_else(|| format!("expected a time of 0 or more in s, or with its unit, found {text:?}"))
 }
 
+/// A probability, 0 and 1 included.
+pub(crate) fn probability(text: &str) -> Result<f64, String> {
+    number(text, |part| (0.0..=1.0).contains(part), "a number from 0 to 1")
+}
+
 /// A file for a table or for arrays of numpy.
 pub(crate) fn table_or_arrays() -> impl TypedValueParser<Value = PathBuf> {
     ending_in(&["csv", "npz"], "a name that ends in .csv or .npz, or -")
@@ -79,4 +85,15 @@ fn ending_in(endings: &'static [&str], expected: &'static str) -> impl TypedValu
             Err(format!("expected {expected}"))
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn probabilities_have_their_ends() {
+        assert_eq!(["0", "0.5", "1"].map(probability), [Ok(0.0), Ok(0.5), Ok(1.0)]);
+        assert!(["-0.1", "1.1", "nan", "x"].into_iter().all(|text| probability(text).is_err()));
+    }
 }

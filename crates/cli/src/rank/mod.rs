@@ -29,7 +29,7 @@ pub(crate) struct Rank {
     pub(crate) scenes: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) options: RankOptions,
-    /// The table to write, a row for each point and scene, - for standard output. Default: rank.csv.
+    /// The table to write, a row for each point and scene, - for standard output.
     #[arg(short, long, value_name = "TABLE.csv", default_value = "rank.csv")]
     pub(crate) output: PathBuf,
     /// The picture to write, as SVG or PNG according to the file name: indices with their bands, and which scene has the largest

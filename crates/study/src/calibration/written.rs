@@ -2,6 +2,7 @@
 //! it the covariance of what was fitted, by which the numbers are off together in the samples of a sweep; and the points
 //! that were found, so that nothing is found twice.
 
+use std::cmp::Ordering;
 use std::ops::ControlFlow;
 
 use asperity::element::{OperatingPoint, PointStatus};
@@ -269,6 +270,22 @@ impl PointsTable {
         (0..table.len()).map(point).collect()
     }
 
+    /// The points of such a table by their parameters, loads, temperatures, ways and speeds: the same whichever was found first.
+    pub fn in_order(&self, table: &Table) -> Table {
+        let numbers = |(Task { parameters, point }, _): &(Task, Outcome)| {
+            let optional = [Some(point.load), point.temperature, point.way, Some(point.speed)];
+            parameters.iter().copied().chain(optional.map(|number| number.unwrap_or(0.0))).collect::<Vec<f64>>()
+        };
+        let mut points: Vec<(Task, Outcome)> = self.points(table).into_iter().flatten().collect();
+        points.sort_by(|one, other| {
+            let orders = std::iter::zip(numbers(one), numbers(other)).map(|(a, b)| a.total_cmp(&b));
+            orders.fold(Ordering::Equal, Ordering::then)
+        });
+        let mut ordered = self.table.clone();
+        points.iter().for_each(|(task, outcome)| ordered.push(Self::cells(task, outcome)));
+        ordered
+    }
+
     fn point(&self, table: &Table, row: usize) -> Option<(Task, Outcome)> {
         let optional = |name: &str, unit: &str| table.number(row, name, unit).ok();
         let part = |name: &str| optional(name, "1")?;
@@ -352,5 +369,21 @@ mod tests {
             let other = PointsTable::new("g", &[parameter("a.b"), parameter("c[1].d")]);
             assert!(other.empty().begun(&text, Path::new("")).is_err());
         }
+    }
+
+    #[test]
+    fn points_have_one_order() {
+        let parameter = FreeParameter::new("a.b".into(), 0.0, 1.0).unwrap();
+        let table = PointsTable::new("f", &[parameter]);
+        let row = |value: f64, speed: f64| {
+            let point = OperatingPoint { speed, load: 1e5, temperature: None, way: None };
+            PointsTable::cells(&Task { parameters: vec![value], point }, &Ok(FrictionParts::default()))
+        };
+        let of = |rows: [[f64; 2]; 3]| {
+            let mut found = table.empty().clone();
+            rows.iter().for_each(|[value, speed]| found.push(row(*value, *speed)));
+            table.in_order(&found).text()
+        };
+        assert_eq!(of([[0.5, 1.0], [0.2, 2.0], [0.2, 1.0]]), of([[0.2, 1.0], [0.2, 2.0], [0.5, 1.0]]));
     }
 }

@@ -266,7 +266,7 @@ pub fn table(ranking: &Ranking) -> String {
             let own = [Some(at.speed), Some(at.load), at.temperature, Some(ranked.weight), ranked.friction[i]];
             let band = (0..QUANTILES.len()).map(|quantile| ranked.bands[i].map(|band| band[quantile]));
             let numbers = own.into_iter().chain(band).chain([Some(ranked.largest[i])]).map(text);
-            std::iter::once(scene.label.clone()).chain(numbers).collect()
+            std::iter::once(csv::given_name(&scene.label)).chain(numbers).collect()
         })
     });
     csv::text(head, rows)
