@@ -368,7 +368,8 @@ mod tests {
             {
                 for _ in 0..1000 {
                     let before = run.totals.wrench;
-                    run.advance(&PatchMotion { duration: 1e-6, rates, ..PatchMotion::default() }).unwrap();
+                    run.advance(&PatchMotion { duration: 1e-6, rates, transport_speed: 0.0, temperature: 0.0 })
+                        .unwrap();
                     let mean = |axis: usize| 0.5 * (before[axis] + run.totals.wrench[axis]) * rates[axis] * 1e-6;
                     work -= (0..3).map(mean).sum::<f64>();
                 }

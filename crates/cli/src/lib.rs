@@ -67,7 +67,7 @@ use std::error::Error;
 use std::ffi::OsString;
 use std::io::{self, Write as _};
 
-use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand};
 
 /// Simulates rubber on a rough surface and packs the simulation as an FMU.
 #[derive(Debug, Parser)]
@@ -132,10 +132,7 @@ pub(crate) enum Command {
 /// Executes a command line, the program's name first; prints its results, and the error that ended it. Returns the exit
 /// status, also of `--help` and of a command line that cannot be understood.
 pub fn execute(words: impl IntoIterator<Item = OsString>) -> u8 {
-    let words: Vec<OsString> = words.into_iter().collect();
-    // All commands are made where one is to be explained alone: that takes longer than many a run.
-    let explained = |_| command().try_get_matches_from(&words).and_then(|found| Arguments::from_arg_matches(&found));
-    let done = match Arguments::try_parse_from(&words).or_else(explained) {
+    let done = match Arguments::try_parse_from(words) {
         Ok(arguments) => bound_threads().and_then(|()| run(arguments)),
         Err(told) => tell(&told),
     };
@@ -166,45 +163,6 @@ fn bound_threads() -> Result<(), Box<dyn Error>> {
         rayon::ThreadPoolBuilder::new().num_threads(MOST_THREADS).build_global()?;
     }
     Ok(())
-}
-
-/// Characters of a usage line.
-const SCREEN: usize = 80;
-
-/// The command line, its usage broken between arguments.
-fn command() -> clap::Command {
-    let mut command = Arguments::command();
-    command.build();
-    command.mut_subcommands(|of| {
-        let usage = of.clone().render_usage().to_string();
-        let usage = usage.strip_prefix("Usage: ").unwrap_or(&usage);
-        of.override_usage(broken(usage))
-    })
-}
-
-/// A usage line as lines: options stay beside their values, and alternatives together.
-fn broken(usage: &str) -> String {
-    let (mut depth, mut lines, mut line) = (0, Vec::new(), String::new());
-    let words = usage.split(' ').fold(Vec::<String>::new(), |mut words, word| {
-        let is_value = |before: &String| depth > 0 || (before.starts_with("--") && word.starts_with('<'));
-        match words.last_mut().filter(|before| is_value(before)) {
-            Some(before) => *before += &format!(" {word}"),
-            None => words.push(word.to_owned()),
-        }
-        depth += word.matches('<').count();
-        depth = depth.saturating_sub(word.matches('>').count());
-        words
-    });
-    for word in words {
-        if !line.is_empty() && "Usage: ".len() + line.len() + 1 + word.len() > SCREEN {
-            lines.push(std::mem::replace(&mut line, "    ".to_owned()));
-        } else if !line.is_empty() {
-            line.push(' ');
-        }
-        line += &word;
-    }
-    lines.push(line);
-    lines.join("\n   ")
 }
 
 /// Executes the command of the command line.
@@ -278,14 +236,12 @@ mod tests {
 
     #[test]
     fn usage_fits_a_screen() {
-        let usage = |mut of: clap::Command| of.render_usage().to_string();
-        for of in command().get_subcommands() {
-            assert!(usage(of.clone()).lines().all(|line| line.len() <= SCREEN), "{}", usage(of.clone()));
+        let mut command = Arguments::command();
+        command.build();
+        for of in command.get_subcommands_mut() {
+            let usage = of.render_usage().to_string();
+            assert!(usage.lines().all(|line| line.len() <= 80), "{usage}");
         }
-        let long = "asperity rank [OPTIONS] --speeds <VALUES> <--pressures <VALUES>|--forces <VALUES>> <SCENE.toml>...";
-        assert!(
-            broken(long).lines().any(|line| line.trim_start().starts_with("<--pressures <VALUES>|--forces <VALUES>>"))
-        );
     }
 
     #[test]

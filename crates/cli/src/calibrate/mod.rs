@@ -134,11 +134,10 @@ pub(crate) fn calibrate(command: &Calibrate) -> Result<u8, Error> {
     });
     match failed.into_inner().unwrap_or_else(PoisonError::into_inner) {
         Some(error) => Err(error),
-        None => {
-            let status = done?;
+        None => done.and_then(|status| {
             kept.map_or(Ok(()), |kept| kept.finish_with(|table| points.in_order(table)))?;
             Ok(status)
-        }
+        }),
     }
 }
 
