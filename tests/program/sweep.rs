@@ -344,8 +344,8 @@ fn a_sweep_is_drawn_over_speed_and_over_the_shifted_speed() {
     let points = ["--speeds", "1e-3..1/3", "--pressures", "3e5", "--temperatures", "283.15,303.15"];
     sweep(&scene, &folder.join("table.csv"), &[&points[..], &["--plot", plot, "--master", master]].concat());
     let texts = pictures.map(|path| fs::read_to_string(path).unwrap());
-    for (text, x) in texts.iter().zip(["speed in m/s", "a_T v in m/s, at 293.15 K"]) {
-        for part in ["road", "friction coefficient", "hysteresis", "adhesion", "283.15 K", "303.15 K", x] {
+    for (text, x) in texts.iter().zip(["speed in m/s", "a_T v in m/s, at 20 °C"]) {
+        for part in ["road", "friction coefficient", "hysteresis", "adhesion", "10 °C", "30 °C", x] {
             assert!(text.contains(&format!("\n{part}\n")), "{part}: {text}");
         }
         // Discs of the first temperature at three points of three charts and in the legend.

@@ -19,6 +19,9 @@ use super::picture;
 use super::terminal::{lines, warn};
 
 #[derive(Debug, Args)]
+#[command(
+    override_usage = "asperity contact [OPTIONS] --pressure <PRESSURE> --speed <SPEED>\n       --output <OUT.png> <SCENE.toml>"
+)]
 #[command(after_help = example!("asperity contact scenes/two-maxima/two-maxima.toml --pressure 2bar --speed 0.1 -o contact.png"))]
 pub(crate) struct Contact {
     /// The scene file, in the material form with a foundation "half_space" or "layer" and a periodic surface; its excitation

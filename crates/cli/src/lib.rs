@@ -247,12 +247,12 @@ mod tests {
     #[test]
     fn temperatures_below_zero_are_values() {
         for line in [
-            "sweep s.toml --temperatures -5°C,20°C",
+            "sweep s.toml --speeds 1 --pressures 1bar --temperatures -5°C,20°C",
             "material s.toml --temperature -5°C",
             "fit d.csv --reference -5°C",
         ] {
             let parsed = Arguments::try_parse_from(format!("asperity {line}").split_whitespace());
-            assert!(parsed.is_ok(), "{parsed:?}");
+            assert!(parsed.is_ok(), "{line}: {}", parsed.unwrap_err());
         }
     }
 

@@ -26,6 +26,9 @@ use super::picture;
 use super::terminal::{Bars, LabelledLine, labelled, lines, note, warn};
 
 #[derive(Debug, Args)]
+#[command(
+    override_usage = "asperity pack [OPTIONS] --output <OUT.fmu>\n       <SCENE.toml|--table <TABLE.csv>|--patch <PATCH.toml>>"
+)]
 #[command(group(ArgGroup::new("input").required(true).multiple(true)))]
 #[command(after_help = example!("asperity pack scenes/tread-block/tread-block.toml -o block.fmu"))]
 pub(crate) struct Pack {

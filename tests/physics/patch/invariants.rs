@@ -332,10 +332,11 @@ fn work(points: &Points, pose: [f64; 6], swing: [f64; 6], steps: i32) -> [f64; 3
         let pull = |i: usize| [0, 1].map(|axis| -points[i][3] * probe.value(PatchOutput::ElementTraction(i, axis)));
         (0..points.len()).map(pull).collect()
     };
-    let (mut work, mut before, mut largest) = (0.0, pulls(&probe), 0.0_f64);
+    let (mut work, mut before, mut largest, mut rates) = (0.0, pulls(&probe), 0.0_f64, [0.0; 6]);
     for step in 0..steps {
         let (from, to) = (at(step), at(step + 1));
-        probe.advance(&Step { duration: h, rates: std::array::from_fn(|i| (to[i] - from[i]) / h), speed: 0.0 });
+        rates = std::array::from_fn(|i| (to[i] - from[i]) / h);
+        probe.advance(&Step { duration: h, rates, speed: 0.0 });
         let after = pulls(&probe);
         for (i, point) in points.iter().enumerate() {
             let (start, end) = (place(from, *point), place(to, *point));
@@ -346,7 +347,10 @@ fn work(points: &Points, pose: [f64; 6], swing: [f64; 6], steps: i32) -> [f64; 3
         largest = largest.max(work.abs());
         before = after;
     }
-    let kept = probe.value(PatchOutput::ElasticEnergy) + probe.value(PatchOutput::Energy);
+    // What the normal springs hold, at the speed of the last step, is all of a patch that begins there.
+    let normal =
+        Probe::new(Elements::Single(points.clone()).patch(), at(steps), rates).value(PatchOutput::ElasticEnergy);
+    let kept = probe.value(PatchOutput::ElasticEnergy) - normal + probe.value(PatchOutput::Energy);
     [work, kept, largest]
 }
 

@@ -28,6 +28,9 @@ use super::table_file::TableFile;
 use super::terminal::{self, warn};
 
 #[derive(Debug, Args)]
+#[command(
+    override_usage = "asperity calibrate [OPTIONS] --data <MEASURED.csv>\n       --free <KEY=LOW..HIGH> <SCENE.toml>"
+)]
 #[command(after_help = example!(
     "asperity calibrate docs/guide/measured.toml --data docs/guide/measured.csv \\\n\
     \x20     --free friction.rate_shear.strength=1e6..2e7 -o docs/guide/fitted.toml"

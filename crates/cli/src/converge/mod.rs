@@ -20,6 +20,7 @@ use super::table_file::TableFile;
 use super::terminal::{self, warn};
 
 #[derive(Debug, Args)]
+#[command(override_usage = "asperity converge [OPTIONS] --pressure <PRESSURE> --speed <SPEED>\n       <SCENE.toml>")]
 #[command(after_help = example!("asperity converge scenes/two-maxima/two-maxima.toml --pressure 2bar --speed 0.1 -o study.csv"))]
 pub(crate) struct Converge {
     /// The scene file, in the material form; its excitation and outputs are not used.

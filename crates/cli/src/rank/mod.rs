@@ -17,6 +17,9 @@ use super::picture;
 use super::terminal::{self, warn};
 
 #[derive(Debug, Args)]
+#[command(
+    override_usage = "asperity rank [OPTIONS] --speeds <VALUES>\n       <--pressures <VALUES>|--forces <VALUES>> <SCENE.toml> <SCENE.toml>..."
+)]
 #[command(group(ArgGroup::new("over").required(true).args(["speeds"])))]
 #[command(group(ArgGroup::new("loads").required(true).args(["pressures", "forces"])))]
 #[command(after_help = example!(

@@ -53,6 +53,9 @@ const OF_A_SCENE: [&str; 16] = [
 ];
 
 #[derive(Debug, Args)]
+#[command(
+    override_usage = "asperity sweep [OPTIONS] --speeds <VALUES> <SCENE.toml>\n       asperity sweep [OPTIONS] --output <TABLE.csv> --merge <TABLE.csv>..."
+)]
 #[command(group(ArgGroup::new("input").required(true)))]
 #[command(group(ArgGroup::new("speeds_or_merge").required(true).args(["speeds", "merge"])))]
 #[command(after_help = example!(

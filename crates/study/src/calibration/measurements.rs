@@ -471,7 +471,7 @@ mod tests {
             ("speed [m/s],p [Pa],mu\n1,2,-3\n", 2, "friction"),
             ("speed [m/s],p [Pa],mu,std\n1,2,3,1e-300\n", 2, "column 4 \"std\""),
             ("speed [m/s],p [Pa],mu\n1,2,0.5\n2,2,-5\n", 3, "friction"),
-            ("speed [m/s],p [Pa],mu\n1,2,0.5\n2,2,1e308\n", 3, "friction"),
+            ("speed [m/s],p [Pa],mu\n1,2,0.5\n2,2,1e308\n", 3, "column 3 \"mu\""),
             ("speed [m/s],p [Pa],F_T [N]\n1,2,0.5e-3\n2,2,-5e-3\n", 3, "friction"),
             ("speed [m/s],p [Pa],mu,std\n1,2,3,0.1\n1,2,3,1e-12\n", 3, "column 4 \"std\""),
             ("speed [m/s],p [Pa],mu,std [%]\n1,2,3,5\n1,2,0,5\n", 3, "column 4 \"std [%]\""),

@@ -535,11 +535,9 @@ mod tests {
     }
 
     #[test]
-    fn an_experiment_that_is_left_out_or_ends_early_says_why() {
+    fn an_experiment_that_is_left_out_says_why() {
         assert_eq!(found(&layer(8, "")).unwrap_err(), "the scene has no excitation");
         let long = "{ duration = 1e4, w_rate = -1e-9, u_sine = { amplitude = 1e-4, frequency = 1e4 } }";
-        let why = found(&layer(8, long)).unwrap_err();
-        assert!(why.starts_with("its run ends at ") && why.contains("steps"), "{why}");
         let until = long.replace(" }", "").replace("frequency = 1e4", "frequency = 1e4 }, until_force = 1e3 }");
         let why = found(&layer(8, &until)).unwrap_err();
         assert!(why.starts_with("its run ends within phase 1: it is too long for packing"), "{why}");
