@@ -103,51 +103,36 @@ pub struct SceneFile {
     pub path: PathBuf,
     /// As an FMU carries it.
     pub carried_name: PathBuf,
-    content: Content,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-enum Content {
-    /// The file itself.
-    Itself,
-    /// Its columns, in SI units.
-    Columns(Arc<Columns>),
+    /// Its columns, in SI units; `None` of what no run depends on, which an FMU does not carry.
+    content: Option<Arc<Columns>>,
 }
 
 type Columns = Vec<(&'static str, Dimension, Vec<f64>)>;
 
 impl SceneFile {
-    /// One that is carried as it is.
-    pub fn itself(path: PathBuf) -> Self {
-        Self { carried_name: path.clone(), path, content: Content::Itself }
+    /// One that no run depends on, and no FMU carries.
+    pub fn not_carried(path: PathBuf) -> Self {
+        Self { carried_name: path.clone(), path, content: None }
     }
 
     pub(super) fn of_table(NamedTable { path, columns: given }: NamedTable, table: ReadTable) -> Self {
         let columns = table.columns.into_iter().map(|column| (column.key, column.dimension, column.values));
-        let content = Content::Columns(Arc::new(columns.collect()));
+        let content = Some(Arc::new(columns.collect()));
         Self { carried_name: NamedTable::carried_name(&path, &given), path, content }
     }
 
     pub(super) fn of_surface(path: PathBuf, options: &ProfileOptions, surface: &Surface) -> Self {
         let columns = [("x", surface.x()), ("z", surface.z())];
         let columns = columns.into_iter().map(|(key, values)| (key, Dimension::Length, values.to_vec()));
-        let content = Content::Columns(Arc::new(columns.collect()));
+        let content = Some(Arc::new(columns.collect()));
         Self { carried_name: options.carried_name(&path), path, content }
     }
 
-    /// Its bytes in an FMU; `folder` is the scene's.
-    ///
-    /// # Errors
-    /// Where it is carried as it is and cannot be read.
-    pub fn carried(&self, folder: &Path) -> IoResult<Vec<u8>> {
-        match &self.content {
-            Content::Itself => read_file(&folder.join(&self.path)),
-            Content::Columns(columns) => {
-                let columns: Vec<_> =
-                    columns.iter().map(|(key, dimension, values)| (*key, *dimension, &values[..])).collect();
-                Ok(canonical(&columns).into_bytes())
-            }
-        }
+    /// Its bytes in an FMU, which may carry nothing of it.
+    pub fn carried(&self) -> Option<Vec<u8>> {
+        let columns = self.content.as_ref()?.iter();
+        let columns: Vec<_> = columns.map(|(key, dimension, values)| (*key, *dimension, &values[..])).collect();
+        Some(canonical(&columns).into_bytes())
     }
 }
 

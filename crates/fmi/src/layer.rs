@@ -32,12 +32,9 @@ impl FmuModel for Arc<Scene> {
         SCENE_FILE
     }
 
-    fn carried(&self, folder: &FilePath) -> Result<Vec<CarriedFile>, (PathBuf, io::Error)> {
-        let content = |file: &SceneFile| match file.carried(folder) {
-            Ok(bytes) => Ok((file.carried_name.clone(), bytes)),
-            Err(error) => Err((folder.join(&file.path), error)),
-        };
-        self.files.iter().map(content).collect()
+    fn carried(&self, _folder: &FilePath) -> Result<Vec<CarriedFile>, (PathBuf, io::Error)> {
+        let content = |file: &SceneFile| Some((file.carried_name.clone(), file.carried()?));
+        Ok(self.files.iter().filter_map(content).collect())
     }
 
     fn sources(&self, path: &FilePath) -> Vec<PathBuf> {

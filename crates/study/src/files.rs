@@ -20,7 +20,7 @@ pub fn parse_scene(text: &str, file: &Path, set: &[Setting]) -> Result<Scene, Er
     let mut scene = Scene::parse_with(text, file, &Instruments, set)?;
     let (_, warnings) = Uncertainty::of(&scene)?;
     scene.warnings.extend(warnings);
-    scene.files.extend(covariance_file(&scene).map(SceneFile::itself));
+    scene.files.extend(covariance_file(&scene).map(SceneFile::not_carried));
     EvenSliding::warn_of(&mut scene);
     let passed = passed_phases(&scene);
     scene.warnings.extend(passed);

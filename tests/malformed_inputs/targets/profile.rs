@@ -77,7 +77,7 @@ fn archive(bytes: &[u8]) -> Vec<u8> {
 /// Checks that what an FMU carries in place of the file is the same profile, bit for bit.
 fn check_carried(scene: &Scene, scene_file: &Path, keys: &str) {
     let Some(file) = scene.files.first() else { return };
-    let (name, content) = (folder().join(&file.carried_name), file.carried(folder()).unwrap());
+    let (name, content) = (folder().join(&file.carried_name), file.carried().unwrap());
     fs::remove_file(folder().join("profile.csv")).unwrap();
     fs::write(&name, content).unwrap();
     let carried = Scene::parse(&self::scene(scene.surface.is_periodic(), keys), scene_file).unwrap();
