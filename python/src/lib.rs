@@ -20,6 +20,7 @@ mod simulation;
 mod state;
 mod surface;
 mod sweep;
+mod verify;
 
 use pyo3::prelude::*;
 
@@ -52,6 +53,8 @@ mod _native {
     use super::surface::{surface, surface_of};
     #[pymodule_export]
     use super::sweep::{Table, pack_table, sweep};
+    #[pymodule_export]
+    use super::verify::verify;
 
     #[pymodule_init]
     fn init(module: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {

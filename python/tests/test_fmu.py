@@ -22,7 +22,7 @@ def test_an_fmu_proves_itself(small, tmp_path):
     with pytest.raises(ValueError, match="no-references"):
         asperity.fmi.verify(small.pack(tmp_path / "without.fmu", references=False))
     with pytest.warns(UserWarning, match="no experiment and result: the scene has no excitation"):
-        still = small.with_(excitation=[]).pack(tmp_path / "still.fmu")
+        still = small.with_keys({"excitation": []}).pack(tmp_path / "still.fmu")
     with pytest.raises(ValueError, match="the scene has no excitation"):
         asperity.fmi.verify(still)
 
@@ -50,6 +50,26 @@ def test_a_result_that_proves_nothing_is_refused(small, tmp_path):
                     content = "".join(row + "\n" for row in edit(content.decode().splitlines())).encode()
                 other.writestr(name, content)
         with pytest.raises(ValueError, match=message):
+            asperity.fmi.verify(forged)
+
+
+def test_what_is_not_as_it_was_packed_is_told(small, tmp_path):
+    packed, forged = small.pack(tmp_path / "small.fmu"), tmp_path / "forged.fmu"
+    assert asperity.fmi.verify(packed).deviations == ()
+
+    def forge(of, edit):
+        with zipfile.ZipFile(packed) as archive, zipfile.ZipFile(forged, "w") as other:
+            for name in archive.namelist():
+                content = archive.read(name)
+                other.writestr(name, edit(content) if name.endswith(of) else content)
+
+    forge("modelDescription.xml", lambda content: content.replace(b'unit="N"', b'unit="m"', 1))
+    found = asperity.fmi.verify(forged)
+    assert len(found.deviations) == 1 and "Not as packed: modelDescription.xml, line" in str(found)
+    # A library that is cut off would end the process when it is loaded.
+    forge((".so", ".dll"), lambda content: content[: len(content) // 2])
+    if sys.platform == "linux":
+        with pytest.raises(ValueError, match="whole shared library"):
             asperity.fmi.verify(forged)
 
 

@@ -4,7 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::common::{Table, asperity, difference, drive, largest, library, pack, python, root, run, scratch};
+use crate::common::{
+    Table, asperity, assert_names, difference, drive, ended, largest, library, pack, python, root, run, scratch,
+};
 
 const FOLDER: &str = "extra/org.fmi-standard.fmi-ls-ref";
 /// All files of the folder, bytes.
@@ -91,6 +93,51 @@ fn names_follow_and_references_are_left_out_on_request() {
     let names = "import sys, zipfile; print(*sorted(zipfile.ZipFile(sys.argv[1]).namelist()))";
     let without = run(Command::new(python()).args(["-c", names]).arg(pack(&["--no-references"])));
     assert!(without.contains("resources/patch.toml") && !without.contains("extra/"), "{without}");
+}
+
+/// An FMU with one of its files changed, by Python: `edit` makes new bytes of `b`.
+fn forged(fmu: &Path, file: &str, edit: &str) -> PathBuf {
+    let text = "import sys, zipfile\nz = zipfile.ZipFile(sys.argv[1]); o = zipfile.ZipFile(sys.argv[2], 'w')\n\
+                for n in z.namelist():\n    b = z.read(n); o.writestr(n, eval(sys.argv[4]) if n.endswith(sys.argv[3]) else b)\n\
+                o.close()";
+    let other = fmu.with_file_name("forged.fmu");
+    run(Command::new(python()).args(["-c", text]).arg(fmu).arg(&other).args([file, edit]));
+    other
+}
+
+/// What was packed is as packed; start values, units, tables and libraries that are others are seen, by what they are.
+#[test]
+fn an_fmu_is_verified_without_loading_it() {
+    let folder = scratch("references-verify");
+    let fmu = pack(&root().join("scenes/tread-block/tread-block.toml"), &folder);
+    let verify = |fmu: &Path| ended(asperity().arg("verify").arg(fmu));
+    let (status, said, _) = verify(&fmu);
+    assert_eq!(status, 0, "{said}");
+    assert_names(&said, "modelDescription.xml | whole library | to the last digit | Verdict");
+    for (file, edit, status, names) in [
+        (
+            "modelDescription.xml",
+            "b.replace(b'unit=\"N\"', b'unit=\"m\"', 1)",
+            3,
+            "modelDescription.xml, line | NOT as",
+        ),
+        ("modelDescription.xml", "b.replace(b'start=\"', b'start=\"1', 1)", 3, "packed was"),
+        ("scene.toml", "b.replace(b'name', b'# \\nname', 1)", 3, "guid"),
+        ("experiment.csv", "b.replace(b'\\n0.0,', b'\\n0.00,', 1)", 3, "experiment.csv, line 2"),
+        ("result.csv", "b.replace(b'time', b'tame')", 1, "row 1"),
+        (".so", "b[:len(b) // 2]", 1, "whole shared library"),
+        (".so", "b + bytes(8)", 0, "another one"),
+    ] {
+        let (found, said, error) = verify(&forged(&fmu, file, edit));
+        assert_eq!(found, status, "{file} {edit}: {said}{error}");
+        assert_names(said + &error, names);
+    }
+    // Other values in three rows.
+    let noise = "b''.join(l + b'\\n' if i < 99 or i > 101 else b','.join([l.split(b',')[0]] + [b'1e3' for f in l.split(b',')[1:]]) \
+                 + b'\\n' for i, l in enumerate(b.split(b'\\n')) if l)";
+    let (status, said, _) = verify(&forged(&fmu, "result.csv", noise));
+    assert_eq!(status, 3, "{said}");
+    assert_names(&said, "result.csv: | off | tolerance");
 }
 
 /// docs/compatibility has the experiment of the default scene as its FMU carries it. To accept an intended change:

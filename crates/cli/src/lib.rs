@@ -32,6 +32,7 @@
 //! | `material` | cli, files, picture, terminal | `material` |
 //! | `surface` | cli, files, picture, terminal | `surface` |
 //! | `pack` | cli, files, picture, terminal | `pack` |
+//! | `verify` | cli, files, output, terminal | `verify` |
 //! | `report` | cli, files, picture, terminal | `report` |
 //! | `reference` | cli, files | the reference page, completions and manual pages |
 
@@ -62,6 +63,7 @@ mod surface;
 mod sweep;
 mod table_file;
 mod terminal;
+mod verify;
 
 use std::error::Error;
 use std::ffi::OsString;
@@ -96,6 +98,12 @@ pub(crate) enum Command {
     /// Packs a scene, or a point-contact element or a contact patch from a sweep table, as an FMI 2.0 co-simulation
     /// FMU.
     Pack(pack::Pack),
+    /// Verifies an FMU of asperity pack: every file is that which this program packs of its resources (start values, units, names,
+    /// parameters), the shared library is a whole file with the functions of FMI 2.0, and the result is what the engine of
+    /// this program gets along the experiment. The library is not loaded: what it computes is shown only where it is byte for
+    /// byte the one beside this program; asperity.fmi.verify of the Python package runs it. Exit status 0: as packed; 3: not;
+    /// 1: refused.
+    Verify(verify::Verify),
     /// Fits Prony terms to measured moduli of a compound (DMA data).
     Fit(cli::Fit),
     /// Plots the complex modulus of a scene's compound over frequency, or the complex stiffness of its links.
@@ -178,6 +186,7 @@ fn run(arguments: Arguments) -> Result<u8, Box<dyn Error>> {
         Command::Plot(command) => plot::plot_files(&command)?,
         Command::Describe(command) => run_describe(&command)?,
         Command::Pack(command) => pack::pack(&command)?,
+        Command::Verify(command) => return Ok(verify::verify(&command)?),
         Command::Fit(command) => return Ok(fit::fit(&command)?),
         Command::Material(command) => material::material(&command)?,
         Command::Reference => reference::reference(Arguments::command())?,

@@ -8,6 +8,7 @@ from pathlib import Path
 
 _BINARIES = Path(__file__).parent / "binaries"
 _WHEEL = "expected the one of a wheel built by build-fmu.sh --wheel"
+_LIBRARIES = {".so", ".dll", ".dylib"}
 _PLATFORM = {"win32": "win64", "darwin": "darwin64"}.get(sys.platform, "linux64")
 
 
@@ -29,13 +30,18 @@ def warn_of_packed(texts: list[str]) -> None:
         warnings.warn(text, stacklevel=3)
 
 
+def own_libraries() -> list[str]:
+    """As :func:`options`, none where this package was built without any."""
+    return [f"{path.parent.name}={path}" for path in sorted(_BINARIES.glob("*/*")) if path.suffix in _LIBRARIES]
+
+
 def options() -> list[str]:
     """The shared libraries that this package brings, one a platform, as ``asperity pack --library`` takes them.
 
     Raises:
         FileNotFoundError: Where this package was built without any.
     """
-    files = sorted(path for path in _BINARIES.glob("*/*") if path.suffix in {".so", ".dll", ".dylib"})
-    if not files:
+    libraries = own_libraries()
+    if not libraries:
         raise FileNotFoundError(f"no shared library below {_BINARIES}: {_WHEEL}")
-    return [f"{path.parent.name}={path}" for path in files]
+    return libraries

@@ -26,6 +26,8 @@ class Verification:
             the same unit; shape (ways, quantities), nan where the FMU did not come to the end.
         problems: Why it did not, by the way.
         result: What the result is, with its own estimated error, in a sentence.
+        deviations: What of the FMU is not as this package packs it of its resources; empty where all is.
+        facts: What else was looked at.
     """
 
     name: str
@@ -34,6 +36,8 @@ class Verification:
     differences: Floats
     problems: Mapping[str, str]
     result: str
+    deviations: tuple[str, ...] = ()
+    facts: tuple[str, ...] = ()
 
     def __getitem__(self, way: str) -> dict[str, float]:
         """The differences of a way, by quantity."""
@@ -64,6 +68,8 @@ class Verification:
             numbers = "".join(f"{self[way][name]:14.1e}" for name in shown)
             lines.append(f"{way.ljust(width)}{numbers}   {row[worst]:.1e} of {self.quantities[worst]}")
         lines.append(f"The result: {self.result}")
+        lines.extend(self.facts)
+        lines.extend(f"Not as packed: {deviation}" for deviation in self.deviations)
         return "\n".join(lines)
 
     def __repr__(self) -> str:

@@ -3,32 +3,23 @@ driving it lose."""
 
 from __future__ import annotations
 
-import csv
-import io
 import shutil
 import tempfile
-import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from os import PathLike
-from posixpath import join, normpath
+from pathlib import Path
 from typing import Any
-from urllib.parse import unquote
-from xml.etree import ElementTree
 
 import numpy as np
 
+from . import _native
 from ._arguments import Floats, columns_of, floats
+from ._library import own_libraries
 from ._result import Result
 from ._verification import Verification
 
 __all__ = ["Verification", "simulate", "verify"]
-
-_REFERENCES = "extra/org.fmi-standard.fmi-ls-ref"
-_LEFT_OUT = "extra/org.asperity/left-out.txt"
-# Bytes, unpacked: pack writes tables of 0.1 MB, and libraries of three platforms have some 30 MB.
-_LARGEST_TABLE = 1 << 24
-_LARGEST = 1 << 30
 
 
 def simulate(
@@ -65,21 +56,25 @@ def verify(fmu: str | PathLike[str]) -> Verification:
     """Drives an FMU of ``asperity pack`` along the experiment that it carries, in fmpy, and compares it with the result.
 
     It is driven with rates and with values alone, at the experiment's steps, at ten times longer and ten times shorter ones:
-    so the table says what a master costs. Print it, or take :meth:`Verification.to_pandas`.
+    so the table says what a master costs. Print it, or take :meth:`Verification.to_pandas`. Before that its files are
+    compared with those that this package packs of its resources, as ``asperity verify`` does.
 
     Args:
         fmu: The FMU.
 
     Raises:
         ValueError: Where it carries no experiment and result (FMI-LS-REF), these do not go with each other or with the
-            FMU, by file and row, or it is larger than 1 GiB when unpacked.
+            FMU, by file and row, its library is not whole, or it is larger than 1 GiB when unpacked.
     """
     import fmpy
 
-    _check_archive(fmu)
+    verified = _native.verify(Path(fmu), own_libraries())
+    if verified["why_none"] is not None:
+        raise ValueError(f"{fmu}: {verified['why_none']}")
     description = fmpy.read_model_description(str(fmu))
     inputs = [variable for variable in description.modelVariables if variable.causality == "input"]
-    experiment, result, of_result = _experiment(fmu, {one.name for one in _calculated(description)})
+    experiment, result = verified["experiment"], verified["result"]
+    result.pop("time")
     rows = _rows(experiment, [variable.name for variable in inputs])
     units = {variable.name: variable.unit for variable in description.modelVariables}
     scales = _scales(result, units)
@@ -102,7 +97,14 @@ def verify(fmu: str | PathLike[str]) -> Verification:
                 [_difference(run, name, experiment["time"], column) / scales[name] for name, column in result.items()]
             )
     return Verification(
-        description.modelName, tuple(ways), tuple(result), np.array(differences), problems, of_result
+        description.modelName,
+        tuple(ways),
+        tuple(result),
+        np.array(differences),
+        problems,
+        verified["description"],
+        tuple(verified["problems"]),
+        tuple(f"{label}: {text}" for label, text in verified["facts"]),
     )
 
 
@@ -128,72 +130,6 @@ def _difference(run: Result, name: str, time: Floats, expected: Floats) -> float
     """The largest at the rows that both have."""
     _, own, theirs = np.intersect1d(time, run.time, return_indices=True)
     return float(np.max(np.abs(expected[own] - np.asarray(run[name], dtype=np.float64)[theirs])))
-
-
-def _check_archive(fmu: str | PathLike[str]) -> None:
-    """Refuses an archive that is too large, or whose files would lie outside of the folder that it is unpacked to."""
-    with zipfile.ZipFile(fmu) as archive:
-        size = sum(one.file_size for one in archive.infolist())
-        if size > _LARGEST:
-            raise ValueError(f"{fmu}: expected at most {_LARGEST} bytes when unpacked, found {size}")
-        for name in archive.namelist():
-            if name.startswith("/") or "\\" in name or ":" in name or ".." in name.split("/"):
-                raise ValueError(f"{fmu}: {name}: expected a name within the archive, with forward slashes")
-
-
-def _experiment(
-    fmu: str | PathLike[str], outputs: set[str]
-) -> tuple[dict[str, Floats], dict[str, Floats], str]:
-    """Inputs and result that an FMU carries, by the manifest's roles, the result without its times; and what it is."""
-    with zipfile.ZipFile(fmu) as archive:
-        names = archive.namelist()
-        manifest = f"{_REFERENCES}/fmi-ls-manifest.xml"
-        root = ElementTree.fromstring(archive.read(manifest)) if manifest in names else ElementTree.Element("none")
-        related = {one.get("role", ""): one for one in root.iter("Related")}
-        named = [related.get(role, root).get("source", "") for role in ("experiment/smoke-test", "result")]
-        tables = [normpath(join(_REFERENCES, unquote(source))) for source in named]
-        if not all(table in names for table in tables):
-            why = (
-                f"it has {archive.read(_LEFT_OUT).decode().strip()}"
-                if _LEFT_OUT in names
-                else "an FMU of asperity pack has them, unless it was packed with --no-references"
-            )
-            raise ValueError(f"{fmu}: expected an experiment and its result in {_REFERENCES}: {why}")
-        experiment, result = (_columns(archive, table, f"{fmu}: {table}") for table in tables)
-    time, own, where = experiment.get("time", np.empty(0)), result.pop("time", np.empty(0)), f"{fmu}: {tables[1]}"
-    unknown = [name for name in result if name not in outputs]
-    if unknown or not result:
-        raise ValueError(f"{where}, row 1: expected columns time and outputs of the FMU, found {', '.join(unknown) or 'none'}")
-    if len(own) != len(time):
-        raise ValueError(f"{where}: expected {len(time)} rows, as the experiment {tables[0]} has, found {len(own)}")
-    for i in np.flatnonzero(own != time)[:1]:
-        raise ValueError(f"{where}, row {i + 2}: expected time = {time[i]:g}, as in the experiment {tables[0]}, found {own[i]:g}")
-    return experiment, result, related["result"].get("description", "")
-
-
-def _columns(archive: zipfile.ZipFile, table: str, where: str) -> dict[str, Floats]:
-    """The columns of a table of finite numbers; ``where`` it is, for messages."""
-    size = archive.getinfo(table).file_size
-    if size > _LARGEST_TABLE:
-        raise ValueError(f"{where}: expected at most {_LARGEST_TABLE} bytes, found {size}")
-    try:
-        head, *rows = csv.reader(io.StringIO(archive.read(table).decode()))
-    except (csv.Error, UnicodeDecodeError, ValueError) as problem:
-        raise ValueError(f"{where}: expected a table of numbers under their names: {problem}") from None
-    if len(set(head)) != len(head):
-        raise ValueError(f"{where}, row 1: expected each column once, found {', '.join(head)}")
-    values = np.empty((len(rows), len(head)))
-    for i, row in enumerate(rows):
-        if len(row) != len(head):
-            raise ValueError(f"{where}, row {i + 2}: expected {len(head)} numbers, one for each column, found {len(row)}")
-        for j, field in enumerate(row):
-            try:
-                values[i, j] = float(field)
-            except ValueError:
-                values[i, j] = np.nan
-            if not np.isfinite(values[i, j]):
-                raise ValueError(f"{where}, row {i + 2}: {head[j]} = {field[:40]!r}: expected a number")
-    return {name: values[:, j] for j, name in enumerate(head)}
 
 
 @contextmanager

@@ -1,13 +1,13 @@
 //! The zip archive of an FMU, and the shared libraries in it, one a platform.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsStr;
 use std::io::{Cursor, Write as _};
 use std::path::{Path, PathBuf};
 
 use object::Endianness;
-use object::elf::FileHeader64;
-use object::read::elf::FileHeader as _;
+use object::elf::{ET_DYN, FileHeader64, SHT_DYNSYM, SHT_NOBITS};
+use object::read::elf::{FileHeader as _, ProgramHeader as _, SectionHeader as _, Sym as _};
 use zip::result::ZipResult;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
@@ -34,6 +34,11 @@ impl ArchiveEntry {
     /// Its path, with forward slashes.
     pub(super) fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Its content.
+    pub(super) fn bytes(&self) -> &[u8] {
+        &self.bytes
     }
 
     /// A file that is executable.
@@ -71,10 +76,10 @@ pub struct Platform {
 }
 
 impl Platform {
-    const LINUX: Self = Self { folder: "linux64", extension: "so" };
+    pub(super) const LINUX: Self = Self { folder: "linux64", extension: "so" };
     const WINDOWS: Self = Self { folder: "win64", extension: "dll" };
     const MACOS: Self = Self { folder: "darwin64", extension: "dylib" };
-    const ALL: [Self; 3] = [Self::LINUX, Self::WINDOWS, Self::MACOS];
+    pub(super) const ALL: [Self; 3] = [Self::LINUX, Self::WINDOWS, Self::MACOS];
 
     /// The platform that this is built for.
     pub const HOST: Self = if cfg!(target_os = "windows") {
@@ -112,6 +117,11 @@ impl LibraryFile {
     pub fn beside(program: &Path) -> Self {
         let name = format!("{}asperity_fmu.{}", std::env::consts::DLL_PREFIX, Platform::HOST.extension);
         Self::of_host(program.with_file_name(name))
+    }
+
+    /// The platform that it is for.
+    pub fn platform(&self) -> Platform {
+        self.platform
     }
 
     /// The file.
@@ -152,6 +162,11 @@ impl Library {
         Some(format!("{}: glibc {version} or later", self.platform.folder))
     }
 
+    /// Checks that it is whole and has the functions of FMI 2.0, as far as is known of its platform's files.
+    pub(super) fn check(&self) -> Result<(), String> {
+        if self.platform == Platform::LINUX { check_elf(&self.bytes) } else { Ok(()) }
+    }
+
     /// Its place in the archive of a model.
     pub(super) fn place(&self, identifier: &str) -> String {
         format!("binaries/{}/{identifier}.{}", self.platform.folder, self.platform.extension)
@@ -172,6 +187,40 @@ fn check_platforms(libraries: &[LibraryFile]) -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+/// The functions of FMI 2.0 for co-simulation, without `fmi2`.
+const FUNCTIONS: &str = "GetTypesPlatform GetVersion SetDebugLogging Instantiate FreeInstance SetupExperiment \
+    EnterInitializationMode ExitInitializationMode Terminate Reset GetReal GetInteger GetBoolean GetString SetReal \
+    SetInteger SetBoolean SetString GetFMUstate SetFMUstate FreeFMUstate SerializedFMUstateSize SerializeFMUstate \
+    DeSerializeFMUstate GetDirectionalDerivative SetRealInputDerivatives GetRealOutputDerivatives DoStep CancelStep \
+    GetStatus GetRealStatus GetIntegerStatus GetBooleanStatus GetStringStatus";
+
+/// Refuses what is no shared library of 64 bits, ends before what its headers name, or lacks functions of FMI 2.0.
+fn check_elf(elf: &[u8]) -> Result<(), String> {
+    let unread = |error| format!("expected a whole shared library, an ELF file: {error}");
+    let header = FileHeader64::<Endianness>::parse(elf).map_err(unread)?;
+    let endian = header.endian().map_err(unread)?;
+    if header.e_type(endian) != ET_DYN {
+        return Err("expected a shared library, found another ELF file".to_owned());
+    }
+    let segments = header.program_headers(endian, elf).map_err(unread)?;
+    let of_segments = segments.iter().map(|one| one.p_offset(endian).saturating_add(one.p_filesz(endian)));
+    let sections = header.sections(endian, elf).map_err(unread)?;
+    let of_sections = sections.iter().filter(|one| one.sh_type(endian) != SHT_NOBITS);
+    let of_sections = of_sections.map(|one| one.sh_offset(endian).saturating_add(one.sh_size(endian)));
+    let end = of_segments.chain(of_sections).max().unwrap_or(0);
+    if end > elf.len() as u64 {
+        return Err(format!("expected {end} bytes of a whole shared library, found {}", elf.len()));
+    }
+    let symbols = sections.symbols(endian, elf, SHT_DYNSYM).map_err(unread)?;
+    let defined = symbols.iter().filter(|symbol| !symbol.is_undefined(endian));
+    let names: BTreeSet<&[u8]> = defined.filter_map(|symbol| symbols.symbol_name(endian, symbol).ok()).collect();
+    let is_missing = |name: &&str| !names.contains(format!("fmi2{name}").as_bytes());
+    match FUNCTIONS.split_whitespace().find(is_missing) {
+        Some(name) => Err(format!("expected the functions of FMI 2.0, found no fmi2{name}")),
+        None => Ok(()),
+    }
 }
 
 /// The newest version of glibc among those that an ELF file's symbols are of.
@@ -240,6 +289,10 @@ mod tests {
         assert!(version >= vec![2, 17] && version < vec![3], "{version:?}");
         assert_eq!(newest_glibc(b"MZ"), None);
         assert_eq!(newest_glibc(&own[..100]), None);
+        let problem = |bytes: &[u8]| check_elf(bytes).unwrap_err();
+        assert!(problem(b"MZ").contains("ELF") && problem(&own).contains("no fmi2GetTypesPlatform"));
+        let cut = problem(&own[..own.len() / 2]);
+        assert!(cut.contains("a whole shared library"), "{cut}");
     }
 
     #[test]

@@ -348,10 +348,13 @@ impl Press {
     }
 }
 
-/// The folder of the layered standard.
-const FOLDER: &str = "extra/org.fmi-standard.fmi-ls-ref";
+/// The folder of the layered standard, and the files in it that are read again.
+pub(super) const FOLDER: &str = "extra/org.fmi-standard.fmi-ls-ref";
+pub(super) const MANIFEST: &str = "extra/org.fmi-standard.fmi-ls-ref/fmi-ls-manifest.xml";
+pub(super) const EXPERIMENT: &str = "extra/org.fmi-standard.fmi-ls-ref/experiment.csv";
+pub(super) const RESULT: &str = "extra/org.fmi-standard.fmi-ls-ref/result.csv";
 /// What is left out of it and why, a line each: no part of the standard, so beside its folder.
-const LEFT_OUT_FILE: &str = "extra/org.asperity/left-out.txt";
+pub(super) const LEFT_OUT_FILE: &str = "extra/org.asperity/left-out.txt";
 /// More than this is left out, the parameter set first: bytes.
 const MOST_BYTES: usize = 100_000;
 
@@ -535,10 +538,13 @@ mod tests {
     }
 
     #[test]
-    fn an_experiment_that_is_left_out_says_why() {
+    fn an_experiment_that_is_left_out_or_ends_early_says_why() {
         assert_eq!(found(&layer(8, "")).unwrap_err(), "the scene has no excitation");
-        let long = "{ duration = 1e4, w_rate = -1e-9, u_sine = { amplitude = 1e-4, frequency = 1e4 } }";
-        let until = long.replace(" }", "").replace("frequency = 1e4", "frequency = 1e4 }, until_force = 1e3 }");
+        // It touches after 100 s of 1e4, and then passes 60 000 waves from row to row.
+        let long = "{ duration = 1e4, w_rate = -1e-8, u_rate = 1.0 }";
+        let why = found(&layer(8, long)).unwrap_err();
+        assert!(why.starts_with("its run ends at ") && why.contains("steps"), "{why}");
+        let until = long.replace(" }", ", until_force = 1e3 }");
         let why = found(&layer(8, &until)).unwrap_err();
         assert!(why.starts_with("its run ends within phase 1: it is too long for packing"), "{why}");
     }

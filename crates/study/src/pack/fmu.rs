@@ -54,6 +54,13 @@ impl Fmu<'_> {
     /// # Errors
     /// Where a file cannot be read, or does not lie where an FMU can carry it.
     pub fn pack(&self) -> Result<(Vec<u8>, Vec<String>), Error> {
+        let (entries, left_out) = self.entries()?;
+        let archive = zip(entries).map_err(|error| Error::value(format!("cannot pack: {error}")))?;
+        Ok((archive, left_out.iter().map(|text| format!("the FMU has {text}")).collect()))
+    }
+
+    /// The files of the archive, and what it leaves out.
+    pub(super) fn entries(&self) -> Result<(Vec<ArchiveEntry>, Vec<String>), Error> {
         let identifier = self.definition.identifier();
         let binary = |library: &Library| ArchiveEntry::executable(library.place(&identifier), library.bytes.clone());
         let mut entries: Vec<ArchiveEntry> = self.libraries.iter().map(binary).collect();
@@ -70,8 +77,7 @@ impl Fmu<'_> {
         entries.extend(resources);
         entries.extend(self.documents(&variables)?);
         entries.extend(self.picture.clone().map(|picture| ArchiveEntry::new("model.png", picture)));
-        let archive = zip(entries).map_err(|error| Error::value(format!("cannot pack: {error}")))?;
-        Ok((archive, left_out.iter().map(|text| format!("the FMU has {text}")).collect()))
+        Ok((entries, left_out))
     }
 
     /// The scene or the table, under a fixed name, and the files that a scene reads.
@@ -87,7 +93,7 @@ impl Fmu<'_> {
     }
 
     /// The variables, as they are called in the FMU.
-    fn variables(&self) -> Result<VariableTable, Error> {
+    pub(super) fn variables(&self) -> Result<VariableTable, Error> {
         let variables = self.definition.variables();
         if !self.options.flat_names {
             return Ok(variables);
@@ -177,6 +183,25 @@ pub fn not_converged(header: &Header) -> Option<String> {
 mod tests {
     use super::*;
     use crate::files::load_scene;
+
+    /// The library, which does not know what is not known of a scene, finds the same files and so the same GUID.
+    #[test]
+    fn a_covariance_is_not_carried() {
+        let folder = std::env::temp_dir().join(format!("asperity-carried-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let scene = folder.join("s.toml");
+        let text = "name = 's'\nlayer = { masses = 2, spacing = 1e-4, mass = 1e-6, vertical = { stiffness = 2e3 }, \
+                    horizontal = { stiffness = 1e3 } }\nfriction = { coulomb = 0.3 }\nsurface = { kind = 'flat' }\n\
+                    uncertainty = { covariance = 'c.csv' }\n";
+        std::fs::write(&scene, text).unwrap();
+        std::fs::write(folder.join("c.csv"), "key,value,scale,friction.coulomb\nfriction.coulomb,0.3,log,0.01\n")
+            .unwrap();
+        let own = Sources::new(&scene, &*Definition::from(load_scene(&scene, &[]).unwrap())).unwrap();
+        let of_library =
+            Sources::new(&scene, &*Definition::from(asperity::scene::Scene::load(&scene).unwrap())).unwrap();
+        assert_eq!(own, of_library);
+        std::fs::remove_dir_all(folder).unwrap();
+    }
 
     #[test]
     fn files_that_links_lead_to_outside_of_the_folder_are_named() {

@@ -5,7 +5,9 @@ mod description;
 mod experiment;
 mod fmu;
 mod icon;
+mod verify;
 
 pub use archive::{Library, LibraryFile, Platform};
 pub use fmu::{Fmu, FmuOptions, flat_names, not_converged, summary, warnings};
 pub use icon::{element_icon, layer_icon};
+pub use verify::{Carried, NumberColumns, Verified, verify};
