@@ -25,7 +25,7 @@ pub(crate) fn rank<'py>(
     let scene = |scene: &PyRef<'_, Scene>| RankScene { scene: (*scene.scene).clone(), file: scene.file.clone() };
     let scenes: Vec<RankScene> = scenes.iter().map(scene).collect();
     let found = in_background(py, progress, move |task| -> Result<_, Error> {
-        let plan = RankPlan::new(scenes, &options)?;
+        let plan = RankPlan::new(scenes, &options, &task.stop())?;
         let (all, done) = (plan.sweeps() as f64, AtomicUsize::new(0));
         let told = || task.report((1 + done.fetch_add(1, Ordering::Relaxed)) as f64 / all);
         let found = plan.find(&task.stop(), &told)?;

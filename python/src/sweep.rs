@@ -7,13 +7,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use asperity::element::{FrictionTable, PointContact};
 use asperity_study::Error;
+use asperity_study::calibration::uncertain_scene;
 use asperity_study::comparison::CompareOptions;
 use asperity_study::friction_map::Maps;
 use asperity_study::pack::FmuOptions;
 use asperity_study::sweep::{
     Over, Sampled, SweepColumn, SweepOptions, SweepPlan, SweepTable, column_picture, quantile_table, sweep_picture,
 };
-use asperity_study::uncertainty::{SampleOptions, UncertainScene};
+use asperity_study::uncertainty::SampleOptions;
 use numpy::{IntoPyArray as _, ToPyArray as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -36,14 +37,19 @@ fn find(plan: &SweepPlan, task: &Task) -> Option<SweepTable> {
     (!task.is_stopped()).then_some(table)
 }
 
-/// A sweep of a scene, with samples or without.
+/// A sweep of a scene, with samples - how many, by which seed, and whether a covariance's numbers are fitted anew in each - or
+/// without.
 fn plan(
     scene: asperity::scene::Scene,
     options: &SweepOptions,
-    samples: Option<SampleOptions>,
+    samples: Option<(usize, u64, bool)>,
+    task: &Task,
 ) -> Result<SweepPlan, Error> {
     match samples {
-        Some(samples) => SweepPlan::with_samples(&UncertainScene::new(scene)?, options, None, samples),
+        Some((count, seed, refit)) => {
+            let uncertain = uncertain_scene(scene, refit, &task.stop())?;
+            SweepPlan::with_samples(&uncertain, options, None, SampleOptions { count, seed })
+        }
         None => SweepPlan::new(scene, options, None),
     }
 }
@@ -54,14 +60,13 @@ pub(crate) fn sweep(
     py: Python<'_>,
     scene: &Scene,
     options: Options<SweepOptions>,
-    samples: Option<usize>,
-    seed: u64,
+    samples: Option<(usize, u64, bool)>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Table, Vec<String>)> {
     let options = options.0;
-    let (scene, samples) = (Arc::clone(&scene.scene), samples.map(|count| SampleOptions { count, seed }));
+    let scene = Arc::clone(&scene.scene);
     let found = in_background(py, progress, move |task| {
-        let plan = plan((*scene).clone(), &options, samples)?;
+        let plan = plan((*scene).clone(), &options, samples, task)?;
         Ok(find(&plan, task).map(|swept| {
             let found = plan.warnings(&swept.rows);
             let warnings = plan.first_warnings().iter().cloned().chain(found).collect();
@@ -147,7 +152,8 @@ impl Table {
     fn quantile(&self, py: Python<'_>, scene: &Scene, probability: f64, progress: Option<Py<PyAny>>) -> PyResult<Self> {
         let (scene, table) = (Arc::clone(&scene.scene), self.swept.clone());
         let found = in_background(py, progress, move |task| {
-            quantile_table(&UncertainScene::new((*scene).clone())?, &table, probability, &task.stop())
+            let uncertain = uncertain_scene((*scene).clone(), table.header.is_refitted(), &task.stop())?;
+            quantile_table(&uncertain, &table, probability, &task.stop())
         })?;
         found.map(|swept| Self { swept, matters: None, drawn: Vec::new() }).map_err(|error| error.raise())
     }

@@ -15,6 +15,8 @@ def test_scenes_are_ranked(block):
     swept = other.sweep([1e-2, 0.1], [1e5]).to_pandas()["friction"].to_numpy()
     assert ranking.friction[1] == pytest.approx(swept @ [0.75, 0.25], rel=1e-12)
     assert np.isnan(ranking.index_bands).all() and list(ranking.to_pandas().index) == ["stronger", ranking.scenes[0]]
+    harmonic = asperity.rank([block, other], [1e-2, 0.1], [1e5], weights=weights, mean="harmonic")
+    assert 1.0 / harmonic.friction[1] == pytest.approx((1.0 / swept) @ [0.75, 0.25], rel=1e-12)
     with pytest.raises(ValueError, match="no weight of"):
         asperity.rank([block, other], [1e-2, 0.1], [1e5], weights={"speed [m/s]": [0.01], "weight": [3.0]})
 
@@ -49,6 +51,17 @@ def test_a_calibration_writes_its_covariance(block, tmp_path):
     fitted = asperity.Scene.from_toml(tmp_path / "fitted.toml")
     ranking = asperity.rank([fitted, fitted], [1e-2], [1e5], samples=16)
     assert ranking.samples == 16 and ranking.friction_bands[0, 4] > ranking.friction_bands[0, 0]
+    # What varies beside it is counted twice, unless the strength is fitted anew in each sample.
+    beside = fitted.with_keys({"uncertainty.\"material.prony\".relative": 0.2})
+    with pytest.warns(UserWarning, match=r"material\.prony beside friction\.shear_strength"):
+        wide = beside.sweep([1e-2], [1e5], samples=16)
+    narrow = beside.sweep([1e-2], [1e5], samples=16, refit=True)
+    band = [float((table["friction_q95"] / table["friction_q05"]).max()) for table in (wide, narrow)]
+    own = float(ranking.friction_bands[0, 4] / ranking.friction_bands[0, 0])
+    assert band[1] < 1.5 * (own - 1.0) + 1.0 and narrow.quantile(0.05, beside)["friction"].shape == (1, 1, 1)
+    assert asperity.rank([beside, beside], [1e-2], [1e5], samples=4, refit=True).samples == 4
+    with pytest.raises(ValueError, match="expected samples"):
+        beside.sweep([1e-2], [1e5], refit=True)
 
 
 def test_a_map_is_drawn_over_two_quantities(block):

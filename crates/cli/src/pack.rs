@@ -8,6 +8,7 @@ use asperity::element::{FrictionTable, PointContact};
 use asperity::patch::Patch;
 use asperity_fmi::Definition;
 use asperity_study::Error;
+use asperity_study::calibration::uncertain_scene;
 use asperity_study::check::{Doubled, Dragged, ElementCheck, PatchCheck, Sliding};
 use asperity_study::files::text;
 use asperity_study::pack::{
@@ -16,7 +17,6 @@ use asperity_study::pack::{
 use asperity_study::progress::Stop;
 use asperity_study::summary::missing_backing;
 use asperity_study::sweep::{SweepTable, quantile_table};
-use asperity_study::uncertainty::UncertainScene;
 use clap::{ArgGroup, Args};
 use tempfile::TempDir;
 
@@ -256,9 +256,10 @@ impl Sample {
         let folder = tempfile::tempdir().map_err(Error::io("write", Path::new("a folder of its own")))?;
         let scene = command.scene.clone().unwrap_or_default();
         let read = load_without_run(&scene, &[], |_| true)?;
-        let uncertain = UncertainScene::new(read)?;
         let packed = |table: &Path| {
-            let sample = quantile_table(&uncertain, &SweepTable::read(table)?, share, &Stop::default())?;
+            let (table, stop) = (SweepTable::read(table)?, Stop::default());
+            let uncertain = uncertain_scene(read.clone(), table.header.is_refitted(), &stop)?;
+            let sample = quantile_table(&uncertain, &table, share, &stop)?;
             sample.header.keys.text_of("sample").iter().for_each(|sample| note(&format!("sample {sample}")));
             Ok::<_, Error>(sample.text())
         };

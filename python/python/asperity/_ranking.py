@@ -153,6 +153,8 @@ def rank(
     weights: object = None,
     samples: int = 128,
     seed: int = 1,
+    refit: bool = False,
+    mean: Literal["arithmetic", "harmonic"] = "arithmetic",
     data: object = None,
     columns: Mapping[str, str | int] | None = None,
     method: Literal["steady", "layer"] | None = None,
@@ -177,6 +179,8 @@ def rank(
             ``weight`` and those of speed, pressure and temperature that it depends on; None: all the same.
         samples: Number of samples, where a scene has ``[uncertainty]``.
         seed: The seed of the samples.
+        refit: As for :meth:`Scene.sweep`, of the scenes that have a covariance.
+        mean: The mean over the points: of friction μ, or "harmonic", 1 over the mean of 1/μ, with which the braking way goes.
         data: Measured friction as for :meth:`Scene.calibrate`, with a column ``scene`` of the scenes' names.
         columns: As for :meth:`Scene.calibrate`.
         method: As for :meth:`Scene.sweep`.
@@ -205,6 +209,8 @@ def rank(
                 weights=weights_file,
                 samples=samples,
                 seed=seed,
+                refit=refit,
+                mean=mean,
                 data=data_file,
                 columns=given_columns(columns),
                 method=method,

@@ -96,6 +96,7 @@ class Scene(SceneInputs):
         distance: float | None = None,
         samples: int | None = None,
         seed: int = 1,
+        refit: bool = False,
         progress: Progress = False,
     ) -> Table:
         """Friction in steady sliding over speed, load and temperature, on all cores.
@@ -117,12 +118,19 @@ class Scene(SceneInputs):
             samples: Each point also for so many scenes drawn from the section [uncertainty] of this one: quantiles are
                 columns of the table, all samples :attr:`Table.samples`, what matters :attr:`Table.matters`.
             seed: What scrambles the points of the samples.
+            refit: Fits the numbers of the covariance in [uncertainty] anew in each sample, by the measurements that
+                :meth:`calibrate` stored with it, before they vary: so bands hold what was measured where other things
+                vary beside it (surface, seed, series).
             progress: True for a line on standard error, or a function of the fraction done.
 
         Raises:
             SceneError: Where the scene does not go with what is asked for.
+            ValueError: Where ``refit`` has no samples.
         """
         from ._table import Table
+
+        if refit and samples is None:
+            raise ValueError("refit: expected samples, in each of which the covariance's numbers are fitted anew")
 
         swept, said = _native.sweep(
             self._native,
@@ -137,8 +145,7 @@ class Scene(SceneInputs):
                 friction_error=friction_error,
                 distance=distance,
             ),
-            samples,
-            seed,
+            None if samples is None else (samples, seed, refit),
             shown(progress),
         )
         for warning in said:

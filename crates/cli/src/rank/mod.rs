@@ -51,7 +51,7 @@ pub(crate) fn rank(command: &Rank) -> Result<u8, Error> {
     let sources = scenes.iter().flat_map(|scene| scene.scene.sources(&scene.file));
     let taken = sources.chain(options.weights.iter().chain(&options.data).cloned()).collect();
     check_outputs([&command.output].into_iter().chain(&picture), taken)?;
-    let plan = RankPlan::new(scenes, options)?;
+    let plan = RankPlan::new(scenes, options, &Stop::default())?;
     plan.warnings().iter().for_each(|warning| warn(warning));
     let found = found(&plan)?;
     let measured = options

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use asperity_study::decimals::{rounded, short};
-use asperity_study::rank::{Band, MeasuredRanking, RankPlan, RankedScene, Ranking, SURE};
+use asperity_study::rank::{Band, Mean, MeasuredRanking, RankPlan, RankedScene, Ranking, SURE};
 
 use crate::files::{name_of, named};
 use crate::terminal::{LabelledLine, labelled, lines};
@@ -38,7 +38,11 @@ fn points(ranking: &Ranking) -> String {
     let first = ranking.points.first().map_or(0.0, |point| point.weight);
     let even =
         if ranking.points.iter().all(|point| point.weight == first) { "all of the same weight" } else { "weighted" };
-    format!("{count}, {even}")
+    let mean = match ranking.mean {
+        Mean::Arithmetic => "",
+        Mean::Harmonic => "; ranked by the harmonic mean of friction, 1 over the mean of 1/μ",
+    };
+    format!("{count}, {even}{mean}")
 }
 
 fn samples(plan: &RankPlan, ranking: &Ranking) -> String {

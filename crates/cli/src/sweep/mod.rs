@@ -11,6 +11,7 @@ use asperity::scene::{Scene, Wlf};
 use asperity::table::{Cell, Column, Header, Table, TableError};
 use asperity::tables::Dimension;
 use asperity_study::Error;
+use asperity_study::calibration::uncertain_scene;
 use asperity_study::files::ColumnOptions;
 use asperity_study::friction_map::Maps;
 use asperity_study::progress::Stop;
@@ -18,7 +19,7 @@ use asperity_study::sweep::{
     Over, SlidingOptions, SweepHeader, SweepOptions, SweepPlan, SweepRow, SweepTable, master_picture, matters_picture,
     over_ways, sweep_picture, verdict,
 };
-use asperity_study::uncertainty::{SampleOptions, UncertainScene};
+use asperity_study::uncertainty::SampleOptions;
 use asperity_study::values::Values;
 use clap::{ArgGroup, Args};
 
@@ -30,10 +31,10 @@ use super::interrupt::Farewell;
 use super::output::is_stream;
 use super::picture;
 use super::table_file::TableFile;
-use super::terminal::{self, LabelledLine, lines, warn};
+use super::terminal::{self, LabelledLine, lines, note, warn};
 
 /// Options of a sweep that --merge does not take.
-const OF_A_SCENE: [&str; 16] = [
+const OF_A_SCENE: [&str; 17] = [
     "speeds",
     "pressures",
     "forces",
@@ -48,6 +49,7 @@ const OF_A_SCENE: [&str; 16] = [
     "converged",
     "samples",
     "seed",
+    "refit",
     "keep",
     "set",
 ];
@@ -100,6 +102,11 @@ pub(crate) struct Sweep {
     /// What scrambles the points of the samples: another seed draws others.
     #[arg(long, value_name = "N", default_value_t = 1, requires = "samples")]
     pub(crate) seed: u64,
+    /// Fits the numbers of the covariance in [uncertainty] anew in each sample, by the measurements that asperity calibrate
+    /// stored with it, before they vary: so bands hold what was measured where other things vary beside it (surface.spectrum,
+    /// surface = "seed", material.prony).
+    #[arg(long, requires = "samples")]
+    pub(crate) refit: bool,
     /// Also writes friction, hysteresis and area of every sample at every point, with what was drawn for it.
     #[arg(long, value_name = "SAMPLES.csv", requires = "samples", conflicts_with = "shard")]
     pub(crate) keep: Option<PathBuf>,
@@ -449,7 +456,10 @@ fn whole(ways: &[f64], tables: &[SweepTable]) -> Table {
 fn plan(command: &Sweep, scene: Scene, convergence: Option<String>) -> Result<SweepPlan, Error> {
     let options = &command.options;
     let Some(count) = command.samples else { return SweepPlan::new(scene, options, convergence) };
-    let uncertain = UncertainScene::new(scene)?;
+    let uncertain = uncertain_scene(scene, command.refit, &Stop::default())?;
+    if command.refit {
+        note(&format!("the covariance's numbers are fitted anew in {count} samples"));
+    }
     let samples = SampleOptions { count: count as usize, seed: command.seed };
     SweepPlan::with_samples(&uncertain, options, convergence, samples)
 }

@@ -17,7 +17,6 @@ use super::models::{
 use super::problem::{FreeParameter, FrictionMeasurement, Linearised, Problem};
 use super::statistics::{Plan, Statistics, candidates, chi_square_per_degree, plan};
 use crate::decimals::{rounded, short};
-use crate::error::Error;
 use crate::implausible::{FoundFriction, implausible};
 use crate::sweep::Method;
 
@@ -58,10 +57,7 @@ impl FreeScene<'_> {
     ) -> T {
         let sliding = self.options.sliding;
         let scene_at = |values: &[f64]| self.at(values);
-        let grid_of = |scene: &Scene| match sliding.choose(scene)? {
-            (Method::Steady(grid), _) => Ok(grid),
-            (Method::Layer, of_method) => Err(Error::value(of_method)),
-        };
+        let grid_of = |scene: &Scene| sliding.grid(scene);
         let theory = TheoryModel::new(&scene_at);
         let steady = SteadyModel::new(&scene_at, &grid_of);
         let layer = LayerModel { scene_at: &scene_at, area: self.area, bounds: sliding.bounds() };

@@ -13,6 +13,7 @@ mod free_scene;
 mod measurements;
 mod models;
 mod problem;
+mod refit;
 mod statistics;
 mod written;
 
@@ -26,6 +27,7 @@ pub use models::{
     Task, TheoryModel,
 };
 pub use problem::{FreeParameter, FrictionMeasurement, Linearised, Problem};
+pub use refit::uncertain_scene;
 pub use statistics::{Direction, Misfit, Plan, Statistics, chi_square_per_degree, plan};
 pub use written::{
     FitCovariance, NotInCovariance, PointsTable, calibrate_scene, calibrated_text, named_covariance, with_covariance,

@@ -55,15 +55,21 @@ pub(super) fn sum_of_squares(residuals: &[f64]) -> f64 {
 impl Problem {
     /// The problem of some measurements.
     pub fn new(parameters: Vec<FreeParameter>, measurements: &Measurements) -> Self {
-        let (mut points, mut rows): (Vec<OperatingPoint>, Vec<FrictionMeasurement>) = (Vec::new(), Vec::new());
+        let has_sigma = measurements.has_sigma();
+        let mut problem = Self { parameters, points: Vec::new(), rows: Vec::new(), has_sigma };
         for measured in &measurements.rows {
-            let point = points.iter().position(|point| *point == measured.point).unwrap_or_else(|| {
-                points.push(measured.point);
-                points.len() - 1
-            });
-            rows.push(FrictionMeasurement { point, friction: measured.friction, sigma: measured.sigma_or_assumed() });
+            problem.add(measured.point, measured.friction, measured.sigma_or_assumed());
         }
-        Self { parameters, points, rows, has_sigma: measurements.has_sigma() }
+        problem
+    }
+
+    /// Adds a measurement of friction and its standard deviation at a point.
+    pub(super) fn add(&mut self, at: OperatingPoint, friction: f64, sigma: f64) {
+        let point = self.points.iter().position(|point| *point == at).unwrap_or_else(|| {
+            self.points.push(at);
+            self.points.len() - 1
+        });
+        self.rows.push(FrictionMeasurement { point, friction, sigma });
     }
 
     /// The values of the parameters at some places.
@@ -197,11 +203,7 @@ impl Problem {
             if left_out.contains(&point) {
                 continue;
             }
-            let index = kept.points.iter().position(|known| *known == point).unwrap_or_else(|| {
-                kept.points.push(point);
-                kept.points.len() - 1
-            });
-            kept.rows.push(FrictionMeasurement { point: index, ..*row });
+            kept.add(point, row.friction, row.sigma);
         }
         kept
     }

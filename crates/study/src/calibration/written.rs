@@ -14,6 +14,7 @@ use super::calibrator::{Calibration, Calibrator};
 use super::free_scene::{CalibrationOptions, FreeScene};
 use super::models::{FrictionParts, NoSliding, Outcome, Task};
 use super::problem::FreeParameter;
+use super::refit::stored;
 use super::statistics::Misfit;
 use crate::csv;
 use crate::decimals::{plain, real, short};
@@ -101,8 +102,10 @@ pub struct FitCovariance {
     pub entries: Vec<Vec<f64>>,
     /// What does not, and why.
     pub left_out: Vec<(String, NotInCovariance)>,
-    /// What was fitted to, in words.
+    /// What was fitted to, in words, ...
     fitted_to: String,
+    /// ... and in numbers, by which they are fitted anew in samples.
+    stored: Header,
     /// Where the scene cannot say that.
     misfit: Option<Misfit>,
 }
@@ -157,6 +160,7 @@ impl FitCovariance {
             entries: told.iter().map(|&a| told.iter().map(|&b| entry(a, b)).collect()).collect(),
             left_out,
             fitted_to: format!("{} measurements of {}", problem.rows.len(), name_of(free.data())),
+            stored: stored(free, problem, &told),
             misfit: statistics.misfit,
         }
     }
@@ -177,6 +181,7 @@ impl FitCovariance {
         for (key, why) in &self.left_out {
             text += &format!("# left out, so that samples do not vary it: {key}, {why}\n");
         }
+        text += &self.stored.text();
         let keys = || self.numbers.iter().map(|number| number.key.as_str());
         let rows = self.numbers.iter().zip(&self.entries).map(|(number, entries)| {
             let own = [number.key.clone(), plain(number.value), number.scale.word().to_owned()];
@@ -338,6 +343,7 @@ mod tests {
             entries: vec![vec![0.04, -0.01], vec![-0.01, 0.25]],
             left_out: vec![("e".into(), NotInCovariance::AtBound(3.0)), ("f".into(), NotInCovariance::NotIdentifiable)],
             fitted_to: "5 measurements of data.csv".into(),
+            stored: Header::default(),
             misfit: Some(Misfit::Large(0.5)),
         };
         let text = covariance.text().unwrap();

@@ -8,6 +8,7 @@ use asperity::tables::GivenColumns;
 use serde::Serialize;
 
 use super::plan::{RankFound, RankPlan};
+use super::ranking::Mean;
 use crate::calibration::{Measured, Measurements, left_out_in_words};
 use crate::comparison::{NoFriction, swept_friction};
 use crate::csv;
@@ -94,7 +95,7 @@ pub fn measured_ranking(
     }
     let words = left_out.iter().map(|(row, why): &(Measured, NoFriction)| (vec![row.line], row.point, why.to_string()));
     notes.extend(left_out_in_words(words, lines.len()));
-    let (scenes, points) = means(&labels, &compared);
+    let (scenes, points) = means(plan.mean(), &labels, &compared);
     if scenes.len() < 2 || points == 0 {
         return Err(refused(
             "expected a point of the ranking at which at least two of its scenes were measured".to_owned(),
@@ -118,7 +119,7 @@ fn named(plan: &RankPlan, name: &str) -> Option<usize> {
 }
 
 /// The means of the scenes that were measured over the points at which all of them were, and how many these are.
-fn means(labels: &[String], compared: &[Vec<Compared>]) -> (Vec<MeasuredScene>, usize) {
+fn means(kind: Mean, labels: &[String], compared: &[Vec<Compared>]) -> (Vec<MeasuredScene>, usize) {
     let measured: Vec<usize> = (0..labels.len()).filter(|&scene| !compared[scene].is_empty()).collect();
     let mut points: Vec<OperatingPoint> = Vec::new();
     for (row, _) in measured.first().iter().flat_map(|&&scene| &compared[scene]) {
@@ -135,7 +136,7 @@ fn means(labels: &[String], compared: &[Vec<Compared>]) -> (Vec<MeasuredScene>, 
                 let (sum, count) = all.fold((0.0, 0.0), |(sum, count), one| (sum + of(one), count + 1.0));
                 sum / count
             };
-            points.iter().map(at).sum::<f64>() / points.len() as f64
+            kind.of(points.iter().map(at).map(|value| (value, 1.0 / points.len() as f64)))
         };
         MeasuredScene {
             label: labels[scene].clone(),
@@ -200,7 +201,7 @@ mod tests {
         let a =
             vec![compared(0.1, 0.5, 0.6), compared(0.105, 0.7, 0.8), compared(1.0, 1.0, 1.2), compared(10.0, 9.0, 9.0)];
         let b = vec![compared(1.0, 0.4, 0.4), compared(0.1, 0.2, 0.2)];
-        let (scenes, points) = means(&labels, &[a, b, Vec::new()]);
+        let (scenes, points) = means(Mean::Arithmetic, &labels, &[a, b, Vec::new()]);
         assert_eq!((points, scenes.len(), scenes[1].label.as_str()), (2, 2, "b"));
         assert!((scenes[0].measured - 0.8).abs() < 1e-12 && (scenes[0].computed - 0.95).abs() < 1e-12, "{scenes:?}");
         assert!((scenes[1].measured - 0.3).abs() < 1e-12, "{scenes:?}");

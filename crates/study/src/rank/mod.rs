@@ -13,5 +13,5 @@ mod weights;
 pub use measured::{MeasuredRanking, MeasuredScene, kendall, measured_ranking};
 pub use picture::picture;
 pub use plan::{RankFound, RankOptions, RankPlan, RankScene};
-pub use ranking::{Band, Pair, QUANTILES, RankedPoint, RankedScene, Ranking, SURE, table};
+pub use ranking::{Band, Mean, Pair, QUANTILES, RankedPoint, RankedScene, Ranking, SURE, table};
 pub use weights::{WEIGHTS, Weights};

@@ -7,13 +7,14 @@ use asperity::scene::Scene;
 use clap::Args;
 use serde::{Deserialize, Serialize};
 
-use super::ranking::{Frictions, Ranking};
+use super::ranking::{Frictions, Mean, Ranking};
 use super::weights::Weights;
 use crate::Error;
+use crate::calibration::uncertain_scene;
 use crate::files::{ColumnOptions, name_of};
 use crate::progress::{Stop, Stopped};
-use crate::sweep::{SweepOptions, SweepPlan, SweepTable};
-use crate::uncertainty::{Drawn, Refused, SampleOptions, Sampler, UncertainScene, Uncertainty};
+use crate::sweep::{Problems, SweepOptions, SweepPlan, SweepTable};
+use crate::uncertainty::{Drawn, Refused, SampleOptions, Sampler, UncertainScene, Uncertainty, covariance_file};
 use crate::values::count;
 
 /// Friction of a scene at all points, or why it cannot be swept.
@@ -36,6 +37,15 @@ pub struct RankOptions {
     /// The seed of the samples.
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     pub seed: u64,
+    /// Fits the numbers of a scene's covariance anew in each sample, by the measurements that are stored with it: for what
+    /// else varies beside it (surface, seed, series), as asperity sweep --samples --refit does.
+    #[arg(long)]
+    #[serde(default)]
+    pub refit: bool,
+    /// The mean over the points.
+    #[arg(long, value_name = "MEAN", value_enum, default_value_t)]
+    #[serde(default)]
+    pub mean: Mean,
     /// Measured friction, as for asperity calibrate, with a column scene of the scenes' names or file names: it is compared
     /// beside, and the order by Kendall's rank correlation.
     #[arg(long, value_name = "MEASURED.csv")]
@@ -60,7 +70,10 @@ pub struct RankPlan {
     entries: Vec<Entry>,
     options: SweepOptions,
     weights: Weights,
+    mean: Mean,
     sampler: Option<Sampler>,
+    /// Why samples have no result.
+    problems: Problems,
 }
 
 #[derive(Debug)]
@@ -81,17 +94,24 @@ pub struct RankFound {
 }
 
 impl RankPlan {
-    /// The ranking of `scenes` at the points of the `options`, by so many samples of what is not known of them.
+    /// The ranking of `scenes` at the points of the `options`, by so many samples of what is not known of them; `stop` ends
+    /// the fits of these.
     ///
     /// # Errors
     /// Where a scene does not go with the options, or with the others, or the weights cannot be read.
-    pub fn new(scenes: Vec<RankScene>, options: &RankOptions) -> Result<Self, Error> {
+    pub fn new(scenes: Vec<RankScene>, options: &RankOptions, stop: &Stop) -> Result<Self, Error> {
         if scenes.len() < 2 {
             return Err(Error::value(format!("expected at least 2 scenes to rank, found {}", scenes.len())));
         }
         let labels = labels(&scenes);
         let samples = SampleOptions { count: options.samples as usize, seed: options.seed };
         let weights = options.weights.as_deref().map(Weights::read).transpose()?.unwrap_or_default();
+        let RankOptions { mean, refit, .. } = *options;
+        if refit && scenes.iter().all(|scene| covariance_file(&scene.scene).is_none()) {
+            return Err(Error::scene(
+                "`refit`: expected covariance = \"...\" in [uncertainty] of one of the scenes at least",
+            ));
+        }
         let options = options.sweep.clone();
         if options.temperatures.is_none() {
             check_temperatures(&scenes, &labels)?;
@@ -101,14 +121,20 @@ impl RankPlan {
             let refused = |error: Error| error.context(&label);
             let plan = SweepPlan::new(scene.clone(), &options, None).map_err(refused)?;
             let is_known = Uncertainty::of(&scene)?.0.is_empty();
-            let uncertain = (!is_known).then(|| UncertainScene::new(scene)).transpose()?;
+            let refit = refit && covariance_file(&scene).is_some();
+            let uncertain = (!is_known).then(|| uncertain_scene(scene, refit, stop)).transpose()?;
             Ok(Entry { label, file, plan, uncertain })
         };
         let entries = scenes.into_iter().zip(labels).map(entry).collect::<Result<Vec<_>, _>>()?;
         let uncertain = || entries.iter().filter_map(|entry| entry.uncertain.as_ref());
         let axes = uncertain().flat_map(UncertainScene::axes).collect();
         let sampler = uncertain().next().is_some().then(|| Sampler::new(axes, samples)).transpose()?;
-        Ok(Self { entries, options, weights, sampler })
+        Ok(Self { entries, options, weights, mean, sampler, problems: Problems::default() })
+    }
+
+    /// The mean over the points.
+    pub fn mean(&self) -> Mean {
+        self.mean
     }
 
     /// The scenes' names, in the order that they were given in.
@@ -135,7 +161,8 @@ impl RankPlan {
     pub fn warnings(&self) -> Vec<String> {
         let of = |entry: &Entry| {
             let named = |warning: &String| format!("{}: {warning}", entry.label);
-            entry.plan.first_warnings().iter().map(named).collect::<Vec<_>>()
+            let twice = entry.uncertain.as_ref().and_then(UncertainScene::counted_twice);
+            entry.plan.first_warnings().iter().chain(&twice).map(named).collect::<Vec<_>>()
         };
         self.entries.iter().flat_map(of).collect()
     }
@@ -171,8 +198,8 @@ impl RankPlan {
         let own: Frictions = tables.iter().map(frictions).collect();
         let (samples, redrawn) = self.samples(&own, stop, done)?;
         let weighted: Vec<(OperatingPoint, f64)> = points.into_iter().zip(weights).collect();
-        let ranking = Ranking::new(self.labels(), (self.load(), &weighted), &own, &samples)?;
-        Ok(RankFound { ranking: Ranking { redrawn, ..ranking }, tables })
+        let ranking = Ranking::new(self.labels(), (self.load(), &weighted, self.mean), &own, &samples)?;
+        Ok(RankFound { ranking: Ranking { redrawn, problems: self.problems.in_words(), ..ranking }, tables })
     }
 
     /// Friction of all samples of all scenes, those of which everything is known as they stand.
@@ -221,7 +248,9 @@ impl RankPlan {
         Ok(SweepPlan::new(drawn, &options, None).map(|plan| {
             // Where it is stopped nobody wants the ranking.
             let nothing = |_| vec![None; plan.header().grid.count()];
-            swept(&plan, stop).map(|table| frictions(&table)).unwrap_or_else(nothing)
+            let table = swept(&plan, stop);
+            table.iter().flat_map(|table| &table.rows).for_each(|row| self.problems.count(row));
+            table.map(|table| frictions(&table)).unwrap_or_else(nothing)
         }))
     }
 }
@@ -290,7 +319,16 @@ mod tests {
     const TEN_PER_CENT: &str = "[uncertainty]\n'friction.shear_strength' = { relative = 0.1 }\n";
 
     fn of(sweep: SweepOptions) -> RankOptions {
-        RankOptions { sweep, weights: None, samples: 64, seed: 1, data: None, columns: ColumnOptions::default() }
+        RankOptions {
+            sweep,
+            weights: None,
+            samples: 64,
+            seed: 1,
+            refit: false,
+            mean: Mean::Arithmetic,
+            data: None,
+            columns: ColumnOptions::default(),
+        }
     }
 
     fn plan(scenes: Vec<RankScene>) -> RankPlan {
@@ -299,7 +337,7 @@ mod tests {
             pressures: Some(Values(vec![2e4, 4e4])),
             ..SweepOptions::default()
         };
-        RankPlan::new(scenes, &of(options)).unwrap()
+        RankPlan::new(scenes, &of(options), &Stop::default()).unwrap()
     }
 
     fn found(plan: &RankPlan) -> RankFound {
@@ -398,7 +436,7 @@ mod tests {
             ..SweepOptions::default()
         };
         let options = of(options);
-        let new = |scenes: Vec<RankScene>| RankPlan::new(scenes, &options).unwrap_err().to_string();
+        let new = |scenes: Vec<RankScene>| RankPlan::new(scenes, &options, &Stop::default()).unwrap_err().to_string();
         assert!(new(vec![scene("a", 1e6, "")]).contains("at least 2 scenes"));
         assert!(new(vec![scene("a", 1e6, ""), scene("b", 1e6, "")]).starts_with("a: `temperatures`: the scene has no"));
     }

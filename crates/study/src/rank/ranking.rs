@@ -5,7 +5,8 @@ use crate::decimals::real;
 use crate::error::Error;
 use crate::sweep::quantile;
 use asperity::element::{Load, OperatingPoint, some_of};
-use serde::Serialize;
+use clap::ValueEnum;
+use serde::{Deserialize, Serialize};
 
 /// The quantiles of a band.
 pub const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
@@ -17,12 +18,40 @@ pub type Band = [f64; 5];
 /// Friction of the scenes, each at all points; `None` where there is no result.
 pub(super) type Frictions = Vec<Vec<Option<f64>>>;
 
+/// The mean by which scenes are ranked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Mean {
+    /// Of friction μ
+    #[default]
+    Arithmetic,
+    /// 1 over the mean of 1/μ: the braking way goes with 1/μ
+    Harmonic,
+}
+
+impl Mean {
+    /// The mean of values with their weights, of all 1 together.
+    pub(super) fn of(self, weighted: impl Iterator<Item = (f64, f64)>) -> f64 {
+        match self {
+            Self::Arithmetic => weighted.map(|(value, weight)| weight * value).sum(),
+            Self::Harmonic => 1.0 / weighted.map(|(value, weight)| weight / value).sum::<f64>(),
+        }
+    }
+
+    /// Whether a value has a part in it.
+    fn takes(self, value: f64) -> bool {
+        self == Self::Arithmetic || value > 0.0
+    }
+}
+
 /// Scenes in their order.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ranking {
     /// What presses.
     #[serde(skip)]
     pub load: Load,
+    /// The mean by which they are ranked.
+    pub mean: Mean,
     /// The points that were asked for.
     pub points: Vec<RankedPoint>,
     /// The scenes in the order that they were given in.
@@ -37,6 +66,8 @@ pub struct Ranking {
     pub failed: usize,
     /// How many draws were no scene, and were drawn anew.
     pub redrawn: usize,
+    /// Why samples have no result, the most frequent kinds; `None` where all have one.
+    pub problems: Option<String>,
 }
 
 /// A point, and which scene has the largest friction there.
@@ -60,7 +91,7 @@ pub struct RankedPoint {
 pub struct RankedScene {
     /// What it is called.
     pub label: String,
-    /// The mean of its friction, ...
+    /// The [mean](Ranking::mean) of its friction, ...
     pub friction: f64,
     /// ... and its band.
     pub friction_band: Option<Band>,
@@ -87,13 +118,17 @@ impl Ranking {
     /// Of `labels` with their `own` friction at `points` with some weights, and that of the `samples`.
     pub(super) fn new(
         labels: Vec<String>,
-        (load, points): (Load, &[(OperatingPoint, f64)]),
+        (load, points, kind): (Load, &[(OperatingPoint, f64)], Mean),
         own: &Frictions,
         samples: &[Frictions],
     ) -> Result<Self, Error> {
         let weights = weights(load, points, own)?;
-        let mean = |friction: &Vec<Option<f64>>| mean(friction, &weights);
+        let mean = |friction: &Vec<Option<f64>>| mean(kind, friction, &weights);
         let means: Vec<f64> = own.iter().filter_map(mean).collect();
+        if let Some((label, _)) = labels.iter().zip(own).find(|(_, friction)| mean(friction).is_none()) {
+            let expected = "expected friction above 0 at each point for `mean` harmonic, as 1 over it is averaged";
+            return Err(Error::value(format!("{label}: {expected}")));
+        }
         if means.first().is_none_or(|first| *first <= 0.0) {
             let first = labels.into_iter().next().unwrap_or_default();
             let problem = "its friction in the mean is not above 0, so that nothing can be compared with it: name another scene \
@@ -124,6 +159,7 @@ impl Ranking {
         let ranked_point = |at: usize| point(at, (points[at].0, weights[at]), own, samples);
         Ok(Self {
             load,
+            mean: kind,
             points: (0..points.len()).map(ranked_point).collect(),
             order: order(&scenes),
             pairs: pairs(&kept, scenes.len()),
@@ -131,6 +167,7 @@ impl Ranking {
             samples: kept.len(),
             failed: samples.len() - kept.len(),
             redrawn: 0,
+            problems: None,
         })
     }
 
@@ -171,8 +208,9 @@ impl Ranking {
             )
         });
         let count = self.samples + self.failed;
+        let why = self.problems.as_ref().map(|why| format!("; most often: {why}")).unwrap_or_default();
         let samples = (self.failed as f64 > MANY * count as f64)
-            .then(|| format!("{} of {count} samples have no result at some point and are left out", self.failed));
+            .then(|| format!("{} of {count} samples have no result at some point and are left out{why}", self.failed));
         points.into_iter().chain(samples).collect()
     }
 }
@@ -188,10 +226,11 @@ fn weights(load: Load, points: &[(OperatingPoint, f64)], own: &Frictions) -> Res
     Ok(points.iter().enumerate().map(|(at, (_, weight))| if counts(at) { weight / sum } else { 0.0 }).collect())
 }
 
-/// The weighted mean; `None` where there is no result at a point that counts.
-fn mean(friction: &[Option<f64>], weights: &[f64]) -> Option<f64> {
+/// The weighted mean; `None` where a point that counts has no result, or none that the mean takes.
+fn mean(kind: Mean, friction: &[Option<f64>], weights: &[f64]) -> Option<f64> {
     let counted = friction.iter().zip(weights).filter(|(_, weight)| **weight > 0.0);
-    counted.map(|(friction, weight)| Some(weight * (*friction)?)).sum()
+    let counted = counted.map(|(friction, weight)| Some((friction.filter(|value| kind.takes(*value))?, *weight)));
+    counted.collect::<Option<Vec<_>>>().map(|counted| kind.of(counted.into_iter()))
 }
 
 fn point(at: usize, (point, weight): (OperatingPoint, f64), own: &Frictions, samples: &[Frictions]) -> RankedPoint {
@@ -284,7 +323,7 @@ mod tests {
 
     fn ranked(points: &[(OperatingPoint, f64)], own: &Frictions, samples: &[Frictions]) -> Result<Ranking, Error> {
         let labels = (0..own.len()).map(|i| format!("scene {i}")).collect();
-        Ranking::new(labels, (Load::Force, points), own, samples)
+        Ranking::new(labels, (Load::Force, points, Mean::Arithmetic), own, samples)
     }
 
     fn frictions(scenes: &[&[f64]]) -> Frictions {
@@ -299,6 +338,21 @@ mod tests {
         assert_eq!((ranking.order.clone(), ranking.scenes[1].index), (vec![1, 0], 100.0 * (0.95 / 0.625)));
         assert_eq!((ranking.first_two(), ranking.is_sure(), ranking.scenes[1].largest), (None, false, 1.0));
         assert_eq!(ranking.points[0].largest, [1.0, 0.0]);
+    }
+
+    /// Braking over the first half of a way on 1.0 and over the other on 0.25 takes as long a way as on 0.4 throughout.
+    #[test]
+    fn the_harmonic_mean_ranks_by_the_braking_way() {
+        let own = frictions(&[&[1.0, 0.25], &[0.5, 0.5]]);
+        let of =
+            |kind| Ranking::new(vec!["a".into(), "b".into()], (Load::Force, &points(&[1.0, 1.0]), kind), &own, &[]);
+        let orders = [Mean::Arithmetic, Mean::Harmonic].map(|kind| of(kind).unwrap().order);
+        assert_eq!(orders, [vec![0, 1], vec![1, 0]]);
+        assert_eq!(of(Mean::Harmonic).unwrap().scenes[0].friction, 0.4);
+        let none = frictions(&[&[1.0, 0.0], &[0.5, 0.5]]);
+        let labels = vec!["a".into(), "b".into()];
+        let error = Ranking::new(labels, (Load::Force, &points(&[1.0, 1.0]), Mean::Harmonic), &none, &[]).unwrap_err();
+        assert!(error.to_string().contains("a: expected friction above 0"), "{error}");
     }
 
     /// What all samples share drops out: the band of the index is that of the ratio.

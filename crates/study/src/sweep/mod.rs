@@ -19,6 +19,7 @@ pub use load_search::separation_at_rest;
 pub use options::{Method, SlidingOptions, SweepMethod, SweepOptions, check_possible, fingerprint, way_of};
 pub use over::{Over, SweptQuantity};
 pub use picture::{column_picture, master_picture, matters_picture, over_ways, sweep_picture};
+pub(crate) use plan::Problems;
 pub use plan::{Matter, Matters};
 pub use plan::{SweepPlan, quantile_table};
 pub use point::steady_sliding;

@@ -138,7 +138,7 @@ impl SlidingOptions {
     }
 
     /// The header with these options.
-    pub(super) fn in_header(self, mut header: Header) -> Header {
+    pub(crate) fn in_header(self, mut header: Header) -> Header {
         header = header.with_some(SLIDING, self.method.map(SweepMethod::word));
         if let Some(points) = self.points {
             header = header.with_whole(POINTS, points.into());
@@ -187,6 +187,17 @@ impl SlidingOptions {
                 Ok((Method::Layer, format!("layer: {}", reason.unwrap_or_default())))
             }
             _ => Err(Error::scene("`points`: expected none with `method` layer, whose points are its masses")),
+        }
+    }
+
+    /// The surface that steady sliding of a `scene` is solved on.
+    ///
+    /// # Errors
+    /// As for [`choose`](Self::choose), and where a layer would slide.
+    pub(crate) fn grid(self, scene: &Scene) -> Result<SurfaceGrid, Error> {
+        match self.choose(scene)? {
+            (Method::Steady(grid), _) => Ok(grid),
+            (Method::Layer, of_method) => Err(Error::value(of_method)),
         }
     }
 

@@ -53,8 +53,9 @@ impl SweepPlan {
         samples: SampleOptions,
     ) -> Result<Self, Error> {
         let scene = uncertain.scene();
-        let Self { own, mut header, .. } = Self::new(scene.clone(), options, convergence)?;
-        let settings = format!("{} {samples:?} {:?}", header.fingerprint(), uncertain.uncertainty());
+        let Self { mut own, mut header, .. } = Self::new(scene.clone(), options, convergence)?;
+        own.warnings.extend(uncertain.counted_twice());
+        let settings = format!("{} {samples:?} {}", header.fingerprint(), uncertain.identity());
         let samples = Samples::new(uncertain, &own, options, samples)?;
         header.keys.set(FINGERPRINT, &fingerprint_of(&settings));
         samples.header().set_in(&mut header);
@@ -117,12 +118,12 @@ impl SweepPlan {
         };
         let found: Vec<_> = rows.iter().filter_map(missing).collect();
         let (row, missing) = found.iter().max_by_key(|(_, missing)| *missing)?;
-        let why = self.samples.as_ref().and_then(Samples::problem);
+        let why = self.samples.as_ref().and_then(|samples| samples.problems.in_words());
         Some(format!(
             "more than 5 % of the samples have no result at {} of the points of the table and are left out there, {missing} at {}{}",
             found.len(),
             row.point.describe(self.header.load),
-            why.map(|why| format!("; most of them: {why}")).unwrap_or_default()
+            why.map(|why| format!("; most often: {why}")).unwrap_or_default()
         ))
     }
 
@@ -279,6 +280,33 @@ fn no_ranking() -> Error {
     Error::scene("`quantile`: expected the whole table of a sweep with samples, which ranks them")
 }
 
+/// Why samples have no result, each kind with how often, as far as they were found here.
+#[derive(Debug, Default)]
+pub(crate) struct Problems(Mutex<BTreeMap<String, usize>>);
+
+impl Problems {
+    /// Counts a row that is no result.
+    pub(crate) fn count(&self, row: &SweepRow) {
+        if row.is_result() {
+            return;
+        }
+        // Of one kind whatever its numbers.
+        let word = |word: &str| if word.contains(|c: char| c.is_ascii_digit()) { "some" } else { word }.to_owned();
+        let kind = row.status.text().split(' ').map(word).collect::<Vec<_>>().join(" ");
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner).entry(kind).or_default() += 1;
+    }
+
+    /// The most frequent kinds; `None` where there are none.
+    pub(crate) fn in_words(&self) -> Option<String> {
+        const MOST: usize = 3;
+        let problems = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut all: Vec<(&String, &usize)> = problems.iter().collect();
+        all.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
+        let said = all.iter().take(MOST).map(|(kind, count)| format!("{kind} ({count} times)"));
+        (!all.is_empty()).then(|| said.collect::<Vec<_>>().join(", "))
+    }
+}
+
 /// The samples of a sweep, their points not found yet.
 #[derive(Debug)]
 pub(super) struct Samples {
@@ -289,8 +317,9 @@ pub(super) struct Samples {
     /// How many draws were drawn anew.
     redrawn: usize,
     options: SampleOptions,
-    /// How often a reason left a sample without a result.
-    problems: Mutex<BTreeMap<String, usize>>,
+    /// Whether a covariance's numbers were fitted anew in each.
+    refit: bool,
+    problems: Problems,
 }
 
 /// A sample.
@@ -326,18 +355,13 @@ impl Samples {
         };
         let all = draws.made.into_iter().enumerate().map(failed).collect::<Result<_, Error>>()?;
         let groups = uncertain.groups().to_vec();
-        Ok(Self { groups, all, redrawn: draws.redrawn, options: samples, problems: Mutex::default() })
-    }
-
-    /// Why most of the samples without a result have none, as far as they were found here.
-    fn problem(&self) -> Option<String> {
-        let problems = self.problems.lock().unwrap_or_else(PoisonError::into_inner);
-        problems.iter().max_by_key(|(_, count)| **count).map(|(problem, _)| problem.clone())
+        let (redrawn, refit) = (draws.redrawn, uncertain.is_refitted());
+        Ok(Self { groups, all, redrawn, options: samples, refit, problems: Problems::default() })
     }
 
     /// What the table's header says of them.
     pub(super) fn header(&self) -> SampleHeader {
-        SampleHeader { count: self.all.len(), seed: self.options.seed, redrawn: self.redrawn }
+        SampleHeader { count: self.all.len(), seed: self.options.seed, redrawn: self.redrawn, refit: self.refit }
     }
 
     /// All samples of a point, found on all cores.
@@ -347,10 +371,7 @@ impl Samples {
                 return [None; Sampled::ALL.len()];
             }
             let row = sample.row(point, interrupt);
-            if !row.is_result() {
-                let mut problems = self.problems.lock().unwrap_or_else(PoisonError::into_inner);
-                *problems.entry(row.status.text().to_owned()).or_default() += 1;
-            }
+            self.problems.count(&row);
             let value = |quantity| row.value(quantity).filter(|_| row.is_result());
             [Quantity::Friction, Quantity::Hysteresis, Quantity::ContactRatio].map(value)
         };

@@ -79,6 +79,11 @@ impl SweepHeader {
         self.keys.text_of("scene").unwrap_or_default()
     }
 
+    /// Whether a covariance's numbers were fitted anew in each of its samples.
+    pub fn is_refitted(&self) -> bool {
+        self.samples.is_some_and(|samples| samples.refit)
+    }
+
     /// What tells this sweep from others.
     pub fn fingerprint(&self) -> &str {
         self.keys.text_of("fingerprint").unwrap_or_default()
@@ -323,7 +328,12 @@ pub struct SampleHeader {
     pub seed: u64,
     /// How many draws were no scene, and were drawn anew.
     pub redrawn: usize,
+    /// Whether a covariance's numbers were fitted anew in each.
+    pub refit: bool,
 }
+
+/// The key of that.
+const REFIT: &str = "refit";
 
 impl SampleHeader {
     /// Gives them to a table that is begun.
@@ -331,19 +341,25 @@ impl SampleHeader {
         header.samples = Some(self);
         let numbers = [("samples", self.count as u64), ("seed", self.seed), ("redrawn", self.redrawn as u64)];
         numbers.into_iter().for_each(|(key, number)| header.keys.set(key, &number.to_string()));
+        if self.refit {
+            header.keys.set(REFIT, "true");
+        }
     }
 
     /// The keys without those of samples.
     pub(super) fn removed_from(keys: &Header) -> Header {
         let mut keys = keys.clone();
-        ["samples", "seed", "redrawn"].iter().for_each(|key| keys.remove(key));
+        ["samples", "seed", "redrawn", REFIT].iter().for_each(|key| keys.remove(key));
         keys
     }
 
     /// Those of a header; `None` where it names none.
     pub(super) fn of_table(keys: &Header) -> Result<Option<Self>, TableError> {
         let count = keys.optional("samples", Header::whole)?.map(|count| count as usize);
-        let of = |count| Ok(Self { count, seed: keys.whole("seed")?, redrawn: keys.whole("redrawn")? as usize });
+        let of = |count| {
+            let (seed, redrawn) = (keys.whole("seed")?, keys.whole("redrawn")? as usize);
+            Ok(Self { count, seed, redrawn, refit: keys.has(REFIT) })
+        };
         count.map(of).transpose()
     }
 }
@@ -542,7 +558,7 @@ mod tests {
             let grid = SweepGrid { speeds: vec![1e-5, 0.1 + 0.2], loads: vec![2e5, 1e30], temperatures };
             let keys = Header::new(SWEEP).with("scene", "a = b, c").with("fingerprint", "00ff");
             let mut header = SweepHeader::new(keys, load, -1.5e-5, grid);
-            let samples = SampleHeader { count: 2, seed: 1, redrawn: 0 };
+            let samples = SampleHeader { count: 2, seed: 1, redrawn: 0, refit: true };
             if load != Load::Force {
                 samples.set_in(&mut header);
             }

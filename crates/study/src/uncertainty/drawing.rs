@@ -2,6 +2,9 @@
 //!
 //! What is not known, in groups: each key, and each file of a covariance; and the axes that each is drawn along.
 
+use std::fmt;
+use std::sync::Arc;
+
 use asperity::scene::{ParameterError, Scene, SceneError, Setting, SpectrumFactors};
 use rayon::prelude::*;
 
@@ -16,6 +19,22 @@ pub struct UncertainScene {
     scene: Scene,
     uncertainty: Uncertainty,
     groups: Vec<Group>,
+    refit: Option<Arc<dyn Refit>>,
+}
+
+/// The scene that was drawn, with these numbers of the covariance.
+pub type DrawnAt<'a> = dyn Fn(&[f64]) -> Result<Scene, Refused> + Sync + 'a;
+
+/// What fits the numbers of the covariance anew in a scene that was drawn.
+pub trait Refit: fmt::Debug + Send + Sync {
+    /// What tells it from others.
+    fn identity(&self) -> &str;
+
+    /// The numbers, in their order.
+    ///
+    /// # Errors
+    /// Where there are none.
+    fn refit(&self, drawn: &DrawnAt<'_>) -> Result<Vec<f64>, Refused>;
 }
 
 /// A scene that was drawn.
@@ -63,7 +82,41 @@ impl UncertainScene {
             return Err(Error::scene(format!("`samples`: {expected}")));
         }
         let groups = groups(&uncertainty);
-        Ok(Self { scene, uncertainty, groups })
+        Ok(Self { scene, uncertainty, groups, refit: None })
+    }
+
+    /// The same, its covariance's numbers fitted anew in each scene that is drawn: they are off from there.
+    #[must_use]
+    pub fn refitted(self, refit: Arc<dyn Refit>) -> Self {
+        Self { refit: Some(refit), ..self }
+    }
+
+    /// Whether the covariance's numbers are fitted anew.
+    pub fn is_refitted(&self) -> bool {
+        self.refit.is_some()
+    }
+
+    /// What tells its samples from those of others.
+    pub(crate) fn identity(&self) -> String {
+        let refit = self.refit.as_ref().map(|refit| refit.identity()).unwrap_or_default();
+        format!("{:?}{refit}", self.uncertainty)
+    }
+
+    /// A warning of what varies beside a covariance that was fitted with it as it stands.
+    pub fn counted_twice(&self) -> Option<String> {
+        /// Measurements have temperatures of their own.
+        const OF_CONDITIONS: &str = "material.wlf.temperature";
+        let Covariance { file, numbers, .. } = self.uncertainty.covariance.as_ref().filter(|_| self.refit.is_none())?;
+        let keys = self.uncertainty.keys.iter().map(|key| key.key.as_str()).filter(|key| *key != OF_CONDITIONS);
+        let (keys, numbers): (Vec<&str>, Vec<&str>) = (keys.collect(), numbers.iter().map(|one| &*one.key).collect());
+        let (beside, fitted) = (keys.join(", "), numbers.join(", "));
+        (!keys.is_empty()).then(|| {
+            format!(
+                "[uncertainty] varies {beside} beside {fitted}, fitted with these as they are ({}): what the measurements say \
+                 of all together is counted twice; `refit` fits {fitted} anew in each sample",
+                file.display()
+            )
+        })
     }
 
     /// The scene as it was read.
@@ -113,13 +166,29 @@ impl UncertainScene {
                 Spread::Prony { .. } | Spread::Spectrum { .. } => (),
             }
         }
-        values.extend(covariance.iter().flat_map(|covariance| fitted(covariance, normal)));
         let numbers = values.iter().filter(|(key, _)| key != Uncertainty::SURFACE);
         set.extend(numbers.map(|(key, value)| Setting::new(key, *value)));
-        let mut scene = self.scene.with_all(&set).map_err(Refused::from)?;
-        for UncertainKey { key, spread } in keys {
-            scene = transformed(scene, key, spread, normal, &mut values)?;
+        let scene_with = |fitted: &[(String, f64)]| -> Result<(Scene, Vec<(String, f64)>), Refused> {
+            let fitted = fitted.iter().map(|(key, value)| Setting::new(key, *value));
+            let set: Vec<Setting> = set.iter().cloned().chain(fitted).collect();
+            let (mut scene, mut values) = (self.scene.with_all(&set).map_err(Refused::from)?, Vec::new());
+            for UncertainKey { key, spread } in keys {
+                scene = transformed(scene, key, spread, normal, &mut values)?;
+            }
+            Ok((scene, values))
+        };
+        let mut off = Vec::new();
+        if let Some(covariance) = covariance {
+            let key = |index: usize| covariance.numbers[index].key.clone();
+            let named = |found: &[f64]| found.iter().enumerate().map(|(i, found)| (key(i), *found)).collect::<Vec<_>>();
+            let about = match &self.refit {
+                Some(refit) => refit.refit(&|found: &[f64]| scene_with(&named(found)).map(|(scene, _)| scene))?,
+                None => covariance.numbers.iter().map(|number| number.value).collect(),
+            };
+            off = fitted(covariance, &about, normal);
         }
+        let (scene, transformed) = scene_with(&off)?;
+        values.extend(off.into_iter().chain(transformed));
         let normals = self.groups.iter().flat_map(|group| &group.axes).map(|axis| normal(axis)).collect();
         Ok(Drawn { scene, values, normals })
     }
@@ -193,15 +262,15 @@ fn drawn(value: f64, distribution: Distribution, unit: f64, normal: f64) -> f64 
     }
 }
 
-/// Numbers that were fitted together.
-fn fitted(covariance: &Covariance, normal: impl Fn(&str) -> f64) -> Vec<(String, f64)> {
+/// Numbers that were fitted together, off from these.
+fn fitted(covariance: &Covariance, about: &[f64], normal: impl Fn(&str) -> f64) -> Vec<(String, f64)> {
     let file = covariance.file.to_string_lossy();
     let normals: Vec<f64> = (0..covariance.numbers.len()).map(|i| normal(&fitted_axis(&file, i))).collect();
     let moved = |row: &[f64]| row.iter().zip(&normals).map(|(part, normal)| part * normal).sum::<f64>();
-    let numbers = covariance.numbers.iter().zip(&covariance.root).map(|(number, row)| {
+    let numbers = covariance.numbers.iter().zip(about).zip(&covariance.root).map(|((number, about), row)| {
         let value = match number.scale {
-            Scale::Log => number.value * moved(row).exp(),
-            Scale::Linear => number.value + moved(row),
+            Scale::Log => about * moved(row).exp(),
+            Scale::Linear => about + moved(row),
         };
         (number.key.clone(), value)
     });

@@ -11,7 +11,7 @@ mod section_tests;
 mod tests;
 
 pub use covariance::{CANNOT_SAY, Covariance, FittedNumber, Scale};
-pub use drawing::{Drawn, Draws, Group, Refused, UncertainScene, decade_name};
+pub use drawing::{Drawn, DrawnAt, Draws, Group, Refit, Refused, UncertainScene, decade_name};
 pub use indices::{Index, Indices, indices};
 pub use sampler::{SampleOptions, Sampler, inverse_normal};
 pub use section::{Distribution, Spread, UncertainKey, Uncertainty, covariance_file};
