@@ -148,7 +148,7 @@ impl<T: Number> ElementBlock<T> {
     ) -> BodyKinematics<T> {
         let next = step.body.at(part.end);
         // `begin` is the law at the begin of the part, `end` that at its end; the springs follow from the one to the other.
-        self.work += self.count as u64;
+        self.work += BLOCK as u64;
         std::mem::swap(&mut self.begin, &mut self.end);
         self.evaluate_at(step, law, &next, part.end);
         self.advance_springs(step, law, (now, &next), part.length());

@@ -359,7 +359,6 @@ impl WorkCounter {
     }
 
     /// The work done.
-    #[cfg(test)]
     pub(super) fn done(&self) -> u64 {
         self.done.load(Ordering::Relaxed)
     }

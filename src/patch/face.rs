@@ -113,7 +113,7 @@ impl Tread {
     /// The first column of a step, as counted at its start, and the number of columns that are inside at some time.
     pub(super) fn columns_of(&self, motion: TreadMotion) -> (f64, usize) {
         let entered = motion.whole_cells();
-        (-entered.max(0.0), self.columns + 1 + entered.abs() as usize)
+        (-entered.max(0.0), (self.columns + 1).saturating_add(entered.abs() as usize))
     }
 }
 
@@ -123,6 +123,14 @@ impl Face {
         match self {
             Self::Points(points) => points.x.len(),
             Self::Tread(tread) => (tread.columns + 1) * tread.rows.len(),
+        }
+    }
+
+    /// The elements that are on it at some time of a step.
+    pub(super) fn count_in(&self, motion: TreadMotion) -> usize {
+        match self {
+            Self::Points(_) => self.count(),
+            Self::Tread(tread) => tread.columns_of(motion).1.saturating_mul(tread.rows.len()),
         }
     }
 

@@ -40,6 +40,6 @@ mod worker_pool;
 
 pub use definition::{Patch, PatchElement, PatchError};
 pub use element_sums::{FaceElement, FaceLayout};
-pub use run::PatchRun;
+pub use run::{PatchRun, ReckonedWork};
 pub use state::{MotionError, PatchMotion, PatchRestoreError, PatchStart, PatchState, Pose};
 pub use variables::{COORDINATES, PatchKind, PatchOutput, PatchOutputEntry, PatchVariable, catalogue, unit_of};

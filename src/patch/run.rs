@@ -9,8 +9,8 @@ use super::face::Face;
 use super::heat::{ElementHeat, StepHeat};
 use super::motion::{PoseMotion, Substeps, TreadMotion};
 use super::state::{
-    MotionError, PatchMotion, PatchRestoreError, PatchStart, PatchState, Pose, Springs, Totals, check_duration,
-    max_substeps, max_work,
+    MAX_SUBSTEPS, MAX_WORK, MotionError, PatchMotion, PatchRestoreError, PatchStart, PatchState, Pose, Springs, Totals,
+    check_duration,
 };
 
 use super::worker_pool::{WorkerPool, threads};
@@ -42,6 +42,24 @@ pub struct PatchRun {
     warned: [bool; 3],
     /// Those not taken yet.
     warnings: Vec<String>,
+    /// What is left of the work of a call: see [`limit_work`](Self::limit_work).
+    work_left: Option<f64>,
+}
+
+/// What is known of the work of motions before they are followed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ReckonedWork {
+    /// Their substeps, at least.
+    substeps: f64,
+    /// What these cost, by the elements, if none of them has to be done in parts.
+    work: f64,
+}
+
+impl ReckonedWork {
+    /// With that of a motion that follows.
+    pub fn with(self, next: Self) -> Self {
+        Self { substeps: self.substeps + next.substeps, work: self.work + next.work }
+    }
 }
 
 /// What is beyond the table.
@@ -124,6 +142,7 @@ impl PatchRun {
             kernel,
             warned: [false; 3],
             warnings: Vec::new(),
+            work_left: None,
             patch: patch.clone(),
         }
     }
@@ -175,6 +194,37 @@ impl PatchRun {
         std::mem::take(&mut self.warnings)
     }
 
+    /// Allows the motions that follow, together, the work of a call of a master: a second at most. Without it each of them may
+    /// take as much, and 200 substeps of however many elements.
+    pub fn limit_work(&mut self) {
+        self.work_left = Some(MAX_WORK);
+    }
+
+    /// What a motion that begins at a speed of the tread (m/s) takes at least.
+    pub fn reckon(&self, transport_speed: f64, motion: &PatchMotion) -> ReckonedWork {
+        let tread_speed = 0.5 * (transport_speed + motion.transport_speed);
+        let change = motion.rates.map(|rate| rate * motion.duration);
+        let body = PoseMotion { start: [0.0; 6], change, duration: motion.duration };
+        self.reckon_substeps(self.tread_motion(tread_speed * motion.duration), body.turn()).1
+    }
+
+    /// Refuses motions from now on that take more work than is allowed.
+    ///
+    /// # Errors
+    /// [`MotionError::TooManySubsteps`].
+    pub fn check_work(&self, ReckonedWork { substeps, work }: ReckonedWork) -> Result<(), MotionError> {
+        let allowed = self.allowed_work();
+        if work <= allowed && substeps <= MAX_SUBSTEPS {
+            return Ok(());
+        }
+        let most = (allowed / work * substeps).min(MAX_SUBSTEPS);
+        Err(MotionError::TooManySubsteps { time: self.totals.time, substeps, most })
+    }
+
+    fn allowed_work(&self) -> f64 {
+        self.work_left.unwrap_or_else(|| self.patch.work_of_step())
+    }
+
     /// Follows a motion; over no time it stays as it is.
     ///
     /// # Errors
@@ -191,15 +241,18 @@ impl PatchRun {
         let tread_speed = 0.5 * (self.totals.transport_speed + transport_speed);
         let tread = self.tread_motion(tread_speed * duration);
         let body = PoseMotion { start, change, duration };
-        let substeps = self.substeps(tread, body.turn())?;
+        let (substeps, reckoned) = self.reckon_substeps(tread, body.turn());
+        self.check_work(reckoned)?;
 
         let before = self.totals;
         self.set_temperature(temperature);
         let heat = self.step_heat(temperature);
         let face = Arc::clone(&self.patch.face);
-        let work = WorkCounter::new(max_work(self.patch.count()));
+        let cost = self.patch.cost_of_element();
+        let work = WorkCounter::new(self.allowed_work() / cost);
         let step = FaceMotion { face: &face, body, tread, substeps, tread_speed, heat, work: &work };
         let (sums, tangents) = self.advance_springs(&step);
+        self.work_left = self.work_left.map(|left| left - work.done() as f64 * cost);
 
         // Refuse the step or take it over.
         let mut reached = before;
@@ -234,15 +287,12 @@ impl PatchRun {
         Ok(pose)
     }
 
-    /// The substeps of a step in which the tread goes on and the body turns by an angle (rad).
-    fn substeps(&self, tread: TreadMotion, turn: f64) -> Result<Substeps, MotionError> {
-        let substeps = Substeps::new(tread, turn, self.patch.refine);
-        let most = max_substeps(self.patch.count());
-        let count = substeps.count(most);
-        if count > most || count.is_nan() {
-            return Err(MotionError::TooManySubsteps { time: self.totals.time, substeps: count, most });
-        }
-        Ok(substeps)
+    /// The substeps of a step in which the tread goes on and the body turns by an angle (rad), and what they take at least.
+    fn reckon_substeps(&self, tread: TreadMotion, turn: f64) -> (Substeps, ReckonedWork) {
+        let steps = Substeps::new(tread, turn, self.patch.refine);
+        let substeps = steps.count(MAX_SUBSTEPS);
+        let work = substeps * self.patch.work_of_substep(self.patch.face.count_in(tread));
+        (steps, ReckonedWork { substeps, work })
     }
 
     /// Takes the springs of all elements through a step, block by block, to those in `next`; returns the sums and, where
@@ -448,15 +498,16 @@ mod tests {
                  outputs = [\"{outputs}\"]"
             );
             let patch = Patch::parse(&text, &folder.join("patch.toml")).unwrap();
-            let (temperature, most) = (patch.temperature(), max_work(patch.count()));
+            let (temperature, most) = (patch.temperature(), patch.work_of_step() / patch.cost_of_element());
             let pose = Pose { place: [0.0, 0.0, 0.29999], angles: [0.0; 3] };
             let mut run = PatchRun::new(&patch, &PatchStart { pose, temperature, ..PatchStart::default() }).unwrap();
-            let allowed = 0.099 * max_substeps(patch.count());
+            let of_substep = patch.work_of_substep(patch.count());
+            let allowed = 0.099 * (patch.work_of_step() / of_substep).min(MAX_SUBSTEPS);
             for turn in [300.0_f64.min(allowed), allowed] {
                 let change = [0.0, 0.0, 0.0, -turn, 0.0, 0.0];
                 let body = PoseMotion { start: pose.coordinates(), change, duration: 1e-6 };
                 let (tread, work) = (run.tread_motion(0.0), WorkCounter::new(most));
-                let (substeps, heat) = (run.substeps(tread, turn).unwrap(), run.step_heat(temperature));
+                let (substeps, heat) = (run.reckon_substeps(tread, turn).0, run.step_heat(temperature));
                 let face = Arc::clone(&run.patch.face);
                 let step = FaceMotion { face: &face, body, tread, substeps, tread_speed: 0.0, heat, work: &work };
                 run.advance_springs(&step);

@@ -7,30 +7,50 @@ use serde::{Deserialize, Serialize};
 use super::block::{ElementBlock, ElementMode};
 use super::block_contacts::StepSums;
 use super::definition::Patch;
+use super::face::BLOCK;
 use super::heat::ElementHeat;
 use super::motion::PoseMotion;
 use crate::math::{Number, not_finite};
 use crate::scene::{SMALLEST, is_possible};
 
 /// Most substeps of a step, whatever the number of elements.
-const MAX_SUBSTEPS: f64 = 1e5;
-/// Most substeps of a step times elements: a second of work. A master that diverges would wait for minutes otherwise.
-const MAX_ELEMENT_SUBSTEPS: f64 = 1e6;
-/// Substeps that a step may always have, however many elements a patch has.
+pub(super) const MAX_SUBSTEPS: f64 = 1e5;
+/// The work that a call of a master may take, in the time that an element takes through a substep on a rigid backing,
+/// without heat and tangents: some 0.1 µs, so a second. A master that diverges would wait for minutes otherwise.
+pub(super) const MAX_WORK: f64 = 1e7;
+/// Substeps that a step may always have where no master waits for it, however many elements a patch has.
 const MIN_SUBSTEPS_ALLOWED: f64 = 200.0;
+/// What the search for the elements that are on the face costs in a substep for a block of them.
+const SEARCH: f64 = 0.2;
 
-/// The most substeps that a step of a patch of `elements` may have.
-pub(super) fn max_substeps(elements: usize) -> f64 {
-    (MAX_ELEMENT_SUBSTEPS / elements as f64).clamp(MIN_SUBSTEPS_ALLOWED, MAX_SUBSTEPS)
-}
+impl Patch {
+    /// What taking an element through a substep costs, over what it does on a rigid backing without heat and tangents, as it
+    /// was measured.
+    pub(super) fn cost_of_element(&self) -> f64 {
+        let factors = [
+            (self.has_tread(), 1.2),
+            (self.backing().is_some(), 1.3),
+            (self.heat().is_some(), 1.7),
+            (self.has_tangents(), 12.0),
+        ];
+        factors.into_iter().filter(|(is_there, _)| *is_there).map(|(_, factor)| factor).product()
+    }
 
-/// Units of work that a step may take for each substep that it may have: one is an element's part of the step, a segment
-/// is several.
-const MAX_WORK: f64 = 4.0;
+    /// The work of a substep of a step in which so many elements are on the face at some time. Blocks are done as a whole.
+    pub(super) fn work_of_substep(&self, elements: usize) -> f64 {
+        let blocks = |elements: usize| elements.div_ceil(BLOCK) as f64;
+        blocks(self.count()) * BLOCK as f64 * self.cost_of_element() + SEARCH * blocks(elements)
+    }
 
-/// The most work that a step of a patch of `elements` may take.
-pub(super) fn max_work(elements: usize) -> f64 {
-    MAX_WORK * max_substeps(elements).max(MAX_ELEMENT_SUBSTEPS / elements as f64) * elements as f64
+    /// The work of the shortest step, over what a call of a master may take: no FMU does a step of a patch above 1.
+    pub fn share_of_call(&self) -> f64 {
+        f64::from(self.refine) * self.work_of_substep(self.count()) / MAX_WORK
+    }
+
+    /// The most work that a step may take where no master waits for it.
+    pub(super) fn work_of_step(&self) -> f64 {
+        MAX_WORK.max(MIN_SUBSTEPS_ALLOWED * self.work_of_substep(self.count()))
+    }
 }
 
 /// Where a body is and how it moves.
@@ -109,7 +129,7 @@ pub enum MotionError {
         time: f64,
         /// How many, at least.
         substeps: f64,
-        /// How many a patch of so many elements may take.
+        /// How many the patch may take, by what one of its elements and outputs costs.
         most: f64,
     },
     /// An element is beyond the table.
@@ -403,6 +423,16 @@ impl Totals {
 }
 
 impl PatchState {
+    /// The pose.
+    pub fn pose(&self) -> Pose {
+        self.totals.pose
+    }
+
+    /// The speed of the tread, m/s.
+    pub fn transport_speed(&self) -> f64 {
+        self.totals.transport_speed
+    }
+
     /// Copies `other`; of the same patch without allocating.
     pub fn copy_from(&mut self, other: &Self) {
         self.totals = other.totals;

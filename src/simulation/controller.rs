@@ -54,6 +54,11 @@ pub(super) struct WorkLimit {
 /// What a step costs beside its masses, in masses.
 const STEP: u64 = 10;
 
+/// The work of a step that so many `masses` take.
+pub(super) fn work_of_step(masses: usize) -> u64 {
+    masses as u64 + STEP
+}
+
 impl WorkLimit {
     pub(super) fn new(max_steps: u64, max_mass_steps: u64) -> Self {
         Self { tried: 0, max_steps, mass_steps: max_mass_steps }
@@ -64,7 +69,7 @@ impl WorkLimit {
         if self.tried >= self.max_steps {
             return Err(SimulationError::TooManySteps { time, steps: self.max_steps });
         }
-        let left = self.mass_steps.checked_sub(masses as u64 + STEP);
+        let left = self.mass_steps.checked_sub(work_of_step(masses));
         self.mass_steps = left.ok_or(SimulationError::TooMuchWork { time, steps: self.tried })?;
         self.tried += 1;
         Ok(())

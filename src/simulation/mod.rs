@@ -36,7 +36,7 @@ use crate::model::Model;
 use crate::outputs::{Output, Snapshot, Variable};
 use crate::scene::{Axis, ByAxis, ParameterError, Scene};
 use context::RunContext;
-use controller::WorkLimit;
+use controller::{WorkLimit, work_of_step};
 pub use motion::Interrupt;
 pub use motion::{Inaccuracy, MethodSwitch, ModeChange, Motion, OutOfRange, SimulationError, Start};
 pub use passed::{passed_phase, passed_phases};
@@ -434,6 +434,11 @@ impl Simulation {
     /// take them, and a little for each step.
     pub fn limit_work(&mut self, max_mass_steps: u64) {
         self.max_mass_steps = max_mass_steps;
+    }
+
+    /// The steps of all masses that so much work allows.
+    pub fn steps_within(scene: &Scene, max_mass_steps: u64) -> u64 {
+        (max_mass_steps / work_of_step(scene.layer.masses)).max(1)
     }
 
     /// Sets the processor time since the start, s.

@@ -52,7 +52,10 @@ pub enum SimulationError {
         steps: u64,
     },
     /// The steps times masses allowed were used up.
-    #[error("gave up at t = {time} s after {steps} steps: do shorter communication steps or set solver.max_steps")]
+    #[error(
+        "gave up at t = {time} s after {steps} steps, as much work as solver.max_steps allows unless it is set: do shorter \
+         communication steps or set it"
+    )]
     TooMuchWork {
         /// The time reached, s.
         time: f64,

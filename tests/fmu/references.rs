@@ -1,4 +1,4 @@
-//! What an FMU carries by FMI-LS-REF: a manifest that is valid, and an experiment whose result a master gets again.
+//! What an FMU carries by FMI-LS-REF, and its terminal: a manifest that is valid, and an experiment whose result a master gets again.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,6 +9,8 @@ use crate::common::{
 };
 
 const FOLDER: &str = "extra/org.fmi-standard.fmi-ls-ref";
+/// The terminal of a layer and of an element, as it is printed.
+const CARRIER: &str = "terminal carrier u:input w:input F_x:output F_z:output";
 /// All files of the folder, bytes.
 const MOST: u64 = 100_000;
 
@@ -20,14 +22,25 @@ fn unpacked(fmu: &Path, name: &str) -> PathBuf {
     folder.join(FOLDER).join(name)
 }
 
-/// The roles of the files that an FMU names, after their check.
-fn roles(fmu: &Path) -> Vec<String> {
+/// The roles of the files that an FMU names, after their check; the first line that it prints has the terminal and its
+/// members.
+fn roles(fmu: &Path, terminal: &str) -> Vec<String> {
     let found = run(Command::new(python()).arg(root().join("tests/python/references.py")).arg(fmu));
+    let (first, found) = found.split_once('\n').unwrap();
+    assert_eq!(first.trim(), terminal);
     let lines: Vec<Vec<&str>> = found.lines().map(|line| line.split(' ').collect()).collect();
     let own = lines.iter().filter(|line| line[2].starts_with(FOLDER));
     let size: u64 = own.map(|line| line[3].parse::<u64>().unwrap()).sum();
     assert!(size <= MOST, "{found}");
     lines.iter().map(|line| line[0].to_owned()).collect()
+}
+
+/// The terminal of a patch, as it is printed, with what is between the parts of names.
+fn body(point: &str) -> String {
+    let inputs = ["x", "y", "z", "roll", "pitch", "yaw"].map(|name| format!("{name}:input")).join(" ");
+    let wrench =
+        ["force", "moment"].map(|load| ["x", "y", "z"].map(|axis| format!("{load}{point}{axis}:output")).join(" "));
+    format!("terminal body {inputs} {}", wrench.join(" "))
 }
 
 /// Drives an FMU along its experiment and compares it with its result, each column over its largest value.
@@ -46,8 +59,8 @@ fn assert_reproduces(fmu: &Path, tolerance: f64) {
 fn the_default_scene_proves_itself() {
     let folder = scratch("references-default");
     let fmu = pack(&root().join("scenes/tread-block/tread-block.toml"), &folder);
-    let expected = ["model", "model", "document", "document", "experiment/smoke-test", "result", "parameter"];
-    assert_eq!(roles(&fmu), expected);
+    let expected = ["model", "model", "document", "document", "experiment/smoke-test", "other", "result", "parameter"];
+    assert_eq!(roles(&fmu, CARRIER), expected);
     assert_reproduces(&fmu, 1e-5);
     let manifest = fs::read_to_string(unpacked(&fmu, "fmi-ls-manifest.xml")).unwrap();
     let (_, error) = manifest.split_once("estimated error is ").unwrap();
@@ -60,12 +73,13 @@ fn the_default_scene_proves_itself() {
 fn elements_and_patches_press_and_slide() {
     let folder = scratch("references-patch");
     let source = root().join("tests/reference/patch");
-    for (option, file) in [("--table", "block.table.csv"), ("--patch", "wheel.toml")] {
+    for (option, file, terminal) in [("--table", "block.table.csv", CARRIER), ("--patch", "wheel.toml", &body(".")[..])]
+    {
         let fmu = folder.join(file).with_extension("fmu");
         let mut pack = asperity();
         pack.args(["pack", option]).arg(source.join(file)).arg("-o").arg(&fmu);
         run(pack.arg("--library").arg(library()));
-        assert!(roles(&fmu).iter().any(|role| role == "experiment/smoke-test"));
+        assert!(roles(&fmu, terminal).iter().any(|role| role == "experiment/smoke-test"));
         assert_reproduces(&fmu, 1e-7);
         let result = Table::read(&unpacked(&fmu, "result.csv"));
         let force = if option == "--table" { "F_x" } else { "force.x" };
@@ -87,7 +101,7 @@ fn names_follow_and_references_are_left_out_on_request() {
         fmu
     };
     let flat = pack(&["--flat-names"]);
-    roles(&flat);
+    roles(&flat, &body("_"));
     let head = fs::read_to_string(unpacked(&flat, "result.csv")).unwrap();
     assert!(head.starts_with("\"time\",\"force_x\","), "{}", head.lines().next().unwrap());
     let names = "import sys, zipfile; print(*sorted(zipfile.ZipFile(sys.argv[1]).namelist()))";

@@ -60,8 +60,8 @@ pub(crate) struct Pack {
     pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) options: FmuOptions,
-    /// A shared library; for this platform unless linux64, win64 or darwin64 is given, as in win64=PATH. May be
-    /// repeated. Default: the library beside this program.
+    /// A shared library; for this platform unless linux64, win64, darwin64, aarch64-linux or aarch64-darwin is given, as in
+    /// win64=PATH. May be repeated. Default: the library beside this program.
     #[arg(long, value_name = "[PLATFORM=]PATH")]
     pub(crate) library: Vec<OsString>,
 }

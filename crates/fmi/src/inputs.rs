@@ -396,7 +396,9 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 impl Signal {
     fn complete_step(&mut self, step: &CommunicationStep) {
-        let is_new = self.history.last().is_some_and(|(last, _)| last != self.value);
+        // A master's rounding is no new value.
+        let is_same = |last: f64| (last - self.value).abs() <= ROUNDING * last.abs().max(self.value.abs());
+        let is_new = self.history.last().is_some_and(|(last, _)| !is_same(last));
         if self.rate.is_some() {
             self.cadence = Cadence::default()
         } else {

@@ -278,6 +278,8 @@ impl Instance {
         let slow = self.state.slow_input().filter(|_| rule.interval == 0.0 && !self.warned_of_interval);
         if let Some((slot, seconds)) = slow {
             self.warned_of_interval = true;
+            // Steps add up to it with their rounding.
+            let seconds = format!("{seconds:.9e}").parse().unwrap_or(seconds);
             let name = self.variables.input_name(slot).unwrap_or_default();
             self.warn(format!(
                 "t = {time} s: new values of {name} come every {seconds} s alone, and each is taken for a jump within one \

@@ -62,8 +62,14 @@ impl FmuModel for Arc<Scene> {
         Scene::parameters(self)
     }
 
+    /// Of `solver.max_steps` where the scene does not name it what a call allows.
     fn parameter(&self, parameter: Parameter) -> Value {
-        Scene::parameter(self, parameter)
+        match Scene::parameter(self, parameter) {
+            Value::Integer(_) if parameter == Parameter::MAX_STEPS && self.solver.max_steps.is_none() => {
+                Value::Integer(Simulation::steps_within(self, MAX_MASS_STEPS).try_into().unwrap_or(i32::MAX))
+            }
+            value => value,
+        }
     }
 
     fn set_parameter(&mut self, parameter: Parameter, value: Value) -> Result<(), ParameterError> {
@@ -436,11 +442,14 @@ mod tests {
     /// A step of 500 masses that takes some 1400 steps of the solver: more than 500 000 steps times masses.
     #[test]
     fn the_work_of_a_step_is_limited_unless_the_scene_names_its_steps() {
-        let result = |solver: &str| {
-            let mut instance = instance_of(&format!(
+        let text = |solver: &str| {
+            format!(
                 "name = 'a'\nlayer = {{ masses = 500, spacing = 1.0, mass = 1.0, clearance = 9.0, vertical = {{ stiffness = \
                  1.0 }} }}\nsurface = {{ kind = 'flat' }}\nsolver = {{ relative_tolerance = 1e-9{solver} }}"
-            ));
+            )
+        };
+        let result = |solver: &str| {
+            let mut instance = instance_of(&text(solver));
             instance.enter_initialization_mode().unwrap();
             instance.exit_initialization_mode().unwrap();
             instance.do_step(0.0, 1.0).unwrap();
@@ -448,7 +457,13 @@ mod tests {
             instance.do_step(1.0, 100.0)
         };
         let refused = result("");
-        assert!(matches!(refused, Err(Error::Simulation(SimulationError::TooMuchWork { .. }))), "{refused:?}");
+        // 500 000 over the masses and ten, as the parameter says.
+        assert!(
+            matches!(refused, Err(Error::Simulation(SimulationError::TooMuchWork { steps: 980, .. }))),
+            "{refused:?}"
+        );
+        let scene = Arc::new(Scene::parse(&text(""), "scene.toml".as_ref()).unwrap());
+        assert_eq!(FmuModel::parameter(&scene, Parameter::MAX_STEPS), Value::Integer(980));
         // The default, named.
         assert!(result(", max_steps = 10000000").is_ok());
     }

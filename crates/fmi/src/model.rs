@@ -134,6 +134,15 @@ pub trait FmuRun: Debug {
     /// Allows the steps that follow, together, the work of a call.
     fn allow_work(&mut self) {}
 
+    /// Refuses steps that follow each other from `start` on where they are known to take more than is allowed.
+    fn check_work(
+        &self,
+        _start: &RunState,
+        _steps: &mut dyn Iterator<Item = (Inputs, CommunicationStep)>,
+    ) -> Result<(), Error> {
+        Ok(())
+    }
+
     /// Follows the inputs over a communication step; the run is as it was where that fails.
     fn advance(&mut self, inputs: &Inputs, step: &CommunicationStep) -> Result<(), Error>;
 

@@ -9,7 +9,7 @@ use super::inputs::{CommunicationStep, InputKind, InputScales, Inputs, MAX_INPUT
 use super::model::{CarriedFile, Experiment, FmuModel, FmuRun, RunState};
 use super::resources::PATCH_FILE;
 use super::variables::VariableRef;
-use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchRun, PatchStart, PatchVariable, Pose};
+use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchRun, PatchStart, PatchVariable, Pose, ReckonedWork};
 use asperity::scene::{FmuOptions, InputRule, Parameter, ParameterError, PatchGroup, Unit, Value, is_possible};
 
 /// The slot of the first angle, after those of the position.
@@ -155,19 +155,49 @@ struct FmuPatchRun {
     variables: Vec<PatchVariable>,
 }
 
+/// The motion over a communication step: straight from the pose's coordinates, where they are, to their targets.
+fn motion(
+    current: &[f64; COORDINATES.len()],
+    inputs: &Inputs,
+    step: &CommunicationStep,
+) -> Result<PatchMotion, InputOutOfRange> {
+    let mut rates = [0.0; COORDINATES.len()];
+    for (i, rate) in rates.iter_mut().enumerate() {
+        *rate = inputs.rate_from(current[i], i, COORDINATES[i], step)?;
+    }
+    let temperature = inputs.value(TEMPERATURE);
+    if !is_possible(temperature) {
+        return Err(InputOutOfRange { name: INPUTS[TEMPERATURE].0, value: temperature, time: step.time });
+    }
+    let transport_speed = inputs.target(TRANSPORT_SPEED, INPUTS[TRANSPORT_SPEED].0, step)?;
+    Ok(PatchMotion { duration: step.h, rates, transport_speed, temperature })
+}
+
 impl FmuRun for FmuPatchRun {
+    fn allow_work(&mut self) {
+        self.run.limit_work();
+    }
+
+    fn check_work(
+        &self,
+        start: &RunState,
+        steps: &mut dyn Iterator<Item = (Inputs, CommunicationStep)>,
+    ) -> Result<(), Error> {
+        let RunState::Patch(start) = start else { return Ok(()) };
+        let (mut pose, mut speed) = (start.pose().coordinates(), start.transport_speed());
+        let mut reckoned = ReckonedWork::default();
+        for (inputs, step) in steps {
+            let motion = motion(&pose, &inputs, &step)?;
+            reckoned = reckoned.with(self.run.reckon(speed, &motion));
+            pose = std::array::from_fn(|i| pose[i] + motion.rates[i] * motion.duration);
+            speed = motion.transport_speed;
+        }
+        Ok(self.run.check_work(reckoned)?)
+    }
+
     fn advance(&mut self, inputs: &Inputs, step: &CommunicationStep) -> Result<(), Error> {
-        let current = self.run.pose().coordinates();
-        let mut rates = [0.0; COORDINATES.len()];
-        for (i, rate) in rates.iter_mut().enumerate() {
-            *rate = inputs.rate_from(current[i], i, COORDINATES[i], step)?;
-        }
-        let temperature = inputs.value(TEMPERATURE);
-        if !is_possible(temperature) {
-            return Err(InputOutOfRange { name: INPUTS[TEMPERATURE].0, value: temperature, time: step.time }.into());
-        }
-        let transport_speed = inputs.target(TRANSPORT_SPEED, INPUTS[TRANSPORT_SPEED].0, step)?;
-        Ok(self.run.advance(&PatchMotion { duration: step.h, rates, transport_speed, temperature })?)
+        let motion = motion(&self.run.pose().coordinates(), inputs, step)?;
+        Ok(self.run.advance(&motion)?)
     }
 
     fn evaluate(&mut self, values: &mut [f64]) {

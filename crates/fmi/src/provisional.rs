@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::error::{Error, check_memory};
 use super::inputs::{CommunicationStep, InputScales, Inputs, ProvisionalStep};
 use super::model::{FmuRun, RunState};
+use asperity::scene::{Extrapolation, InputRule};
 
 /// A step that may be done again, and where.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -88,6 +89,7 @@ impl Stepper {
             return Ok(None);
         }
         let began = self.last.as_ref().filter(|_| corrected.is_some()).map(|last| last.step.step().time);
+        self.check_work(run, corrected.as_ref(), inputs, (step, scales))?;
         self.keep_states(run)?;
         save(run, &mut self.before);
         let repeated = corrected.map_or(Ok(()), |corrected| self.repeat(run, &corrected));
@@ -118,6 +120,21 @@ impl Stepper {
             self.start.get_or_insert_with(|| run.save());
         }
         Ok(())
+    }
+
+    /// Refuses a step that takes too much work with the last one, which is done again, before that is done: inputs that would
+    /// be extrapolated may be held.
+    fn check_work(
+        &self,
+        run: &dyn FmuRun,
+        corrected: Option<&Inputs>,
+        inputs: &Inputs,
+        (step, scales): (&CommunicationStep, &InputScales),
+    ) -> Result<(), Error> {
+        let (Some(last), Some(corrected)) = (&self.last, corrected) else { return Ok(()) };
+        let rule = InputRule { extrapolation: Extrapolation::Hold, interval: 0.0 };
+        let parts = inputs.parts(step, scales).map(|(inputs, part)| (inputs, CommunicationStep { rule, ..part }));
+        run.check_work(&last.run, &mut std::iter::once((*corrected, last.step.step())).chain(parts))
     }
 
     /// Does the last step again.

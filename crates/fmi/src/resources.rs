@@ -1,6 +1,6 @@
 //! From the URI of the resources to the scene file or the table, in all the spellings that masters use.
 
-use std::path::{Path, PathBuf};
+use std::path::{self, Path, PathBuf};
 
 use percent_encoding::percent_decode_str;
 
@@ -41,7 +41,8 @@ pub(super) fn find(location: &str, library: Option<&Path>, files: &'static [&'st
         let folder = folder.display();
         format!("fmuResourceLocation is \"{location}\", not the FMU's folder {RESOURCES}: took that at \"{folder}\"")
     });
-    Ok(Resource { path, warning })
+    // The working folder may change while the instance lives.
+    Ok(Resource { path: path::absolute(&path).unwrap_or(path), warning })
 }
 
 /// The folder in an FMU.
@@ -154,6 +155,14 @@ mod tests {
         {
             assert!(message.contains(part), "{message}");
         }
+    }
+
+    #[test]
+    fn a_relative_folder_is_that_of_the_working_folder_now() {
+        let found = find("src", None, &["lib.rs"]).unwrap();
+        assert!(found.path.is_absolute() && found.path.ends_with("src/lib.rs"), "{found:?}");
+        assert_eq!(found.path, std::env::current_dir().unwrap().join("src/lib.rs"));
+        assert!(find("file:src", None, &["lib.rs"]).unwrap().path.is_absolute());
     }
 
     #[test]

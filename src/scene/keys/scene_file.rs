@@ -322,7 +322,7 @@ const SOLVER: &[Key] = &[
     ),
     // An Integer of FMI has 32 bits.
     whole("max_steps", 1, i32::MAX as i64, "Steps that one communication step or one phase may take")
-        .follows("10000000; a step of a master is bounded by its work")
+        .follows("10000000; in an FMU 500000 over the masses and ten more, steps of fewer masses counting less")
         .parameter(field!(|scene, _| scene.solver.max_steps).counting_as(|scene, _| scene.solver.max_steps().value())),
     number("reduce", NOT_NEGATIVE.up_to(0.1), Unit::One, "Error bound for leaving Maxwell elements out")
         .default("0")

@@ -22,6 +22,8 @@ pub struct Parameter {
 }
 
 impl Parameter {
+    /// Steps that a communication step or a phase may take.
+    pub const MAX_STEPS: Self = Self::new("solver.max_steps");
     /// How the dashpots start.
     pub const INITIAL: Self = Self::new("layer.initial");
     /// The layer's temperature.

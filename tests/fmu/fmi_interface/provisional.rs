@@ -394,6 +394,81 @@ fn a_repetition_is_logged() {
     assert_eq!(categories, ["logEvents", "logSolver"]);
 }
 
+/// A step that takes too much work with the one before, which would be done again, is discarded before that is done. Above the
+/// ground little is to be done.
+#[test]
+fn the_work_of_a_call_is_that_of_both_steps() {
+    let wheel = "
+name = 'wheel'
+table = { path = 'block.table.csv' }
+patch = { shape = 'flat', length = 0.064, width = 0.064, nx = 64, ny = 64, transport = true }
+fmu = { outputs = ['forces', 'tangent'] }
+";
+    let fmu = Fmu::of_patch(wheel, &root().join("tests/reference/patch/block.table.csv"));
+    assert_eq!((fmu.setup(0.0), fmu.enter(), fmu.set_real("transport.speed", 1.0), fmu.exit()), (OK, OK, OK, OK));
+    // A hundred cells of a millimetre: a substep each, of some 160 that a call may take.
+    assert_eq!(fmu.step(0.0, 0.1), OK, "{:?}", fmu.messages());
+    assert_eq!((fmu.set_real("x", 0.1), fmu.step(0.1, 0.1)), (OK, DISCARD));
+    assert_names(fmu.message(), "the step from t = 0.1 s takes 20 | substeps or more: more than 1");
+    assert_eq!((fmu.step(0.1, 0.02), fmu.messages().len()), (OK, 0));
+}
+
+/// An element whose prediction leaves its table is held where it is: masters that do a discarded step again would do so for
+/// ever. The history is that of rates.
+#[test]
+fn a_prediction_that_cannot_be_done_is_held_and_said_once() {
+    let [low, high] = [2e5, 5e5].map(|pressure| separation(1e-4, pressure, WARM) - REST);
+    // Down within a step, as a signal that jumps; twice as far is beyond the table's 8e5 Pa.
+    assert!(2.0 * high - low < separation(1e-4, 8e5, WARM) - REST);
+    let course = [low, low, high, high, low, low, high, high, high];
+    let pressed = |given| {
+        let fmu = Fmu::of_table(&Grid::plain().text(), false);
+        assert_eq!(fmu.set_text(fmu.reference("table.extrapolation"), "refuse"), OK);
+        assert_eq!((fmu.setup(0.0), fmu.enter(), fmu.set_real("w", low), fmu.exit()), (OK, OK, OK, OK));
+        for (step, w) in (0..).zip(course.windows(2)) {
+            assert_eq!(fmu.set_real("w", w[0]), OK);
+            if given == Given::Rates {
+                assert_eq!((fmu.set_rate("u", 0.0), fmu.set_rate("w", (w[1] - w[0]) / 1e-3)), (OK, OK));
+            }
+            assert_eq!(fmu.step(1e-3 * f64::from(step), 1e-3), OK);
+        }
+        fmu
+    };
+    let (rates, values) = (pressed(Given::Rates), pressed(Given::Values));
+    for output in ["F_z", "E_diss"] {
+        let (right, found) = (rates.real(output), values.real(output));
+        assert!((found - right).abs() <= 1e-9 * right.abs(), "{output} {found} for {right}");
+    }
+    assert_eq!(rates.messages(), []);
+    assert_names(values.message(), "t = 0.003 s: the inputs were held over the step | said once a run");
+}
+
+/// New values every millisecond, five steps each: with the interval the course is that of straight lines through them, a
+/// millisecond later; without it each is a jump, which is warned of.
+#[test]
+fn an_interval_has_seldom_values_gone_to_over_it() {
+    let driven_by = |interval: f64| {
+        let fmu = Fmu::initialising_with(FLAT);
+        assert_eq!((fmu.set_real("input.interval", interval), fmu.exit()), (OK, OK));
+        for step in 0..5 * 65 {
+            give(&fmu, slid_and_held, 1e-3 * f64::from(step / 5), Given::Values);
+            assert_eq!(fmu.step(2e-4 * f64::from(step), 2e-4), OK);
+        }
+        fmu
+    };
+    let (right, found, jumped) =
+        (driven(FLAT, slid_and_held, (1e-3, 0.06), Given::Rates), driven_by(1e-3), driven_by(0.0));
+    for output in ["F_x", "F_z", "E_diss"] {
+        let (right, found) = (right.real(output), found.real(output));
+        // Of the solver's tolerance, 1e-6 a step.
+        assert!((found - right).abs() <= 1e-4 * right.abs(), "{output} {found} for {right}");
+    }
+    assert_eq!((found.messages(), repeated(&found)), (vec![], 0));
+    // Five times the speed within a fifth of the time: the dampers lose more.
+    assert!(jumped.real("E_diss") > 1.02 * right.real("E_diss"), "{}", jumped.real("E_diss"));
+    assert_names(jumped.message(), "new values of | input.interval = 0.001 has it gone to over that time");
+}
+
 /// Masters that set nothing: the FMU initialises at its start values and touches nothing.
 #[test]
 fn start_values_initialise() {

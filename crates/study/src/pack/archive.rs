@@ -79,7 +79,10 @@ impl Platform {
     pub(super) const LINUX: Self = Self { folder: "linux64", extension: "so" };
     const WINDOWS: Self = Self { folder: "win64", extension: "dll" };
     const MACOS: Self = Self { folder: "darwin64", extension: "dylib" };
-    pub(super) const ALL: [Self; 3] = [Self::LINUX, Self::WINDOWS, Self::MACOS];
+    /// What FMI 2.0.4 names by the tuples of FMI 3.0.
+    const LINUX_ON_ARM: Self = Self { folder: "aarch64-linux", extension: "so" };
+    const MACOS_ON_ARM: Self = Self { folder: "aarch64-darwin", extension: "dylib" };
+    pub(super) const ALL: [Self; 5] = [Self::LINUX, Self::WINDOWS, Self::MACOS, Self::LINUX_ON_ARM, Self::MACOS_ON_ARM];
 
     /// The platform that this is built for.
     pub const HOST: Self = if cfg!(target_os = "windows") {

@@ -1,7 +1,7 @@
 //! What describes an FMU: modelDescription.xml of FMI 2.0 for co-simulation; documentation/, which is the page index.html,
 //! its style sheet and the licences.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 
 use asperity::scene::{DependencyList, Unit, Value};
@@ -16,10 +16,14 @@ use crate::summary::LabelledLine;
 
 pub(super) type Xml = Writer<Vec<u8>>;
 
-/// Writes the description of a model with these variables, its GUID and the convention of their names.
+/// Nominal values of variables by their names in the FMU.
+pub(super) type Nominals = BTreeMap<String, f64>;
+
+/// Writes the description of a model with these variables and what they are by size, its GUID and the convention of their
+/// names. Without a date: the same FMU has the same bytes.
 pub(super) fn description(
     model: &dyn FmuModel,
-    variables: &VariableTable,
+    (variables, nominals): (&VariableTable, &Nominals),
     (guid, naming): (&str, &str),
 ) -> io::Result<Vec<u8>> {
     let description = clean(&model.description());
@@ -29,10 +33,13 @@ pub(super) fn description(
             .with_attribute(("modelName", clean(&model.name()).as_str()))
             .with_attribute(("guid", guid))
             .with_attributes(Some(("description", description.as_str())).filter(|_| !description.is_empty()))
+            .with_attribute(("author", "The asperity developers"))
+            .with_attribute(("version", env!("CARGO_PKG_VERSION")))
+            .with_attribute(("license", "MIT OR Apache-2.0: the library; see documentation/licenses"))
             .with_attribute(("generationTool", concat!("asperity ", env!("CARGO_PKG_VERSION"))))
             .with_attribute(("variableNamingConvention", naming))
             .with_attribute(("numberOfEventIndicators", "0"))
-            .write_inner_content(|xml| content(xml, model, variables))
+            .write_inner_content(|xml| content(xml, model, variables, nominals))
             .map(drop)
     })
 }
@@ -52,12 +59,12 @@ pub(super) fn clean(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
-fn content(xml: &mut Xml, model: &dyn FmuModel, variables: &VariableTable) -> io::Result<()> {
+fn content(xml: &mut Xml, model: &dyn FmuModel, variables: &VariableTable, nominals: &Nominals) -> io::Result<()> {
     co_simulation(xml, model)?;
     unit_definitions(xml, variables)?;
     log_categories(xml)?;
     default_experiment(xml, model)?;
-    model_variables(xml, variables)?;
+    model_variables(xml, variables, nominals)?;
     model_structure(xml, variables, lists_dependencies(model))
 }
 
@@ -84,14 +91,17 @@ fn log_categories(xml: &mut Xml) -> io::Result<()> {
     Ok(())
 }
 
+/// Where no end is the model's own it is that of so many steps: importers do steps for a second else.
+const STEPS: f64 = 500.0;
+
 fn default_experiment(xml: &mut Xml, model: &dyn FmuModel) -> io::Result<()> {
     let Some(Experiment { stop, tolerance, step }) = model.default_experiment() else { return Ok(()) };
-    let start = stop.map(|_| "0".to_owned());
+    let step = round_down(step);
     let numbers = [
-        ("startTime", start),
-        ("stopTime", stop.map(real)),
+        ("startTime", Some("0".to_owned())),
+        ("stopTime", Some(real(stop.unwrap_or(STEPS * step)))),
         ("tolerance", tolerance.map(real)),
-        ("stepSize", Some(real(round_down(step)))),
+        ("stepSize", Some(real(step))),
     ];
     let given = numbers.iter().filter_map(|(name, number)| Some((*name, number.as_deref()?)));
     xml.create_element("DefaultExperiment").with_attributes(given).write_empty().map(drop)
@@ -153,14 +163,16 @@ pub(super) fn start(variable: &VariableRef) -> Option<String> {
 }
 
 /// Writes `ModelVariables`: inputs, outputs and parameters in the order of their value references.
-fn model_variables(xml: &mut Xml, variables: &VariableTable) -> io::Result<()> {
+fn model_variables(xml: &mut Xml, variables: &VariableTable, nominals: &Nominals) -> io::Result<()> {
     xml.create_element("ModelVariables").write_inner_content(|xml| {
-        variables.entries().try_for_each(|(reference, variable)| scalar_variable(xml, reference, variable))
+        variables.entries().try_for_each(|(reference, variable)| {
+            scalar_variable(xml, (reference, variable), nominals.get(&variable.name).copied())
+        })
     })?;
     Ok(())
 }
 
-fn scalar_variable(xml: &mut Xml, reference: u32, variable: &VariableRef) -> io::Result<()> {
+fn scalar_variable(xml: &mut Xml, (reference, variable): (u32, &VariableRef), nominal: Option<f64>) -> io::Result<()> {
     xml.create_element("ScalarVariable")
         .with_attribute(("name", variable.name.as_str()))
         .with_attribute(("valueReference", reference.to_string().as_str()))
@@ -168,7 +180,7 @@ fn scalar_variable(xml: &mut Xml, reference: u32, variable: &VariableRef) -> io:
         .with_attribute(("causality", causality(variable)))
         .with_attribute(("variability", variability(variable)))
         .with_attributes(initial(variable).map(|initial| ("initial", initial)))
-        .write_inner_content(|xml| typed(xml, variable))?;
+        .write_inner_content(|xml| typed(xml, variable, nominal))?;
     Ok(())
 }
 
@@ -189,10 +201,13 @@ fn initial(variable: &VariableRef) -> Option<&'static str> {
     }
 }
 
-fn typed(xml: &mut Xml, variable: &VariableRef) -> io::Result<()> {
-    let unit = Some(variable.unit.name()).filter(|_| variable.kind == Kind::Real);
+fn typed(xml: &mut Xml, variable: &VariableRef, nominal: Option<f64>) -> io::Result<()> {
+    let is_real = variable.kind == Kind::Real;
+    let unit = Some(variable.unit.name()).filter(|_| is_real);
+    let nominal = nominal.filter(|_| is_real).map(real);
     xml.create_element(variable.kind.to_string())
         .with_attributes(unit.map(|unit| ("unit", unit)))
+        .with_attributes(nominal.as_deref().map(|nominal| ("nominal", nominal)))
         .with_attributes(start(variable).as_deref().map(|start| ("start", start)))
         .write_empty()
         .map(drop)
@@ -310,6 +325,7 @@ mod tests_of_description {
     use asperity::scene::Scene;
     use asperity_fmi::{Definition, Sources, guid};
 
+    use super::super::experiment;
     use super::*;
 
     /// The description of the default scene is kept in the repository, so that a change is seen. To accept an
@@ -321,7 +337,9 @@ mod tests_of_description {
         let model = Definition::from(Scene::load(&path).unwrap());
         let variables = model.variables();
         let guid = guid(&Sources::new(&path, &*model).unwrap(), &variables);
-        let written = String::from_utf8(description(&*model, &variables, (&guid, "structured")).unwrap()).unwrap();
+        let nominals = experiment::tables(&model, &variables).unwrap().nominals;
+        let written =
+            String::from_utf8(description(&*model, (&variables, &nominals), (&guid, "structured")).unwrap()).unwrap();
         let golden = root.join("modelDescription/modelDescription.xml");
         if std::env::var_os("BLESS").is_some() {
             std::fs::write(&golden, &written).unwrap();
@@ -330,7 +348,8 @@ mod tests_of_description {
     }
 
     fn description_of(model: &Definition) -> String {
-        String::from_utf8(description(&**model, &model.variables(), ("{}", "structured")).unwrap()).unwrap()
+        let described = description(&**model, (&model.variables(), &Nominals::new()), ("{}", "structured"));
+        String::from_utf8(described.unwrap()).unwrap()
     }
 
     #[test]
@@ -347,14 +366,21 @@ mod tests_of_description {
     }
 
     #[test]
-    fn elements_and_patches_have_a_default_step() {
+    fn elements_and_patches_have_a_default_experiment() {
+        let ends_after_500_steps = |described: String| {
+            let number = |name: &str| -> f64 {
+                let (_, rest) = described.split_once(&format!(" {name}=\"")).unwrap();
+                rest.split('"').next().unwrap().parse().unwrap()
+            };
+            assert!((number("stopTime") / number("stepSize") - 500.0).abs() < 1e-9, "{described}");
+        };
         let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("tests/reference/patch");
         let table = FrictionTable::load(&folder.join("block.table.csv")).unwrap();
-        assert!(description_of(&PointContact::new(table).into()).contains("<DefaultExperiment stepSize=\""));
+        ends_after_500_steps(description_of(&PointContact::new(table).into()));
         let text = "name = 'pad'\ntable = { path = 'block.table.csv' }\n[patch]\nshape = 'flat'\nlength = 0.01\n\
                     width = 0.01\nnx = 1\nny = 1";
         let patch = Patch::parse(text, &folder.join("patch.toml")).unwrap();
-        assert!(description_of(&patch.into()).contains("<DefaultExperiment stepSize=\""));
+        ends_after_500_steps(description_of(&patch.into()));
     }
 
     #[test]

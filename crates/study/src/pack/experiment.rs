@@ -14,7 +14,7 @@ use asperity_fmi::{CommunicationStep, Definition, Inputs, Kind, Role, VariableRe
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 
 use super::archive::ArchiveEntry;
-use super::description::{Xml, clean, document, start};
+use super::description::{Nominals, Xml, clean, document, start};
 use crate::decimals::{real, rounded, short};
 use crate::robustness::{Budget, at_tolerance};
 use crate::runner::{self, InputSample, Rows, Runner};
@@ -47,6 +47,21 @@ pub(super) struct ExperimentTables {
     pub(super) description: String,
     /// Where the experiment ends early: where, and why.
     pub(super) early_end: Option<String>,
+    /// The largest values of inputs and outputs, to a power of ten.
+    pub(super) nominals: Nominals,
+    /// The file of the two, by MA-HS-Experiments.
+    setup: ExperimentSetup,
+}
+
+/// What the file of an experiment says of it.
+#[derive(Clone, Copy, Debug)]
+struct ExperimentSetup {
+    /// From and to, s.
+    times: [f64; 2],
+    /// The longest time from row to row, s.
+    step: f64,
+    /// The relative tolerance; `None` where the model has none.
+    tolerance: Option<f64>,
 }
 
 /// The tables, with the FMU's names; why there is no experiment.
@@ -68,17 +83,37 @@ pub(super) fn tables(definition: &Definition, variables: &VariableTable) -> Resu
     let found = tight.calculated();
     let index = |name: &str| found.iter().position(|variable| variable.name == name);
     let inputs = variables.entries().map(|(_, variable)| variable);
-    let inputs = inputs.filter(|variable| matches!(variable.role, Role::Input(_))).map(|variable| &*variable.name);
+    let inputs: Vec<&str> =
+        inputs.filter(|variable| matches!(variable.role, Role::Input(_))).map(|variable| &*variable.name).collect();
     let shown: Vec<(&str, usize)> = columns.iter().filter_map(|(own, named)| Some((*named, index(own)?))).collect();
     let result_row = |row: &Vec<f64>| shown.iter().map(|&(_, i)| rounded(row[i], DIGITS) + 0.0).collect();
     // The last row has the largest error over the largest force of the whole run; at a first touch, over next to nothing.
     let of_run = |i: usize| rows[rows.len() - 1][i];
+    let times = &motion.times[..rows.len()];
+    let nominals = inputs.iter().enumerate().map(|(i, name)| (*name, largest(&motion.values[..rows.len()], i)));
+    let nominals = nominals.chain(shown.iter().map(|&(name, i)| (name, largest(&rows, i))));
     Ok(ExperimentTables {
-        inputs: table(inputs, &motion.times, motion.values[..rows.len()].iter().cloned()),
+        nominals: nominals.filter_map(|(name, value)| Some((name.to_owned(), power_of_ten(value)?))).collect(),
+        setup: ExperimentSetup {
+            times: [times[0], times[times.len() - 1]],
+            step: times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max),
+            tolerance: definition.default_experiment().and_then(|experiment| experiment.tolerance),
+        },
+        inputs: table(inputs.into_iter(), &motion.times, motion.values[..rows.len()].iter().cloned()),
         result: table(shown.iter().map(|&(name, _)| name), &motion.times, rows.iter().map(result_row)),
         description: description(index(ERROR).map(of_run)),
         early_end,
     })
+}
+
+/// The largest value of a column, without its sign.
+fn largest(rows: &[Vec<f64>], column: usize) -> f64 {
+    rows.iter().map(|row| row[column].abs()).fold(0.0, f64::max)
+}
+
+/// The power of ten next to a value, the same on every machine; `None` of 0.
+fn power_of_ten(value: f64) -> Option<f64> {
+    (value > 0.0).then(|| format!("1e{}", value.log10().round()).parse().ok()).flatten()
 }
 
 /// What a result is whose error is estimated as this share of the largest force.
@@ -358,7 +393,18 @@ pub(super) const LEFT_OUT_FILE: &str = "extra/org.asperity/left-out.txt";
 /// More than this is left out, the parameter set first: bytes.
 const MOST_BYTES: usize = 100_000;
 
-/// The files of the folder, and what is left out of it and why. `resources` are the paths of the files in resources/; `variables` have the names that the
+/// What comes with an FMU.
+#[derive(Debug)]
+pub(super) struct References {
+    /// The files of the folder.
+    pub(super) entries: Vec<ArchiveEntry>,
+    /// What is left out of it and why.
+    pub(super) left_out: Vec<String>,
+    /// What variables are by size, as the experiment has them.
+    pub(super) nominals: Nominals,
+}
+
+/// The files of the folder. `resources` are the paths of the files in resources/; `variables` have the names that the
 /// FMU's have.
 ///
 /// # Errors
@@ -367,22 +413,25 @@ pub(super) fn entries(
     definition: &Definition,
     variables: &VariableTable,
     (resources, has_picture): (&[&str], bool),
-) -> io::Result<(Vec<ArchiveEntry>, Vec<String>)> {
+) -> io::Result<References> {
     let mut related: Vec<Related> = resources.iter().map(|name| Related::resource(name)).collect();
     related.push(Related::new("../../documentation/index.html", "document", "What it computes, its variables"));
     related.extend(has_picture.then(|| Related::new("../../model.png", "document", "A picture of it")));
     let mut files = Vec::new();
-    let mut left_out = Vec::new();
+    let (mut left_out, mut nominals) = (Vec::new(), Nominals::new());
     let found = tables(definition, variables).map_err(|why| left_out.push(format!("no experiment and result: {why}")));
-    if let Ok(ExperimentTables { inputs, result, description, early_end }) = found {
-        left_out.extend(early_end.map(|early| format!("a part of the experiment alone: {early}")));
+    if let Ok(found) = found {
+        left_out.extend(found.early_end.map(|early| format!("a part of the experiment alone: {early}")));
         related.push(Related::new(
-            "experiment.csv",
+            "experiment.exp",
             "experiment/smoke-test",
-            "Inputs at times, straight from row to row",
+            "Inputs along which the result is got again",
         ));
-        related.push(Related::new("result.csv", "result", &description));
-        files.extend([("experiment.csv", inputs.into_bytes()), ("result.csv", result.into_bytes())]);
+        related.push(Related::new("experiment.csv", "other", "Inputs at times, straight from row to row"));
+        related.push(Related::new("result.csv", "result", &found.description));
+        files.push(("experiment.exp", experiment(&definition.name(), &found.setup)?));
+        files.extend([("experiment.csv", found.inputs.into_bytes()), ("result.csv", found.result.into_bytes())]);
+        nominals = found.nominals;
     }
     let size: usize = files.iter().map(|(_, bytes)| bytes.len()).sum();
     let parameters = parameter_set(&definition.name(), variables)?;
@@ -400,7 +449,34 @@ pub(super) fn entries(
     if !left_out.is_empty() {
         entries.push(ArchiveEntry::new(LEFT_OUT_FILE, left_out.join("\n") + "\n"));
     }
-    Ok((entries, left_out))
+    Ok(References { entries, left_out, nominals })
+}
+
+/// The experiment with its tables, in the form of MA-HS-Experiments.
+fn experiment(name: &str, setup: &ExperimentSetup) -> io::Result<Vec<u8>> {
+    let [start, stop, step] = [setup.times[0], setup.times[1], setup.step].map(real);
+    let tolerance = setup.tolerance.map(real);
+    let content = |xml: &mut Xml| {
+        let times = [("startTime", &*start), ("stopTime", &*stop), ("stepSize", &*step)];
+        xml.create_element("TransientSimulation").with_attributes(times).write_empty()?;
+        xml.create_element("Stimuli").with_attribute(("source", "experiment.csv")).write_empty()?;
+        xml.create_element("References").with_attribute(("source", "result.csv")).write_empty()?;
+        Ok(())
+    };
+    let name = clean(name);
+    document(|xml| {
+        xml.create_element("Experiments")
+            .with_attribute(("name", name.as_str()))
+            .write_inner_content(|xml| {
+                xml.create_element("Experiment")
+                    .with_attribute(("name", "smoke test"))
+                    .with_attribute(("description", "The inputs go straight from row to row, with rates given"))
+                    .with_attributes(tolerance.as_deref().map(|tolerance| ("tolerance", tolerance)))
+                    .write_inner_content(content)
+                    .map(drop)
+            })
+            .map(drop)
+    })
 }
 
 /// Characters of a path that stand for themselves in a URI (RFC 3986, section 3.3).
@@ -430,6 +506,7 @@ impl Related {
     fn media_type(&self) -> &'static str {
         match Path::new(&self.source).extension().and_then(|extension| extension.to_str()) {
             Some("toml") => "application/toml",
+            Some("exp") => "application/x-ma-hs-experiments",
             Some("csv") => "text/csv",
             Some("txt") => "text/plain",
             Some("html") => "text/html",
@@ -440,7 +517,7 @@ impl Related {
     }
 }
 
-/// The manifest of these files, fmi-ls-manifest.xml of FMI-LS-REF, 1.0.0-alpha.1.
+/// The manifest of these files, fmi-ls-manifest.xml of FMI-LS-REF, 1.0.0-beta.1.
 fn manifest(files: &[Related]) -> io::Result<Vec<u8>> {
     let related = |xml: &mut Xml, file: &Related| {
         xml.create_element("Related")
@@ -455,7 +532,7 @@ fn manifest(files: &[Related]) -> io::Result<Vec<u8>> {
         xml.create_element("fmiReferences")
             .with_attribute(("xmlns:fmi-ls", "http://fmi-standard.org/fmi-ls-manifest"))
             .with_attribute(("fmi-ls:fmi-ls-name", "org.fmi-standard.fmi-ls-ref"))
-            .with_attribute(("fmi-ls:fmi-ls-version", "1.0.0-alpha.1"))
+            .with_attribute(("fmi-ls:fmi-ls-version", "1.0.0-beta.1"))
             // The standard fixes these words.
             .with_attribute((
                 "fmi-ls:fmi-ls-description",

@@ -9,8 +9,9 @@ use clap::{ArgAction, Args};
 use serde::{Deserialize, Serialize};
 
 use super::archive::{ArchiveEntry, Library, zip};
-use super::description::{FIXED_FILES, description, documentation};
-use super::experiment;
+use super::description::{FIXED_FILES, Nominals, description, documentation};
+use super::{experiment, terminals};
+use crate::decimals::short;
 use crate::error::Error;
 use crate::files::bytes;
 use crate::summary::{LabelledLine, patch_rows, scene_rows, table_rows};
@@ -52,7 +53,7 @@ impl Fmu<'_> {
     /// bytes.
     ///
     /// # Errors
-    /// Where a file cannot be read, or does not lie where an FMU can carry it.
+    /// Where a file cannot be read, or does not lie where an FMU can carry it; where a patch is too large to be done in a step.
     pub fn pack(&self) -> Result<(Vec<u8>, Vec<String>), Error> {
         let (entries, left_out) = self.entries()?;
         let archive = zip(entries).map_err(|error| Error::value(format!("cannot pack: {error}")))?;
@@ -61,21 +62,24 @@ impl Fmu<'_> {
 
     /// The files of the archive, and what it leaves out.
     pub(super) fn entries(&self) -> Result<(Vec<ArchiveEntry>, Vec<String>), Error> {
+        check_size(self.definition)?;
         let identifier = self.definition.identifier();
         let binary = |library: &Library| ArchiveEntry::executable(library.place(&identifier), library.bytes.clone());
         let mut entries: Vec<ArchiveEntry> = self.libraries.iter().map(binary).collect();
         let resources = self.resources()?;
         let variables = self.variables()?;
-        let mut left_out = Vec::new();
+        let (mut left_out, mut nominals) = (Vec::new(), Nominals::new());
         if self.options.references {
             let names: Vec<&str> = resources.iter().map(ArchiveEntry::name).collect();
             let references = experiment::entries(self.definition, &variables, (&names, self.picture.is_some()));
-            let (references, without) = references.map_err(document("the references"))?;
-            entries.extend(references);
-            left_out = without;
+            let references = references.map_err(document("the references"))?;
+            entries.extend(references.entries);
+            (left_out, nominals) = (references.left_out, references.nominals);
         }
         entries.extend(resources);
-        entries.extend(self.documents(&variables)?);
+        entries.extend(self.documents((&variables, &nominals))?);
+        let terminals = terminals::entries(self.definition, &variables, self.picture.as_deref());
+        entries.extend(terminals.map_err(document("terminalsAndIcons.xml"))?);
         entries.extend(self.picture.clone().map(|picture| ArchiveEntry::new("model.png", picture)));
         Ok((entries, left_out))
     }
@@ -103,11 +107,11 @@ impl Fmu<'_> {
     }
 
     /// The description of the model and the documentation.
-    fn documents(&self, variables: &VariableTable) -> Result<Vec<ArchiveEntry>, Error> {
+    fn documents(&self, (variables, nominals): (&VariableTable, &Nominals)) -> Result<Vec<ArchiveEntry>, Error> {
         let Self { definition, path, .. } = *self;
         let guid = guid(&Sources::new(path, &**definition).map_err(Error::io("read", path))?, &definition.variables());
         let naming = if self.options.flat_names { "flat" } else { "structured" };
-        let description = description(&**definition, variables, (&guid, naming));
+        let description = description(&**definition, (variables, nominals), (&guid, naming));
         let description = description.map_err(document("modelDescription.xml"))?;
         let index = documentation(definition, variables, self.summary);
         let index = index.map_err(document("documentation/index.html"))?;
@@ -115,6 +119,22 @@ impl Fmu<'_> {
         let fixed = FIXED_FILES.iter().map(|&(name, text)| ArchiveEntry::new(name, text));
         Ok(written.into_iter().map(|(name, bytes)| ArchiveEntry::new(name, bytes)).chain(fixed).collect())
     }
+}
+
+/// Refuses a patch whose shortest step takes more than a call of a master may.
+fn check_size(definition: &Definition) -> Result<(), Error> {
+    let Definition::Patch(patch) = definition else { return Ok(()) };
+    let share = patch.share_of_call();
+    if share <= 1.0 {
+        return Ok(());
+    }
+    Err(Error::value(format!(
+        "the patch is too large for an FMU: expected elements whose shortest step takes what one call may, about a second; \
+         that of its {} takes {} times as much; take fewer elements or a smaller solver.refine, or leave out tangents, heat or \
+         the backing",
+        patch.count(),
+        short(share, 2)
+    )))
 }
 
 /// For `map_err`: a document cannot be written.
@@ -181,6 +201,8 @@ pub fn not_converged(header: &Header) -> Option<String> {
 
 #[cfg(all(test, unix))]
 mod tests {
+    use asperity::patch::Patch;
+
     use super::*;
     use crate::files::load_scene;
 
@@ -201,6 +223,23 @@ mod tests {
             Sources::new(&scene, &*Definition::from(asperity::scene::Scene::load(&scene).unwrap())).unwrap();
         assert_eq!(own, of_library);
         std::fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn a_patch_whose_shortest_step_takes_too_long_is_refused() {
+        let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("tests/reference/patch");
+        let packed = |n: u32, outputs: &str| {
+            let text = format!(
+                "name = 'pad'\ntable = {{ path = 'block.table.csv' }}\npatch = {{ shape = 'flat', length = 0.01, \
+                 width = 0.01, nx = {n}, ny = {n} }}\nfmu = {{ outputs = [{outputs}] }}"
+            );
+            check_size(&Patch::parse(&text, &folder.join("patch.toml")).unwrap().into())
+                .map_err(|error| error.to_string())
+        };
+        assert_eq!(packed(1000, "'forces'"), Ok(()));
+        assert_eq!(packed(100, "'forces', 'tangent'"), Ok(()));
+        let refused = packed(1000, "'forces', 'tangent'").unwrap_err();
+        assert!(refused.contains("too large for an FMU") && refused.contains("1000000 takes 1.2 times"), "{refused}");
     }
 
     #[test]

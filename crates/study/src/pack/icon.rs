@@ -8,8 +8,8 @@ use asperity::scene::{LinkKind, Scene};
 use crate::picture::{Axis, Colour, Fill, Fit, Frame, Mark, Panel, Picture, Point, Shape, Stroke, Symbol};
 
 /// Width and height, pixels.
-const WIDTH: f64 = 240.0;
-const HEIGHT: f64 = 160.0;
+pub(super) const WIDTH: f64 = 240.0;
+pub(super) const HEIGHT: f64 = 160.0;
 /// Width of a line, pixels.
 const LINE: f64 = 1.4;
 

@@ -5,6 +5,7 @@ mod description;
 mod experiment;
 mod fmu;
 mod icon;
+mod terminals;
 mod verify;
 
 pub use archive::{Library, LibraryFile, Platform};
