@@ -420,7 +420,7 @@ fn a_prediction_that_cannot_be_done_is_held_and_said_once() {
     let [low, high] = [2e5, 5e5].map(|pressure| separation(1e-4, pressure, WARM) - REST);
     // Down within a step, as a signal that jumps; twice as far is beyond the table's 8e5 Pa.
     assert!(2.0 * high - low < separation(1e-4, 8e5, WARM) - REST);
-    let course = [low, low, high, high, low, low, high, high, high];
+    let course = [low, low, high, high, high, low, low, high, high];
     let pressed = |given| {
         let fmu = Fmu::of_table(&Grid::plain().text(), false);
         assert_eq!(fmu.set_text(fmu.reference("table.extrapolation"), "refuse"), OK);

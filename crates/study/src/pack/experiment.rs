@@ -96,7 +96,7 @@ pub(super) fn tables(definition: &Definition, variables: &VariableTable) -> Resu
         nominals: nominals.filter_map(|(name, value)| Some((name.to_owned(), power_of_ten(value)?))).collect(),
         setup: ExperimentSetup {
             times: [times[0], times[times.len() - 1]],
-            step: times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max),
+            step: rounded(times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max), DIGITS),
             tolerance: definition.default_experiment().and_then(|experiment| experiment.tolerance),
         },
         inputs: table(inputs.into_iter(), &motion.times, motion.values[..rows.len()].iter().cloned()),
