@@ -121,6 +121,7 @@ pub mod model;
 pub mod outputs;
 pub mod patch;
 pub mod scene;
+pub mod seal;
 pub mod simulation;
 pub mod table;
 pub mod tables;

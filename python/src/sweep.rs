@@ -12,7 +12,8 @@ use asperity_study::comparison::CompareOptions;
 use asperity_study::friction_map::Maps;
 use asperity_study::pack::FmuOptions;
 use asperity_study::sweep::{
-    Over, Sampled, SweepColumn, SweepOptions, SweepPlan, SweepTable, column_picture, quantile_table, sweep_picture,
+    Over, SampleHeader, Sampled, SweepColumn, SweepOptions, SweepPlan, SweepTable, column_picture, quantile_table,
+    sweep_picture,
 };
 use asperity_study::uncertainty::SampleOptions;
 use numpy::{IntoPyArray as _, ToPyArray as _};
@@ -129,13 +130,13 @@ impl Table {
 
     /// What of the samples is kept, all of each row beside each other.
     fn samples<'py>(&self, py: Python<'py>) -> Named<'py> {
-        let has_samples = self.swept.header.samples.is_some();
-        let values = |sampled: Sampled| {
+        let kept = self.swept.header.samples.map_or(&[][..], SampleHeader::sampled);
+        let values = |sampled: &Sampled| {
             let all = self.swept.rows.iter().filter_map(|row| row.samples.as_ref());
-            let values = all.flat_map(|samples| samples.of(sampled)).map(|value| value.unwrap_or(f64::NAN));
+            let values = all.flat_map(|samples| samples.of(*sampled)).map(|value| value.unwrap_or(f64::NAN));
             (sampled.name().to_owned(), values.collect::<Vec<_>>().into_pyarray(py))
         };
-        Sampled::ALL.into_iter().filter(|_| has_samples).map(values).collect()
+        kept.iter().map(values).collect()
     }
 
     /// What was drawn.

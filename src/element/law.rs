@@ -57,7 +57,7 @@ impl Series {
 
 /// The law at one temperature.
 #[derive(Clone, Debug)]
-pub(super) struct Law {
+pub(crate) struct Law {
     /// A, m².
     pub(super) nominal_area: f64,
     /// Separation at w = 0, m.
@@ -81,7 +81,7 @@ pub(super) struct Law {
 
 impl Law {
     /// The table at `temperature` (K), where it has temperatures.
-    pub(super) fn new(table: &FrictionTable, temperature: f64) -> Self {
+    pub(crate) fn new(table: &FrictionTable, temperature: f64) -> Self {
         let grid = &table.grid;
         let (speeds, loads) = (grid.speeds.len(), grid.loads.len());
         let cell = |quantity, index: usize| {
@@ -108,7 +108,7 @@ impl Law {
     }
 
     /// Changes the temperature, K; allocates nothing.
-    pub(super) fn set_temperature(&mut self, kelvin: f64) {
+    pub(crate) fn set_temperature(&mut self, kelvin: f64) {
         let (log_speeds, temperatures) = (&self.log_speeds, &self.temperatures);
         let at = |cell: &Series| match temperatures.len() {
             0 | 1 => cell.values[0],
@@ -171,6 +171,17 @@ impl Law {
         speed.abs().clamp(self.speed_range.0, self.speed_range.1)
     }
 
+    /// Writes the values of a quantity at all pressures straight between the logarithms of the speeds, where the table has it.
+    pub(crate) fn straight_at_speed(&self, quantity: Quantity, speed: f64, values: &mut [f64]) {
+        let Some(rows) = &self.over_speed[quantity as usize] else { return };
+        let (x, logs) = (self.speed_in_table(speed).ln(), &self.log_speeds);
+        let (j, next) = (interval_of(logs, x), logs.len().min(2) - 1);
+        let share = if next == 0 { 0.0 } else { (x - logs[j]) / (logs[j + 1] - logs[j]) };
+        for (value, row) in values.iter_mut().zip(rows) {
+            *value = row.values[j] + share * (row.values[j + next] - row.values[j]);
+        }
+    }
+
     /// Writes the values of a quantity at all pressures, at a speed between those of the table.
     fn at_speed(&self, rows: &[Series], speed: f64, values: &mut [f64]) {
         if self.log_speeds.len() == 1 {
@@ -201,7 +212,7 @@ fn along_temperature(table: &FrictionTable, quantity: Quantity, node: Node) -> S
 
 /// The law at one speed, over the approach.
 #[derive(Clone, Debug)]
-pub(super) struct LawAtSpeed {
+pub(crate) struct LawAtSpeed {
     /// The speed, between the least and the largest of the table, m/s.
     speed: f64,
     /// y = ln p at the pressures.
@@ -221,7 +232,7 @@ pub(super) struct LawAtSpeed {
 
 impl LawAtSpeed {
     /// The law at `speed` (m/s).
-    pub(super) fn new(law: &Law, speed: f64) -> Self {
+    pub(crate) fn new(law: &Law, speed: f64) -> Self {
         let n = law.log_pressures.len();
         let column =
             |rows: &Option<Vec<Series>>| rows.as_ref().map(|_| Series { values: vec![0.0; n], slopes: vec![0.0; n] });
@@ -242,12 +253,12 @@ impl LawAtSpeed {
     }
 
     /// Whether it is the law at `speed` (m/s).
-    pub(super) fn is_at(&self, law: &Law, speed: f64) -> bool {
+    pub(crate) fn is_at(&self, law: &Law, speed: f64) -> bool {
         law.speed_in_table(speed) == self.speed
     }
 
     /// Changes the speed, m/s.
-    pub(super) fn set_speed(&mut self, law: &Law, speed: f64) {
+    pub(crate) fn set_speed(&mut self, law: &Law, speed: f64) {
         let speed = law.speed_in_table(speed);
         if speed == self.speed {
             return;
@@ -263,7 +274,7 @@ impl LawAtSpeed {
     }
 
     /// The law has changed: the speed set next is computed even if it is the present one.
-    pub(super) fn invalidate_speed(&mut self) {
+    pub(crate) fn invalidate_speed(&mut self) {
         self.speed = f64::NAN;
     }
 
@@ -315,12 +326,12 @@ impl LawAtSpeed {
     }
 
     /// y = ln p at the pressures, the approaches (m) there and dy/da (1/m).
-    pub(super) fn points(&self) -> [&[f64]; 3] {
+    pub(crate) fn points(&self) -> [&[f64]; 3] {
         [&self.log_pressures, &self.approaches, &self.slopes]
     }
 
     /// The values of a quantity at the pressures and its slopes over y, where the table has it.
-    pub(super) fn series(&self, quantity: Quantity) -> Option<[&[f64]; 2]> {
+    pub(crate) fn series(&self, quantity: Quantity) -> Option<[&[f64]; 2]> {
         self.over_pressure[quantity as usize].as_ref().map(|column| [&column.values[..], &column.slopes])
     }
 
@@ -398,7 +409,7 @@ impl LawAtSpeed {
     }
 
     /// A quantity at a pressure (Pa), limited to those of the table.
-    pub(super) fn at_pressure(&self, quantity: Quantity, pressure: f64) -> f64 {
+    pub(crate) fn at_pressure(&self, quantity: Quantity, pressure: f64) -> f64 {
         let last = self.log_pressures.len() - 1;
         let y = pressure.ln().clamp(self.log_pressures[0], self.log_pressures[last]);
         self.along_pressure(quantity, interval_of(&self.log_pressures, y), y).value

@@ -26,6 +26,7 @@ mod tests;
 
 pub use friction_table::{FrictionTable, Node, SWEEP, rest_separation, some_of};
 pub use grid::{Load, OperatingPoint, SweepGrid};
+pub(crate) use law::{Law, LawAtSpeed};
 pub use law_points::{ElementLaw, LawPoints};
 pub use left_out::{LeftOut, left_out};
 pub(crate) use limits::ROUNDING;

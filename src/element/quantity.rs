@@ -77,6 +77,16 @@ columns! {
     ImpactPower: "P_impact", "W", NonNegative, Optional;
     /// Mean separation of the carrier's rest line and the profile's mean line, m.
     Separation: "separation", "m", Any, Required;
+    /// Smooth plates at this distance let as much fluid through along the sliding, m.
+    LeakGap: "leak_gap", "m", NonNegative, Optional;
+    /// Smooth plates at this distance carry as much fluid along, m.
+    DragGap: "drag_gap", "m", NonNegative, Optional;
+    /// The leak gap across the sliding, m; of maps.
+    LeakGapAcross: "leak_gap_across", "m", NonNegative, Ignored;
+    /// The leak gap by the effective medium beside the one solved for, m; of maps.
+    LeakGapMedium: "leak_gap_medium", "m", NonNegative, Ignored;
+    /// The drag gap likewise, m.
+    DragGapMedium: "drag_gap_medium", "m", NonNegative, Ignored;
     /// Tangential stiffness at the start of motion, N/m.
     Stiffness: "tangential_stiffness", "N/m", Positive, Required;
     /// Displacement w of the carrier, m.
@@ -90,6 +100,11 @@ columns! {
 impl Quantity {
     /// The powers lost, by channel.
     pub const CHANNELS: [Self; 4] = [Self::DamperPower, Self::MaxwellPower, Self::FrictionPower, Self::ImpactPower];
+
+    /// Whether it tells how a fluid passes: only tables that were asked for it have its column.
+    pub fn is_of_gaps(self) -> bool {
+        matches!(self, Self::LeakGap | Self::DragGap | Self::LeakGapAcross | Self::LeakGapMedium | Self::DragGapMedium)
+    }
 
     /// Its column in a table of such loads, empty.
     pub fn column(self, load: Load) -> Column {

@@ -150,6 +150,10 @@ pub enum Unit {
     Kelvin,
     /// m².
     SquareMeter,
+    /// m³.
+    CubicMeter,
+    /// m³/s.
+    CubicMeterPerSecond,
     /// kg/m³.
     KilogramPerCubicMeter,
     /// Pa.
@@ -271,6 +275,8 @@ impl Unit {
             Self::NewtonSecondPerMeter => ("N.s/m", [1, 0, -1, 0]),
             Self::Kelvin => ("K", [0, 0, 0, 1]),
             Self::SquareMeter => ("m2", [0, 2, 0, 0]),
+            Self::CubicMeter => ("m3", [0, 3, 0, 0]),
+            Self::CubicMeterPerSecond => ("m3/s", [0, 3, -1, 0]),
             Self::KilogramPerCubicMeter => ("kg/m3", [1, -3, 0, 0]),
             Self::Pascal => ("Pa", [1, -1, -2, 0]),
             Self::PascalSecond => ("Pa.s", [1, -1, -1, 0]),

@@ -7,6 +7,7 @@ mod field;
 mod list;
 mod patch;
 mod scene_file;
+mod seal;
 mod surface;
 
 pub use definition::Absent;
@@ -16,4 +17,5 @@ pub use list::{KeyEntry, patch_keys, scene_keys, similar_keys};
 pub(super) use list::{KeyRow, elsewhere, fields, find, range_of};
 pub(super) use patch::{PATCH_ROOT, ShapeKind};
 pub(super) use scene_file::ROOT;
+pub(super) use seal::SEAL_ROOT;
 pub(super) use surface::SurfaceKind;

@@ -28,7 +28,7 @@ pub(in crate::scene) const TABLE_EXTRAPOLATION: Key = word::<TableExtrapolation>
     "What happens beyond the table's pressures and speeds: refuse, or hold its ends' friction coefficients and stiffnesses",
 );
 
-const EXTRAPOLATION: Key =
+pub(super) const EXTRAPOLATION: Key =
     word::<Extrapolation>("extrapolation", "How the pose goes on when no rates are given: linear or hold")
         .default("\"linear\"");
 

@@ -3,10 +3,12 @@
 mod carrier;
 mod fine;
 mod patch;
+mod seal;
 mod surface;
 mod table;
 
 pub use patch::POINTS;
+pub use seal::LIP_PRESSURES;
 
 use std::path::Path as FilePath;
 use std::sync::Arc;

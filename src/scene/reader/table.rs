@@ -8,6 +8,7 @@ use crate::scene::file_values::FileValues;
 use crate::scene::keys::{self, Absent, Allowed, At, Field, Form, Key, Kinds};
 use crate::scene::values::{NumberRange, Value, Word, closest, words};
 use crate::scene::{Scene, Unit};
+use crate::tables::POSITIVE;
 
 pub(super) type Result<T> = std::result::Result<T, SceneError>;
 
@@ -128,6 +129,15 @@ impl<'a> Entry<'a> {
         let table = self.value.as_table()?;
         let text = |(key, value): (&String, &TomlValue)| Some((key.clone(), value.as_str()?.to_owned()));
         table.iter().map(text).collect()
+    }
+
+    /// A number above 0 in `unit`, at no place (0); or such numbers at places, numbers in the unit of `at` that stand as keys.
+    /// `None` of anything else.
+    pub(super) fn numbers_at(&self, at: Unit, unit: Unit) -> Option<Vec<(f64, f64)>> {
+        let number = |value: &TomlValue| number_of(value, unit).filter(|number| POSITIVE.holds(*number));
+        let Some(table) = self.value.as_table() else { return Some(vec![(0.0, number(self.value)?)]) };
+        let place = |key: &str| key.parse().ok().or_else(|| at.read(key)).filter(|place| POSITIVE.holds(*place));
+        table.iter().map(|(key, value)| Some((place(key)?, number(value)?))).collect()
     }
 
     pub(super) fn is_text(&self) -> bool {

@@ -34,7 +34,8 @@ use super::table_file::TableFile;
 use super::terminal::{self, LabelledLine, lines, note, warn};
 
 /// Options of a sweep that --merge does not take.
-const OF_A_SCENE: [&str; 17] = [
+const OF_A_SCENE: [&str; 18] = [
+    "gaps",
     "speeds",
     "pressures",
     "forces",
@@ -341,7 +342,7 @@ fn run(
     });
     let rows = Mutex::new(done);
     let work = plan.find(&left, &Stop::default(), |row| {
-        if let Err(error) = file.add(&row.cells()) {
+        if let Err(error) = file.add(&row.cells(plan.header())) {
             return ControlFlow::Break(error);
         }
         rows.lock().unwrap_or_else(PoisonError::into_inner).push(row);
@@ -447,7 +448,7 @@ fn whole(ways: &[f64], tables: &[SweepTable]) -> Table {
     let own = tables.first().map(|table| table.header.table().columns().to_vec()).unwrap_or_default();
     let mut whole = Table::new(Header::default(), [Column::numbers("way", "m")].into_iter().chain(own));
     for (way, table) in ways.iter().zip(tables) {
-        table.rows.iter().for_each(|row| whole.push([Cell::from(*way)].into_iter().chain(row.cells())));
+        table.rows.iter().for_each(|row| whole.push([Cell::from(*way)].into_iter().chain(row.cells(&table.header))));
     }
     whole
 }

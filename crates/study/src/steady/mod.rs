@@ -11,6 +11,7 @@
 
 mod contact;
 mod flash;
+mod flow;
 mod heat;
 mod krylov;
 mod linear;
@@ -21,6 +22,7 @@ mod surface;
 mod transform;
 
 pub use contact::Contact;
+pub use flow::{FlowGaps, GapFlow};
 pub use heat::HeatResponse;
 pub use rubber::SlidingRubber;
 pub use slide::{SlideProblem, SteadySlide, SteadySolver};

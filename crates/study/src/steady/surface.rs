@@ -74,6 +74,11 @@ impl SurfaceGrid {
         if is_even && own >= needed { own } else { rounded_up(own.max(needed)) }
     }
 
+    /// How far points are apart along the sliding and across it, m.
+    pub fn spacing(&self) -> [f64; 2] {
+        [self.length / self.size.nx as f64, self.width / self.size.ny as f64]
+    }
+
     /// The area of the surface that a point stands for, as a share of the whole.
     pub fn share_of_point(&self) -> f64 {
         1.0 / self.size.points() as f64

@@ -16,7 +16,7 @@ mod tests;
 
 pub use layer::relevant;
 pub use load_search::separation_at_rest;
-pub use options::{Method, SlidingOptions, SweepMethod, SweepOptions, check_possible, fingerprint, way_of};
+pub use options::{Gaps, Method, SlidingOptions, SweepMethod, SweepOptions, check_possible, fingerprint, way_of};
 pub use over::{Over, SweptQuantity};
 pub use picture::{column_picture, master_picture, matters_picture, over_ways, sweep_picture};
 pub(crate) use plan::Problems;

@@ -80,9 +80,40 @@ pub struct SweepOptions {
     #[arg(long, value_name = "VALUES", value_parser = Values::of(Dimension::Temperature))]
     #[arg(allow_hyphen_values = true)]
     pub temperatures: Option<Values>,
+    /// Also computes how a fluid passes the gaps of the contact, with --method steady: leak_gap and drag_gap, m, the distances
+    /// at which smooth plates let as much through and carry as much along; solved for on a map, with leak_gap_across, and by
+    /// the effective medium of a profile. "medium" has that of a map beside.
+    #[arg(long, value_name = "GAPS", value_enum, num_args = 0..=1, default_missing_value = "solved")]
+    pub gaps: Option<Gaps>,
     #[command(flatten)]
     #[serde(flatten)]
     pub sliding: SlidingOptions,
+}
+
+/// How a fluid passes the gaps of a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Gaps {
+    /// Solved for on maps, the effective medium of profiles
+    Solved,
+    /// The effective medium of maps beside it
+    Medium,
+}
+
+impl Gaps {
+    /// Those of a table by its header; `None` without.
+    pub(super) fn of_table(header: &Header) -> Option<Self> {
+        let word = header.text_of(GAPS)?;
+        Some(if word == Self::Medium.word() { Self::Medium } else { Self::Solved })
+    }
+
+    /// As the header of a table has it.
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Solved => "solved",
+            Self::Medium => "medium",
+        }
+    }
 }
 
 /// Checks numbers of an option, which a state of sliding has.
@@ -114,6 +145,8 @@ const POINTS: &str = "points";
 const WAY: &str = "way";
 const FRICTION_ERROR: &str = "friction_error";
 const DISTANCE: &str = "distance";
+/// How gaps were found.
+pub(super) const GAPS: &str = "gaps";
 
 /// The way of a table, m, by its header; `None` without one.
 pub fn way_of(header: &Header) -> Option<f64> {

@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
-use asperity::element::{Load, OperatingPoint, Quantity};
+use asperity::element::{Load, OperatingPoint};
 use asperity::math::check_memory;
 use asperity::scene::Scene;
 use asperity::simulation::Interrupt;
 use asperity::table::{Cell, Column, Header, Table};
 use rayon::prelude::*;
 
-use super::options::{SlidingOptions, SweepOptions, fingerprint_of};
+use super::options::{Gaps, SlidingOptions, SweepOptions, fingerprint_of};
 use super::scene_plan::ScenePlan;
 use super::table::{SampleHeader, SampleValues, Sampled, SweepHeader, SweepRow, SweepTable, means, number_at};
 use crate::Error;
@@ -155,16 +155,18 @@ impl SweepPlan {
     /// All samples of these rows as a table, with what was drawn for each; empty without samples.
     pub fn samples_table(&self, rows: &[SweepRow]) -> Table {
         let all = self.samples.as_ref().map_or(&[][..], |samples| &samples.all);
-        let own = Sampled::ALL.map(|sampled| Column::numbers(sampled.name(), "1"));
+        let sampled = self.header.samples.map_or(&[][..], SampleHeader::sampled);
+        let own = sampled.iter().map(|sampled| Column::numbers(sampled.name(), sampled.unit()));
         let drawn = all.first().into_iter().flat_map(|sample| &sample.values);
         let columns = [Column::numbers("sample", "")].into_iter().chain(OperatingPoint::columns(self.header.load));
         let columns = columns.chain(own).chain(drawn.map(|(name, _)| Column::numbers(name, "")));
         let mut table = Table::new(Header::default(), columns);
         for (index, sample) in all.iter().enumerate() {
             for row in rows {
-                let of = |sampled| row.samples.as_ref().and_then(|samples| *samples.of(sampled).get(index)?);
+                let of =
+                    |sampled: &Sampled| row.samples.as_ref().and_then(|samples| *samples.of(*sampled).get(index)?);
                 let cells = [Cell::from((index + 1) as f64)].into_iter().chain(row.point.cells());
-                let cells = cells.chain(Sampled::ALL.map(|sampled| of(sampled).into()));
+                let cells = cells.chain(sampled.iter().map(|sampled| of(sampled).into()));
                 table.push(cells.chain(sample.values.iter().map(|(_, value)| (*value).into())));
             }
         }
@@ -269,6 +271,7 @@ pub fn quantile_table(
         pressures,
         forces,
         temperatures: (!grid.temperatures.is_empty()).then(|| Values(grid.temperatures.clone())),
+        gaps: Gaps::of_table(keys),
         sliding: SlidingOptions::of_table(keys)?,
     };
     let convergence = keys.text_of("convergence").map(str::to_owned);
@@ -316,6 +319,8 @@ pub(super) struct Samples {
     pub(super) all: Vec<Sample>,
     /// How many draws were drawn anew.
     redrawn: usize,
+    /// Whether they have leak gaps.
+    has_gaps: bool,
     options: SampleOptions,
     /// Whether a covariance's numbers were fitted anew in each.
     refit: bool,
@@ -355,27 +360,34 @@ impl Samples {
         };
         let all = draws.made.into_iter().enumerate().map(failed).collect::<Result<_, Error>>()?;
         let groups = uncertain.groups().to_vec();
-        let (redrawn, refit) = (draws.redrawn, uncertain.is_refitted());
-        Ok(Self { groups, all, redrawn, options: samples, refit, problems: Problems::default() })
+        let (redrawn, refit, has_gaps) = (draws.redrawn, uncertain.is_refitted(), options.gaps.is_some());
+        Ok(Self { groups, all, redrawn, has_gaps, options: samples, refit, problems: Problems::default() })
     }
 
     /// What the table's header says of them.
     pub(super) fn header(&self) -> SampleHeader {
-        SampleHeader { count: self.all.len(), seed: self.options.seed, redrawn: self.redrawn, refit: self.refit }
+        SampleHeader {
+            count: self.all.len(),
+            seed: self.options.seed,
+            redrawn: self.redrawn,
+            refit: self.refit,
+            has_gaps: self.has_gaps,
+        }
     }
 
     /// All samples of a point, found on all cores.
     pub(super) fn values(&self, point: &OperatingPoint, interrupt: &Interrupt) -> SampleValues {
+        let sampled = self.header().sampled();
         let found = |sample: &Sample| {
             if interrupt.is_wanted() {
-                return [None; Sampled::ALL.len()];
+                return vec![None; sampled.len()];
             }
             let row = sample.row(point, interrupt);
             self.problems.count(&row);
-            let value = |quantity| row.value(quantity).filter(|_| row.is_result());
-            [Quantity::Friction, Quantity::Hysteresis, Quantity::ContactRatio].map(value)
+            let value = |sampled: &Sampled| row.value(sampled.quantity()).filter(|_| row.is_result());
+            sampled.iter().map(value).collect()
         };
-        SampleValues::new(&self.all.par_iter().with_max_len(1).map(found).collect::<Vec<_>>())
+        SampleValues::new(&self.all.par_iter().with_max_len(1).map(found).collect::<Vec<_>>(), sampled)
     }
 }
 

@@ -9,7 +9,7 @@ use asperity::table::Header;
 
 use super::layer::{relevant, scene_at};
 use super::load_search::separation_at_rest;
-use super::options::{Method, SlidingOptions, SweepMethod, SweepOptions, check_possible, fingerprint};
+use super::options::{GAPS, Gaps, Method, SlidingOptions, SweepMethod, SweepOptions, check_possible, fingerprint};
 use super::point;
 use super::search::StopBounds;
 use super::solved::{SolvedPoints, no_area};
@@ -54,11 +54,18 @@ impl ScenePlan {
         // Which sweep it is says who asks for it: of many samples nobody does.
         let keys = Header::new(SWEEP).with("scene", &scene.name).with("fingerprint", "").with("method", &in_words);
         let keys = options.sliding.settled(method.surface()).in_header(keys);
+        let keys = keys.with_some(GAPS, options.gaps.map(Gaps::word));
         let keys = rests_on(keys, &scene, convergence);
         let header = SweepHeader::new(keys, load, separation_at_rest(&scene), grid);
         let solved = match method {
             Method::Steady(surface) => {
-                Some(SolvedPoints::new(&scene, &header.grid.temperatures, surface, options.sliding.way)?)
+                let points = SolvedPoints::new(&scene, &header.grid.temperatures, surface, options.sliding.way)?;
+                Some(points.with_gaps(options.gaps))
+            }
+            Method::Layer if options.gaps.is_some() => {
+                return Err(Error::scene(format!(
+                    "`gaps`: expected none where the layer slides ({in_words}): they are those that `method` steady finds"
+                )));
             }
             Method::Layer => None,
         };
@@ -69,7 +76,9 @@ impl ScenePlan {
     pub(super) fn fingerprint(&self, sliding: SlidingOptions) -> Result<String, Error> {
         let surface = self.solved.as_ref().map(SolvedPoints::surface);
         // The same for all temperatures: each point has its own.
-        fingerprint(&self.scene.with_temperature(0.0), sliding, surface, self.header.load.name())
+        let gaps = self.header.keys.text_of(GAPS).map(|gaps| format!(" {GAPS} {gaps}")).unwrap_or_default();
+        let asked = format!("{}{gaps}", self.header.load.name());
+        fingerprint(&self.scene.with_temperature(0.0), sliding, surface, &asked)
     }
 
     /// Checks that a scene that was drawn has the temperatures of the points, which are `warmer` (K) there.

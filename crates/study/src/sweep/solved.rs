@@ -8,12 +8,12 @@ use asperity::element::{FrictionTable, Load, OperatingPoint, PointStatus, Quanti
 use asperity::scene::Scene;
 
 use super::layer::relevant;
-use super::options::{Method, SlidingOptions, SweepMethod};
+use super::options::{Gaps, Method, SlidingOptions, SweepMethod};
 use super::point::{steady_sliding, steady_sliding_at};
 use super::search::{NotSteady, SteadySliding, StopBounds};
 use super::table::{SweepHeader, SweepRow};
 use crate::Error;
-use crate::steady::{SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
+use crate::steady::{FlowGaps, GapFlow, SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 
 /// The solver of the points of a sweep, on all threads.
 #[derive(Debug)]
@@ -25,6 +25,8 @@ pub struct SolvedPoints {
     rubbers: Vec<(Option<f64>, SlidingRubber)>,
     /// The area of the layer, m².
     area: f64,
+    /// How a fluid passes the gaps, where that is asked for.
+    gaps: Option<Gaps>,
 }
 
 /// Solvers for one surface.
@@ -74,7 +76,12 @@ impl SolvedPoints {
             |temperature: Option<f64>| Some((temperature, SlidingRubber::new(&scene.with_temperature(temperature))?));
         let rubbers = temperatures.into_iter().map(rubber).collect::<Option<Vec<_>>>().ok_or_else(no_area)?;
         let area = scene.layer.area().ok_or_else(no_area)?;
-        Ok(Self { solvers: Arc::new(Solvers::new(surface)), way, rubbers, area })
+        Ok(Self { solvers: Arc::new(Solvers::new(surface)), way, rubbers, area, gaps: None })
+    }
+
+    /// The same with rows that have how a fluid passes the gaps.
+    pub(super) fn with_gaps(self, gaps: Option<Gaps>) -> Self {
+        Self { gaps, ..self }
     }
 
     /// The row of a point.
@@ -160,7 +167,28 @@ impl SolvedPoints {
             (Quantity::Stiffness, slide.tangential_stiffness.map(|stiffness| stiffness * self.area)),
         ];
         values.into_iter().for_each(|(quantity, value)| row.set(quantity, value));
+        if let Some(gaps) = self.gaps {
+            self.set_gaps(&mut row, gaps, &slide.contact.gaps);
+        }
         row
+    }
+
+    /// Sets how a fluid passes: solved for on a map, else by the effective medium.
+    fn set_gaps(&self, row: &mut SweepRow, asked: Gaps, gaps: &[f64]) {
+        let surface = self.surface();
+        let is_map = surface.size.ny > 1;
+        let medium = (!is_map || asked == Gaps::Medium).then(|| FlowGaps::of_medium(gaps));
+        let solved = is_map.then(|| GapFlow::of_map(gaps, surface.size, surface.spacing()).gaps);
+        let found = solved.or(medium);
+        let beside = medium.filter(|_| is_map);
+        let values = [
+            (Quantity::LeakGap, found.map(|gaps| gaps.leak)),
+            (Quantity::DragGap, found.map(|gaps| gaps.drag)),
+            (Quantity::LeakGapAcross, found.and_then(|gaps| gaps.leak_across)),
+            (Quantity::LeakGapMedium, beside.map(|gaps| gaps.leak)),
+            (Quantity::DragGapMedium, beside.map(|gaps| gaps.drag)),
+        ];
+        values.into_iter().for_each(|(quantity, value)| row.set(quantity, value));
     }
 
     /// The warning where some of the rows have few points in contact.

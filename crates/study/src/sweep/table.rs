@@ -8,6 +8,7 @@ use asperity::element::{
 use asperity::scene::is_possible;
 use asperity::table::{Cell, Column, Header, Table, TableError, number};
 
+use super::options::GAPS;
 use crate::Error;
 use crate::decimals::rounded;
 use crate::files;
@@ -93,14 +94,23 @@ impl SweepHeader {
     pub fn column(&self, name: &str) -> Option<SweepColumn> {
         let table = self.table();
         let at = table.columns().iter().position(|column| column.name == name && !column.has_words)?;
-        Some(SweepColumn { column: table.columns()[at].clone(), at })
+        Some(SweepColumn { column: table.columns()[at].clone(), at, header: self.clone() })
+    }
+
+    /// The quantities of the table's columns.
+    fn quantities(&self) -> impl Iterator<Item = Quantity> {
+        let has_gaps = self.keys.text_of(GAPS).is_some();
+        Quantity::ALL.into_iter().filter(move |quantity| has_gaps || !quantity.is_of_gaps())
     }
 
     /// The table, without rows.
     pub fn table(&self) -> Table {
-        let quantities = Quantity::ALL.iter().map(|quantity| quantity.column(self.load));
+        let quantities = self.quantities().map(|quantity| quantity.column(self.load));
         let own = OperatingPoint::columns(self.load).into_iter().chain([PointStatus::column()]).chain(quantities);
-        Table::new(self.keys.clone(), own.chain(self.samples.iter().flat_map(|_| columns_of_samples())))
+        Table::new(
+            self.keys.clone(),
+            own.chain(self.samples.iter().flat_map(|samples| columns_of_samples(samples.sampled()))),
+        )
     }
 }
 
@@ -109,6 +119,7 @@ impl SweepHeader {
 pub struct SweepColumn {
     column: Column,
     at: usize,
+    header: SweepHeader,
 }
 
 impl SweepColumn {
@@ -119,7 +130,7 @@ impl SweepColumn {
 
     /// The value of a row; `None` where it has none.
     pub fn value(&self, row: &SweepRow) -> Option<f64> {
-        row.cells()[self.at].number().filter(|number| !number.is_nan())
+        row.cells(&self.header)[self.at].number().filter(|number| !number.is_nan())
     }
 }
 
@@ -162,8 +173,8 @@ impl SweepRow {
     }
 
     /// Its cells in the columns of [`SweepHeader::table`].
-    pub fn cells(&self) -> Vec<Cell> {
-        let values = self.values.iter().map(|value| Cell::from(*value));
+    pub fn cells(&self, header: &SweepHeader) -> Vec<Cell> {
+        let values = header.quantities().map(|quantity| Cell::from(self.value(quantity)));
         let own = self.point.cells().into_iter().chain([self.status.text().into()]).chain(values);
         own.chain(self.samples.iter().flat_map(SampleValues::cells)).collect()
     }
@@ -192,7 +203,7 @@ impl SweepRow {
                 found.set(quantity, value);
             }
         }
-        found.samples = header.samples.map(|samples| SampleValues::of_row(table, row, samples.count)).transpose()?;
+        found.samples = header.samples.map(|samples| SampleValues::of_row(table, row, samples)).transpose()?;
         Ok(found)
     }
 }
@@ -249,7 +260,7 @@ impl SweepTable {
     /// The table as all tables are.
     pub fn table(&self) -> Table {
         let mut table = self.header.table();
-        self.rows.iter().for_each(|row| table.push(row.cells()));
+        self.rows.iter().for_each(|row| table.push(row.cells(&self.header)));
         table
     }
 
@@ -330,12 +341,19 @@ pub struct SampleHeader {
     pub redrawn: usize,
     /// Whether a covariance's numbers were fitted anew in each.
     pub refit: bool,
+    /// Whether they have leak gaps.
+    pub has_gaps: bool,
 }
 
 /// The key of that.
 const REFIT: &str = "refit";
 
 impl SampleHeader {
+    /// What of each sample is kept, in the order of a file.
+    pub fn sampled(self) -> &'static [Sampled] {
+        if self.has_gaps { &Sampled::ALL } else { &Sampled::ALL[..Sampled::LeakGap as usize] }
+    }
+
     /// Gives them to a table that is begun.
     pub(super) fn set_in(self, header: &mut SweepHeader) {
         header.samples = Some(self);
@@ -358,7 +376,7 @@ impl SampleHeader {
         let count = keys.optional("samples", Header::whole)?.map(|count| count as usize);
         let of = |count| {
             let (seed, redrawn) = (keys.whole("seed")?, keys.whole("redrawn")? as usize);
-            Ok(Self { count, seed, redrawn, refit: keys.has(REFIT) })
+            Ok(Self { count, seed, redrawn, refit: keys.has(REFIT), has_gaps: keys.has(GAPS) })
         };
         count.map(of).transpose()
     }
@@ -373,11 +391,28 @@ pub enum Sampled {
     Hysteresis,
     /// Area in contact over the whole, 1.
     ContactRatio,
+    /// The leak gap, m, of a table with gaps.
+    LeakGap,
 }
 
 impl Sampled {
     /// All of them, in their order in a file.
-    pub const ALL: [Self; 3] = [Self::Friction, Self::Hysteresis, Self::ContactRatio];
+    pub const ALL: [Self; 4] = [Self::Friction, Self::Hysteresis, Self::ContactRatio, Self::LeakGap];
+
+    /// What of a row it is.
+    pub(super) fn quantity(self) -> Quantity {
+        match self {
+            Self::Friction => Quantity::Friction,
+            Self::Hysteresis => Quantity::Hysteresis,
+            Self::ContactRatio => Quantity::ContactRatio,
+            Self::LeakGap => Quantity::LeakGap,
+        }
+    }
+
+    /// Its unit.
+    pub fn unit(self) -> &'static str {
+        if self == Self::LeakGap { "m" } else { "1" }
+    }
 
     /// As names of columns begin.
     pub fn name(self) -> &'static str {
@@ -385,6 +420,7 @@ impl Sampled {
             Self::Friction => "friction",
             Self::Hysteresis => "hysteresis",
             Self::ContactRatio => "contact_ratio",
+            Self::LeakGap => "leak_gap",
         }
     }
 
@@ -392,45 +428,51 @@ impl Sampled {
     pub fn quantiles(self) -> &'static [f64] {
         match self {
             Self::Friction => &[0.05, 0.25, 0.5, 0.75, 0.95],
-            Self::Hysteresis | Self::ContactRatio => &[0.05, 0.5, 0.95],
+            Self::Hysteresis | Self::ContactRatio | Self::LeakGap => &[0.05, 0.5, 0.95],
         }
     }
 
-    fn quantile_columns(self) -> impl Iterator<Item = String> {
+    fn quantile_columns(self) -> impl Iterator<Item = Column> {
         let of_quantile = move |p: &f64| format!("{}_q{:02}", self.name(), (100.0 * p).round());
         let mean = (self == Self::Friction).then(|| "friction_mean".to_owned());
-        self.quantiles().iter().map(of_quantile).chain(mean)
+        self.quantiles().iter().map(of_quantile).chain(mean).map(move |name| Column::numbers(name, self.unit()))
     }
 
     /// The column of all samples.
     fn column(self) -> Column {
-        Column::words(format!("{}_samples", self.name()), "1")
+        Column::words(format!("{}_samples", self.name()), self.unit())
     }
 }
 
-/// The columns.
-pub(super) fn columns_of_samples() -> impl Iterator<Item = Column> {
-    let quantiles = Sampled::ALL.into_iter().flat_map(Sampled::quantile_columns);
-    let numbers = std::iter::once("samples".to_owned()).chain(quantiles);
-    numbers.map(|name| Column::numbers(name, "1")).chain(Sampled::ALL.into_iter().map(Sampled::column))
+/// The columns of what is kept of samples.
+pub(super) fn columns_of_samples(sampled: &'static [Sampled]) -> impl Iterator<Item = Column> {
+    let quantiles = sampled.iter().copied().flat_map(Sampled::quantile_columns);
+    let all = sampled.iter().copied().map(Sampled::column);
+    std::iter::once(Column::numbers("samples", "1")).chain(quantiles).chain(all)
 }
 
 /// The samples of a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampleValues {
-    /// By what is kept and sample; `None` where the point has no such result.
-    values: [Vec<Option<f64>>; Sampled::ALL.len()],
+    /// By what is kept, in the order of [`Sampled::ALL`], and sample; `None` where the point has no such result.
+    values: Vec<Vec<Option<f64>>>,
 }
 
 impl SampleValues {
-    /// Those of samples, each with its values in the order of [`Sampled::ALL`].
-    pub fn new(samples: &[[Option<f64>; Sampled::ALL.len()]]) -> Self {
-        Self { values: [0, 1, 2].map(|at| samples.iter().map(|sample| sample[at]).collect()) }
+    /// Those of samples, each with what is kept of it.
+    pub fn new(samples: &[Vec<Option<f64>>], sampled: &[Sampled]) -> Self {
+        let values = |at: usize| samples.iter().map(|sample| sample[at]).collect();
+        Self { values: (0..sampled.len()).map(values).collect() }
     }
 
-    /// The values of all samples.
+    /// What is kept.
+    fn sampled(&self) -> impl Iterator<Item = Sampled> {
+        Sampled::ALL.into_iter().take(self.values.len())
+    }
+
+    /// The values of all samples; empty where that is not kept.
     pub fn of(&self, sampled: Sampled) -> &[Option<f64>] {
-        &self.values[sampled as usize]
+        self.values.get(sampled as usize).map_or(&[], Vec::as_slice)
     }
 
     /// How many have a result.
@@ -454,7 +496,7 @@ impl SampleValues {
     /// The cells of a row.
     pub(super) fn cells(&self) -> Vec<Cell> {
         let mut cells = vec![Cell::from(self.results() as f64)];
-        for sampled in Sampled::ALL {
+        for sampled in self.sampled() {
             cells.extend(sampled.quantiles().iter().map(|p| Cell::from(self.quantile(sampled, *p))));
             cells.extend((sampled == Sampled::Friction).then(|| Cell::from(self.mean(sampled))));
         }
@@ -463,17 +505,18 @@ impl SampleValues {
                 self.of(sampled).iter().map(|value| value.map(number).unwrap_or_default()).collect();
             Cell::Word(texts.join(";"))
         };
-        cells.extend(Sampled::ALL.map(all));
+        cells.extend(self.sampled().map(all));
         cells
     }
 
-    /// The `count` samples of a row.
-    pub(super) fn of_row(table: &Table, row: usize, count: usize) -> Result<Self, TableError> {
+    /// The samples of a row.
+    pub(super) fn of_row(table: &Table, row: usize, samples: SampleHeader) -> Result<Self, TableError> {
+        let count = samples.count;
         let number = |text: &str| match text {
             "" => Some(None),
             text => text.parse().ok().filter(|number: &f64| number.is_finite()).map(Some),
         };
-        let list = |sampled: Sampled| {
+        let list = |sampled: &Sampled| {
             let column = sampled.column();
             let text = table.word(row, &column.name, &column.unit)?;
             let found: Option<Vec<_>> = text.split(';').map(number).collect();
@@ -481,8 +524,7 @@ impl SampleValues {
             let refused = || table.cell_error(row, &column.name, &column.unit, &expected);
             found.filter(|found| found.len() == count).ok_or_else(refused)
         };
-        let [friction, hysteresis, contact] = Sampled::ALL.map(list);
-        Ok(Self { values: [friction?, hysteresis?, contact?] })
+        Ok(Self { values: samples.sampled().iter().map(list).collect::<Result<_, _>>()? })
     }
 }
 
@@ -557,16 +599,19 @@ mod tests {
         for (load, temperatures) in [(Load::Force, vec![]), (Load::Pressure { area: 2e-5 }, vec![273.15, 293.15])] {
             let grid = SweepGrid { speeds: vec![1e-5, 0.1 + 0.2], loads: vec![2e5, 1e30], temperatures };
             let keys = Header::new(SWEEP).with("scene", "a = b, c").with("fingerprint", "00ff");
+            let keys = keys.with_some(GAPS, (load == Load::Force).then_some("solved"));
             let mut header = SweepHeader::new(keys, load, -1.5e-5, grid);
-            let samples = SampleHeader { count: 2, seed: 1, redrawn: 0, refit: true };
+            let samples = SampleHeader { count: 2, seed: 1, redrawn: 0, refit: true, has_gaps: false };
             if load != Load::Force {
                 samples.set_in(&mut header);
             }
             let row = |(i, point): (usize, OperatingPoint)| {
                 let mut row = SweepRow::new(point, PointStatus::new((i > 0).then_some("not steady, \"by far\"")));
-                let values = Quantity::ALL.iter().zip(1..).filter(|(_, number)| number % 3 != 0);
-                values.for_each(|(&quantity, number)| row.set(quantity, Some(f64::from(number) / 7.0)));
-                row.samples = header.samples.map(|_| SampleValues::new(&[[Some(0.3), None, Some(0.1)], [None; 3]]));
+                let values = header.quantities().zip(1..).filter(|(_, number)| number % 3 != 0);
+                values.for_each(|(quantity, number)| row.set(quantity, Some(f64::from(number) / 7.0)));
+                row.samples = header.samples.map(|samples| {
+                    SampleValues::new(&[vec![Some(0.3), None, Some(0.1)], vec![None; 3]], samples.sampled())
+                });
                 row
             };
             let table = SweepTable { rows: header.grid.points().enumerate().map(row).collect(), header };
@@ -593,12 +638,20 @@ mod tests {
 
     #[test]
     fn samples_are_read_as_they_were_written() {
-        let samples = [[Some(0.1 + 0.2), None, Some(1.0)], [None, None, None], [Some(0.5), None, Some(0.25)]];
-        let values = SampleValues::new(&samples);
-        let mut table = Table::new(Header::default(), columns_of_samples());
-        table.push(values.cells());
-        assert!(table.text().ends_with(",0.30000000000000004;;0.5,;;,1;;0.25\n"), "{}", table.text());
-        assert_eq!(SampleValues::of_row(&table, 0, 3), Ok(values));
-        assert!(SampleValues::of_row(&table, 0, 4).is_err());
+        let samples = [
+            vec![Some(0.1 + 0.2), None, Some(1.0), Some(1e-6)],
+            vec![None; 4],
+            vec![Some(0.5), None, Some(0.25), Some(0.0)],
+        ];
+        for has_gaps in [false, true] {
+            let header = SampleHeader { count: 3, seed: 1, redrawn: 0, refit: false, has_gaps };
+            let values = SampleValues::new(&samples, header.sampled());
+            let mut table = Table::new(Header::default(), columns_of_samples(header.sampled()));
+            table.push(values.cells());
+            let end = if has_gaps { ",1;;0.25,0.000001;;0\n" } else { ",0.30000000000000004;;0.5,;;,1;;0.25\n" };
+            assert!(table.text().ends_with(end), "{}", table.text());
+            assert_eq!(SampleValues::of_row(&table, 0, header), Ok(values));
+            assert!(SampleValues::of_row(&table, 0, SampleHeader { count: 4, ..header }).is_err());
+        }
     }
 }

@@ -1,0 +1,367 @@
+//! What the gaps of a contact let through and carry along: the flow of a thin film between rubber and surface, after
+//! Reynolds, on the points of the solver.
+//!
+//! On a map -∂x(g³ ∂x p) - ∂y(g³ ∂y p) = s by finite volumes around the points, with the harmonic mean of g³ on the faces
+//! between them: for a mean gradient of 1, and for what a moving smooth side carries. A profile's ridges would close every
+//! way along x; there the gaps stand for an isotropic roughness, by the effective medium of their heights (D. A. G.
+//! Bruggeman; B. N. J. Persson, J. Phys.: Condens. Matter 22, 2010), whose ways close at the share of contact that rough
+//! surfaces have (W. B. Dapp et al., Phys. Rev. Lett. 108, 2012).
+
+use asperity::math::{bracketed_root, dot, sum};
+
+use super::transform::GridSize;
+
+/// Lengths that tell how a fluid passes a contact. All tend to the mean gap where nothing touches, and are 0 where every
+/// way is closed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlowGaps {
+    /// The leak gap, m: two smooth plates at this distance let as much through, along the sliding, under the same gradient
+    /// of pressure: q = -(h³/12η) dp/dx.
+    pub leak: f64,
+    /// The drag gap, m: two smooth plates at this distance carry as much between a standing rough side and a smooth one that
+    /// moves at V: q = V h/2.
+    pub drag: f64,
+    /// The leak gap across the sliding, m; `None` of the effective medium.
+    pub leak_across: Option<f64>,
+}
+
+/// The flow over a map, along the sliding.
+#[derive(Clone, Debug)]
+pub struct GapFlow {
+    /// What it comes to.
+    pub gaps: FlowGaps,
+    /// |q| at the points over that between smooth plates at the leak gap; 0 everywhere where it is closed.
+    pub density: Vec<f64>,
+}
+
+/// The share of contact at which ways close.
+const CLOSES_AT: f64 = 0.42;
+/// A leak gap whose cube is this part of that of the gap's root mean square is closed.
+const CLOSED: f64 = 1e-10;
+
+impl FlowGaps {
+    const ZERO: Self = Self { leak: 0.0, drag: 0.0, leak_across: None };
+
+    /// Those of the effective medium of `gaps` (m), 0 where the surfaces touch, as if they were isotropic.
+    pub fn of_medium(gaps: &[f64]) -> Self {
+        let largest = gaps.iter().copied().fold(0.0, f64::max);
+        let touching = gaps.iter().filter(|gap| **gap <= 0.0).count();
+        if largest <= 0.0 || touching as f64 >= CLOSES_AT * gaps.len() as f64 {
+            return Self::ZERO;
+        }
+        let factor = CLOSES_AT / (1.0 - CLOSES_AT);
+        let conductances: Vec<f64> = gaps.iter().map(|gap| (gap / largest).powi(3)).collect();
+        // Falls as ln s rises: above 0 where s tends to 0, below at s = 1.
+        let excess = |logarithm: f64| {
+            let s = logarithm.exp();
+            conductances.iter().map(|a| (a - s) / (a + factor * s)).sum::<f64>()
+        };
+        let mut lower = -1.0;
+        while excess(lower) < 0.0 {
+            lower *= 2.0;
+        }
+        let s = bracketed_root(excess, (lower, 0.0), 1e-14).exp();
+        let weights: Vec<f64> = conductances.iter().map(|a| 1.0 / (a + factor * s)).collect();
+        Self { leak: largest * s.cbrt(), drag: dot(gaps, &weights) / sum(&weights), leak_across: None }
+    }
+}
+
+impl GapFlow {
+    /// Solves for the flow through `gaps` (m), 0 where the surfaces touch, at points `spacing` (m) apart along and across the
+    /// sliding, period in both directions.
+    pub fn of_map(gaps: &[f64], size: GridSize, spacing: [f64; 2]) -> Self {
+        let count = gaps.len();
+        let largest = gaps.iter().copied().fold(0.0, f64::max);
+        if largest <= 0.0 {
+            let gaps = FlowGaps { leak_across: Some(0.0), ..FlowGaps::ZERO };
+            return Self { gaps, density: vec![0.0; count] };
+        }
+        // In units of the largest gap, and of a length that makes faces of even gaps 1.
+        let relative: Vec<f64> = gaps.iter().map(|gap| gap / largest).collect();
+        let network = Network::new(&relative, size, spacing);
+        let along = network.solve(&network.sources(Direction::Along, |face, _| face));
+        let closed = CLOSED * (dot(&relative, &relative) / count as f64).powf(1.5);
+        let cube = |mean: f64| if mean > closed { mean } else { 0.0 };
+        let leak = cube(network.conductance(Direction::Along, &along)).cbrt();
+        let across = network.solve(&network.sources(Direction::Across, |face, _| face));
+        let leak_across = cube(network.conductance(Direction::Across, &across)).cbrt();
+        let carried = network.sources(Direction::Along, |_, face| face);
+        let pressures = network.solve(&carried);
+        let drag = network.mean_carried(&pressures);
+        let density = if leak > 0.0 { network.density(&along, leak.powi(3)) } else { vec![0.0; count] };
+        let [leak, drag, across] = [leak, drag, leak_across].map(|gap| largest * gap);
+        Self { gaps: FlowGaps { leak, drag: drag.max(0.0), leak_across: Some(across) }, density }
+    }
+}
+
+/// A direction on the grid.
+#[derive(Clone, Copy)]
+enum Direction {
+    Along,
+    Across,
+}
+
+/// The faces between the points of a grid with a period in both directions, as conductances of a network, and Cholesky's
+/// incomplete factors of its matrix.
+struct Network {
+    size: GridSize,
+    /// Of the face behind each point in each direction: the harmonic mean of g³.
+    conductances: [Vec<f64>; 2],
+    /// The harmonic mean of g on the faces behind along the sliding.
+    carried: Vec<f64>,
+    /// What a face of each direction counts in the matrix.
+    weights: [f64; 2],
+    links: Vec<Links>,
+    /// The pivots of the factors; 0 of points without a face.
+    pivots: Vec<f64>,
+}
+
+/// The points beside one, and what of the matrix is between.
+type Links = [(usize, f64); 4];
+
+/// How much of what the factors leave out is taken from the pivots: nearly all, for which the iterations grow with the root
+/// of the points along a side alone (I. Gustafsson, BIT 18, 1978), but less than all, for the matrix is singular.
+const RELAXATION: f64 = 0.97;
+/// The residual over that of the start, in the norm of the factors, and the most iterations.
+const RESIDUAL: f64 = 1e-12;
+const MOST_ITERATIONS: usize = 20_000;
+
+impl Network {
+    fn new(gaps: &[f64], size: GridSize, [dx, dy]: [f64; 2]) -> Self {
+        let harmonic = |a: f64, b: f64| if a > 0.0 && b > 0.0 { 2.0 * a * b / (a + b) } else { 0.0 };
+        let cubes: Vec<f64> = gaps.iter().map(|gap| gap.powi(3)).collect();
+        let faces = |values: &[f64], direction| -> Vec<f64> {
+            (0..values.len()).map(|i| harmonic(values[i], values[size.behind(i, direction)])).collect()
+        };
+        let conductances = [Direction::Along, Direction::Across].map(|direction| faces(&cubes, direction));
+        let weights = [dy / dx, dx / dy];
+        let links = |i: usize| {
+            let [along, across] = [Direction::Along, Direction::Across].map(|direction| {
+                let (before, of) = (size.before(i, direction), direction as usize);
+                let link = |face: usize| weights[of] * conductances[of][face];
+                [(before, link(before)), (size.behind(i, direction), link(i))]
+            });
+            [along[0], along[1], across[0], across[1]]
+        };
+        let links: Vec<Links> = (0..gaps.len()).map(links).collect();
+        let (carried, pivots) = (faces(gaps, Direction::Along), pivots(&links));
+        Self { size, conductances, carried, weights, links, pivots }
+    }
+
+    /// The direction that the factors make of a residual.
+    fn precondition(&self, residual: &[f64], direction: &mut [f64]) {
+        let through = |i: usize, direction: &[f64], is_known: &dyn Fn(usize) -> bool| -> f64 {
+            self.links[i].iter().filter(|(j, _)| is_known(*j)).map(|&(j, link)| link * direction[j]).sum()
+        };
+        for i in 0..residual.len() {
+            let known = through(i, direction, &|j| j < i);
+            direction[i] = if self.pivots[i] > 0.0 { (residual[i] + known) / self.pivots[i] } else { 0.0 };
+        }
+        for i in (0..residual.len()).rev() {
+            let known = through(i, direction, &|j| j > i);
+            direction[i] += if self.pivots[i] > 0.0 { known / self.pivots[i] } else { 0.0 };
+        }
+    }
+
+    fn apply(&self, pressures: &[f64], flows: &mut [f64]) {
+        for (i, flow) in flows.iter_mut().enumerate() {
+            *flow = self.links[i].iter().map(|&(j, link)| link * (pressures[i] - pressures[j])).sum();
+        }
+    }
+
+    /// What flows into each point if a face carries so much, told from its conductance and what it carries along.
+    fn sources(&self, direction: Direction, through: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+        let faces = &self.conductances[direction as usize];
+        let flow = |face: usize| self.weights[direction as usize] * through(faces[face], self.carried[face]);
+        (0..faces.len()).map(|i| flow(self.size.before(i, direction)) - flow(i)).collect()
+    }
+
+    /// The pressures under which as much flows out of each point, by the method of conjugate gradients.
+    fn solve(&self, sources: &[f64]) -> Vec<f64> {
+        let count = sources.len();
+        let (mut pressures, mut residual) = (vec![0.0; count], sources.to_vec());
+        let (mut direction, mut image) = (vec![0.0; count], vec![0.0; count]);
+        self.precondition(&residual, &mut image);
+        direction.copy_from_slice(&image);
+        let mut norm = dot(&residual, &image);
+        let enough = RESIDUAL * RESIDUAL * norm;
+        for _ in 0..MOST_ITERATIONS {
+            if norm <= enough {
+                break;
+            }
+            self.apply(&direction, &mut image);
+            let step = norm / dot(&direction, &image);
+            pressures.iter_mut().zip(&direction).for_each(|(pressure, direction)| *pressure += step * direction);
+            residual.iter_mut().zip(&image).for_each(|(residual, image)| *residual -= step * image);
+            self.precondition(&residual, &mut image);
+            let next = dot(&residual, &image);
+            let share = next / norm;
+            direction.iter_mut().zip(&image).for_each(|(direction, image)| *direction = image + share * *direction);
+            norm = next;
+        }
+        pressures
+    }
+
+    /// The fall of the pressure over a face in a mean gradient of 1, in that over the same face where all are alike.
+    fn fall(&self, pressures: &[f64], i: usize, direction: Direction) -> f64 {
+        1.0 + pressures[i] - pressures[self.size.behind(i, direction)]
+    }
+
+    /// The mean flux in a mean gradient of 1, by its power, whose error is the square of that of the pressures.
+    fn conductance(&self, direction: Direction, pressures: &[f64]) -> f64 {
+        let faces = &self.conductances[direction as usize];
+        let mut power: f64 =
+            faces.iter().enumerate().map(|(i, face)| face * self.fall(pressures, i, direction).powi(2)).sum();
+        let other = match direction {
+            Direction::Along => Direction::Across,
+            Direction::Across => Direction::Along,
+        };
+        let share = self.weights[other as usize] / self.weights[direction as usize];
+        if share > 0.0 {
+            let faces = &self.conductances[other as usize];
+            let fall = |i: usize| pressures[i] - pressures[self.size.behind(i, other)];
+            power += share * faces.iter().enumerate().map(|(i, face)| face * fall(i).powi(2)).sum::<f64>();
+        }
+        power / faces.len() as f64
+    }
+
+    /// The mean of what the moving side carries less what the pressures hold back.
+    fn mean_carried(&self, pressures: &[f64]) -> f64 {
+        let faces = &self.conductances[Direction::Along as usize];
+        let fall = |i: usize| pressures[i] - pressures[self.size.behind(i, Direction::Along)];
+        let flows: Vec<f64> = (0..faces.len()).map(|i| self.carried[i] + faces[i] * fall(i)).collect();
+        sum(&flows) / flows.len() as f64
+    }
+
+    /// |q| at the points, the mean of the faces on either side, over `mean`.
+    fn density(&self, pressures: &[f64], mean: f64) -> Vec<f64> {
+        let flow = |i: usize, direction: Direction| {
+            let fall = |i: usize| match direction {
+                Direction::Along => self.fall(pressures, i, direction),
+                Direction::Across => self.weights[1] * (pressures[i] - pressures[self.size.behind(i, direction)]),
+            };
+            let faces = &self.conductances[direction as usize];
+            let before = self.size.before(i, direction);
+            0.5 * (faces[i] * fall(i) + faces[before] * fall(before))
+        };
+        let size = |i| flow(i, Direction::Along).hypot(flow(i, Direction::Across)) / mean;
+        (0..pressures.len()).map(size).collect()
+    }
+}
+
+/// Cholesky's incomplete factors on the places of the matrix itself, (D - L) D⁻¹ (D - Lᵀ), as D.
+fn pivots(links: &[Links]) -> Vec<f64> {
+    let mut pivots = vec![0.0; links.len()];
+    for (i, links_here) in links.iter().enumerate() {
+        let whole: f64 = links_here.iter().map(|link| link.1).sum();
+        let mut pivot = whole;
+        for &(j, link) in links_here.iter().filter(|&&(j, link)| j < i && link > 0.0) {
+            let later: f64 = links[j].iter().filter(|(k, _)| *k > j).map(|link| link.1).sum();
+            pivot -= link * (link + RELAXATION * (later - link)) / pivots[j];
+        }
+        pivots[i] = if pivot > f64::EPSILON * whole { pivot } else { whole };
+    }
+    pivots
+}
+
+impl GridSize {
+    /// The point behind one in a direction.
+    fn behind(self, i: usize, direction: Direction) -> usize {
+        let points = self.points();
+        match direction {
+            Direction::Along if i % self.nx + 1 == self.nx => i + 1 - self.nx,
+            Direction::Along => i + 1,
+            Direction::Across => (i + self.nx) % points,
+        }
+    }
+
+    /// The point before one in a direction.
+    fn before(self, i: usize, direction: Direction) -> usize {
+        match direction {
+            Direction::Along if i.is_multiple_of(self.nx) => i + self.nx - 1,
+            Direction::Along => i - 1,
+            Direction::Across => (i + self.points() - self.nx) % self.points(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    /// Ridges g = 1 + ε cos, as a map of `points` to the wave along or across the sliding.
+    fn ridges(points: usize, amplitude: f64, across: bool) -> FlowGaps {
+        let wave = |i: usize| 1.0 + amplitude * (TAU * i as f64 / points as f64).cos();
+        let (size, spacing) = (GridSize { nx: points, ny: 4 }, [1.0 / points as f64, 0.3]);
+        let (size, spacing) =
+            if across { (GridSize { nx: 4, ny: points }, [0.3, spacing[0]]) } else { (size, spacing) };
+        let gaps: Vec<f64> = (0..size.points()).map(|i| wave(if across { i / 4 } else { i % points })).collect();
+        GapFlow::of_map(&gaps, size, spacing).gaps
+    }
+
+    /// Closed forms of one wave: 1 + 3/2 ε² along ridges, the harmonic mean of g³ over them, and what is carried over them.
+    #[test]
+    fn ridges_let_through_what_the_closed_forms_say() {
+        let amplitude = 0.6;
+        let square: f64 = amplitude * amplitude;
+        let (along, over) = (1.0 + 1.5 * square, (1.0 - square).powf(2.5) / (1.0 + 0.5 * square));
+        // mean(1/g²) over mean(1/g³).
+        let drag = (1.0 - square).powf(-1.5) / ((1.0 + 0.5 * square) * (1.0 - square).powf(-2.5));
+        let errors = [64, 128, 512].map(|points| {
+            let (crossed, followed) = (ridges(points, amplitude, false), ridges(points, amplitude, true));
+            let close = |found: f64, exact: f64| (found / exact - 1.0).abs();
+            let across = |gaps: FlowGaps| gaps.leak_across.unwrap().powi(3);
+            // Ways along ridges hold everything: as exact as the sum over the points is, and that to rounding.
+            assert!(close(across(crossed), along) < 1e-12 && close(followed.leak.powi(3), along) < 1e-12);
+            assert!(close(followed.drag, 1.0) < 1e-12);
+            assert!(close(across(followed), crossed.leak.powi(3)) < 1e-10);
+            [close(crossed.leak.powi(3), over), close(crossed.drag, drag)]
+        });
+        // The faces are of second order.
+        for (coarse, fine) in errors[0].iter().zip(&errors[1]) {
+            assert!((3.5..4.5).contains(&(coarse / fine)), "{errors:?}");
+        }
+        assert!(errors[2].iter().all(|error| *error < 1e-3), "{errors:?}");
+    }
+
+    /// What flows through each column of a rough gap, with closed places, is what its power says.
+    #[test]
+    fn as_much_flows_through_every_column() {
+        let size = GridSize { nx: 48, ny: 40 };
+        let mut random = asperity::math::SplitMix64::new(3);
+        let phases: Vec<[f64; 3]> = (0..12).map(|_| [0, 1, 2].map(|_| random.unit())).collect();
+        let height = |i: usize| -> f64 {
+            let (x, y) = ((i % size.nx) as f64 / size.nx as f64, (i / size.nx) as f64 / size.ny as f64);
+            let wave = |[a, b, c]: &[f64; 3]| (TAU * ((a * 4.0).round() * x + (b * 4.0).round() * y + c)).cos();
+            0.6 + phases.iter().map(wave).sum::<f64>() * 0.3
+        };
+        let gaps: Vec<f64> = (0..size.points()).map(|i| height(i).max(0.0)).collect();
+        let network = Network::new(&gaps, size, [1.0, 0.7]);
+        let pressures = network.solve(&network.sources(Direction::Along, |face, _| face));
+        let mean = network.conductance(Direction::Along, &pressures);
+        assert!(mean > 1e-3 && gaps.iter().filter(|gap| **gap == 0.0).count() > 100, "{mean}");
+        for column in 0..size.nx {
+            let flow = |row: usize| {
+                let i = row * size.nx + column;
+                network.conductances[0][i] * network.fall(&pressures, i, Direction::Along)
+            };
+            let through = (0..size.ny).map(flow).sum::<f64>() / size.ny as f64;
+            assert!((through / mean - 1.0).abs() < 1e-9, "{column}: {through} {mean}");
+        }
+    }
+
+    /// Of even gaps both lengths are the gap; from the share of contact at which ways close on there are none.
+    #[test]
+    fn the_effective_medium_of_even_gaps_is_the_gap_and_closes() {
+        let even = FlowGaps::of_medium(&[2e-6; 10]);
+        assert!((even.leak / 2e-6 - 1.0).abs() < 1e-9 && (even.drag / 2e-6 - 1.0).abs() < 1e-9, "{even:?}");
+        let touching = |share: usize| {
+            let gaps: Vec<f64> = (0..100).map(|i| if i < share { 0.0 } else { 1e-6 }).collect();
+            FlowGaps::of_medium(&gaps)
+        };
+        assert!(touching(41).leak > 0.0 && touching(41).drag > 0.0);
+        assert_eq!(touching(42), FlowGaps::ZERO);
+        assert_eq!(FlowGaps::of_medium(&[0.0; 4]), FlowGaps::ZERO);
+    }
+}
