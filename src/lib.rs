@@ -22,6 +22,7 @@
 //! | [`simulation`] | contact, integrator, math, model, outputs, scene | a run: its state, the steps of both methods and their lengths, local regions, the reference run |
 //! | [`element`] | math, model, outputs, scene, simulation, table | a point-contact element: the forces of a layer, looked up in a table of a sweep |
 //! | [`patch`] | element, math, model, outputs, scene, table, tables | a contact patch: many point-contact elements on a rigid face, in three dimensions |
+//! | [`seal`] | element, math, scene, table, tables | a lip with a film of fluid: what rubs and leaks where a seal runs in oil |
 //!
 //! # Use
 //!
