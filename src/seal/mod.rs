@@ -5,6 +5,7 @@
 //! conserved field.
 
 mod definition;
+mod derivatives;
 mod film;
 mod law;
 mod rod;

@@ -7,7 +7,6 @@ use super::film::{Ends, Film};
 use super::law::GapLaw;
 use super::rod::RodFilm;
 use super::step::{Drive, Limit, Rubbing, Stepped, Stepper};
-use super::variables::{SealOutput, SealVariable};
 use crate::math::not_finite;
 use crate::scene::{Air, SealGroup, TableExtrapolation, is_possible};
 
@@ -134,8 +133,8 @@ pub(super) struct Totals {
     pub(super) temperature: f64,
     /// The rates of the last step.
     pub(super) u_rate: f64,
-    w_rate: f64,
-    pressure_rate: f64,
+    pub(super) w_rate: f64,
+    pub(super) pressure_rate: f64,
     /// The force of the lip's spring on the rod, against the motion, N.
     pub(super) spring: f64,
     /// The direction of slip, 0 where the lip sticks.
@@ -293,7 +292,7 @@ impl SealRun {
         self.set_totals(sealed, w);
     }
 
-    fn set_totals(&mut self, sealed: f64, w: f64) {
+    pub(super) fn set_totals(&mut self, sealed: f64, w: f64) {
         let (place, lifted) = (self.seal.lip.place(sealed), self.lifted(w));
         self.film.set_totals(&self.law, |i| self.seal.lip.at(place, i, lifted));
     }
@@ -318,7 +317,7 @@ impl SealRun {
         self.settle_under(self.state.totals.sealed);
     }
 
-    fn settle_under(&mut self, sealed: f64) {
+    pub(super) fn settle_under(&mut self, sealed: f64) {
         let ends = self.ends(sealed);
         self.film.evaluate(&self.law, &self.state.contents, self.state.totals.speed, &ends);
         let rubbing = self.rubbing();
@@ -675,43 +674,6 @@ impl SealRun {
             None if u_rate == 0.0 => 0.0,
             None => -self.limit.whole() * u_rate.signum(),
         }
-    }
-
-    /// How outputs change as u and w (m) and the sealed pressure (Pa) do at once, all states held: along a direction of
-    /// these, by a difference.
-    pub fn directional_derivative(&mut self, variables: &[SealVariable], direction: [f64; 3], values: &mut [f64]) {
-        /// Of the pressure on the lip.
-        const BY: f64 = 1e-6;
-        let Totals { sealed, w, slips, .. } = self.state.totals;
-        let [du, dw, dp] = direction;
-        let stiffness = self.seal.file.approach_stiffness.unwrap_or(0.0);
-        let largest = self.film.totals.iter().copied().fold(0.0, f64::max);
-        let change = dp.abs() + stiffness * dw.abs();
-        let mut ends = [const { Vec::new() }; 2];
-        let share = if change > 0.0 { BY * largest.max(1.0) / change } else { 0.0 };
-        for (end, side) in ends.iter_mut().zip([-0.5, 0.5]) {
-            let (sealed, w) = (sealed + side * share * dp, w + side * share * dw);
-            self.set_totals(sealed, w);
-            self.settle_under(sealed);
-            *end = variables.iter().map(|variable| self.value(variable.output)).collect();
-        }
-        self.set_totals(sealed, w);
-        self.settle_under(sealed);
-        for (i, value) in values.iter_mut().enumerate().take(variables.len()) {
-            *value = if share > 0.0 { (ends[1][i] - ends[0][i]) / share } else { 0.0 };
-            if variables[i].output == SealOutput::ForceX && slips == 0.0 {
-                *value -= self.seal.file.stiffness.map_or(0.0, |stiffness| stiffness * du);
-            }
-        }
-    }
-
-    /// Ḟ_x and Ḟ_z, N/s, at the rates of the last step; of F_x of a rigid lip `None`.
-    pub fn force_rates(&mut self) -> (Option<f64>, f64) {
-        let Totals { u_rate, w_rate, pressure_rate, speed, .. } = self.state.totals;
-        let mut load = [0.0];
-        let output = SealVariable::of(SealOutput::ForceZ);
-        self.directional_derivative(&[output], [0.0, w_rate, pressure_rate], &mut load);
-        (self.seal.file.stiffness.map(|stiffness| -stiffness * (u_rate - speed)), load[0])
     }
 
     /// What leaked to the air, net, m³.

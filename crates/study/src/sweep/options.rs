@@ -12,6 +12,7 @@ use uuid::Uuid;
 
 use super::layer::Blocks;
 use super::search::{MIN_BLOCKS, StopBounds};
+use super::table::GAPS;
 use crate::Error;
 use crate::steady::{GridSize, SurfaceGrid};
 use crate::values::{Values, count, length, share};
@@ -145,8 +146,6 @@ const POINTS: &str = "points";
 const WAY: &str = "way";
 const FRICTION_ERROR: &str = "friction_error";
 const DISTANCE: &str = "distance";
-/// How gaps were found.
-pub(super) const GAPS: &str = "gaps";
 
 /// The way of a table, m, by its header; `None` without one.
 pub fn way_of(header: &Header) -> Option<f64> {

@@ -9,11 +9,11 @@ use asperity::table::Header;
 
 use super::layer::{relevant, scene_at};
 use super::load_search::separation_at_rest;
-use super::options::{GAPS, Gaps, Method, SlidingOptions, SweepMethod, SweepOptions, check_possible, fingerprint};
+use super::options::{Gaps, Method, SlidingOptions, SweepMethod, SweepOptions, check_possible, fingerprint};
 use super::point;
 use super::search::StopBounds;
 use super::solved::{SolvedPoints, no_area};
-use super::table::{SweepHeader, SweepRow};
+use super::table::{GAPS, SweepHeader, SweepRow};
 use crate::Error;
 use crate::error::Context as _;
 use crate::implausible::{FoundFriction, at, implausible};

@@ -8,7 +8,6 @@ use asperity::element::{
 use asperity::scene::is_possible;
 use asperity::table::{Cell, Column, Header, Table, TableError, number};
 
-use super::options::GAPS;
 use crate::Error;
 use crate::decimals::rounded;
 use crate::files;
@@ -24,6 +23,8 @@ pub fn is_converged(header: &Header) -> Option<bool> {
 /// What follows from all rows, and is not read.
 const LOW_END: &str = "low_end";
 const RANKING: &str = "ranking";
+/// How gaps were found, in tables that have them.
+pub(super) const GAPS: &str = "gaps";
 
 /// What a table says before its rows.
 #[derive(Clone, Debug, PartialEq)]
