@@ -5,7 +5,7 @@ use super::block_contacts::{BeyondTable, BlockContacts, FaceMotion, StepSums, To
 use super::face::{BLOCK, Face, Lanes, lanes_of};
 use super::heat::{self, BlockHeat, StepHeat};
 use super::motion::{BodyKinematics, Substep};
-use super::segments::{advance_in_segments, half_turn};
+use super::segments::{advance_in_segments, half_turn, reverses};
 use crate::element::{ROUNDING, ResampledLaw, Segment, advance, apply_jump};
 use crate::math::Number;
 
@@ -151,7 +151,7 @@ impl<T: Number> ElementBlock<T> {
         self.work += BLOCK as u64;
         std::mem::swap(&mut self.begin, &mut self.end);
         self.evaluate_at(step, law, &next, part.end);
-        self.advance_springs(step, law, (now, &next), part.length());
+        self.advance_springs(step, law, (now, &next), part);
         next
     }
 
@@ -257,37 +257,38 @@ impl<T: Number> ElementBlock<T> {
     ) {
         let is_tread = matches!(step.face, Face::Tread(_));
         self.end.set_positions(step, self.start, self.count, step.tread.entered_at(fraction));
-        self.end.set_motion(now, is_tread.then_some(step.tread_speed));
+        self.end.set_motion(now, is_tread.then(|| step.tread.speed_at(fraction)));
         // The law where the elements are now, at the temperatures that it was last set to.
         self.end.rise = self.heat.of_law;
         self.end.is_free = self.end.is_clear(law);
         if self.end.is_free { self.end.clear() } else { self.end.look_up(law) }
     }
 
-    /// Takes the springs from `begin` to `end`, a fraction `length` of the step later.
+    /// Takes the springs from `begin` to `end`, those of a part of the step.
     #[inline(always)]
     fn advance_springs(
         &mut self,
         step: &FaceMotion<'_, T>,
         law: &mut ResampledLaw,
         (now, next): (&BodyKinematics<T>, &BodyKinematics<T>),
-        length: f64,
+        part: Substep,
     ) {
         self.part_slip = [T::constant(0.0); BLOCK];
         if self.begin.is_free && self.end.is_free && self.springs.stiffness.iter().all(|k| k.value() == 0.0) {
             return;
         }
         // All elements as if their pressures changed in one segment.
-        let displacement = self.displacements(step, (now, next), length);
+        let displacement = self.displacements(step, (now, next), part);
         let Self { springs, part_slip, begin, end, count, work, .. } = self;
         // The law may have jumped since the springs followed it last, where a step begins: the motion has a kink there, and
         // the temperature given may be another.
         apply_jumps(springs, begin);
         let before = springs.force;
-        advance_all(springs, part_slip, (begin, end), &displacement);
-        // Those whose pressure changes by too large a factor once more, in segments.
+        let in_segments = need_segments(begin, end, step.tread.speed_change != 0.0);
+        advance_all(springs, part_slip, (begin, end), &displacement, &in_segments);
+        // Those that need it once more, in segments.
         for i in 0..*count {
-            if needs_segments(begin.pressure[i].value(), end.pressure[i].value()) {
+            if in_segments[i] {
                 let displacement = [displacement[0][i], displacement[1][i]];
                 let ends = (&begin.endpoint(i), &end.endpoint(i));
                 let (advanced, segments) = advance_in_segments(law, [before[0][i], before[1][i]], ends, displacement);
@@ -310,7 +311,7 @@ impl<T: Number> ElementBlock<T> {
         &self,
         step: &FaceMotion<'_, T>,
         (now, next): (&BodyKinematics<T>, &BodyKinematics<T>),
-        length: f64,
+        part: Substep,
     ) -> [Lanes<T>; 2] {
         let (begin, end) = (&*self.begin, &*self.end);
         // ∫ v dt of the material under an element: of the pose's point, and of the arm from there as the body turns.
@@ -324,7 +325,7 @@ impl<T: Number> ElementBlock<T> {
         if let Face::Tread(tread) = step.face {
             // The tread runs to the rear besides, along the mean of the directions of the arc at both ends. Where a cell is
             // partly inside, its middle does not go as far as its material.
-            let travel = step.tread.travel * length * tread.cell;
+            let travel = step.tread.travel_in(part) * tread.cell;
             for axis in 0..2 {
                 for i in 0..BLOCK {
                     let rest = travel + (end.arc[i] - begin.arc[i]);
@@ -438,6 +439,7 @@ fn advance_all<T: Number>(
     part_slip: &mut Lanes<T>,
     (begin, end): (&BlockContacts<T>, &BlockContacts<T>),
     displacement: &[Lanes<T>; 2],
+    in_segments: &Lanes<bool>,
 ) {
     let BlockSprings { force, slips, release, .. } = springs;
     for i in 0..lanes_of(end.count) {
@@ -451,7 +453,7 @@ fn advance_all<T: Number>(
         };
         let advanced = advance([force[0][i], force[1][i]], &segment);
         // A factor in place of a branch, so that the loop runs in vectors.
-        let kept = if needs_segments(begin.pressure[i].value(), end.pressure[i].value()) { 0.0 } else { 1.0 };
+        let kept = if in_segments[i] { 0.0 } else { 1.0 };
         (force[0][i], force[1][i]) = (advanced.force[0], advanced.force[1]);
         slips[i] = if advanced.slips { 1.0 } else { 0.0 };
         part_slip[i] = advanced.slip.times(kept);
@@ -464,8 +466,24 @@ const WORK_OF_SEGMENT: u64 = 4;
 /// Share of a substep below which it is not cut further for heat.
 const SHORTEST_PART: f64 = 1e-9;
 
-/// Whether an element is advanced in segments of its own in a substep with these pressures at its beginning and end.
+/// The elements that are advanced in segments of their own in a substep: those whose pressure changes by too large a
+/// factor and, where the speed of a tread changes, those that go to and fro.
 #[inline(always)]
-fn needs_segments(before: f64, after: f64) -> bool {
-    (before > MAX_RATIO * after) | (after > MAX_RATIO * before)
+fn need_segments<T: Number>(
+    begin: &BlockContacts<T>,
+    end: &BlockContacts<T>,
+    tread_speed_changes: bool,
+) -> Lanes<bool> {
+    let mut found = [false; BLOCK];
+    for i in 0..BLOCK {
+        let (before, after) = (begin.pressure[i].value(), end.pressure[i].value());
+        found[i] = (before > MAX_RATIO * after) | (after > MAX_RATIO * before);
+    }
+    if tread_speed_changes {
+        for i in 0..BLOCK {
+            let velocity = |at: &BlockContacts<T>| [at.velocity[0][i], at.velocity[1][i]];
+            found[i] |= reverses(velocity(begin), velocity(end));
+        }
+    }
+    found
 }

@@ -273,8 +273,6 @@ pub(super) struct FaceMotion<'a, T> {
     pub(super) body: PoseMotion<T>,
     pub(super) tread: TreadMotion,
     pub(super) substeps: Substeps,
-    /// The speed at which the tread runs, m/s.
-    pub(super) tread_speed: f64,
     /// Where slip warms the elements.
     pub(super) heat: Option<StepHeat>,
     pub(super) work: &'a WorkCounter,
@@ -294,10 +292,10 @@ pub(super) struct ElementRange {
 impl<'a> FaceMotion<'a, f64> {
     /// The same motion with derivatives by the changes of the body's coordinates.
     pub(super) fn with_tangents(&self) -> FaceMotion<'a, Dual<6>> {
-        let Self { face, body, tread, substeps, tread_speed, heat, work } = *self;
+        let Self { face, body, tread, substeps, heat, work } = *self;
         let PoseMotion { start, change, duration } = body;
         let change = std::array::from_fn(|i| Dual::variable(change[i], i));
-        FaceMotion { face, body: PoseMotion { start, change, duration }, tread, substeps, tread_speed, heat, work }
+        FaceMotion { face, body: PoseMotion { start, change, duration }, tread, substeps, heat, work }
     }
 }
 

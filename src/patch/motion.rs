@@ -1,9 +1,19 @@
-//! The motion of a patch over a step: its pose runs straight, its tread evenly.
+//! The motion of a patch over a step: its pose runs straight, and so does the speed of its tread.
+//!
+//! The contact law sees that speed. The way of the tread is even where its speed changes by little, as given cases
+//! have it, and of second order else.
 
 use crate::math::Number;
 
 /// Largest turn of a substep, rad.
 const MAX_TURN: f64 = 0.1;
+
+/// Largest change of the logarithm of the slip in a substep, where the tread's speed changes.
+const MAX_SLIP_CHANGE: f64 = 0.5;
+
+/// Share of its mean speed up to which the tread's speed may change in a step through which the tread runs evenly: no
+/// cell is then off its way by more than a hundredth of the tread's way in the step.
+const MAX_EVEN_CHANGE: f64 = 0.082;
 
 /// The coordinates of a pose, x, y, z (m), roll, pitch, yaw (rad), as they run straight over a step.
 #[derive(Clone, Copy, Debug)]
@@ -99,12 +109,49 @@ pub(super) struct TreadMotion {
     pub(super) start: f64,
     /// By how many cells the tread goes on, negative where it runs backwards.
     pub(super) travel: f64,
+    /// Its mean speed, m/s.
+    pub(super) mean_speed: f64,
+    /// How much faster it is at the end than at the start, m/s.
+    pub(super) speed_change: f64,
+    /// Four times the number of cells by which it is behind an even motion in the middle of the step.
+    pub(super) bend: f64,
 }
 
 impl TreadMotion {
+    /// The tread's motion in a step of `duration` (s) from and to a speed (m/s), in cells of a length (m), of which the
+    /// part `start` has entered. One that turns within the step runs evenly, as does one whose speed changes by little.
+    pub(super) fn new(start: f64, speeds: [f64; 2], duration: f64, cell: f64) -> Self {
+        let mean_speed = 0.5 * (speeds[0] + speeds[1]);
+        let speed_change = speeds[1] - speeds[0];
+        let is_even = speed_change.abs() <= MAX_EVEN_CHANGE * mean_speed.abs() || speeds[0] * speeds[1] < 0.0;
+        let bend = if is_even { 0.0 } else { 0.5 * speed_change * duration / cell };
+        Self { start, travel: mean_speed * duration / cell, mean_speed, speed_change, bend }
+    }
+
     /// The cells that have entered after a fraction of the step, negative where the tread runs backwards.
     pub(super) fn entered_at(self, fraction: f64) -> f64 {
-        self.start + self.travel * fraction
+        self.start + self.travel * fraction - self.bend * fraction * (1.0 - fraction)
+    }
+
+    /// The speed after a fraction of the step, m/s.
+    pub(super) fn speed_at(self, fraction: f64) -> f64 {
+        self.mean_speed + self.speed_change * (fraction - 0.5)
+    }
+
+    /// By how many cells the tread goes on in a part of the step.
+    pub(super) fn travel_in(self, part: Substep) -> f64 {
+        self.travel * part.length() + self.bend * part.length() * (part.begin + part.end - 1.0)
+    }
+
+    /// The fraction of the step after which so many cells have entered since its start.
+    fn fraction_of(self, cells: f64) -> f64 {
+        if self.bend == 0.0 {
+            return cells / self.travel;
+        }
+        // bend f² + (travel - bend) f = cells, both terms of one sign.
+        let first = self.travel - self.bend;
+        let root = (first * first + 4.0 * self.bend * cells).max(0.0).sqrt().copysign(self.travel);
+        2.0 * cells / (first + root)
     }
 
     /// The whole cells that enter in the step.
@@ -143,43 +190,88 @@ pub(super) struct Substep {
 }
 
 impl Substep {
+    const WHOLE: Self = Self { begin: 0.0, end: 1.0 };
+
     /// The fraction of the step that it takes.
     pub(super) fn length(self) -> f64 {
         self.end - self.begin
     }
 }
 
+/// How the slip of a tread runs over a step in which its speed changes: friction follows the logarithm of it, down to a
+/// speed below which it is the same or the slip across is what counts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SlipCourse {
+    /// The slip along the tread at the start and at the end, m/s.
+    pub(super) speeds: [f64; 2],
+    /// That speed, m/s.
+    pub(super) least: f64,
+}
+
+impl SlipCourse {
+    /// ln of the slip where that is large, the slip over the least one where it is small.
+    fn scale_at(self, fraction: f64) -> f64 {
+        let [start, end] = self.speeds;
+        ((start + (end - start) * fraction) / self.least).asinh()
+    }
+
+    fn scale_in(self, stretch: Substep) -> f64 {
+        (self.scale_at(stretch.end) - self.scale_at(stretch.begin)).abs()
+    }
+
+    /// The fraction of the step at which a share of the change of the scale over a stretch is done.
+    fn between(self, stretch: Substep, share: f64) -> f64 {
+        let [start, end] = self.speeds;
+        let (from, to) = (self.scale_at(stretch.begin), self.scale_at(stretch.end));
+        let slip = self.least * (from + (to - from) * share).sinh();
+        ((slip - start) / (end - start)).clamp(stretch.begin, stretch.end)
+    }
+}
+
 /// The substeps of a step: it is cut where a cell of the tread begins to enter, and each stretch between two cuts is
-/// divided evenly, so that the body turns little in a substep.
+/// divided evenly, so that the body turns little in a substep, or as the slip changes, so that friction changes little.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Substeps {
     tread: TreadMotion,
     cuts: Cuts,
     /// How far the body turns over the step, rad.
     turn: f64,
+    /// The slip of the tread, where it changes.
+    slip: Option<SlipCourse>,
     /// How many times as many substeps as needed are taken.
     refine: f64,
 }
 
 impl Substeps {
-    pub(super) fn new(tread: TreadMotion, turn: f64, refine: u32) -> Self {
-        Self { tread, cuts: tread.cuts(), turn, refine: f64::from(refine) }
+    pub(super) fn new(tread: TreadMotion, turn: f64, slip: Option<SlipCourse>, refine: u32) -> Self {
+        Self { tread, cuts: tread.cuts(), turn, slip, refine: f64::from(refine) }
     }
 
     /// The fraction of the step at the end of stretch `i`, counted from 0.
     fn end_of_stretch(&self, i: f64) -> f64 {
         let Cuts { count, first, spacing } = self.cuts;
-        if i >= count { 1.0 } else { ((first + spacing * i - self.tread.start) / self.tread.travel).clamp(0.0, 1.0) }
+        if i >= count { 1.0 } else { self.tread.fraction_of(first + spacing * i - self.tread.start).clamp(0.0, 1.0) }
     }
 
     /// The number of substeps of a stretch.
     fn count_in(&self, stretch: Substep) -> f64 {
-        self.refine * (self.turn * stretch.length() / MAX_TURN).ceil().max(1.0)
+        let by_slip = self.slip.map_or(0.0, |slip| slip.scale_in(stretch) / MAX_SLIP_CHANGE);
+        self.refine * (self.turn * stretch.length() / MAX_TURN).max(by_slip).ceil().max(1.0)
+    }
+
+    /// The end of substep `i` of `count` of a stretch, from 0: evenly or, where the slip changes, as the slip does.
+    fn end_in(&self, stretch: Substep, i: f64, count: f64) -> f64 {
+        match self.slip {
+            _ if i == count => stretch.end,
+            Some(slip) => slip.between(stretch, i / count),
+            None => stretch.begin + stretch.length() * (i / count),
+        }
     }
 
     /// The number of substeps; where that is more than `most`, a lower bound above `most`.
     pub(super) fn count(&self, most: f64) -> f64 {
-        let least = self.refine * (self.cuts.count + 1.0).max(self.turn / MAX_TURN);
+        let by_slip = self.slip.map_or(0.0, |slip| slip.scale_in(Substep::WHOLE) / MAX_SLIP_CHANGE);
+        let least = self.refine * (self.cuts.count + 1.0).max(self.turn / MAX_TURN).max(by_slip);
         if least.is_nan() || least > most {
             return least;
         }
@@ -205,9 +297,9 @@ impl Substeps {
                 stretch = Substep { begin: stretch.end, end: all.end_of_stretch(index) };
                 (done, count) = (0.0, all.count_in(stretch));
             }
-            let at = |i: f64| if i == count { stretch.end } else { stretch.begin + stretch.length() * (i / count) };
+            let begin = if done == 0.0 { stretch.begin } else { all.end_in(stretch, done, count) };
             done += 1.0;
-            Some(Substep { begin: at(done - 1.0), end: at(done) })
+            Some(Substep { begin, end: all.end_in(stretch, done, count) })
         })
     }
 }
@@ -218,7 +310,8 @@ mod tests {
     use crate::math::Dual;
 
     fn substeps(start: f64, travel: f64, turn: f64, refine: u32) -> Vec<(f64, f64)> {
-        let substeps = Substeps::new(TreadMotion { start, travel }, turn, refine);
+        let tread = TreadMotion { start, travel, ..TreadMotion::default() };
+        let substeps = Substeps::new(tread, turn, None, refine);
         let found: Vec<_> = substeps.iter().map(|substep| (substep.begin, substep.end)).collect();
         assert_eq!(found.len() as f64, substeps.count(1e5));
         found
@@ -235,6 +328,38 @@ mod tests {
         let many = substeps(0.3, 7.9, 1.3, 3);
         assert!(many.windows(2).all(|pair| pair[0].1 == pair[1].0 && pair[0].1 > pair[0].0));
         assert_eq!((many[0].0, many[many.len() - 1].1), (0.0, 1.0));
+    }
+
+    /// A tread whose speed goes from 1 to 3 m/s: cells enter where its way says, and its slip to a body at 3 m/s falls by
+    /// the same factor in all substeps but those near rest.
+    #[test]
+    fn a_speed_that_changes_is_followed_straight() {
+        let tread = TreadMotion::new(0.25, [1.0, 3.0], 2.0, 0.5);
+        assert_eq!(
+            (tread.travel, tread.entered_at(1.0), tread.speed_at(0.0), tread.speed_at(1.0)),
+            (8.0, 8.25, 1.0, 3.0)
+        );
+        // ∫ (1 + 2 f) 2 s df / 0.5 m at a half: 3 cells.
+        assert!((tread.entered_at(0.5) - 3.25).abs() < 1e-14);
+        let slip = SlipCourse { speeds: [2.0, 0.0], least: 1e-3 };
+        let all: Vec<_> = Substeps::new(tread, 0.0, Some(slip), 1).iter().collect();
+        assert!(all.windows(2).all(|pair| pair[0].end == pair[1].begin && pair[0].begin < pair[0].end));
+        for whole in 1..=8 {
+            let cut = all
+                .iter()
+                .map(|part| tread.entered_at(part.end))
+                .find(|entered| (entered - f64::from(whole)).abs() < 1e-12);
+            assert!(cut.is_some(), "{whole}");
+        }
+        assert!(all.iter().all(|&part| slip.scale_in(part) <= MAX_SLIP_CHANGE * (1.0 + 1e-9)));
+        let way: f64 = all.iter().map(|&part| tread.travel_in(part)).sum();
+        assert!((way - tread.travel).abs() < 1e-13);
+        // One that turns, and one whose speed changes by little, run evenly; the law sees their speeds.
+        for speeds in [[-1.0, 1.0], [1.0, 1.1]] {
+            let tread = TreadMotion::new(0.0, speeds, 1.0, 1.0);
+            assert_eq!((tread.bend, tread.speed_at(0.0)), (0.0, speeds[0]));
+            assert!((tread.speed_at(1.0) - speeds[1]).abs() < 1e-15);
+        }
     }
 
     /// Velocities against difference quotients of positions, at large angles.

@@ -1,5 +1,6 @@
-//! An element whose pressure changes much in a substep: it is cut where the element touches or lifts and where it is at
-//! the least pressure of the table, and each piece between two cuts is divided into segments.
+//! An element whose pressure changes much in a substep, or which a tread drags to and fro: it is cut where the element
+//! touches or lifts, where it is at the least pressure of the table and where it is slowest, and each piece between two
+//! cuts is divided into segments.
 
 use crate::element::{Advanced, ElementLaw, ResampledLaw, Segment, SpringLaw, advance, apply_jump};
 use crate::math::Number;
@@ -76,9 +77,9 @@ pub(super) fn advance_in_segments<T: Number>(
     (advanced, count)
 }
 
-/// The fractions of the substep at which the element touches or lifts and at which it is at the least pressure of the
-/// table, in their order, and 1.
-fn cuts<T: Number>(law: &mut ResampledLaw, begin: &Endpoint<T>, end: &Endpoint<T>) -> [T; 3] {
+/// The fractions of the substep at which the element touches or lifts, at which it is at the least pressure of the table
+/// and at which it is slowest, in their order, and 1.
+fn cuts<T: Number>(law: &mut ResampledLaw, begin: &Endpoint<T>, end: &Endpoint<T>) -> [T; 4] {
     let mut beginning = |end: &Endpoint<T>| {
         let place = law.place(size(end.velocity), end.rise);
         let (touch, least) = law.beginning(&place);
@@ -90,7 +91,19 @@ fn cuts<T: Number>(law: &mut ResampledLaw, begin: &Endpoint<T>, end: &Endpoint<T
         (from / (from - to)).or(crosses, T::constant(0.0))
     };
     let (touch, least) = (crossing(before.0, after.0), crossing(before.1, after.1));
-    [touch.smaller(least), touch.larger(least), T::constant(1.0)]
+    let [v_x, v_y] = begin.velocity;
+    let [dv_x, dv_y] = [end.velocity[0] - v_x, end.velocity[1] - v_y];
+    let slowest = -(v_x * dv_x + v_y * dv_y) / (dv_x * dv_x + dv_y * dv_y + T::constant(TINY));
+    let slowest = slowest.or(reverses(begin.velocity, end.velocity), T::constant(0.0));
+    let mut cuts = [touch, least, slowest, T::constant(1.0)];
+    cuts.sort_unstable_by(|a, b| a.value().total_cmp(&b.value()));
+    cuts
+}
+
+/// Whether a velocity turns by more than a right angle: it has been at rest, or nearly, where friction may be another.
+#[inline(always)]
+pub(super) fn reverses<T: Number>(from: [T; 2], to: [T; 2]) -> bool {
+    (from[0] * to[0] + from[1] * to[1]).value() < 0.0
 }
 
 /// The number of segments of a piece with these pressures at its ends.

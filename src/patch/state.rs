@@ -342,7 +342,7 @@ pub(super) struct Totals {
     pub(super) rates: [f64; 6],
     /// The speed of the tread at the end of the last step.
     pub(super) transport_speed: f64,
-    /// The mean speed of the tread over the last step.
+    /// The speed that the contact law saw there, the same but for rounding.
     pub(super) tread_speed: f64,
     /// The part of a cell of the tread that has entered: from 0 to below 1.
     pub(super) place: f64,
