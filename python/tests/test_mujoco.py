@@ -251,3 +251,15 @@ def test_what_cannot_be_is_refused(square):
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
     with pytest.raises(ValueError, match="integrator: .* found RK4"):
         attach(model, data, square, "block", "plane")
+
+
+@pytest.mark.parametrize("own, warned", [('name="own"', True), ('contype="0" conaffinity="0"', False)])
+def test_a_pad_that_collides_in_mujoco_too_is_warned_of(square, recwarn, own, warned):
+    model, data = scene(
+        f"""<mujoco><worldbody><geom name="ground" type="plane" size="1 1 1"/>
+        <body name="block" pos="0 0 0.001"><freejoint/><geom {own} type="box" size="0.01 0.01 0.01" mass="1"/></body>
+        </worldbody></mujoco>"""
+    )
+    attach(model, data, square, "block", "ground")
+    found = [str(warning.message) for warning in recwarn if "collide" in str(warning.message)]
+    assert len(found) == warned and all("'own'" in text and "'ground'" in text for text in found)

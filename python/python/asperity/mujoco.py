@@ -8,18 +8,21 @@
 
 The body's axes are those of the patch: its face looks along -z. The geom is a plane or a box; of a box it is the face
 that the pad looks at when it is attached, without its edges. What the body carries there must not collide with the
-geom in MuJoCo too (contype, conaffinity or exclude). Units are SI, as in the model.
+geom in MuJoCo too (contype, conaffinity or exclude): `attach` warns where it does. Units are SI, as in the model.
 
 A step is implicit in the pads' loads. They belong to where the bodies are at its end: a stiff pad neither rings nor
 asks for short steps, and one that sticks holds. MuJoCo knows no derivatives of forces that it has not made, and its
 matrices have no place for those between two trees of bodies. So `step` finds the loads by Newton's method over MuJoCo's
-own step, with all constraints in it, on a copy of the data. It is of first order.
+own step, with all constraints in it, on a copy of the data, with the slope of the patches' whole law: friction that
+rises with a speed of some µm/s is as a strong damper, so that what creeps does so evenly at any step. It is of first
+order.
 """
 
 from __future__ import annotations
 
 import math
 import shutil
+import warnings
 import weakref
 from collections.abc import Mapping, Sequence
 from ctypes import Array, c_double, c_int, c_uint
@@ -41,12 +44,16 @@ TREAD_SPEED, TREAD_FORCE = "transport.speed", "transport.force"
 # Newton's method ends where what is left of the loads moves the bodies by this share of what the change of the loads in
 # the step does, or by that of what the loads do. A share of the loads alone would leave small swings to an explicit step,
 # which does not damp them.
-OF_CHANGE, OF_LOADS = 2e-2, 1e-9
-# Corrections of the loads in a step. The last are taken as they are: the pads are then where the bodies are, and the
-# loads those of a little before.
-MOST_CORRECTIONS = 24
-# After so many the pads' stiffness is found anew.
-REFRESH_AFTER = 3
+OF_CHANGE, OF_LOADS = 2e-2, 1e-8
+# It ends at a kink of the pads' law, too, where it is known as well how the bodies move, and no more than this share is
+# left of the loads.
+OF_KINK = 1e-5
+# Corrections of the loads in a step. Where these do not suffice, those of which least was left are taken.
+MOST_CORRECTIONS = 60
+# A correction that has gone too far is taken back until no more than this share of the work is left along it.
+LEFT_ALONG_LINE = 0.3
+# The way by which the pads' slope is found, as a share of that of a pad in the step and, m, at least.
+OF_WAY, LEAST_WAY = 1e-4, 1e-12
 
 
 class PatchFmu:
@@ -160,7 +167,6 @@ class Pad:
         self._inputs = self._inputs_of(data, self.pose)
         patch.start(data.time, self._inputs)
         self.loads = patch.loads()
-        self.stiffness = self.tangent()
 
     def _ground_of(self, data: Any) -> tuple[Floats, Floats]:
         """Origin and axes of the ground in the world."""
@@ -203,24 +209,35 @@ class Pad:
         self._reached = pose, inputs, self.patch.follow(time, h, self._inputs, inputs)
         return self._reached[2]
 
-    def accept(self, stiffness: Floats) -> None:
-        """Ends a step where `follow` has led; the next begins with this stiffness."""
+    def accept(self) -> None:
+        """Ends a step where `follow` has led."""
         self.pose, self._inputs, self.loads = self._reached
-        self.stiffness = stiffness
+
+    def slope(self, time: float, h: float) -> Floats:
+        """The change of the loads with the displacement and the turn of the body in this step, and with the way of its
+        tread, where `follow` has led: of the patch's whole law, with its speed. The patch is as kept, before and
+        after."""
+        pose, inputs, loads = self._reached
+        way = OF_WAY * float(np.linalg.norm(pose[:3] - self.pose[:3])) + LEAST_WAY
+        columns = []
+        for i in range(len(inputs)):
+            shifted = inputs.copy()
+            # The way of a tread is its speed times the step.
+            shifted[i] += way if i < len(pose) else way / h
+            columns.append((self.patch.follow(time, h, self._inputs, shifted) - loads) / way)
+            self.patch.restore()
+        slope: Floats = np.array(columns).T
+        slope[:, 3:6] = slope[:, 3:6] @ _rates(pose)
+        return slope
 
     def tangent(self) -> Floats:
         """The change of the loads with the displacement and the turn of the body along the ground's axes."""
         tangent = self.patch.tangent()
-        _, pitch, yaw = self.pose[3:]
-        c, s = np.cos(yaw), np.sin(yaw)
-        # Rates of roll, pitch and yaw of an angular velocity.
-        cosine, slope = np.cos(pitch), np.tan(pitch)
-        rates = np.array([[c / cosine, s / cosine, 0.0], [-s, c, 0.0], [c * slope, s * slope, 1.0]])
-        tangent[:, 3:] = tangent[:, 3:] @ rates
+        tangent[:, 3:] = tangent[:, 3:] @ _rates(self.pose)
         if self._joint is None:
             return tangent
         # A tread that runs to the rear drags its springs as a body that moves ahead does, the other way round.
-        ahead = np.array([c, s, 0.0])
+        ahead = np.array([np.cos(self.pose[5]), np.sin(self.pose[5]), 0.0])
         column = -tangent[:, :3] @ ahead
         row = -ahead @ tangent[:3]
         return np.block([[tangent, column[:, None]], [row, -ahead @ column[:3]]])
@@ -253,8 +270,43 @@ def attach(
     if model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4:
         raise ValueError("integrator: expected Euler, implicit or implicitfast, found RK4")
     mujoco.mj_kinematics(model, data)
+    sharing = [_name(model, own) for own in _geoms_of(model, carrier) if _collide(model, own, ground)]
+    if sharing:
+        warnings.warn(
+            f"geoms {', '.join(sharing)} of body {model.body(carrier).name!r} collide with {_name(model, ground)} in "
+            "MuJoCo too and take a part of the pad's load: set contype and conaffinity to 0, or exclude the bodies",
+            stacklevel=2,
+        )
     driven = None if spin is None else (int(model.joint(spin[0]).dofadr[0]), spin[1])
     return Pad(model, data, patch, carrier, ground, driven)
+
+
+def _name(model: Any, geom: int) -> str:
+    name = model.geom(geom).name
+    return repr(name) if name else str(geom)
+
+
+def _geoms_of(model: Any, body: int) -> range:
+    first = int(model.body_geomadr[body])
+    return range(first, first + int(model.body_geomnum[body]))
+
+
+def _collide(model: Any, a: int, b: int) -> bool:
+    """Whether MuJoCo looks for contacts of two geoms (its chapter "Computation", "Selection")."""
+    if any({a, b} == {int(first), int(second)} for first, second in zip(model.pair_geom1, model.pair_geom2)):
+        return True
+    bodies = sorted(int(model.geom_bodyid[geom]) for geom in (a, b))
+    if (bodies[0] << 16) + bodies[1] in model.exclude_signature:
+        return False
+    # Geoms that move together do not collide, nor do those of a body and its parent, but for the world.
+    welded = [int(model.body_weldid[body]) for body in bodies]
+    parents = [int(model.body_weldid[model.body_parentid[body]]) for body in welded]
+    is_family = 0 not in welded and (welded[0] == parents[1] or welded[1] == parents[0])
+    filters_family = not model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_FILTERPARENT
+    if welded[0] == welded[1] or (is_family and filters_family):
+        return False
+    kinds = [(int(model.geom_contype[geom]), int(model.geom_conaffinity[geom])) for geom in (a, b)]
+    return bool(kinds[0][0] & kinds[1][1] or kinds[1][0] & kinds[0][1])
 
 
 def step(model: Any, data: Any, pads: Pad | Sequence[Pad]) -> int:
@@ -268,12 +320,9 @@ def step(model: Any, data: Any, pads: Pad | Sequence[Pad]) -> int:
         return 0
     mujoco.mj_step1(model, data)
     trial = _Trial(model, data, np.vstack([pad.jacobian(model, data) for pad in pads]))
-    loads, stiffness, corrections = _solve(trial, pads)
-    first = 0
+    loads, corrections = _solve(trial, pads)
     for pad in pads:
-        end = first + len(pad.loads)
-        pad.accept(stiffness[first:end, first:end])
-        first = end
+        pad.accept()
     # The step that was tried last once more, for good.
     applied = data.qfrc_applied.copy()
     data.qfrc_applied += trial.jacobian.T @ loads
@@ -282,39 +331,92 @@ def step(model: Any, data: Any, pads: Pad | Sequence[Pad]) -> int:
     return corrections
 
 
-def _solve(trial: _Trial, pads: Sequence[Pad]) -> tuple[Floats, Floats, int]:
+def _solve(trial: _Trial, pads: Sequence[Pad]) -> tuple[Floats, int]:
     """The loads that belong to where they move the bodies, by Newton's method; leaves the patches there. Also returns
-    the change of the loads with a displacement that it ended with, and how many corrections it took."""
-    # What the loads of the step before do, and what the pads' stiffness makes of that.
+    how many corrections it took."""
     begin = loads = np.concatenate([pad.loads for pad in pads])
-    displacement = trial.step(loads)
-    mobility = trial.mobility()
-    stiffness = _diagonal([pad.stiffness for pad in pads])
-    wanted = loads + stiffness @ displacement
     for pad in pads:
         pad.patch.save()
-    for corrections in range(1, MOST_CORRECTIONS + 1):
-        correction = np.linalg.solve(np.eye(len(loads)) - stiffness @ mobility, wanted - loads)
-        loads = loads + correction
-        wanted_before, displacement_before = wanted, displacement
-        displacement = trial.step(loads)
-        wanted = np.concatenate([pad.follow(trial.time, trial.h, trial.data) for pad in pads])
-        if _reach(mobility, wanted - loads) <= (
-            OF_CHANGE * _reach(mobility, wanted - begin) + OF_LOADS * _reach(mobility, wanted)
-        ) or corrections == MOST_CORRECTIONS:
-            break
-        # Where elements begin to slip or to stick, the stiffness is another: by the secant, which costs nothing, and
-        # where that does not suffice, from the patch. The correction's work weighs lengths and angles alike.
-        change = displacement - displacement_before
-        work = correction @ change
-        if work > 0.0:
-            error = wanted - wanted_before - stiffness @ change
-            stiffness = stiffness + np.outer(error, correction) / work
-        if corrections % REFRESH_AFTER == 0:
-            stiffness = _diagonal([pad.tangent() for pad in pads])
+    wanted = trial.follow(loads, pads)
+    mobility = trial.mobility()
+    line: _Line | None = None
+    best, corrections = (math.inf, loads), 0
+    while True:
+        left = wanted - loads
+        distance, change = _reach(mobility, left), _reach(mobility, wanted - begin)
+        allowed = OF_CHANGE * change + OF_LOADS * _reach(mobility, wanted)
+        best = min(best, (distance, loads), key=lambda found: found[0])
+        # At a kink what is left leaps, while it is known where the bodies go.
+        between = math.inf if line is None else line.enclose(left)
+        is_kink = between <= allowed and distance <= OF_KINK * _reach(mobility, wanted)
+        if corrections > 0 and (distance <= allowed or is_kink):
+            return loads, corrections
         for pad in pads:
             pad.patch.restore()
-    return loads, stiffness, corrections
+        if corrections == MOST_CORRECTIONS:
+            trial.follow(best[1], pads)
+            return best[1], corrections
+        slope = _diagonal([pad.slope(trial.time, trial.h) for pad in pads])
+        share = None if line is None else line.next_share(slope)
+        if share is None:
+            line, share = _Line.along_correction(slope, mobility, left), 1.0
+        assert line is not None
+        loads = loads + share * line.correction
+        wanted = trial.follow(loads, pads)
+        corrections += 1
+
+
+class _Line:
+    """The way along a correction. The work that what is left of the loads does along it falls as bodies give way; where
+    a correction has gone so far that it is negative, what is sought lies between: where a pad begins to stick, and
+    where friction rises steeply with a speed of some µm/s, Newton's method alone goes to and fro."""
+
+    def __init__(self, slope: Floats, mobility: Floats, left: Floats) -> None:
+        self.correction = np.linalg.solve(np.eye(len(left)) - slope @ mobility, left)
+        self._moved = mobility @ self.correction
+        self._reach = _reach(mobility, self.correction)
+        self.first = self._work = float(left @ self._moved)
+        # As shares of the correction: the last place, and those between which that work is 0.
+        self._at, self._low, self._high = 1.0, 0.0, math.inf
+
+    @classmethod
+    def along_correction(cls, slope: Floats, mobility: Floats, left: Floats) -> _Line:
+        """Along Newton's correction; where what is left does no work along it, as friction that follows the normal
+        force may have it, along that by the symmetric part of the slope."""
+        newton = cls(slope, mobility, left)
+        return newton if newton.first > 0.0 else cls(0.5 * (slope + slope.T), mobility, left)
+
+    def enclose(self, left: Floats) -> float:
+        """Notes what is left of the loads at the last place; returns by how much the bodies move between the places
+        that enclose what is sought."""
+        self._work = float(left @ self._moved)
+        if self._work > 0.0:
+            self._low = self._at
+        else:
+            self._high = self._at
+        return (self._high - self._low) * self._reach
+
+    def next_share(self, slope: Floats) -> float | None:
+        """The share of the correction to go on by, with this slope at the last place; `None` where the line has
+        served."""
+        if abs(self._work) <= LEFT_ALONG_LINE * abs(self.first) or self.first <= 0.0 or math.isinf(self._high):
+            return None
+        # By Newton's method too; where it leads beyond the places, to just inside.
+        rate = float(self._moved @ self.correction - self._moved @ slope @ self._moved)
+        to = self._at + self._work / rate if rate > 0.0 else math.copysign(math.inf, self._work)
+        if not self._low < to < self._high:
+            inside = 0.1 * (self._high - self._low)
+            to = self._low + inside if to <= self._low else self._high - inside
+        share, self._at = to - self._at, to
+        return share
+
+
+def _rates(pose: Floats) -> Floats:
+    """The rates of roll, pitch and yaw of an angular velocity."""
+    _, pitch, yaw = pose[3:]
+    c, s = np.cos(yaw), np.sin(yaw)
+    cosine, slope = np.cos(pitch), np.tan(pitch)
+    return np.array([[c / cosine, s / cosine, 0.0], [-s, c, 0.0], [c * slope, s * slope, 1.0]])
 
 
 def _unwound(angle: float, before: float) -> float:
@@ -340,17 +442,17 @@ class _Trial:
             self._scratch[model] = mujoco.MjData(model)
         self.data = self._scratch[model]
 
-    def step(self, loads: Floats) -> Floats:
-        """With these loads; returns by how much it moves the bodies over the grounds."""
+    def follow(self, loads: Floats, pads: Sequence[Pad]) -> Floats:
+        """With these loads; returns those of the pads where it moves the bodies."""
         mujoco.mj_copyData(self.data, self.model, self._data)
         self.data.qfrc_applied += self.jacobian.T @ loads
         mujoco.mj_step2(self.model, self.data)
         mujoco.mj_kinematics(self.model, self.data)
-        moved: Floats = self.h * (self.jacobian @ self.data.qvel)
-        return moved
+        return np.concatenate([pad.follow(self.time, self.h, self.data) for pad in pads])
 
     def mobility(self) -> Floats:
-        """How that changes with the loads: of the masses and of the constraints that were active."""
+        """How the displacements of the bodies over the grounds change with the loads: of the masses and of the
+        constraints that were active."""
         constraints = _constraint_jacobian(self.model, self.data)
         active = (self.data.efc_state == _QUADRATIC) | (self.data.efc_state == _CONE)
         rows = np.vstack([self.jacobian, constraints[active]])
