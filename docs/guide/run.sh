@@ -27,6 +27,9 @@ if [ "${2:-}" = --sled ]; then
     "$root/build-fmu.sh" stop.toml -o stop.fmu
     "$python" "$here/stop.py" stop.fmu
     "$asperity" plot stop-values.csv stop-rates.csv stop-hold.csv --y F_x --labels "values alone,rates,hold" -o stop.svg
+    "$root/build-fmu.sh" --patch "$root/scenes/patch-mujoco/tread.toml" -o tread.fmu
+    "$python" "$here/slope.py" tread.fmu
+    "$asperity" plot slope-values.csv slope-hold.csv slope-rates.csv --y F_x --labels "values alone,hold,rates" -o slope.svg
     "$asperity" plot sled-layer.csv sled-element.csv --y F_x --labels layer,element -o sled.svg
     exit
 fi
