@@ -116,7 +116,9 @@ fn the_table_has_every_module_after_those_that_it_uses() {
         }
         let of_sources: BTreeSet<String> =
             sources(package).iter().map(|source| module_of(&source.path).to_owned()).collect();
-        let own = ["lib", "main", "verify", "internals"].map(str::to_owned);
+        // The other bindings of the C interface are a path of theirs.
+        let bindings = if package == "crates/fmi" { "verify" } else { "" };
+        let own = ["lib", "main", "internals", bindings].map(str::to_owned);
         let of_table: BTreeSet<String> = modules.into_iter().map(|(module, _)| module).collect();
         let of_sources: BTreeSet<String> = of_sources.into_iter().filter(|module| !own.contains(module)).collect();
         assert_eq!(of_sources, of_table, "{package}");

@@ -6,7 +6,7 @@ use crate::element::FrictionTable;
 /// A table with gaps whose ln p falls straight with the separation.
 fn table() -> FrictionTable {
     let mut text = "# asperity sweep = 1\n# scene = straight\n# fingerprint = 00\n# nominal_area = 1e-4 m2\n\
-                    # rest_separation = 0 m\nspeed [m/s],pressure [Pa],status,friction [1],contact_ratio [1],separation [m],\
+                    # rest_separation = 0 m\nspeed [m/s],pressure [Pa],temperature [K],status,friction [1],contact_ratio [1],separation [m],\
                     leak_gap [m],drag_gap [m],tangential_stiffness [N/m]\n"
         .to_owned();
     for speed in [1e-3, 1.0] {
@@ -16,7 +16,7 @@ fn table() -> FrictionTable {
             let (leak, drag) = (0.9 * separation, 0.8 * separation + 1e-7);
             let friction = if speed > 0.1 { 0.1 } else { 0.13 };
             text +=
-                &format!("{speed},{pressure},steady,{friction},{},{separation},{leak},{drag},1e6\n", 1e-8 * pressure);
+                &format!("{speed},{pressure},,steady,{friction},{},{separation},{leak},{drag},1e6\n", 1e-8 * pressure);
         }
     }
     FrictionTable::parse(&text, "straight.csv".as_ref()).unwrap()

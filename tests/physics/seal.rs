@@ -89,12 +89,12 @@ fn cases_come_out_as_an_independent_program_has_them() {
 fn smooth(name: &str, lip: &[[f64; 2]], keys: &str) -> Seal {
     let folder = scratch(name);
     let mut table = "# asperity sweep = 1\n# scene = smooth\n# fingerprint = 00\n# nominal_area = 1e-4 m2\n\
-                     # rest_separation = 0 m\nspeed [m/s],pressure [Pa],status,friction [1],contact_ratio [1],\
+                     # rest_separation = 0 m\nspeed [m/s],pressure [Pa],temperature [K],status,friction [1],contact_ratio [1],\
                      separation [m],leak_gap [m],drag_gap [m],tangential_stiffness [N/m]\n"
         .to_owned();
     for i in 0..32 {
         let (pressure, gap) = (10.0 * 2.0_f64.powi(i), 1e-9 * f64::from(40 - i));
-        table += &format!("1,{pressure},steady,0.1,0,{gap},{gap},{gap},1e6\n");
+        table += &format!("1,{pressure},,steady,0.1,0,{gap},{gap},{gap},1e6\n");
     }
     fs::write(folder.join("smooth.csv"), table).unwrap();
     let rows: String = lip.iter().map(|[x, pressure]| format!("0,{x},{pressure}\n")).collect();

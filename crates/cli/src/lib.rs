@@ -258,7 +258,7 @@ mod tests {
         for line in [
             "sweep s.toml --speeds 1 --pressures 1bar --temperatures -5°C,20°C",
             "material s.toml --temperature -5°C",
-            "fit d.csv --reference -5°C",
+            "fit d.csv --reference -5°C -o c.csv",
         ] {
             let parsed = Arguments::try_parse_from(format!("asperity {line}").split_whitespace());
             assert!(parsed.is_ok(), "{line}: {}", parsed.unwrap_err());

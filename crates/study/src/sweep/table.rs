@@ -649,7 +649,7 @@ mod tests {
             let values = SampleValues::new(&samples, header.sampled());
             let mut table = Table::new(Header::default(), columns_of_samples(header.sampled()));
             table.push(values.cells());
-            let end = if has_gaps { ",1;;0.25,0.000001;;0\n" } else { ",0.30000000000000004;;0.5,;;,1;;0.25\n" };
+            let end = if has_gaps { "1;;0.25,1e-6;;0\n" } else { ",0.30000000000000004;;0.5,;;,1;;0.25\n" };
             assert!(table.text().ends_with(end), "{}", table.text());
             assert_eq!(SampleValues::of_row(&table, 0, header), Ok(values));
             assert!(SampleValues::of_row(&table, 0, SampleHeader { count: 4, ..header }).is_err());

@@ -176,7 +176,7 @@ fn samples_are_the_same_in_any_parts() {
     // Sample 7 of 16 is sample 7 of 32.
     let more = table(&plan(&scene, &options, 32, 3));
     for (few, many) in first.rows.iter().zip(&more.rows) {
-        for sampled in Sampled::ALL {
+        for sampled in first.header.samples.unwrap().sampled().iter().copied() {
             let of = |row: &SweepRow| row.samples.as_ref().unwrap().of(sampled)[..16].to_vec();
             assert_eq!(of(few), of(many));
         }
