@@ -8,6 +8,7 @@ mod converge;
 mod damper;
 mod element;
 mod fit;
+mod gaps;
 mod options;
 mod output_files;
 mod patch_check;

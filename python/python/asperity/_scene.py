@@ -94,6 +94,7 @@ class Scene(SceneInputs):
         points: int | None = None,
         friction_error: float | None = None,
         distance: float | None = None,
+        gaps: bool | Literal["solved", "medium"] = False,
         samples: int | None = None,
         seed: int = 1,
         refit: bool = False,
@@ -115,6 +116,8 @@ class Scene(SceneInputs):
             points: Points of a period along x, with "steady".
             friction_error: Admissible standard error of friction over it, with "layer"; None: 5e-3.
             distance: Longest distance that a layer slides, m; None: 100 blocks.
+            gaps: Also how a fluid passes the gaps of the contact, with "steady": columns ``leak_gap`` and ``drag_gap``, m,
+                of a map ``leak_gap_across``; "medium" has the effective medium of a map beside.
             samples: Each point also for so many scenes drawn from the section [uncertainty] of this one: quantiles are
                 columns of the table, all samples :attr:`Table.samples`, what matters :attr:`Table.matters`.
             seed: What scrambles the points of the samples.
@@ -144,6 +147,7 @@ class Scene(SceneInputs):
                 points=points,
                 friction_error=friction_error,
                 distance=distance,
+                gaps="solved" if gaps is True else gaps or None,
             ),
             None if samples is None else (samples, seed, refit),
             shown(progress),

@@ -16,8 +16,8 @@ use asperity_study::files::ColumnOptions;
 use asperity_study::friction_map::Maps;
 use asperity_study::progress::Stop;
 use asperity_study::sweep::{
-    Over, SlidingOptions, SweepHeader, SweepOptions, SweepPlan, SweepRow, SweepTable, master_picture, matters_picture,
-    over_ways, sweep_picture, verdict,
+    Gaps, Over, SlidingOptions, SweepHeader, SweepOptions, SweepPlan, SweepRow, SweepTable, master_picture,
+    matters_picture, over_ways, sweep_picture, verdict,
 };
 use asperity_study::uncertainty::SampleOptions;
 use asperity_study::values::Values;
@@ -70,6 +70,11 @@ pub(crate) struct Sweep {
     pub(crate) scene: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) options: SweepOptions,
+    /// Also computes how a fluid passes the gaps of the contact, with --method steady: leak_gap and drag_gap, m, the distances
+    /// at which smooth plates let as much through and carry as much along; solved for on a map, with leak_gap_across, and by
+    /// the effective medium of a profile. "medium" has that of a map beside.
+    #[arg(long, value_name = "GAPS", value_enum, num_args = 0..=1, default_missing_value = "solved")]
+    pub(crate) gaps: Option<Gaps>,
     /// The table to write, - for standard output; an existing table of the same sweep is continued. Default: the
     /// scene's file name with .sweep.csv.
     #[arg(short, long, value_name = "TABLE.csv")]
@@ -127,6 +132,13 @@ pub(crate) struct Sweep {
     pub(crate) force: bool,
     #[command(flatten)]
     pub(crate) set: Set,
+}
+
+impl Sweep {
+    /// What is asked of the sweep.
+    fn options(&self) -> SweepOptions {
+        SweepOptions { gaps: self.gaps, ..self.options.clone() }
+    }
 }
 
 /// Shares of a sweep.
@@ -288,7 +300,7 @@ fn compute_ways(
             output.display()
         )));
     }
-    let [total, failed] = sweep_ways(scene, &command.options, ways, (output, picture))?;
+    let [total, failed] = sweep_ways(scene, &command.options(), ways, (output, picture))?;
     let files = [output.as_path()].into_iter().chain(picture).map(named).collect::<Vec<_>>().join(", ");
     print_beside([output], &lines(&[("Points", format!("{total}, at {} ways", ways.len())), ("Written", files)]))?;
     check_steady([total, failed], output)
@@ -455,7 +467,7 @@ fn whole(ways: &[f64], tables: &[SweepTable]) -> Table {
 
 /// The sweep of a scene, with samples where they are asked for.
 fn plan(command: &Sweep, scene: Scene, convergence: Option<String>) -> Result<SweepPlan, Error> {
-    let options = &command.options;
+    let options = &command.options();
     let Some(count) = command.samples else { return SweepPlan::new(scene, options, convergence) };
     let uncertain = uncertain_scene(scene, command.refit, &Stop::default())?;
     if command.refit {

@@ -81,10 +81,8 @@ pub struct SweepOptions {
     #[arg(long, value_name = "VALUES", value_parser = Values::of(Dimension::Temperature))]
     #[arg(allow_hyphen_values = true)]
     pub temperatures: Option<Values>,
-    /// Also computes how a fluid passes the gaps of the contact, with --method steady: leak_gap and drag_gap, m, the distances
-    /// at which smooth plates let as much through and carry as much along; solved for on a map, with leak_gap_across, and by
-    /// the effective medium of a profile. "medium" has that of a map beside.
-    #[arg(long, value_name = "GAPS", value_enum, num_args = 0..=1, default_missing_value = "solved")]
+    /// Whether the rows have how a fluid passes the gaps, and how that is found.
+    #[arg(skip)]
     pub gaps: Option<Gaps>,
     #[command(flatten)]
     #[serde(flatten)]
