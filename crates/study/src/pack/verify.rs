@@ -65,7 +65,7 @@ type Files = BTreeMap<String, Vec<u8>>;
 const LARGEST: u64 = 1 << 30;
 const LARGEST_TABLE: u64 = 1 << 24;
 /// What is written for people, from more than the resources.
-const FOR_PEOPLE: [&str; 2] = ["documentation/index.html", "model.png"];
+const FOR_PEOPLE: [&str; 3] = ["documentation/index.html", "model.png", "terminalsAndIcons/icon.png"];
 const DESCRIPTION: &str = "modelDescription.xml";
 /// Most lines of a file whose differences are told.
 const MOST_LINES: usize = 4;
