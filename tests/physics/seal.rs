@@ -59,28 +59,30 @@ fn differences(name: &str, cells: usize) -> Vec<(String, f64)> {
     known.iter().zip(worst).map(|(variable, worst)| (variable.name.clone(), worst)).collect()
 }
 
-/// Forces, loss and film on the cells of the files; on 64 cells a little less near.
+/// Forces, loss and film on the cells of the files; on 64 cells forces and loss a little less near.
 #[test]
 fn cases_come_out_as_an_independent_program_has_them() {
-    for (cells, of_forces, of_film) in [(96, 3e-3, 1e-2), (64, 1e-2, 3e-2)] {
-        for name in ["film-speeds", "film-strokes", "film-rest", "film-pressure", "film-starved"] {
-            for (column, found) in differences(name, cells) {
-                let is_film = column.starts_with("film") || column.starts_with("contact");
-                let allowed = match (name, column.as_str()) {
-                    // The film that comes back: what is on the rod there follows from the distance slid alone, and theirs
-                    // drifts from that by a tenth on the last of the way.
-                    ("film-strokes", "film.leak_rate") => 0.08,
-                    ("film-strokes", "F_x") => 2.0 * of_forces,
-                    // The front of a dry rod, and the inlet where the fluid is drawn in, are a cell or two wide.
-                    ("film-starved", "film.thickness_least" | "film.pressure_largest") => 0.08,
-                    ("film-strokes", "film.thickness" | "film.thickness_least") => 4.0 * of_film,
-                    ("film-rest", "film.leak_rate") => 0.06,
-                    ("film-pressure", "film.leak_rate") => 2.0 * of_film,
-                    _ if is_film => of_film,
-                    _ => of_forces,
-                };
-                assert!(found <= allowed, "{name}, {cells} cells: {column} differs by {found:.2e}");
-            }
+    for name in ["film-speeds", "film-strokes", "film-rest", "film-pressure", "film-starved"] {
+        for (column, found) in differences(name, 96) {
+            let allowed = match (name, column.as_str()) {
+                // The film that comes back: what is on the rod follows from the distance slid alone, and theirs drifts from
+                // that by a tenth on the last of the way.
+                ("film-strokes", "film.leak_rate") => 0.08,
+                ("film-strokes", "F_x") => 6e-3,
+                // The inlet where the fluid is drawn in, and the front of a dry rod, are a cell or two wide.
+                ("film-strokes", "film.thickness" | "film.thickness_least") => 0.04,
+                ("film-starved", "film.thickness_least" | "film.pressure_largest") => 0.06,
+                // A peak within a step as the lip breaks away; steps as long as the tolerance allows.
+                ("film-rest", "film.leak_rate") => 0.05,
+                ("film-pressure", "film.leak_rate") => 0.02,
+                (_, column) if column.starts_with("film") || column.starts_with("contact") => 1e-2,
+                _ => 3e-3,
+            };
+            assert!(found <= allowed, "{name}: {column} differs by {found:.2e}");
+        }
+        for (column, found) in differences(name, 64) {
+            let is_force = ["F_x", "F_z", "E_diss"].contains(&column.as_str());
+            assert!(!is_force || found <= 1e-2, "{name}, 64 cells: {column} differs by {found:.2e}");
         }
     }
 }
