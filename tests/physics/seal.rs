@@ -72,6 +72,8 @@ fn cases_come_out_as_an_independent_program_has_them() {
                 // The inlet where the fluid is drawn in, and the front of a dry rod, are a cell or two wide.
                 ("film-strokes", "film.thickness" | "film.thickness_least") => 0.04,
                 ("film-starved", "film.thickness_least" | "film.pressure_largest") => 0.06,
+                // Half a cell of the inlet, all at the start.
+                ("film-speeds", "E_diss") => 3.3e-3,
                 // A peak within a step as the lip breaks away; steps as long as the tolerance allows.
                 ("film-rest", "film.leak_rate") => 0.05,
                 ("film-pressure", "film.leak_rate") => 0.02,
