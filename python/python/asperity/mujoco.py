@@ -372,7 +372,8 @@ class _Line:
     where friction rises steeply with a speed of some µm/s, Newton's method alone goes to and fro."""
 
     def __init__(self, slope: Floats, mobility: Floats, left: Floats) -> None:
-        self.correction = np.linalg.solve(np.eye(len(left)) - slope @ mobility, left)
+        correction = np.linalg.solve(np.eye(len(left)) - slope @ mobility, left)
+        self.correction: Floats = np.asarray(correction, dtype=np.float64)
         self._moved = mobility @ self.correction
         self._reach = _reach(mobility, self.correction)
         self.first = self._work = float(left @ self._moved)
