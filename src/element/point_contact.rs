@@ -7,7 +7,7 @@ use super::friction_table::FrictionTable;
 use super::law::{Law, LawAtSpeed};
 use super::quantity::Quantity;
 use crate::outputs::{Dependencies, Output, Variable, variable};
-use crate::scene::{Extrapolation, InputRule, Parameter, ParameterError, Problem, TableExtrapolation, Value};
+use crate::scene::{InputRule, Parameter, ParameterError, Problem, TableExtrapolation, Value};
 
 /// The definition of an element, as a [`Scene`](crate::scene::Scene) is that of a layer: a table and the parameters
 /// that a master may set.
@@ -84,9 +84,10 @@ impl PointContact {
     pub fn parameter(&self, parameter: Parameter) -> Value {
         match parameter {
             Parameter::TEMPERATURE => Value::Real(self.temperature),
-            Parameter::TABLE_EXTRAPOLATION => Value::Text(self.table_extrapolation.word().into()),
-            Parameter::INTERVAL => Value::Real(self.input_rule.interval),
-            _ => Value::Text(self.input_rule.extrapolation.word().into()),
+            _ => {
+                let word = || Value::Text(self.table_extrapolation.word().into());
+                self.input_rule.parameter(parameter).unwrap_or_else(word)
+            }
         }
     }
 
@@ -98,6 +99,11 @@ impl PointContact {
         let refuse = |expected: String| {
             Err(ParameterError::new(parameter.name(), Problem::Value { given: value.to_string(), expected }))
         };
+        if self.input_rule.set_parameter(parameter, &value)?
+            || self.table_extrapolation.set_parameter(parameter, &value)?
+        {
+            return Ok(());
+        }
         match (parameter, &value) {
             (Parameter::TEMPERATURE, &Value::Real(temperature)) => {
                 let temperatures = &self.table.grid.temperatures;
@@ -109,17 +115,6 @@ impl PointContact {
                     }
                     _ => return refuse("none: the table has no temperatures".into()),
                 }
-            }
-            (Parameter::TABLE_EXTRAPOLATION, Value::Text(word)) => match TableExtrapolation::from_word(word) {
-                Some(extrapolation) => self.table_extrapolation = extrapolation,
-                None => return refuse(parameter.allowed()),
-            },
-            (Parameter::EXTRAPOLATION, Value::Text(word)) => match Extrapolation::from_word(word) {
-                Some(extrapolation) => self.input_rule.extrapolation = extrapolation,
-                None => return refuse(parameter.allowed()),
-            },
-            (Parameter::INTERVAL, &Value::Real(interval)) => {
-                self.input_rule.interval = Parameter::INTERVAL.check_number(interval)?;
             }
             _ => return refuse(format!("a parameter of the element: {}", self.names().join(", "))),
         }

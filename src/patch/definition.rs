@@ -6,8 +6,8 @@ use std::sync::Arc;
 use super::face::{Face, FixedPoints, Section, Tread};
 use crate::element::{Clearance, FrictionTable, Load, Node, Quantity, ResampledLaw};
 use crate::scene::{
-    Backing, CanonicalFiles, Extrapolation, FaceHeat, FaceShape, FileFormats, FmuOptions, Grid, InputRule, NotDoubled,
-    POINTS, Parameter, ParameterError, PatchFile, PatchGroup, Problem, SceneError, Setting, TableExtrapolation, Value,
+    Backing, CanonicalFiles, FaceHeat, FaceShape, FileFormats, FmuOptions, Grid, InputRule, NotDoubled, POINTS,
+    Parameter, ParameterError, PatchFile, PatchGroup, Problem, SceneError, Setting, TableExtrapolation, Value,
     read_file,
 };
 use crate::table::TableError;
@@ -359,9 +359,10 @@ impl Patch {
         match parameter {
             Parameter::TABLE_EXTRAPOLATION => Value::Text(self.table_extrapolation.word().into()),
             Parameter::REFINE => Value::Integer(i32::try_from(self.refine).unwrap_or(i32::MAX)),
-            Parameter::EXTRAPOLATION => Value::Text(self.input_rule.extrapolation.word().into()),
-            Parameter::INTERVAL => Value::Real(self.input_rule.interval),
-            _ => Value::Real(self.real(parameter).unwrap_or(0.0)),
+            _ => {
+                let real = || Value::Real(self.real(parameter).unwrap_or(0.0));
+                self.input_rule.parameter(parameter).unwrap_or_else(real)
+            }
         }
     }
 
@@ -398,16 +399,12 @@ impl Patch {
             let problem = Problem::Value { given: value.to_string(), expected };
             ParameterError::new(parameter.name(), problem)
         };
+        if self.input_rule.set_parameter(parameter, &value)?
+            || self.table_extrapolation.set_parameter(parameter, &value)?
+        {
+            return Ok(());
+        }
         match (parameter, &value) {
-            (Parameter::TABLE_EXTRAPOLATION, Value::Text(word)) => {
-                self.table_extrapolation = TableExtrapolation::from_word(word).ok_or_else(refused)?;
-            }
-            (Parameter::EXTRAPOLATION, Value::Text(word)) => {
-                self.input_rule.extrapolation = Extrapolation::from_word(word).ok_or_else(refused)?;
-            }
-            (Parameter::INTERVAL, &Value::Real(interval)) => {
-                self.input_rule.interval = parameter.check_number(interval)?;
-            }
             (Parameter::REFINE, &Value::Integer(refine)) => {
                 let allowed = u32::try_from(refine).ok().filter(|refine| (1..=1000).contains(refine));
                 self.refine = allowed.ok_or_else(refused)?;

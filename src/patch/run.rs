@@ -200,9 +200,9 @@ impl PatchRun {
         self.work_left = Some(MAX_WORK);
     }
 
-    /// What a motion that begins at a speed of the tread (m/s) takes at least.
-    pub fn reckon(&self, transport_speed: f64, motion: &PatchMotion) -> ReckonedWork {
-        let (start, duration) = (self.totals.pose.coordinates(), motion.duration);
+    /// What a motion that begins with the pose at these coordinates (m, rad), at a speed of the tread (m/s), takes at least.
+    pub fn reckon(&self, start: [f64; 6], transport_speed: f64, motion: &PatchMotion) -> ReckonedWork {
+        let duration = motion.duration;
         let body = PoseMotion { start, change: motion.rates.map(|rate| rate * duration), duration };
         self.reckon_substeps(self.tread_motion([transport_speed, motion.transport_speed], duration), &body).1
     }

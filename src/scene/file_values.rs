@@ -299,6 +299,20 @@ impl FileValues {
         Ok(in_files)
     }
 
+    /// Sets keys of a file that has no lists read from other files.
+    ///
+    /// # Errors
+    /// Where a key is none of the `file`, or leads nowhere.
+    pub(super) fn set_own(&mut self, settings: &[Setting], file: &str) -> Result<()> {
+        match self.set_all(settings)?.into_iter().next() {
+            Some((_, Setting { key, value })) => {
+                let problem = Problem::value(value, format_args!("a key of the {file}"));
+                Err(SceneError::new(Location::default(), key, problem))
+            }
+            None => Ok(()),
+        }
+    }
+
     /// The error of what is at a path.
     pub fn error(&self, path: &str, problem: Problem) -> SceneError {
         SceneError::new(self.location(path), path, problem)

@@ -131,11 +131,6 @@ impl TableExtrapolation {
     pub fn word(self) -> &'static str {
         self.as_word()
     }
-
-    /// What a word stands for.
-    pub fn from_word(word: &str) -> Option<Self> {
-        Self::parse(word)
-    }
 }
 
 /// The groups of variables that a patch may be asked for, in the order of the variables.

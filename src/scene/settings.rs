@@ -73,11 +73,6 @@ impl Extrapolation {
     pub fn word(self) -> &'static str {
         self.as_word()
     }
-
-    /// What a word stands for.
-    pub fn from_word(word: &str) -> Option<Self> {
-        Self::parse(word)
-    }
 }
 
 /// How inputs go on where a master gives values alone.

@@ -3,11 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::film::Film;
 use super::law::GapLaw;
 use crate::element::{FrictionTable, Load, Quantity};
+use crate::math::interval_of;
 use crate::scene::{
-    Air, Extrapolation, FileFormats, FmuOptions, InputRule, LIP_PRESSURES, LipSet, Parameter, ParameterError, Problem,
-    RoughSide, SceneError, SealFile, SealGroup, Setting, TableExtrapolation, Value, read_file,
+    Air, FileFormats, FmuOptions, InputRule, LIP_PRESSURES, LipSet, Parameter, ParameterError, Problem, RoughSide,
+    SceneError, SealFile, SealGroup, Setting, TableExtrapolation, Value, read_file,
 };
 use crate::table::TableError;
 use crate::tables::{ReadingNote, canonical};
@@ -69,31 +71,26 @@ impl LipPressures {
     }
 
     /// The set before a sealed pressure (Pa), and how far it is on the way to the next; beyond the sets straight on.
-    pub(super) fn place(&self, sealed: f64) -> (usize, f64) {
+    fn place(&self, sealed: f64) -> (usize, f64) {
         if self.sealed.len() < 2 {
             return (0, 0.0);
         }
-        let i = crate::math::interval_of(&self.sealed, sealed);
+        let i = interval_of(&self.sealed, sealed);
         (i, (sealed - self.sealed[i]) / (self.sealed[i + 1] - self.sealed[i]))
     }
 
-    /// The pressure on a cell at a [place](Self::place), Pa, lifted by so much, Pa.
-    pub(super) fn at(&self, (set, share): (usize, f64), cell: usize, lifted: f64) -> f64 {
+    /// The pressure on a cell, or behind the last at the sealed side, at a [place](Self::place), lifted by so much, Pa.
+    fn at(&self, (set, share): (usize, f64), cell: usize, lifted: f64) -> f64 {
         let here = self.cells[set][cell];
         let next = self.cells.get(set + 1).map_or(here, |next| next[cell]);
         (here + share * (next - here) - lifted).max(0.0)
-    }
-
-    /// The pressure at the sealed side, Pa.
-    pub(super) fn at_sealed_side(&self, place: (usize, f64), lifted: f64) -> f64 {
-        self.at(place, self.cells[0].len() - 1, lifted)
     }
 }
 
 impl LipSet {
     /// The pressure at a place (m) of the width, straight between those given, Pa.
     fn pressure_at(&self, x: f64) -> f64 {
-        let i = crate::math::interval_of(&self.x, x);
+        let i = interval_of(&self.x, x);
         let share = (x - self.x[i]) / (self.x[i + 1] - self.x[i]);
         self.pressures[i] + share * (self.pressures[i + 1] - self.pressures[i])
     }
@@ -211,6 +208,11 @@ impl Seal {
         }
     }
 
+    /// The temperature (K) of the contact's law where `kelvin` is given: that of the table's end beyond it.
+    fn held_temperature(&self, kelvin: f64) -> f64 {
+        self.temperatures().map_or(kelvin, |(low, high)| kelvin.max(low).min(high))
+    }
+
     /// Whether the lip can be lifted.
     pub fn can_be_lifted(&self) -> bool {
         self.file.approach_stiffness.is_some()
@@ -218,8 +220,29 @@ impl Seal {
 
     /// The law of its contact at a temperature (K) and a speed (m/s).
     pub(super) fn law(&self, temperature: f64, speed: f64) -> GapLaw {
-        let held = self.temperatures().map_or(temperature, |(low, high)| temperature.max(low).min(high));
-        GapLaw::new(&self.table, held, speed)
+        GapLaw::new(&self.table, self.held_temperature(temperature), speed)
+    }
+
+    /// Takes the law of its contact and the fluid's viscosity to a temperature (K) and a speed (m/s).
+    pub(super) fn set_temperature(&self, law: &mut GapLaw, film: &mut Film, temperature: f64, speed: f64) {
+        law.set(self.held_temperature(temperature), speed);
+        film.set_viscosity(self.file.viscosity.at(temperature));
+    }
+
+    /// Presses the lip under a sealed pressure (Pa), lifted by w (m).
+    pub(super) fn press(&self, law: &GapLaw, film: &mut Film, sealed: f64, w: f64) {
+        let (place, lifted) = (self.lip.place(sealed), self.lifted(w));
+        film.set_totals(law, |i| self.lip.at(place, i, lifted));
+    }
+
+    /// The pressure at the sealed side under a sealed pressure (Pa), lifted by w (m), Pa.
+    pub(super) fn pressure_at_sealed_side(&self, sealed: f64, w: f64) -> f64 {
+        self.lip.at(self.lip.place(sealed), self.cells(), self.lifted(w))
+    }
+
+    /// How much a lip that is lifted by w (m) is pressed less, Pa.
+    fn lifted(&self, w: f64) -> f64 {
+        self.file.approach_stiffness.map_or(0.0, |stiffness| stiffness * w)
     }
 
     pub(super) fn is_rough_side_moving(&self) -> bool {
@@ -244,9 +267,7 @@ impl Seal {
     pub fn parameter(&self, parameter: Parameter) -> Value {
         match parameter {
             Parameter::TABLE_EXTRAPOLATION => Value::Text(self.table_extrapolation.word().into()),
-            Parameter::EXTRAPOLATION => Value::Text(self.input_rule.extrapolation.word().into()),
-            Parameter::INTERVAL => Value::Real(self.input_rule.interval),
-            _ => Value::Real(self.relative_tolerance),
+            _ => self.input_rule.parameter(parameter).unwrap_or(Value::Real(self.relative_tolerance)),
         }
     }
 
@@ -255,26 +276,21 @@ impl Seal {
     /// # Errors
     /// [`ParameterError`] where the value is none of those allowed; the seal is then as it was.
     pub fn set_parameter(&mut self, parameter: Parameter, value: Value) -> Result<(), ParameterError> {
-        let refused = || {
-            let problem = Problem::Value { given: value.to_string(), expected: parameter.allowed() };
-            ParameterError::new(parameter.name(), problem)
-        };
+        if self.input_rule.set_parameter(parameter, &value)?
+            || self.table_extrapolation.set_parameter(parameter, &value)?
+        {
+            return Ok(());
+        }
         match (parameter, &value) {
-            (Parameter::TABLE_EXTRAPOLATION, Value::Text(word)) => {
-                self.table_extrapolation = TableExtrapolation::from_word(word).ok_or_else(refused)?;
-            }
-            (Parameter::EXTRAPOLATION, Value::Text(word)) => {
-                self.input_rule.extrapolation = Extrapolation::from_word(word).ok_or_else(refused)?;
-            }
-            (Parameter::INTERVAL, &Value::Real(number)) => {
-                self.input_rule.interval = parameter.check_number(number)?;
-            }
             (Parameter::RELATIVE_TOLERANCE, &Value::Real(number)) => {
                 self.relative_tolerance = parameter.check_number(number)?;
+                Ok(())
             }
-            _ => return Err(refused()),
+            _ => {
+                let problem = Problem::Value { given: value.to_string(), expected: parameter.allowed() };
+                Err(ParameterError::new(parameter.name(), problem))
+            }
         }
-        Ok(())
     }
 
     /// Paths of the files that it reads besides its own, relative to that one's folder.

@@ -32,7 +32,7 @@ struct Cell {
     pressure: [f64; 2],
     /// What the rod carries over its speed, c m/u, m, and 1.
     carried: [f64; 2],
-    /// The flow over the fall of pressure by length, m³/(Pa s) a length, and by the content.
+    /// The flow over the gradient of pressure, h_l³/(12η) m/u, m³/(Pa s), and its derivative, m²/(Pa s).
     mobility: [f64; 2],
 }
 
@@ -58,7 +58,7 @@ pub(super) struct Film {
     pub(super) totals: Vec<f64>,
     bearing: Vec<f64>,
     cells: Vec<Cell>,
-    /// What flows through the faces, m²/s, from that of the sealed side.
+    /// What flows through the faces to the air, by length along the lip, m²/s, from that of the sealed side.
     pub(super) flows: Vec<f64>,
     /// The derivative of each flow by the speed, m.
     by_speed: Vec<f64>,

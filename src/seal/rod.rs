@@ -27,12 +27,12 @@ impl RodFilm {
         self.pieces.last().copied()
     }
 
-    /// The volume by the width of the film, m².
+    /// The volume by length along the lip, m².
     pub(super) fn volume(&self) -> f64 {
         self.pieces.iter().map(|(length, thickness)| length * thickness).sum()
     }
 
-    /// Lays a volume by width (m²) onto a length (m) that leaves the lip.
+    /// Lays a volume by length along the lip (m²) onto a length (m) that leaves the lip.
     pub(super) fn lay(&mut self, length: f64, volume: f64) {
         if length <= 0.0 {
             return;
@@ -48,7 +48,7 @@ impl RodFilm {
         }
     }
 
-    /// Takes back a length (m) with a volume by width (m²). What little is left of a piece is joined to the next.
+    /// Takes back a length (m) with a volume by length along the lip (m²). What little is left of a piece is joined to the next.
     pub(super) fn take(&mut self, mut length: f64, mut volume: f64) {
         while let Some((own, thickness)) = self.pieces.pop() {
             let (left, rest) = (own - length, (own * thickness - volume).max(0.0));

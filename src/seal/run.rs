@@ -7,7 +7,7 @@ use super::film::{Ends, Film};
 use super::law::GapLaw;
 use super::rod::RodFilm;
 use super::step::{Drive, Limit, Rubbing, Stepped, Stepper};
-use crate::math::not_finite;
+use crate::math::{not_finite, root_between};
 use crate::scene::{Air, SealGroup, TableExtrapolation, is_possible};
 
 /// Why a motion of a seal is refused; the seal is then as it was.
@@ -141,9 +141,9 @@ pub(super) struct Totals {
     pub(super) slips: f64,
     /// The speed of slip, m/s.
     pub(super) speed: f64,
-    /// What leaked, net, m².
+    /// What leaked, net, by length along the lip, m².
     leaked: f64,
-    /// What came in from the sealed side, net, m².
+    /// What came in from the sealed side, net, likewise, m².
     drawn: f64,
     /// Energy lost, J.
     pub(super) lost: f64,
@@ -178,8 +178,10 @@ const SHRINKS_TO: f64 = 0.2;
 const GROWS_BY: f64 = 4.0;
 /// What is left of the tolerance.
 const SAFETY: f64 = 0.8;
-/// A change between stick and slip is located to this part of the limit, or of a step.
+/// A force this part below the limit is at it; a change between stick and slip is located to this part of a step.
 const LOCATED: f64 = 1e-9;
+/// A step this part of that of a master, which is still too long, is given up.
+const SHORTEST: f64 = 1e-12;
 /// The length of the first step over the time that the film takes through a cell.
 const FIRST_STEP: f64 = 0.1;
 
@@ -270,7 +272,7 @@ impl SealRun {
                 ));
             }
         }
-        let total = self.seal.lip.at_sealed_side(lip.place(sealed), self.lifted(w));
+        let total = self.seal.pressure_at_sealed_side(sealed, w);
         // Equal but for rounding is closed.
         if sealed > total * (1.0 + 1e-9) {
             return Err(FilmError::BlownOpen { time, sealed, total, within });
@@ -278,23 +280,15 @@ impl SealRun {
         Ok(())
     }
 
-    /// How much a lip that is lifted by w (m) is pressed less, Pa.
-    fn lifted(&self, w: f64) -> f64 {
-        self.seal.file.approach_stiffness.map_or(0.0, |stiffness| stiffness * w)
-    }
-
     /// Sets temperature, speed and pressures of the state.
     fn set_conditions(&mut self) {
         let Totals { temperature, u_rate, sealed, w, .. } = self.state.totals;
-        let held = self.seal.temperatures().map_or(temperature, |(low, high)| temperature.max(low).min(high));
-        self.law.set(held, u_rate);
-        self.film.set_viscosity(self.seal.file.viscosity.at(temperature));
+        self.seal.set_temperature(&mut self.law, &mut self.film, temperature, u_rate);
         self.set_totals(sealed, w);
     }
 
     pub(super) fn set_totals(&mut self, sealed: f64, w: f64) {
-        let (place, lifted) = (self.seal.lip.place(sealed), self.lifted(w));
-        self.film.set_totals(&self.law, |i| self.seal.lip.at(place, i, lifted));
+        self.seal.press(&self.law, &mut self.film, sealed, w);
     }
 
     fn rubbing(&self) -> Rubbing {
@@ -357,9 +351,7 @@ impl SealRun {
             let passed = place * h;
             let now = sealed + motion.pressure_rate * passed;
             if moves {
-                let stiffness = seal.file.approach_stiffness.unwrap_or(0.0);
-                let (set, lifted) = (seal.lip.place(now), stiffness * (w + motion.w_rate * passed));
-                film.set_totals(law, |i| seal.lip.at(set, i, lifted));
+                seal.press(law, film, now, w + motion.w_rate * passed);
             }
             Ends { sealed: now, ..ends }
         };
@@ -397,8 +389,8 @@ impl SealRun {
 
     fn step(&mut self, motion: &SealMotion) -> Result<(), FilmError> {
         self.before.clone_from(&self.state);
-        let (iterations, warnings) = (self.stepper.iterations, self.warnings.len());
-        let done = self.follow(motion, iterations);
+        let warnings = self.warnings.len();
+        let done = self.follow(motion);
         if done.is_err() {
             std::mem::swap(&mut self.state, &mut self.before);
             if self.warnings.len() > warnings {
@@ -410,7 +402,7 @@ impl SealRun {
         done
     }
 
-    fn follow(&mut self, motion: &SealMotion, iterations: usize) -> Result<(), FilmError> {
+    fn follow(&mut self, motion: &SealMotion) -> Result<(), FilmError> {
         let Totals { time, u, w, sealed, lost, .. } = self.state.totals;
         let end = [
             ("u", u + motion.u_rate * motion.duration),
@@ -431,11 +423,9 @@ impl SealRun {
         self.set_conditions();
         self.begin(motion);
         let mut left = motion.duration;
+        let most = self.stepper.iterations + MOST_WORK / self.seal.cells();
         while left > 0.0 {
-            if (self.stepper.iterations - iterations) * self.seal.cells() > MOST_WORK {
-                return Err(FilmError::TooMuchWork { time: self.state.totals.time });
-            }
-            left -= self.substep(left, motion);
+            left -= self.substep(left, motion, most)?;
         }
         let totals = &mut self.state.totals;
         (totals.time, totals.u, totals.w, totals.sealed) = (time + motion.duration, u, w, sealed);
@@ -458,7 +448,7 @@ impl SealRun {
         if force >= limit * (1.0 - LOCATED) && force > 0.0 {
             totals.lost += (0.5 * (force * force - limit * limit) / stiffness).max(0.0);
             totals.spring = limit.min(force) * totals.spring.signum();
-            self.slip_or_stick(totals_sign(self.state.totals.spring), motion);
+            self.slip_or_stick(direction_of(self.state.totals.spring), motion);
         } else {
             (totals.slips, totals.speed) = (0.0, 0.0);
         }
@@ -479,14 +469,16 @@ impl SealRun {
         (totals.slips, totals.speed) = if speed * sign > 0.0 { (sign, speed) } else { (0.0, 0.0) };
     }
 
-    /// One step within a step, of which `left` (s) are left; returns how long it was.
-    fn substep(&mut self, left: f64, motion: &SealMotion) -> f64 {
-        let tolerance = self.seal.relative_tolerance;
-        let mut h = self.first_length(left, motion);
-        let first = h;
+    /// One step within a step, of which `left` (s) are left, with iterations up to `most`; returns how long it was.
+    fn substep(&mut self, left: f64, motion: &SealMotion, most: usize) -> Result<f64, FilmError> {
+        let first = self.first_length(left, motion);
+        let mut h = first;
         loop {
-            let drive = self.drive(motion);
-            let Some(stepped) = self.try_step(h, drive, motion, tolerance) else {
+            if self.stepper.iterations > most || (h < first && h < SHORTEST * motion.duration) {
+                return Err(FilmError::TooMuchWork { time: self.state.totals.time });
+            }
+            let found = self.try_step(h, self.drive(motion), motion, self.seal.relative_tolerance);
+            let Some(stepped) = found.filter(|stepped| stepped.error.is_finite()) else {
                 h *= SHRINKS_TO;
                 continue;
             };
@@ -498,10 +490,10 @@ impl SealRun {
             // Ends of a master's step and of what comes back are no reasons for shorter ones.
             let next = &mut self.state.totals.next_step;
             *next = if h < first { grown } else { next.max(grown) };
-            return match self.event(h, &stepped, motion) {
+            return Ok(match self.event(h, &stepped, motion) {
                 Some((passed, stepped)) => self.accept(passed, &stepped, motion, true),
                 None => self.accept(h, &stepped, motion, false),
-            };
+            });
         }
     }
 
@@ -531,34 +523,18 @@ impl SealRun {
     /// Where within a step of `h` (s) stick ends or slip does, the step up to there.
     fn event(&mut self, h: f64, stepped: &Stepped, motion: &SealMotion) -> Option<(f64, Stepped)> {
         self.seal.file.stiffness?;
-        let excess = |run: &mut Self, passed: f64, stepped: &Stepped| run.excess(passed, stepped, motion);
-        let mut above = (h, excess(self, h, stepped), *stepped);
-        if above.1 <= 0.0 {
+        let end = self.excess(h, stepped, motion);
+        if end <= 0.0 {
             return None;
         }
-        // Regula falsi in its Illinois form, between the start and where it is passed.
-        let start = self.excess_at_start();
-        let (mut below, mut weight) = ((0.0, start.min(-f64::MIN_POSITIVE)), 1.0);
-        for _ in 0..40 {
-            let share = below.1 * weight / (below.1 * weight - above.1);
-            let passed = below.0 + (above.0 - below.0) * share.clamp(0.01, 0.99);
-            let drive = self.drive(motion);
-            let Some(tried) = self.try_step(passed, drive, motion, self.seal.relative_tolerance) else { break };
-            let found = excess(self, passed, &tried);
-            if found > 0.0 {
-                (above, weight) = ((passed, found, tried), 0.5);
-            } else {
-                (below, weight) = ((passed, found), 1.0);
-            }
-            if found.abs() <= LOCATED || above.0 - below.0 <= LOCATED * h {
-                above = (passed, found, tried);
-                break;
-            }
-        }
-        // The step that ends there is the one in memory.
-        let drive = self.drive(motion);
-        let stepped = self.try_step(above.0, drive, motion, self.seal.relative_tolerance)?;
-        Some((above.0, stepped))
+        let (drive, tolerance) = (self.drive(motion), self.seal.relative_tolerance);
+        let begin = self.excess_at_start().min(-f64::MIN_POSITIVE);
+        let excess = |passed: f64| match self.try_step(passed, drive, motion, tolerance) {
+            Some(stepped) => self.excess(passed, &stepped, motion),
+            None => end,
+        };
+        let passed = root_between(excess, [(0.0, begin), (h, end)], LOCATED * h).max(LOCATED * h);
+        Some((passed, self.try_step(passed, drive, motion, tolerance)?))
     }
 
     /// By how much stick exceeds its limit, over the limit, at the end of a step of `h` (s); in slip how much its speed is
@@ -613,7 +589,7 @@ impl SealRun {
             if was_slip != 0.0 {
                 (self.state.totals.slips, self.state.totals.speed) = (0.0, 0.0);
             } else {
-                let sign = totals_sign(self.state.totals.spring);
+                let sign = direction_of(self.state.totals.spring);
                 self.slip_or_stick(sign, motion);
             }
         }
@@ -641,6 +617,9 @@ impl SealRun {
         }
         if let Some((what, value)) = not_finite(&saved.totals) {
             return Err(FilmRestoreError::Invalid { what, value });
+        }
+        if ![-1.0, 0.0, 1.0].contains(&saved.totals.slips) {
+            return Err(FilmRestoreError::Invalid { what: "direction of slip", value: saved.totals.slips });
         }
         let negative = saved.contents.iter().copied().find(|content| !(content.is_finite() && *content >= 0.0));
         if let Some(value) = negative {
@@ -735,6 +714,6 @@ impl SealRun {
 }
 
 /// The direction of a force.
-fn totals_sign(force: f64) -> f64 {
+fn direction_of(force: f64) -> f64 {
     if force < 0.0 { -1.0 } else { 1.0 }
 }

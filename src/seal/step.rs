@@ -68,7 +68,7 @@ impl Limit {
     }
 }
 
-/// What a step comes to, per width of the film.
+/// What a step comes to; flows by length along the lip.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Stepped {
     /// ∫ V dt, m.
@@ -134,9 +134,8 @@ impl Banded {
 #[derive(Clone, Debug)]
 pub(super) struct Stepper {
     matrix: Banded,
-    /// The contents of the stage under way, of its inner stage, and where a line search goes.
+    /// The contents of the stage under way, and where a line search began.
     pub(super) contents: Vec<f64>,
-    inner: Vec<f64>,
     trial: Vec<f64>,
     right: Vec<f64>,
     residual: Vec<f64>,
@@ -167,7 +166,6 @@ impl Stepper {
         Self {
             matrix: Banded { rows: vec![[0.0; BANDS]; count] },
             contents: zeros(),
-            inner: zeros(),
             trial: zeros(),
             right: zeros(),
             residual: zeros(),
@@ -196,6 +194,11 @@ impl Stepper {
             self.limit_slopes[i] = rubbing.area * slope;
         }
         limit
+    }
+
+    /// L |V| of what a film was evaluated at last, W.
+    fn power(&mut self, film: &Film, law: &GapLaw, contents: &[f64], rubbing: Rubbing, speed: f64) -> f64 {
+        if speed == 0.0 { 0.0 } else { self.limit(film, law, contents, rubbing).whole() * speed.abs() }
     }
 
     /// How fast L changes at what a film was evaluated at last, at no slip, N/s, and by the speed of slip, N/m.
@@ -228,7 +231,7 @@ impl Stepper {
         let ends = at(film, 0.0);
         film.evaluate(law, start, first_speed, &ends);
         let mut stepped = Stepped::default();
-        let mut power = [self.limit(film, law, start, rubbing).whole() * first_speed.abs(), 0.0, 0.0];
+        let mut power = [self.power(film, law, start, rubbing, first_speed), 0.0, 0.0];
         let mut speeds = [first_speed, 0.0, 0.0];
         let out = |film: &Film| film.flows[film.flows.len() - 1];
         stepped.out += weights[0] * out(film);
@@ -256,11 +259,8 @@ impl Stepper {
             rates.iter_mut().zip(made).for_each(|(rate, (content, right))| *rate = (content - right) / (OWN * h));
             stepped.out += weights[stage] * out(film);
             let contents = std::mem::take(&mut self.contents);
-            power[stage] = self.limit(film, law, &contents, rubbing).whole() * speeds[stage].abs();
+            power[stage] = self.power(film, law, &contents, rubbing, speeds[stage]);
             self.contents = contents;
-            if stage == 1 {
-                self.inner.copy_from_slice(&self.contents);
-            }
         }
         stepped.travel = speeds.iter().zip(weights).map(|(speed, weight)| speed * weight).sum();
         stepped.loss = power.iter().zip(weights).map(|(power, weight)| power * weight).sum();

@@ -188,7 +188,7 @@ impl FmuRun for FmuPatchRun {
         let mut reckoned = ReckonedWork::default();
         for (inputs, step) in steps {
             let motion = motion(&pose, &inputs, &step)?;
-            reckoned = reckoned.with(self.run.reckon(speed, &motion));
+            reckoned = reckoned.with(self.run.reckon(pose, speed, &motion));
             pose = std::array::from_fn(|i| pose[i] + motion.rates[i] * motion.duration);
             speed = motion.transport_speed;
         }

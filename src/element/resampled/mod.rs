@@ -449,20 +449,29 @@ impl ResampledLaw {
         /// 25.4.30).
         const GAUSS: [(f64, f64); 2] =
             [(0.339_981_043_584_856, 0.652_145_154_862_546), (0.861_136_311_594_053, 0.347_854_845_137_454)];
-        let cells = || std::iter::once(place.cell).chain(place.next.map(|(next, _)| next));
-        let touch = |cell: SpeedCell| {
-            let c = self.coefficients_at(cell.index, cell.fraction(place.log_speed), 0);
-            c[START] - 2.0 / c[LOG_PRESSURE[0]]
+        // Where the law of a cell has its next end, rising: at the touch, and where an interval of the pressure begins.
+        let end = |cell: &SpeedCell, i: usize| match i.checked_sub(1) {
+            Some(i) => {
+                (i < self.log_pressures.len()).then(|| self.start(cell, i, place.log_speed) + self.indentation(i))
+            }
+            None => {
+                let c = self.coefficients_at(cell.index, cell.fraction(place.log_speed), 0);
+                Some(c[START] - 2.0 / c[LOG_PRESSURE[0]])
+            }
         };
-        let starts = |cell: SpeedCell| {
-            let start = move |i: usize| self.start(&cell, i, place.log_speed) + self.indentation(i);
-            (0..self.log_pressures.len()).map(start)
-        };
-        let (mut energy, mut from) = (0.0, cells().map(touch).fold(f64::INFINITY, f64::min));
+        let mut cells = [Some(place.cell), place.next.map(|(next, _)| next)].map(|cell| (cell, 0));
+        let touches = cells.iter().filter_map(|(cell, _)| end(cell.as_ref()?, 0));
+        let (mut energy, mut from) = (0.0, touches.fold(f64::INFINITY, f64::min));
         while from < approach {
-            // Up to the end of an interval of the pressure, within which p is smooth.
-            let ends = cells().flat_map(starts).chain(cells().map(touch)).filter(|end| *end > from);
-            let to = ends.fold(approach, f64::min);
+            // Up to the next end, before which p is smooth.
+            let mut to = approach;
+            for (cell, i) in &mut cells {
+                let Some(cell) = cell else { continue };
+                while end(cell, *i).is_some_and(|end| end <= from) {
+                    *i += 1;
+                }
+                to = end(cell, *i).map_or(to, |end| to.min(end));
+            }
             let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
             let pressure = |x: f64| self.at_place(place, middle + half * x).pressure;
             energy += half * GAUSS.iter().map(|(x, weight)| weight * (pressure(-x) + pressure(*x))).sum::<f64>();

@@ -8,8 +8,8 @@ mod tests;
 
 use super::error::{ParameterError, Problem};
 use super::keys::{self, At, Key, KeyRow};
-use super::values::{Value, is_similar};
-use super::{Foundation, Scene, Unit};
+use super::values::{Value, Word, is_similar};
+use super::{Foundation, InputRule, Scene, TableExtrapolation, Unit};
 use key_path::KeyPath;
 
 /// One settable number or word of a scene, an element or a patch.
@@ -95,8 +95,43 @@ impl Parameter {
         if self.key().allows(value) { Ok(()) } else { Err(self.refuse(value)) }
     }
 
+    /// What a text stands for, if the parameter may have it.
+    fn check_word<T: Word>(self, text: &str) -> Result<T, ParameterError> {
+        T::parse(text).ok_or_else(|| self.refuse(Value::Text(text.to_owned())))
+    }
+
     fn refuse(self, given: impl ToString) -> ParameterError {
         ParameterError::new(self.name(), Problem::value(given, self.key().allowed))
+    }
+}
+
+impl InputRule {
+    /// The value of one of its parameters; `None` of another.
+    pub(crate) fn parameter(&self, parameter: Parameter) -> Option<Value> {
+        match parameter {
+            Parameter::EXTRAPOLATION => Some(Value::Text(self.extrapolation.word().into())),
+            Parameter::INTERVAL => Some(Value::Real(self.interval)),
+            _ => None,
+        }
+    }
+
+    /// Gives one of its parameters a value; false where it is none of them, or not of its type.
+    pub(crate) fn set_parameter(&mut self, parameter: Parameter, value: &Value) -> Result<bool, ParameterError> {
+        match (parameter, value) {
+            (Parameter::EXTRAPOLATION, Value::Text(word)) => self.extrapolation = parameter.check_word(word)?,
+            (Parameter::INTERVAL, &Value::Real(interval)) => self.interval = parameter.check_number(interval)?,
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+}
+
+impl TableExtrapolation {
+    /// Takes the word of its parameter; false where it is another, or no word.
+    pub(crate) fn set_parameter(&mut self, parameter: Parameter, value: &Value) -> Result<bool, ParameterError> {
+        let (Parameter::TABLE_EXTRAPOLATION, Value::Text(word)) = (parameter, value) else { return Ok(false) };
+        *self = parameter.check_word(word)?;
+        Ok(true)
     }
 }
 

@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use super::table::{Entry, Result, Source, TableReader};
 use super::{read_input, read_name, surface};
-use crate::scene::error::{Location, Problem};
 use crate::scene::file_values::{FileValues, Setting};
 use crate::scene::keys::{Form, PATCH_ROOT, ShapeKind};
 use crate::scene::patch_file::{
@@ -58,10 +57,7 @@ impl PatchFile {
     }
 
     fn of_values(mut values: FileValues, settings: &[Setting]) -> Result<Self> {
-        if let Some((_, Setting { key, value })) = values.set_all(settings)?.into_iter().next() {
-            let problem = Problem::value(value, "a key of the patch file");
-            return Err(SceneError::new(Location::default(), key, problem));
-        }
+        values.set_own(settings, "patch file")?;
         let mut root = TableReader::root(Source { values: &values, form: Form::Direct, keys: PATCH_ROOT })?;
         let name = read_name(&root.required("name")?)?;
         let table_entry = root.required("table")?;

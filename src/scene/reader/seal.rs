@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use super::table::{Entry, Result, Source, TableReader};
 use super::{read_groups, read_input, read_name, surface};
-use crate::scene::error::{Location, Problem};
 use crate::scene::file_values::{FileValues, Setting};
 use crate::scene::keys::{Form, SEAL_ROOT};
 use crate::scene::patch_file::TableExtrapolation;
@@ -51,10 +50,7 @@ impl SealFile {
     }
 
     fn of_values(mut values: FileValues, settings: &[Setting]) -> Result<Self> {
-        if let Some((_, Setting { key, value })) = values.set_all(settings)?.into_iter().next() {
-            let problem = Problem::value(value, "a key of the seal file");
-            return Err(SceneError::new(Location::default(), key, problem));
-        }
+        values.set_own(settings, "seal file")?;
         let mut root = TableReader::root(Source { values: &values, form: Form::Direct, keys: SEAL_ROOT })?;
         let name = read_name(&root.required("name")?)?;
         let (table, temperature, table_extrapolation) = root.required("table")?.table(|table| {

@@ -25,15 +25,6 @@ pub struct FlowGaps {
     pub leak_across: Option<f64>,
 }
 
-/// The flow over a map, along the sliding.
-#[derive(Clone, Debug)]
-pub struct GapFlow {
-    /// What it comes to.
-    pub gaps: FlowGaps,
-    /// |q| at the points over that between smooth plates at the leak gap; 0 everywhere where it is closed.
-    pub density: Vec<f64>,
-}
-
 /// The share of contact at which ways close.
 const CLOSES_AT: f64 = 0.42;
 /// A leak gap whose cube is this part of that of the gap's root mean square is closed.
@@ -64,23 +55,19 @@ impl FlowGaps {
         let weights: Vec<f64> = conductances.iter().map(|a| 1.0 / (a + factor * s)).collect();
         Self { leak: largest * s.cbrt(), drag: dot(gaps, &weights) / sum(&weights), leak_across: None }
     }
-}
 
-impl GapFlow {
     /// Solves for the flow through `gaps` (m), 0 where the surfaces touch, at points `spacing` (m) apart along and across the
     /// sliding, period in both directions.
     pub fn of_map(gaps: &[f64], size: GridSize, spacing: [f64; 2]) -> Self {
-        let count = gaps.len();
         let largest = gaps.iter().copied().fold(0.0, f64::max);
         if largest <= 0.0 {
-            let gaps = FlowGaps { leak_across: Some(0.0), ..FlowGaps::ZERO };
-            return Self { gaps, density: vec![0.0; count] };
+            return Self { leak_across: Some(0.0), ..Self::ZERO };
         }
         // In units of the largest gap, and of a length that makes faces of even gaps 1.
         let relative: Vec<f64> = gaps.iter().map(|gap| gap / largest).collect();
         let network = Network::new(&relative, size, spacing);
         let along = network.solve(&network.sources(Direction::Along, |face, _| face));
-        let closed = CLOSED * (dot(&relative, &relative) / count as f64).powf(1.5);
+        let closed = CLOSED * (dot(&relative, &relative) / gaps.len() as f64).powf(1.5);
         let cube = |mean: f64| if mean > closed { mean } else { 0.0 };
         let leak = cube(network.conductance(Direction::Along, &along)).cbrt();
         let across = network.solve(&network.sources(Direction::Across, |face, _| face));
@@ -88,9 +75,8 @@ impl GapFlow {
         let carried = network.sources(Direction::Along, |_, face| face);
         let pressures = network.solve(&carried);
         let drag = network.mean_carried(&pressures);
-        let density = if leak > 0.0 { network.density(&along, leak.powi(3)) } else { vec![0.0; count] };
-        let [leak, drag, across] = [leak, drag, leak_across].map(|gap| largest * gap);
-        Self { gaps: FlowGaps { leak, drag: drag.max(0.0), leak_across: Some(across) }, density }
+        let [leak, drag, across] = [leak, drag.max(0.0), leak_across].map(|gap| largest * gap);
+        Self { leak, drag, leak_across: Some(across) }
     }
 }
 
@@ -232,21 +218,6 @@ impl Network {
         let flows: Vec<f64> = (0..faces.len()).map(|i| self.carried[i] + faces[i] * fall(i)).collect();
         sum(&flows) / flows.len() as f64
     }
-
-    /// |q| at the points, the mean of the faces on either side, over `mean`.
-    fn density(&self, pressures: &[f64], mean: f64) -> Vec<f64> {
-        let flow = |i: usize, direction: Direction| {
-            let fall = |i: usize| match direction {
-                Direction::Along => self.fall(pressures, i, direction),
-                Direction::Across => self.weights[1] * (pressures[i] - pressures[self.size.behind(i, direction)]),
-            };
-            let faces = &self.conductances[direction as usize];
-            let before = self.size.before(i, direction);
-            0.5 * (faces[i] * fall(i) + faces[before] * fall(before))
-        };
-        let size = |i| flow(i, Direction::Along).hypot(flow(i, Direction::Across)) / mean;
-        (0..pressures.len()).map(size).collect()
-    }
 }
 
 /// Cholesky's incomplete factors on the places of the matrix itself, (D - L) D⁻¹ (D - Lᵀ), as D.
@@ -297,7 +268,7 @@ mod tests {
         let (size, spacing) =
             if across { (GridSize { nx: 4, ny: points }, [0.3, spacing[0]]) } else { (size, spacing) };
         let gaps: Vec<f64> = (0..size.points()).map(|i| wave(if across { i / 4 } else { i % points })).collect();
-        GapFlow::of_map(&gaps, size, spacing).gaps
+        FlowGaps::of_map(&gaps, size, spacing)
     }
 
     /// Closed forms of one wave: 1 + 3/2 ε² along ridges, the harmonic mean of g³ over them, and what is carried over them.

@@ -22,7 +22,7 @@ mod surface;
 mod transform;
 
 pub use contact::Contact;
-pub use flow::{FlowGaps, GapFlow};
+pub use flow::FlowGaps;
 pub use heat::HeatResponse;
 pub use rubber::SlidingRubber;
 pub use slide::{SlideProblem, SteadySlide, SteadySolver};

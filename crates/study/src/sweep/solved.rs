@@ -13,7 +13,7 @@ use super::point::{steady_sliding, steady_sliding_at};
 use super::search::{NotSteady, SteadySliding, StopBounds};
 use super::table::{SweepHeader, SweepRow};
 use crate::Error;
-use crate::steady::{FlowGaps, GapFlow, SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
+use crate::steady::{FlowGaps, SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 
 /// The solver of the points of a sweep, on all threads.
 #[derive(Debug)]
@@ -178,7 +178,7 @@ impl SolvedPoints {
         let surface = self.surface();
         let is_map = surface.size.ny > 1;
         let medium = (!is_map || asked == Gaps::Medium).then(|| FlowGaps::of_medium(gaps));
-        let solved = is_map.then(|| GapFlow::of_map(gaps, surface.size, surface.spacing()).gaps);
+        let solved = is_map.then(|| FlowGaps::of_map(gaps, surface.size, surface.spacing()));
         let found = solved.or(medium);
         let beside = medium.filter(|_| is_map);
         let values = [
