@@ -20,8 +20,9 @@ DRIVE = MASS * 9.81 * math.sin(math.radians(5.0))  # N
 BRAKE = 400.0  # N m, from 0.5 s on, within 0.1 s
 TOUCH, PRESSED = 0.30048, 0.298  # m, of the axle
 INPUTS, OUTPUTS = ("x", "z", "transport.speed"), ("force.x", "transport.force", "E_diss")
-# Jacobi masters, which step wheel and patch at once: with values alone, held or not, and with rates.
-MASTERS = {"values": "linear", "hold": "hold", "rates": "linear"}
+# Jacobi masters, which step wheel and patch at once: with values alone, held or not, with rates, and with values alone on
+# rubber that has a loss (s).
+MASTERS = {"values": ("linear", 0.0), "hold": ("hold", 0.0), "rates": ("linear", 0.0), "damped": ("linear", 1e-3)}
 
 
 def height(time):
@@ -48,7 +49,9 @@ def run(description, folder, master, h, end):
     reference = {variable.name: variable.valueReference for variable in description.modelVariables}
     inputs, outputs = ([reference[name] for name in names] for names in (INPUTS, OUTPUTS))
     fmu.instantiate()
-    fmu.setString([reference["input.extrapolation"]], [MASTERS[master]])
+    extrapolation, damping = MASTERS[master]
+    fmu.setString([reference["input.extrapolation"]], [extrapolation])
+    fmu.setReal([reference["patch.damping"]], [damping])
     fmu.setupExperiment(startTime=0.0)
     fmu.enterInitializationMode()
     state = (0.0, 5.0, 5.0 / RADIUS)

@@ -15,7 +15,7 @@
 //! 11 at most (stick) or close to one (slip).
 
 use super::law::{ElementContact, LawAtSpeed};
-use super::spring::{Advanced, Segment, SpringLaw, advance, apply_jump};
+use super::spring::{Advanced, Segment, SpringLaw, advance, apply_jump, damped, damper_loss};
 use crate::math::bracketed_root;
 use crate::model::Mode;
 
@@ -113,6 +113,19 @@ impl Jenkins {
         } else {
             self.set_mode(Mode::Stick, 0.0, recorder);
         }
+    }
+
+    /// The force on the ground (N) of the spring and of a damper beside it, τ = `damping` (s), where the carrier moves along
+    /// x at `u_rate` (m/s).
+    pub(super) fn damped_force(&self, contact: &ElementContact, u_rate: f64, damping: f64) -> f64 {
+        if damping > 0.0 { damped([self.force, 0.0], &contact.law(), [u_rate, 0.0], damping)[0] } else { self.force }
+    }
+
+    /// What that damper takes while the carrier moves from one contact to another for `time` (s), J.
+    pub(super) fn damper_loss(&self, contacts: [&ElementContact; 2], u_rate: f64, time: f64, damping: f64) -> f64 {
+        let [begin, end] = contacts.map(ElementContact::law);
+        let segment = Segment { begin, end, displacement: [u_rate * time, 0.0], half_turn: 0.0 };
+        damper_loss([self.force, 0.0], &segment, time, damping)
     }
 
     fn set_mode(&mut self, mode: Mode, elapsed: f64, recorder: &mut impl MotionRecorder) {

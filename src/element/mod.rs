@@ -38,4 +38,4 @@ pub use point_status::PointStatus;
 pub use quantity::Quantity;
 pub use resampled::{LawPlace, ResampledLaw, SpeedCell, SpeedRange};
 pub use run::{Element, ElementError, ElementRestoreError, ElementState};
-pub(crate) use spring::{Advanced, Segment, SpringLaw, advance, apply_jump};
+pub(crate) use spring::{Advanced, Segment, SpringLaw, advance, apply_jump, damped, damper_loss};

@@ -18,6 +18,8 @@ pub struct PointContact {
     /// The temperature, K; 0 where the table has none.
     temperature: f64,
     table_extrapolation: TableExtrapolation,
+    /// τ of the damper beside the spring, s.
+    damping: f64,
     /// How the carrier moves on when a master gives no rates.
     pub input_rule: InputRule,
 }
@@ -32,6 +34,7 @@ impl PointContact {
             clearance: Clearance::new(&table),
             table: Arc::new(table),
             table_extrapolation: TableExtrapolation::Refuse,
+            damping: 0.0,
             input_rule: InputRule::default(),
         }
     }
@@ -56,6 +59,11 @@ impl PointContact {
         self.table_extrapolation
     }
 
+    /// τ of the damper beside the spring, s.
+    pub(super) fn damping(&self) -> f64 {
+        self.damping
+    }
+
     /// The model's name.
     pub fn name(&self) -> String {
         format!("{} element", self.table.scene())
@@ -76,7 +84,7 @@ impl PointContact {
         let temperature = (self.table.grid.temperatures.len() > 1).then_some(Parameter::TEMPERATURE);
         temperature
             .into_iter()
-            .chain([Parameter::TABLE_EXTRAPOLATION, Parameter::EXTRAPOLATION, Parameter::INTERVAL])
+            .chain([Parameter::TABLE_EXTRAPOLATION, Parameter::EXTRAPOLATION, Parameter::INTERVAL, Parameter::DAMPING])
             .collect()
     }
 
@@ -84,6 +92,7 @@ impl PointContact {
     pub fn parameter(&self, parameter: Parameter) -> Value {
         match parameter {
             Parameter::TEMPERATURE => Value::Real(self.temperature),
+            Parameter::DAMPING => Value::Real(self.damping),
             _ => {
                 let word = || Value::Text(self.table_extrapolation.word().into());
                 self.input_rule.parameter(parameter).unwrap_or_else(word)
@@ -105,6 +114,7 @@ impl PointContact {
             return Ok(());
         }
         match (parameter, &value) {
+            (Parameter::DAMPING, &Value::Real(damping)) => self.damping = parameter.check_number(damping)?,
             (Parameter::TEMPERATURE, &Value::Real(temperature)) => {
                 let temperatures = &self.table.grid.temperatures;
                 let (low, high) = (temperatures.first(), temperatures.last());
@@ -129,7 +139,7 @@ impl PointContact {
 /// What the outputs are computed from, or how it changes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct OutputTerms {
-    /// The force in the spring, G = -F_x, N.
+    /// The force on the ground along x, -F_x, N.
     pub(super) force: f64,
     /// The normal force F_z, N.
     pub(super) normal: f64,

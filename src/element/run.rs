@@ -115,6 +115,7 @@ pub struct Element {
     /// The law at the speed before: a step that is refused or repeated goes back to it.
     curve_before: LawAtSpeed,
     table_extrapolation: TableExtrapolation,
+    damping: f64,
     pub(super) state: ElementState,
     pub(super) spring: Jenkins,
     mode_changes: Option<Vec<ModeChange>>,
@@ -148,7 +149,9 @@ impl Element {
         let spring = Jenkins::new(&ElementContact::default());
         let table_extrapolation = contact.table_extrapolation();
         let curve_before = curve.clone();
-        let element = Self { law, curve, curve_before, table_extrapolation, state, spring, mode_changes: None };
+        let damping = contact.damping();
+        let element =
+            Self { law, curve, curve_before, table_extrapolation, damping, state, spring, mode_changes: None };
         element.check_speed(state.u_rate)?;
         element.check_separation(state.w, state.u_rate, CheckedAt::Start)?;
         Ok(element)
@@ -196,13 +199,16 @@ impl Element {
 
     /// Takes the spring along with the carrier, which moves to `end` (m) along z.
     fn follow(&mut self, duration: f64, u_rate: f64, w_rate: f64, end: f64) {
-        let Self { law, curve, state, spring, mode_changes, .. } = self;
+        let Self { law, curve, state, spring, mode_changes, damping, .. } = self;
         let mut ledger = Ledger { curve, state, mode_changes, mode: spring.mode };
         let approach = |w: f64| -(law.rest_separation + w);
         let (from, to) = (approach(ledger.state.w), approach(end));
         let here = curve.at(from);
         spring.set_law(&here, from, &mut ledger);
         if from == to {
+            if *damping > 0.0 {
+                ledger.record_loss(from, spring.damper_loss([&here; 2], u_rate, duration, *damping));
+            }
             return spring.slide(&here, from, u_rate, duration, &mut ledger);
         }
         let rates = MotionRates { u: u_rate, approach: -w_rate };
@@ -210,6 +216,10 @@ impl Element {
         while at != to {
             let end = curve.end_of_segment(at, to);
             let next = if to > at { end.min(to) } else { end.max(to) };
+            if *damping > 0.0 {
+                let (contacts, time) = ([&curve.at(at), &curve.at(next)], (next - at) / rates.approach);
+                ledger.record_loss(next, spring.damper_loss(contacts, u_rate, time, *damping));
+            }
             spring.change_approach(curve, at, next, rates, (at - from) / rates.approach, &mut ledger);
             at = next;
         }
@@ -269,14 +279,19 @@ impl Element {
 
     fn terms(&self, contact: &ElementContact) -> OutputTerms {
         OutputTerms {
-            force: self.spring.force,
+            force: self.force(contact),
             normal: contact.normal.value,
-            power: self.power(contact),
+            power: self.power(contact) + (self.force(contact) - self.spring.force) * self.state.u_rate,
             hysteresis: self.hysteresis_share(contact).value,
             contact_ratio: self.contact_ratio(contact).value,
             lost: self.state.lost,
             lost_by_channel: self.state.lost_by_channel,
         }
+    }
+
+    /// The force on the ground along x, with the damper's part, N.
+    fn force(&self, contact: &ElementContact) -> f64 {
+        self.spring.damped_force(contact, self.state.u_rate, self.damping)
     }
 
     /// Writes into `values` how `variables` change as the carrier moves along x and z by `direction` (m per unit), the
@@ -302,11 +317,20 @@ impl Element {
     /// How the terms change as the carrier moves by du and dw (m).
     fn change(&self, contact: &ElementContact, du: f64, dw: f64) -> OutputTerms {
         let da = -dw;
-        let force = self.force_change(contact, du, da);
+        let of_spring = self.force_change(contact, du, da);
+        // The damper's part follows the stiffness; at the limit the sum does.
+        let viscous = self.damping * self.rates().u;
+        let force = if (self.spring.force + viscous * contact.stiffness.value).abs() < contact.limit.value {
+            of_spring + viscous * contact.stiffness.slope * da
+        } else if viscous != 0.0 {
+            self.force(contact).signum() * contact.limit.slope * da
+        } else {
+            of_spring
+        };
         OutputTerms {
             force,
             normal: contact.normal.slope * da,
-            power: self.power_change(contact, force, da),
+            power: self.power_change(contact, of_spring, da) + (force - of_spring) * self.rates().u,
             hysteresis: self.hysteresis_share(contact).slope * da,
             contact_ratio: self.contact_ratio(contact).slope * da,
             ..OutputTerms::default()

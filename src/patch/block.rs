@@ -1,12 +1,12 @@
 //! A block of elements that a step is done for together: in structure of arrays and, where possible, loops without
 //! branches.
 
-use super::block_contacts::{BeyondTable, BlockContacts, FaceMotion, StepSums, TooWarm};
+use super::block_contacts::{BeyondTable, BlockContacts, Damping, FaceMotion, StepSums, TooWarm};
 use super::face::{BLOCK, Face, Lanes, lanes_of};
 use super::heat::{self, BlockHeat, StepHeat};
 use super::motion::{BodyKinematics, Substep};
 use super::segments::{advance_in_segments, half_turn, reverses};
-use crate::element::{ROUNDING, ResampledLaw, Segment, advance, apply_jump};
+use crate::element::{ROUNDING, ResampledLaw, Segment, SpringLaw, advance, apply_jump, damped, damper_loss};
 use crate::math::Number;
 
 /// What an element does; in states, as a number.
@@ -39,6 +39,8 @@ pub(super) struct ElementBlock<T> {
     pub(super) heat: BlockHeat<T>,
     /// Energy lost in the part by slip, J.
     part_slip: Lanes<T>,
+    /// How long the last part took, s; 0 before.
+    part_duration: f64,
     /// What its elements have been through since it was counted last.
     work: u64,
 }
@@ -56,6 +58,8 @@ pub(super) struct BlockSprings<T> {
     slip: Lanes<f64>,
     /// Energy lost in the step with contacts that were released, J.
     release: Lanes<f64>,
+    /// Energy lost in the step by dampers, J.
+    damper: Lanes<f64>,
 }
 
 impl<T: Number> BlockSprings<T> {
@@ -68,6 +72,7 @@ impl<T: Number> BlockSprings<T> {
             slips: [0.0; BLOCK],
             slip: [0.0; BLOCK],
             release: [0.0; BLOCK],
+            damper: [0.0; BLOCK],
         }
     }
 }
@@ -83,6 +88,7 @@ impl<T: Number> ElementBlock<T> {
             end: Box::new(BlockContacts::new()),
             heat: BlockHeat::new(),
             part_slip: [T::constant(0.0); BLOCK],
+            part_duration: 0.0,
             work: 0,
         }
     }
@@ -90,7 +96,7 @@ impl<T: Number> ElementBlock<T> {
     /// Makes it the block of the `count` elements from `start` on, as they are counted in the step, with no springs
     /// yet and cold.
     pub(super) fn reset(&mut self, start: usize, count: usize) {
-        (self.start, self.count) = (start, count);
+        (self.start, self.count, self.part_duration) = (start, count, 0.0);
         self.springs = BlockSprings::none();
         self.heat.reset();
         // Both, since the law is not looked up in all lanes.
@@ -274,6 +280,7 @@ impl<T: Number> ElementBlock<T> {
         part: Substep,
     ) {
         self.part_slip = [T::constant(0.0); BLOCK];
+        self.part_duration = part.length() * step.body.duration;
         if self.begin.is_free && self.end.is_free && self.springs.stiffness.iter().all(|k| k.value() == 0.0) {
             return;
         }
@@ -303,6 +310,34 @@ impl<T: Number> ElementBlock<T> {
             springs.slip[i] += part_slip[i].value();
         }
         springs.stiffness = end.stiffness;
+        if step.damping.shear > 0.0 {
+            self.add_damper_losses(step, &before, &displacement);
+        }
+    }
+
+    /// Adds what the dampers take in a part that the springs begin with the forces `before` (N).
+    #[inline(never)]
+    fn add_damper_losses(&mut self, step: &FaceMotion<'_, T>, before: &[Lanes<T>; 2], displacement: &[Lanes<T>; 2]) {
+        let (begin, end, duration) = (&*self.begin, &*self.end, self.part_duration);
+        let value = |law: SpringLaw<T>| SpringLaw { stiffness: law.stiffness.value(), limit: law.limit.value() };
+        for i in 0..self.count {
+            let segment = Segment {
+                begin: value(begin.law(i)),
+                end: value(end.law(i)),
+                displacement: [displacement[0][i].value(), displacement[1][i].value()],
+                half_turn: 0.0,
+            };
+            let force = [before[0][i].value(), before[1][i].value()];
+            let mut loss = damper_loss(force, &segment, duration, step.damping.shear);
+            // Along the normal by the mean pressure in the part.
+            let pressures = [begin.pressure[i].value(), end.pressure[i].value()];
+            let middle = 0.5 * (pressures[0] + pressures[1]);
+            let rate = (pressures[1] - pressures[0]) / duration;
+            let approach = (end.approach[i] - begin.approach[i]).value();
+            let area = 0.5 * (begin.area[i] + end.area[i]);
+            loss += (area * (step.damping.normal * rate).max(-middle) * approach).max(0.0);
+            self.springs.damper[i] += loss;
+        }
     }
 
     /// How far the face's material goes along the plane from `begin` to `end`, m.
@@ -373,16 +408,20 @@ impl<T: Number> ElementBlock<T> {
         let end = &*self.end;
         sums.slip += total(&self.springs.slip);
         sums.release += total(&self.springs.release);
+        sums.damper += total(&self.springs.damper);
         if end.is_free {
             self.mode.fill(ElementMode::Free as u8);
             return;
         }
+        let is_damped = step.damping.shear > 0.0;
+        let (force, pressure) =
+            if is_damped { self.damped_loads(step.damping) } else { (self.springs.force, end.pressure) };
         // Forces on the body, their moments about the pose's point, and the force along the tread.
         let mut loads = [[T::constant(0.0); BLOCK]; 7];
         for i in 0..BLOCK {
             // -G along the plane, N = pA along z, and r × F.
-            let (f_x, f_y) = (-self.springs.force[0][i], -self.springs.force[1][i]);
-            let f_z = end.pressure[i].times(end.area[i]);
+            let (f_x, f_y) = (-force[0][i], -force[1][i]);
+            let f_z = pressure[i].times(end.area[i]);
             let (x, y, z) = (end.arm[0][i], end.arm[1][i], end.arm[2][i]);
             (loads[0][i], loads[1][i], loads[2][i]) = (f_x, f_y, f_z);
             loads[3][i] = y * f_z - z * f_y;
@@ -404,6 +443,28 @@ impl<T: Number> ElementBlock<T> {
             let mode = if self.springs.slips[i] > 0.0 { ElementMode::Slipping } else { ElementMode::Sticking };
             self.mode[i] = if end.stiffness[i].value() > 0.0 { mode as u8 } else { ElementMode::Free as u8 };
         }
+    }
+}
+
+impl<T: Number> ElementBlock<T> {
+    /// The forces on the ground (N) and the pressures (Pa) with what the dampers add to them.
+    #[inline(never)]
+    fn damped_loads(&self, damping: Damping) -> ([Lanes<T>; 2], Lanes<T>) {
+        let (begin, end) = (&*self.begin, &*self.end);
+        let (mut force, mut pressure) = (self.springs.force, end.pressure);
+        for i in 0..self.count {
+            let velocity = [end.velocity[0][i], end.velocity[1][i]];
+            [force[0][i], force[1][i]] = damped([force[0][i], force[1][i]], &end.law(i), velocity, damping.shear);
+        }
+        // The rate of the pressure is that over the last part; at a start there is none. Nothing pulls.
+        if self.part_duration > 0.0 && damping.normal > 0.0 {
+            let per_change = damping.normal / self.part_duration;
+            for i in 0..self.count {
+                let viscous = (end.pressure[i] - begin.pressure[i]).times(per_change);
+                pressure[i] = (pressure[i] + viscous).larger(T::constant(0.0));
+            }
+        }
+        (force, pressure)
     }
 }
 

@@ -207,6 +207,8 @@ pub(super) struct StepSums<T> {
     pub(super) slip: f64,
     /// Energy lost in the step with contacts that were released, J.
     pub(super) release: f64,
+    /// Energy lost in the step by dampers, J.
+    pub(super) damper: f64,
     /// The first element found beyond the table.
     pub(super) beyond: Option<BeyondTable>,
     /// The first element found warmer than the table.
@@ -240,7 +242,7 @@ pub(super) struct BeyondTable {
 impl<T: Number> StepSums<T> {
     pub(super) fn zero() -> Self {
         let zero = T::constant(0.0);
-        Self { wrench: [zero; 6], transport: zero, slip: 0.0, release: 0.0, beyond: None, too_warm: None }
+        Self { wrench: [zero; 6], transport: zero, slip: 0.0, release: 0.0, damper: 0.0, beyond: None, too_warm: None }
     }
 
     /// Adds those of elements that follow.
@@ -251,6 +253,7 @@ impl<T: Number> StepSums<T> {
         self.transport = self.transport + further.transport;
         self.slip += further.slip;
         self.release += further.release;
+        self.damper += further.damper;
         if further.beyond.is_some_and(|theirs| self.beyond.is_none_or(|own| theirs.fraction < own.fraction)) {
             self.beyond = further.beyond;
         }
@@ -261,9 +264,18 @@ impl<T: Number> StepSums<T> {
 
     /// The sums without their derivatives.
     pub(super) fn values(&self) -> StepSums<f64> {
-        let Self { wrench, transport, slip, release, beyond, too_warm } = *self;
-        StepSums { wrench: wrench.map(T::value), transport: transport.value(), slip, release, beyond, too_warm }
+        let Self { wrench, transport, slip, release, damper, beyond, too_warm } = *self;
+        StepSums { wrench: wrench.map(T::value), transport: transport.value(), slip, release, damper, beyond, too_warm }
     }
+}
+
+/// The dampers of the elements: τ of each, s; 0 where there is none.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Damping {
+    /// Beside the springs along the plane.
+    pub(super) shear: f64,
+    /// Beside the backing along the normal.
+    pub(super) normal: f64,
 }
 
 /// The motion of the face and of its tread through a step.
@@ -275,6 +287,7 @@ pub(super) struct FaceMotion<'a, T> {
     pub(super) substeps: Substeps,
     /// Where slip warms the elements.
     pub(super) heat: Option<StepHeat>,
+    pub(super) damping: Damping,
     pub(super) work: &'a WorkCounter,
 }
 
@@ -292,10 +305,10 @@ pub(super) struct ElementRange {
 impl<'a> FaceMotion<'a, f64> {
     /// The same motion with derivatives by the changes of the body's coordinates.
     pub(super) fn with_tangents(&self) -> FaceMotion<'a, Dual<6>> {
-        let Self { face, body, tread, substeps, heat, work } = *self;
+        let Self { face, body, tread, substeps, heat, damping, work } = *self;
         let PoseMotion { start, change, duration } = body;
         let change = std::array::from_fn(|i| Dual::variable(change[i], i));
-        FaceMotion { face, body: PoseMotion { start, change, duration }, tread, substeps, heat, work }
+        FaceMotion { face, body: PoseMotion { start, change, duration }, tread, substeps, heat, damping, work }
     }
 }
 

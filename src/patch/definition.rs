@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::block_contacts::Damping;
 use super::face::{Face, FixedPoints, Section, Tread};
 use crate::element::{Clearance, FrictionTable, Load, Node, Quantity, ResampledLaw};
 use crate::scene::{
@@ -59,6 +60,7 @@ pub struct Patch {
     pub(super) table_extrapolation: TableExtrapolation,
     pub(super) refine: u32,
     backing: Option<Backing>,
+    damping: f64,
     heat: Option<FaceHeat>,
     /// How the body moves on when a master gives no rates.
     pub input_rule: InputRule,
@@ -122,6 +124,7 @@ impl Patch {
             table_extrapolation: file.table_extrapolation,
             refine: file.refine,
             backing: file.backing,
+            damping: file.damping,
             input_rule: file.input_rule,
             files: file.files().into(),
             clearance: Clearance::new(&table),
@@ -205,14 +208,24 @@ impl Patch {
         self.backing
     }
 
+    /// τ of the dampers beside the springs along the plane and beside the backing, s.
+    pub fn damping(&self) -> f64 {
+        self.damping
+    }
+
+    /// Its dampers: along the normal only a backing has one.
+    pub(super) fn dampers(&self) -> Damping {
+        Damping { shear: self.damping, normal: if self.backing.is_some() { self.damping } else { 0.0 } }
+    }
+
     /// How slip warms the elements, if it does.
     pub fn heat(&self) -> Option<FaceHeat> {
         self.heat
     }
 
-    /// The same contacts on a rigid backing, without heating.
+    /// The same contacts on a rigid backing, without heating and damping.
     pub fn contacts_alone(&self) -> Self {
-        Self { backing: None, heat: None, ..self.clone() }
+        Self { backing: None, heat: None, damping: 0.0, ..self.clone() }
     }
 
     /// The largest tangential stiffness per area (Pa/m) of a contact at the largest pressure of the table, whatever its
@@ -342,7 +355,13 @@ impl Patch {
 
     /// The parameters.
     pub fn parameters(&self) -> Vec<Parameter> {
-        let others = [Parameter::TABLE_EXTRAPOLATION, Parameter::EXTRAPOLATION, Parameter::INTERVAL, Parameter::REFINE];
+        let others = [
+            Parameter::TABLE_EXTRAPOLATION,
+            Parameter::EXTRAPOLATION,
+            Parameter::INTERVAL,
+            Parameter::REFINE,
+            Parameter::DAMPING,
+        ];
         let reals =
             REALS.map(|(parameter, _)| parameter).into_iter().filter(|&parameter| self.real(parameter).is_some());
         others.into_iter().chain(reals).collect()
@@ -358,6 +377,7 @@ impl Patch {
     pub fn parameter(&self, parameter: Parameter) -> Value {
         match parameter {
             Parameter::TABLE_EXTRAPOLATION => Value::Text(self.table_extrapolation.word().into()),
+            Parameter::DAMPING => Value::Real(self.damping),
             Parameter::REFINE => Value::Integer(i32::try_from(self.refine).unwrap_or(i32::MAX)),
             _ => {
                 let real = || Value::Real(self.real(parameter).unwrap_or(0.0));
@@ -378,7 +398,8 @@ impl Patch {
         let text = text.trim();
         let value = match parameter {
             Parameter::REFINE => text.parse().ok().map(Value::Integer),
-            _ if parameter == Parameter::INTERVAL || real_of(parameter).is_some() => text.parse().ok().map(Value::Real),
+            Parameter::INTERVAL | Parameter::DAMPING => text.parse().ok().map(Value::Real),
+            _ if real_of(parameter).is_some() => text.parse().ok().map(Value::Real),
             _ => None,
         };
         self.set_parameter(parameter, value.unwrap_or_else(|| Value::Text(text.to_owned())))
@@ -409,6 +430,7 @@ impl Patch {
                 let allowed = u32::try_from(refine).ok().filter(|refine| (1..=1000).contains(refine));
                 self.refine = allowed.ok_or_else(refused)?;
             }
+            (Parameter::DAMPING, &Value::Real(damping)) => self.damping = parameter.check_number(damping)?,
             (_, &Value::Real(number)) => {
                 let real = real_of(parameter).ok_or_else(refused)?;
                 let number = parameter.check_number(number)?;

@@ -10,7 +10,7 @@ use super::motion::{BodyKinematics, PoseMotion};
 use super::run::PatchRun;
 use super::segments::size;
 use super::variables::{PatchOutput, PatchVariable};
-use crate::element::LawPlace;
+use crate::element::{LawPlace, SpringLaw, damped};
 use crate::math::{Dual, Number};
 
 type Rate = Dual<1>;
@@ -103,7 +103,12 @@ impl PatchRun {
             }
             // Its spring, and what both add to the sums.
             let (limit, stiffness) = (normal * law.friction, law.stiffness * element.area);
-            let force = self.force(i, limit, stiffness, element.displacement);
+            let mut force = self.force(i, limit, stiffness, element.displacement);
+            let elongation = size(force) / stiffness;
+            let damping = self.patch.damping();
+            if damping > 0.0 {
+                force = damped(force, &SpringLaw { stiffness, limit }, here.velocity.map(Rate::constant), damping);
+            }
             changes.add(&element, force, normal);
             let tangential = size(force);
             if with_shares {
@@ -114,7 +119,7 @@ impl PatchRun {
             changes.pressure = changes.pressure.larger(law.pressure);
             changes.tangential = changes.tangential + tangential;
             let stored = rate(0.0, normal.value * approach.slopes[0]);
-            changes.elastic = changes.elastic + (tangential * tangential / stiffness).times(0.5) + stored;
+            changes.elastic = changes.elastic + (elongation * elongation * stiffness).times(0.5) + stored;
             if limits.is_beyond(here.pressure, size(here.velocity)) {
                 changes.beyond = changes.beyond + normal;
             }

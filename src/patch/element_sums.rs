@@ -6,7 +6,7 @@ use super::motion::{BodyKinematics, PoseMotion};
 use super::run::PatchRun;
 use super::segments::size;
 use super::state::{PatchRestoreError, PatchState, Totals};
-use crate::element::{ElementLaw, LawPlace, ROUNDING};
+use crate::element::{ElementLaw, LawPlace, ROUNDING, SpringLaw, damped};
 use crate::math::Number;
 
 /// An element at an instant, and its law there.
@@ -150,10 +150,21 @@ impl PatchRun {
     }
 
     /// The traction of the ground on element `i` along x or y, Pa.
-    pub(super) fn traction_on(&self, i: usize, axis: usize) -> f64 {
-        let area = self.patch.element(i, self.totals.place).area;
-        let force = if axis == 0 { self.springs.x[i] } else { self.springs.y[i] };
-        if area > 0.0 { -force / area } else { 0.0 }
+    pub(super) fn traction_on(&mut self, i: usize, axis: usize) -> f64 {
+        let (totals, now) = (self.totals, self.totals.instant());
+        let here = self.element_contact(i, &totals, &now, self.springs.rise_of_law(i));
+        if here.area > 0.0 { -self.force_on_ground(i, &here)[axis] / here.area } else { 0.0 }
+    }
+
+    /// The force of an element on the ground along the plane, with its damper's part, N.
+    fn force_on_ground(&self, i: usize, here: &ElementContact<f64>) -> [f64; 2] {
+        let force = [self.springs.x[i], self.springs.y[i]];
+        let law = SpringLaw {
+            stiffness: here.law.stiffness * here.area,
+            limit: here.pressure * here.law.friction * here.area,
+        };
+        let damping = self.patch.damping();
+        if damping > 0.0 { damped(force, &law, here.velocity, damping) } else { force }
     }
 
     /// Refuses springs that no contact of a state can hold.
@@ -280,7 +291,7 @@ impl PatchRun {
     ) -> FaceElement {
         let here = self.element_contact(i, totals, now, self.springs.rise_of_law(i));
         let (place, size, directions) = self.laid_out(layout, i, totals, here.area);
-        let force = if here.area > 0.0 { [self.springs.x[i], self.springs.y[i]] } else { [0.0; 2] };
+        let force = if here.area > 0.0 { self.force_on_ground(i, &here) } else { [0.0; 2] };
         let traction = directions.map(|direction| {
             let [x, y, _] = now.turned(direction);
             -(force[0] * x + force[1] * y) / here.area.max(f64::MIN_POSITIVE)
@@ -354,7 +365,8 @@ mod tests {
     /// Pressed on a backing, slid under the load and lifted: the work is what was lost and what is stored.
     #[test]
     fn work_is_what_is_dissipated_and_what_the_springs_store() {
-        for backing in ["", ", backing = { normal = 3e9, shear = 6e9 }"] {
+        let damped = ", backing = { normal = 3e9, shear = 6e9 }, damping = 2e-5";
+        for backing in ["", ", backing = { normal = 3e9, shear = 6e9 }", damped] {
             let shape = format!("shape = 'flat', length = 0.01, width = 0.01, nx = 2, ny = 2{backing}");
             let text = format!("name = 'b'\ntable = {{ path = 'winkler.table.csv' }}\npatch = {{ {shape} }}");
             let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch");
@@ -377,7 +389,7 @@ mod tests {
                 let elastic = variables.into_iter().find(|variable| variable.output == PatchOutput::ElasticEnergy);
                 let mut energy = [0.0];
                 run.evaluate(&[elastic.unwrap()], &mut energy);
-                let lost = run.totals.slip_energy + run.totals.release_energy;
+                let lost = run.totals.slip_energy + run.totals.release_energy + run.totals.damper_energy;
                 assert!((work - lost - energy[0]).abs() < 1e-3 * work, "{backing}: {work} {lost} {energy:?}");
                 stored.push(energy[0]);
             }

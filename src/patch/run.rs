@@ -155,7 +155,7 @@ impl PatchRun {
         let body = PoseMotion { start: self.totals.pose.coordinates(), change: rates, duration: 1.0 };
         let face = &self.patch.face;
         let (substeps, work) = (Substeps::new(tread, 0.0, None, 1), WorkCounter::new(f64::MAX));
-        let step = FaceMotion { face, body, tread, substeps, heat: None, work: &work };
+        let step = FaceMotion { face, body, tread, substeps, heat: None, damping: self.patch.dampers(), work: &work };
         let springs = (&self.springs, &mut self.next);
         let sums = WorkerPool::with_threads(1, &self.law).work(&step, &mut self.law, springs, |block, law, sums| {
             block.initialize(&step, law, sums);
@@ -248,7 +248,7 @@ impl PatchRun {
         let face = Arc::clone(&self.patch.face);
         let cost = self.patch.cost_of_element();
         let work = WorkCounter::new(self.allowed_work() / cost);
-        let step = FaceMotion { face: &face, body, tread, substeps, heat, work: &work };
+        let step = FaceMotion { face: &face, body, tread, substeps, heat, damping: self.patch.dampers(), work: &work };
         let (sums, tangents) = self.advance_springs(&step);
         self.work_left = self.work_left.map(|left| left - work.done() as f64 * cost);
 
@@ -557,7 +557,8 @@ mod tests {
                 let (tread, work) = (run.tread_motion([0.0; 2], 1e-6), WorkCounter::new(most));
                 let (substeps, heat) = (run.reckon_substeps(tread, &body).0, run.step_heat(temperature));
                 let face = Arc::clone(&run.patch.face);
-                let step = FaceMotion { face: &face, body, tread, substeps, heat, work: &work };
+                let step =
+                    FaceMotion { face: &face, body, tread, substeps, heat, damping: run.patch.dampers(), work: &work };
                 run.advance_springs(&step);
                 // A little more than that: a block of elements finds out after a part.
                 assert!(work.done() as f64 <= 1.05 * most, "{nx} x {ny} by {turn}: {} of {most}", work.done());

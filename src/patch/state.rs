@@ -355,6 +355,8 @@ pub(super) struct Totals {
     pub(super) slip_energy: f64,
     /// Energy lost with contacts that were released since the start, J.
     pub(super) release_energy: f64,
+    /// Energy lost by dampers since the start, J.
+    pub(super) damper_energy: f64,
     /// The dissipated power, mean over the last step.
     pub(super) power: f64,
 }
@@ -400,7 +402,8 @@ impl Totals {
         self.transport_force = sums.transport.value();
         self.slip_energy += sums.slip;
         self.release_energy += sums.release;
-        self.power = if duration > 0.0 { (sums.slip + sums.release) / duration } else { 0.0 };
+        self.damper_energy += sums.damper;
+        self.power = if duration > 0.0 { (sums.slip + sums.release + sums.damper) / duration } else { 0.0 };
     }
 
     /// Refuses what no run goes on from: loads, losses or tangents that are no numbers or too large.
@@ -416,7 +419,7 @@ impl Totals {
     fn numbers(&self) -> impl Iterator<Item = (&'static str, f64)> {
         let poses = self.pose.coordinates().into_iter().chain([self.time]).map(|value| ("a coordinate", value));
         let rates = self.rates.into_iter().chain([self.transport_speed, self.tread_speed, self.temperature]);
-        let losses = [self.power, self.slip_energy, self.release_energy];
+        let losses = [self.power, self.slip_energy, self.release_energy, self.damper_energy];
         let loads = self.wrench.into_iter().chain([self.transport_force]).chain(losses);
         poses.chain(rates.map(|value| ("a rate", value))).chain(loads.map(|value| ("a load or a loss", value)))
     }

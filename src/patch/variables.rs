@@ -23,6 +23,8 @@ pub enum PatchOutput {
     SlipEnergy,
     /// Of that, by release, J.
     ReleaseEnergy,
+    /// Of that, by dampers, J.
+    DamperEnergy,
     /// Elements that bear.
     Count,
     /// Elements that stick.
@@ -87,6 +89,8 @@ pub enum PatchKind {
     Tread,
     /// Those whose slip warms the elements.
     Warm,
+    /// Those with dampers.
+    Damped,
 }
 
 /// The output of the element of an index.
@@ -109,7 +113,7 @@ struct PatchOutputRow<O> {
 const TABLE: &[PatchOutputRow<PatchOutput>] = {
     use OutputType::{Integer, Real};
     use PatchGroup::{Contact, Dissipation, Energy, Forces, Friction};
-    use PatchKind::{All, Tread, Warm};
+    use PatchKind::{All, Damped, Tread, Warm};
     use Unit::{Joule, Kelvin, Newton, NewtonMeter, One, Pascal, SquareMeter, Watt};
     &[
         row(Forces, PatchOutput::Force(0), "force.x", Newton, Real, "Force on the body along x", All),
@@ -123,6 +127,7 @@ const TABLE: &[PatchOutputRow<PatchOutput>] = {
         row(Dissipation, PatchOutput::Energy, "E_diss", Joule, Real, "Energy dissipated since the start", All),
         row(Dissipation, PatchOutput::SlipEnergy, "dissipation.E_slip", Joule, Real, "Energy dissipated by slip", All),
         row(Dissipation, PatchOutput::ReleaseEnergy, "dissipation.E_release", Joule, Real, "Energy lost with contacts that were released", All),
+        row(Dissipation, PatchOutput::DamperEnergy, "dissipation.E_damping", Joule, Real, "Energy dissipated by damping", Damped),
         row(Contact, PatchOutput::Count, "contact.count", One, Integer, "Elements that bear", All),
         row(Contact, PatchOutput::Sticking, "contact.sticking", One, Integer, "Elements that stick", All),
         row(Contact, PatchOutput::NominalArea, "contact.nominal_area", SquareMeter, Real, "Area of the elements that bear", All),
@@ -250,6 +255,7 @@ impl Patch {
             PatchKind::All => true,
             PatchKind::Tread => self.has_tread(),
             PatchKind::Warm => self.heat().is_some(),
+            PatchKind::Damped => self.damping() > 0.0,
         }
     }
 
@@ -310,9 +316,10 @@ impl PatchRun {
             PatchOutput::Moment(axis) => totals.wrench[3 + axis],
             PatchOutput::TransportForce => totals.transport_force,
             PatchOutput::Power => totals.power,
-            PatchOutput::Energy => totals.slip_energy + totals.release_energy,
+            PatchOutput::Energy => totals.slip_energy + totals.release_energy + totals.damper_energy,
             PatchOutput::SlipEnergy => totals.slip_energy,
             PatchOutput::ReleaseEnergy => totals.release_energy,
+            PatchOutput::DamperEnergy => totals.damper_energy,
             PatchOutput::Count => sums.count as f64,
             PatchOutput::Sticking => sums.sticking as f64,
             PatchOutput::NominalArea => sums.nominal_area,

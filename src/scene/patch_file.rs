@@ -32,6 +32,8 @@ pub struct PatchFile {
     pub offset: [f64; 3],
     /// What stands behind every element, if that gives way.
     pub backing: Option<Backing>,
+    /// τ of the dampers beside the springs along the plane and beside the backing, s.
+    pub damping: f64,
     /// How slip heats every element, if it does.
     pub heat: Option<FaceHeat>,
     /// How the body moves when a master gives no rates.

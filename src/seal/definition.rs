@@ -134,6 +134,12 @@ impl Seal {
         })
     }
 
+    /// The same with a lip that does not give way along the motion.
+    #[must_use]
+    pub fn rigid(&self) -> Self {
+        Self { file: Arc::new(SealFile { stiffness: None, ..(*self.file).clone() }), ..self.clone() }
+    }
+
     /// The seal's name.
     pub fn name(&self) -> &str {
         &self.file.name
@@ -175,9 +181,20 @@ impl Seal {
         self.file.cells
     }
 
+    /// The sealed pressures that the sets of pressures reach over, Pa; of one set any.
+    pub fn sealed_pressures(&self) -> (f64, f64) {
+        self.lip.range()
+    }
+
     /// The width of the lip, m.
     pub fn width(&self) -> f64 {
         self.lip.width
+    }
+
+    /// The middle one of the table's speeds, m/s.
+    pub fn middle_speed(&self) -> f64 {
+        let speeds = &self.table.grid.speeds;
+        speeds[speeds.len() / 2]
     }
 
     /// The area of a cell, m².

@@ -169,10 +169,12 @@ pub struct SealRun {
     pub(super) tangents: [f64; 2],
     warned: bool,
     warnings: Vec<String>,
+    /// Up to which number of iterations the call under way may go: see [`limit_work`](Self::limit_work).
+    last_iteration: Option<usize>,
 }
 
-/// The most work of a step: iterations times cells, some seconds of a processor.
-const MOST_WORK: usize = 30_000_000;
+/// The most work of a step, or of all steps of a call: iterations times cells, a second of a processor.
+const MOST_WORK: usize = 10_000_000;
 /// Shares by which steps may shrink and grow.
 const SHRINKS_TO: f64 = 0.2;
 const GROWS_BY: f64 = 4.0;
@@ -225,6 +227,7 @@ impl SealRun {
             tangents: [0.0; 2],
             warned: false,
             warnings: Vec::new(),
+            last_iteration: None,
             seal: seal.clone(),
         }
     }
@@ -358,6 +361,15 @@ impl SealRun {
         self.stepper.step(&mut self.film, law, &self.state.contents, (h, tolerance), (drive, rubbing), at).ok()
     }
 
+    /// Allows the steps that follow, together, the work of a call of a master: a second. Without it each may take as much.
+    pub fn limit_work(&mut self) {
+        self.last_iteration = Some(self.iterations_allowed());
+    }
+
+    fn iterations_allowed(&self) -> usize {
+        self.stepper.iterations + MOST_WORK / self.seal.cells()
+    }
+
     /// Follows the inputs straight on.
     ///
     /// # Errors
@@ -423,7 +435,7 @@ impl SealRun {
         self.set_conditions();
         self.begin(motion);
         let mut left = motion.duration;
-        let most = self.stepper.iterations + MOST_WORK / self.seal.cells();
+        let most = self.last_iteration.unwrap_or_else(|| self.iterations_allowed());
         while left > 0.0 {
             left -= self.substep(left, motion, most)?;
         }

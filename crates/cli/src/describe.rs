@@ -1,20 +1,22 @@
-//! `asperity describe`: summarises a scene or a patch.
+//! `asperity describe`: summarises a scene, a patch or a seal.
 
 use std::path::{Path, PathBuf};
 
 use asperity::scene::{Scene, Setting};
-use asperity_study::summary::{self, DescribedScene, described, described_patch, described_shortly, missing_backing};
+use asperity_study::summary::{
+    self, DescribedScene, described, described_patch, described_seal, described_shortly, missing_backing,
+};
 use asperity_study::{Context as _, Error};
 use clap::{ArgGroup, Args};
 
 use super::cli::values::{self, Set, example};
-use super::files::{check_outputs, load, load_patch, print};
+use super::files::{check_outputs, load, load_patch, load_seal, print};
 use super::picture;
 use super::simulate::NOT_STARTED;
 use super::terminal::{LabelledLine, is_verbose, lines, screen_lines, warn};
 
 #[derive(Debug, Args)]
-#[command(group(ArgGroup::new("described").required(true).args(["scene", "patch"])))]
+#[command(group(ArgGroup::new("described").required(true).args(["scene", "patch", "seal"])))]
 #[command(after_help = example!("asperity describe scenes/road/road.toml"))]
 pub(crate) struct Describe {
     /// The scene file.
@@ -23,6 +25,9 @@ pub(crate) struct Describe {
     /// A patch file: summarises a contact patch instead.
     #[arg(long, value_name = "PATCH.toml", conflicts_with_all = ["json", "plot"])]
     pub(crate) patch: Option<PathBuf>,
+    /// A seal file: summarises a lip with a film instead.
+    #[arg(long, value_name = "SEAL.toml", conflicts_with_all = ["json", "plot"])]
+    pub(crate) seal: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) set: Set,
     /// Prints the whole scene as one JSON object in SI units: links as constants, the profile as data points. Absent
@@ -56,6 +61,11 @@ pub(crate) fn describe_patch(path: &Path, set: &[Setting]) -> Result<(), Error> 
     let patch = load_patch(path, set)?;
     missing_backing(&patch).iter().for_each(|warning| warn(warning));
     print(&screen_lines(&described_patch(&patch)))
+}
+
+/// Prints the summary of a seal.
+pub(crate) fn describe_seal(path: &Path, set: &[Setting]) -> Result<(), Error> {
+    print(&screen_lines(&described_seal(&load_seal(path, set)?)))
 }
 
 fn json(scene: &Scene) -> Result<String, Error> {

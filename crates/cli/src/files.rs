@@ -7,6 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use asperity::model::EvenSliding;
 use asperity::patch::Patch;
 use asperity::scene::{Scene, Setting};
+use asperity::seal::Seal;
 use asperity::simulation::passed_phases;
 
 use super::draft::Draft;
@@ -81,6 +82,13 @@ pub(crate) fn load_patch(path: &Path, set: &[Setting]) -> Result<Patch, Error> {
     let patch = files::load_patch(path, set).map_err(of_set)?;
     tell(patch.notes().iter().map(|read| &read.text));
     Ok(patch)
+}
+
+/// Reads a seal, its keys overridden by `--set`, and prints how the file of its pressures was read.
+pub(crate) fn load_seal(path: &Path, set: &[Setting]) -> Result<Seal, Error> {
+    let seal = files::load_seal(path, set).map_err(of_set)?;
+    tell(seal.notes().iter().map(|read| &read.text));
+    Ok(seal)
 }
 
 /// Refuses an output that would overwrite one of `others`, by whatever name.

@@ -20,7 +20,7 @@
 //! | `picture` | files | draws pictures, as SVG or PNG |
 //! | `plot` | cli, files, picture, terminal | `plot` |
 //! | `simulate` | cli, files, npz, picture, result_file, terminal | `simulate` of a scene |
-//! | `patch` | files, picture, result_file, simulate, terminal | `simulate` of a patch |
+//! | `moved` | files, picture, result_file, simulate, terminal | `simulate` of a patch and of a seal |
 //! | `describe` | cli, files, picture, simulate, terminal | `describe` |
 //! | `contact` | cli, files, npz, picture, terminal | `contact` |
 //! | `sweep` | cli, files, interrupt, output, picture, table_file, terminal | `sweep` |
@@ -48,10 +48,10 @@ mod fit;
 mod interrupt;
 mod lock;
 mod material;
+mod moved;
 mod npz;
 mod output;
 mod pack;
-mod patch;
 pub mod picture;
 mod plot;
 mod rank;
@@ -199,24 +199,26 @@ fn run(arguments: Arguments) -> Result<u8, Box<dyn Error>> {
     Ok(output::SUCCESS)
 }
 
-/// A scene along its excitation, or a patch along a motion file.
+/// A scene along its excitation, or a patch or a seal along a motion file.
 fn run_simulate(command: &simulate::Simulate) -> Result<(), Box<dyn Error>> {
-    match (&command.scene, &command.patch, &command.motion) {
-        (Some(scene), _, _) => simulate::simulate(command, scene)?,
-        (None, Some(patch), Some(motion)) => patch::simulate(command, patch, motion)?,
-        // The command line has a scene, or a patch and its motion.
-        (None, _, _) => (),
+    match (&command.scene, &command.patch, &command.seal, &command.motion) {
+        (Some(scene), ..) => simulate::simulate(command, scene)?,
+        (_, Some(patch), _, Some(motion)) => moved::simulate_patch(command, patch, motion)?,
+        (_, _, Some(seal), Some(motion)) => moved::simulate_seal(command, seal, motion)?,
+        // The command line has a scene, or a patch or a seal with its motion.
+        _ => (),
     }
     Ok(())
 }
 
-/// A scene or a patch.
+/// A scene, a patch or a seal.
 fn run_describe(command: &describe::Describe) -> Result<(), Box<dyn Error>> {
-    match (&command.scene, &command.patch) {
-        (Some(scene), _) => describe::describe(command, scene)?,
-        (None, Some(patch)) => describe::describe_patch(patch, &command.set)?,
+    match (&command.scene, &command.patch, &command.seal) {
+        (Some(scene), ..) => describe::describe(command, scene)?,
+        (_, Some(patch), _) => describe::describe_patch(patch, &command.set)?,
+        (_, _, Some(seal)) => describe::describe_seal(seal, &command.set)?,
         // The command line has one of them.
-        (None, None) => (),
+        _ => (),
     }
     Ok(())
 }

@@ -27,7 +27,7 @@ use super::terminal::{Bars, LabelledLine, labelled, lines, note, warn};
 
 #[derive(Debug, Args)]
 #[command(
-    override_usage = "asperity pack [OPTIONS] --output <OUT.fmu>\n       <SCENE.toml|--table <TABLE.csv>|--patch <PATCH.toml>>"
+    override_usage = "asperity pack [OPTIONS] --output <OUT.fmu>\n       <SCENE.toml|--table <TABLE.csv>|--patch <PATCH.toml>|--seal <SEAL.toml>>"
 )]
 #[command(group(ArgGroup::new("input").required(true).multiple(true)))]
 #[command(after_help = example!("asperity pack scenes/tread-block/tread-block.toml -o block.fmu"))]
@@ -42,6 +42,10 @@ pub(crate) struct Pack {
     /// A patch file: packs a contact patch of many point-contact elements in three dimensions.
     #[arg(long, value_name = "PATCH.toml", group = "input")]
     pub(crate) patch: Option<PathBuf>,
+    /// A seal file: packs a lip with a film.
+    #[arg(long, value_name = "SEAL.toml", group = "input")]
+    #[arg(conflicts_with_all = ["scene", "table", "patch", "quantile", "check"])]
+    pub(crate) seal: Option<PathBuf>,
     /// Of a table with samples, or of a patch with such a table: packs the sample whose mean friction over the table is this
     /// quantile, from 0 to 1. It is drawn from the scene and swept again.
     #[arg(long, value_name = "SHARE", value_parser = probability, requires = "scene", conflicts_with = "check")]
@@ -66,7 +70,7 @@ pub(crate) struct Pack {
     pub(crate) library: Vec<OsString>,
 }
 
-/// Writes the FMU; prints what its libraries need and, of an element or a patch, its table and errors.
+/// Writes the FMU; prints what its libraries need and, of an element, a patch or a seal, its table and errors.
 pub(crate) fn pack(command: &Pack) -> Result<(), Error> {
     check_inputs(command)?;
     let sample = command.quantile.map(|share| Sample::new(command, share)).transpose()?;
@@ -76,7 +80,9 @@ pub(crate) fn pack(command: &Pack) -> Result<(), Error> {
     let libraries = libraries(command);
     let mut taken = definition.sources(&path);
     taken.extend(libraries.iter().map(|library| library.path().to_owned()));
-    taken.extend([&command.check, &command.scene, &command.table, &command.patch].into_iter().flatten().cloned());
+    taken.extend(
+        [&command.check, &command.scene, &command.table, &command.patch, &command.seal].into_iter().flatten().cloned(),
+    );
     check_outputs([&command.output], taken)?;
     let libraries = Library::read_all(&libraries).map_err(|error| with_way_to_build(error, &libraries))?;
     pack::warnings(&definition, &path).iter().for_each(|warning| warn(warning));
@@ -136,6 +142,12 @@ fn with_way_to_build(error: Error, libraries: &[LibraryFile]) -> Error {
 /// What is packed, and the file that it is read from.
 fn load(command: &Pack, table: Option<&PathBuf>, patch: Option<&PathBuf>) -> Result<(Definition, PathBuf), Error> {
     match (patch, table) {
+        _ if command.seal.is_some() => {
+            let path = command.seal.clone().unwrap_or_default();
+            let seal = files::load_seal(&path, &[])?;
+            not_converged(&seal.table().header).iter().for_each(|warning| warn(warning));
+            Ok((seal.into(), path))
+        }
         (Some(path), _) => {
             let patch = files::load_patch(path, &[])?;
             let warnings = not_converged(&patch.table().header).into_iter().chain(missing_backing(&patch));
@@ -171,6 +183,7 @@ fn model_picture(definition: &Definition) -> Result<Vec<u8>, Error> {
         Definition::Layer(scene) => layer_icon(scene),
         Definition::Element(contact) => element_icon(contact.table()),
         Definition::Patch(patch) => element_icon(patch.table()),
+        Definition::Seal(seal) => element_icon(seal.table()),
     };
     picture::icon(&picture).map_err(|error| files::not_drawn(Path::new("model.png"), error))
 }

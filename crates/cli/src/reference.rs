@@ -190,6 +190,7 @@ fn outputs_of_patches() -> Vec<OutputLine> {
         PatchKind::All => "",
         PatchKind::Tread => "transport",
         PatchKind::Warm => "heat",
+        PatchKind::Damped => "damping",
     };
     let line = |entry: PatchOutputEntry| OutputLine {
         group: entry.group.word(),

@@ -27,7 +27,7 @@ use super::result_file::ResultWriter;
 use super::terminal::{LabelledLine, bar, is_verbose, lines, note, warn};
 
 #[derive(Debug, Args)]
-#[command(group(ArgGroup::new("simulated").required(true).args(["scene", "patch"])))]
+#[command(group(ArgGroup::new("simulated").required(true).args(["scene", "patch", "seal"])))]
 #[command(after_help = example!("asperity simulate scenes/tread-block/tread-block.toml -o block.csv --plot block.svg"))]
 pub(crate) struct Simulate {
     /// The scene file.
@@ -36,11 +36,15 @@ pub(crate) struct Simulate {
     /// A patch file: moves a contact patch along the motion instead.
     #[arg(long, value_name = "PATCH.toml", requires = "motion", conflicts_with = "rows")]
     pub(crate) patch: Option<PathBuf>,
-    /// The motion of the patch: columns time, x, y, z, roll, pitch, yaw, with a tread transport.speed, and temperature;
-    /// one step from row to row.
-    #[arg(long, value_name = "MOTION.csv", requires = "patch", conflicts_with = "scene")]
+    /// A seal file: moves the rod under a lip with a film along the motion instead.
+    #[arg(long, value_name = "SEAL.toml", requires = "motion")]
+    #[arg(conflicts_with_all = ["rows", "animate", "contact", "elements", "stats"])]
+    pub(crate) seal: Option<PathBuf>,
+    /// The motion of a patch: columns time, x, y, z, roll, pitch, yaw, with a tread transport.speed, and temperature; of a
+    /// seal: time, u, and sealed_pressure, w and temperature where they change. One step from row to row.
+    #[arg(long, value_name = "MOTION.csv", conflicts_with = "scene")]
     pub(crate) motion: Option<PathBuf>,
-    /// The result file to write; - for standard output. Default: the name of the scene or patch with .csv, in this
+    /// The result file to write; - for standard output. Default: the name of the scene, patch or seal with .csv, in this
     /// folder.
     #[arg(short, long, value_name = "OUT.csv")]
     output: Option<PathBuf>,

@@ -10,12 +10,13 @@ use uuid::Uuid;
 
 use super::error::{Error, check_memory};
 use super::model::FmuModel;
-use super::resources::{self, PATCH_FILE, Resource, SCENE_FILE, TABLE_FILE};
+use super::resources::{self, PATCH_FILE, Resource, SCENE_FILE, SEAL_FILE, TABLE_FILE};
 use super::variables::VariableTable;
 use asperity::element::{FrictionTable, PointContact};
 use asperity::model::EvenSliding;
 use asperity::patch::Patch;
 use asperity::scene::{Parameter, ParameterError, Scene, Value};
+use asperity::seal::Seal;
 
 /// What an FMU simulates, as its resources define it.
 #[derive(Clone, Debug)]
@@ -26,6 +27,8 @@ pub enum Definition {
     Element(PointContact),
     /// A contact patch.
     Patch(Box<Patch>),
+    /// A lip with a film.
+    Seal(Box<Seal>),
 }
 
 impl From<Scene> for Definition {
@@ -46,6 +49,12 @@ impl From<Patch> for Definition {
     }
 }
 
+impl From<Seal> for Definition {
+    fn from(seal: Seal) -> Self {
+        Self::Seal(Box::new(seal))
+    }
+}
+
 impl Deref for Definition {
     type Target = dyn FmuModel;
 
@@ -54,6 +63,7 @@ impl Deref for Definition {
             Self::Layer(scene) => scene,
             Self::Element(contact) => contact,
             Self::Patch(patch) => &**patch,
+            Self::Seal(seal) => &**seal,
         }
     }
 }
@@ -64,6 +74,7 @@ impl DerefMut for Definition {
             Self::Layer(scene) => scene,
             Self::Element(contact) => contact,
             Self::Patch(patch) => &mut **patch,
+            Self::Seal(seal) => &mut **seal,
         }
     }
 }
@@ -72,7 +83,7 @@ impl Definition {
     /// Reads the definition in the resources at `location`, or beside the `library`; also returns its file.
     pub(super) fn find(location: &str, library: Option<&Path>) -> Result<(Self, Resource), Error> {
         // The table of a patch may have any name.
-        let found = resources::find(location, library, &[SCENE_FILE, PATCH_FILE, TABLE_FILE])?;
+        let found = resources::find(location, library, &[SCENE_FILE, PATCH_FILE, SEAL_FILE, TABLE_FILE])?;
         let path = &found.path;
         check_memory(
             "reading the resources",
@@ -82,6 +93,8 @@ impl Definition {
             PointContact::new(FrictionTable::load(path)?).into()
         } else if path.ends_with(PATCH_FILE) {
             Patch::load(path)?.into()
+        } else if path.ends_with(SEAL_FILE) {
+            Seal::load(path)?.into()
         } else {
             let mut scene = Scene::load(path)?;
             EvenSliding::warn_of(&mut scene);

@@ -13,6 +13,7 @@ use asperity::element::{self, ElementError};
 use asperity::math::can_allocate;
 use asperity::patch::{self, MotionError, PatchError};
 use asperity::scene::{LARGEST, ParameterError, SMALLEST, SceneError};
+use asperity::seal::{FilmError, FilmRestoreError, SealError};
 use asperity::simulation::{self, SimulationError};
 use asperity::table::TableError;
 
@@ -115,6 +116,10 @@ pub enum Error {
     Patch(#[from] PatchError),
     #[error(transparent)]
     Motion(#[from] MotionError),
+    #[error(transparent)]
+    Seal(#[from] SealError),
+    #[error(transparent)]
+    Film(#[from] FilmError),
     #[error("cannot read {path}: {source}", path = .path.display())]
     Unreadable { path: PathBuf, source: std::io::Error },
     #[error("{what} needs {mebibytes} MiB of memory, more than the system has for it")]
@@ -143,6 +148,11 @@ impl Error {
                 | MotionError::TooMuchWork { .. }
                 | MotionError::BeyondTable { within: true, .. }
                 | MotionError::ElementTooWarm { within: true, .. },
+            ) => Status::Discard,
+            Self::Film(
+                FilmError::TooMuchWork { .. }
+                | FilmError::BlownOpen { within: true, .. }
+                | FilmError::Beyond { within: true, .. },
             ) => Status::Discard,
             Self::TooFar { .. } | Self::NoSuchStatus | Self::Repetition { .. } => Status::Discard,
             Self::Panic(_) => Status::Fatal,
@@ -174,6 +184,8 @@ pub enum RestoreError {
     Element(#[from] element::ElementRestoreError),
     #[error(transparent)]
     Patch(#[from] patch::PatchRestoreError),
+    #[error(transparent)]
+    Seal(#[from] FilmRestoreError),
     #[error("{0}")]
     Invalid(&'static str),
 }

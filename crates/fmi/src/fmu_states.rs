@@ -72,7 +72,7 @@ impl FmuStates {
 const MARK: [u8; 8] = *b"asperity";
 
 /// The version of the format, to be raised with each change of what is written.
-const FORMAT: u32 = 12;
+const FORMAT: u32 = 13;
 
 const CHECKSUM: usize = 16;
 

@@ -1,6 +1,6 @@
 //! The FMU: the C interface of FMI 2.0 for co-simulation around a [`Simulation`](asperity::simulation::Simulation) of a
-//! layer, an [`Element`](asperity::element::Element) that interpolates the forces in a table, or a
-//! [patch](asperity::patch::PatchRun) of many.
+//! layer, an [`Element`](asperity::element::Element) that interpolates the forces in a table, a
+//! [patch](asperity::patch::PatchRun) of many, or a [lip with a film](asperity::seal::SealRun).
 //!
 //! The exports check pointers and then call a method of an instance in safe Rust. Each file uses only those above it:
 //!
@@ -15,7 +15,7 @@
 //! | `variables` | the table of variables by value reference |
 //! | `log` | messages by category |
 //! | `model` | what all layers below ask of a model and of its run |
-//! | `layer`, `element`, `patch` | the three models |
+//! | `layer`, `element`, `patch`, `seal` | the four models |
 //! | `provisional` | the last step, where it is done again once the values at its end are known |
 //! | `definition` | what an FMU simulates: one of them, its parameters, its GUID |
 //! | `state` | the state of an instance, its copy in an FMU state, its clock |
@@ -41,6 +41,7 @@ mod model;
 mod patch;
 mod provisional;
 mod resources;
+mod seal;
 mod state;
 mod values;
 mod variables;
@@ -56,7 +57,7 @@ pub use inputs::{CommunicationStep, InputScales, Inputs, ProvisionalStep};
 pub use layer::{layer_motion, layer_scales, layer_start};
 pub use log::Category;
 pub use model::{CarriedFile, Experiment, FmuModel};
-pub use resources::{PATCH_FILE, SCENE_FILE, TABLE_FILE};
+pub use resources::{PATCH_FILE, SCENE_FILE, SEAL_FILE, TABLE_FILE};
 pub use variables::{Kind, Role, VariableRef, VariableTable};
 
 /// The capabilities that the model description claims, as attributes of its element `CoSimulation`; those left out are

@@ -14,6 +14,7 @@ use super::variables::{Kind, VariableRef, VariableTable};
 use asperity::element::ElementState;
 use asperity::patch::PatchState;
 use asperity::scene::{self, FmuOptions, InputRule, IntegerType, Parameter, ParameterError, Value};
+use asperity::seal::SealState;
 use asperity::simulation::SimulationState;
 
 /// A file that an FMU carries: its path relative to the definition's own, and what is in it.
@@ -203,6 +204,7 @@ pub enum RunState {
     Layer(Box<SimulationState>),
     Element(ElementState),
     Patch(Box<PatchState>),
+    Seal(Box<SealState>),
 }
 
 impl RunState {
@@ -211,6 +213,7 @@ impl RunState {
         match (self, other) {
             (Self::Layer(own), Self::Layer(other)) => own.copy_from(other),
             (Self::Patch(own), Self::Patch(other)) => own.copy_from(other),
+            (Self::Seal(own), Self::Seal(other)) => own.clone_from(other),
             (own, other) => *own = other.clone(),
         }
     }

@@ -15,6 +15,9 @@ pub const TABLE_FILE: &str = "table.csv";
 /// The name there of a patch.
 pub const PATCH_FILE: &str = "patch.toml";
 
+/// The name there of a seal.
+pub const SEAL_FILE: &str = "seal.toml";
+
 /// A file of the resources.
 #[derive(Debug)]
 pub(super) struct Resource {

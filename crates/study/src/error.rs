@@ -19,6 +19,7 @@ use asperity::element::ElementError;
 use asperity::math::NotEnoughMemory;
 use asperity::patch::{MotionError, PatchError, PatchRestoreError};
 use asperity::scene::{ParameterError, SceneError};
+use asperity::seal::{FilmError, FilmRestoreError, SealError};
 use asperity::simulation::{OutOfRange, SimulationError};
 use asperity::table::TableError;
 use asperity::tables::ContentError;
@@ -211,6 +212,22 @@ impl From<PatchError> for Error {
     }
 }
 
+impl From<SealError> for Error {
+    fn from(error: SealError) -> Self {
+        match error {
+            SealError::File(error) => error.into(),
+            SealError::Table(error) => error.into(),
+        }
+    }
+}
+
+impl From<FilmError> for Error {
+    fn from(error: FilmError) -> Self {
+        let kind = if matches!(error, FilmError::OutOfRange { .. }) { ErrorKind::Value } else { ErrorKind::Run };
+        Self::new(kind, error)
+    }
+}
+
 impl From<SimulationError> for Error {
     fn from(error: SimulationError) -> Self {
         match error {
@@ -249,6 +266,7 @@ macro_rules! of_kind {
 of_kind! {
     ContentError => Value,
     PatchRestoreError => Value,
+    FilmRestoreError => Value,
     OutOfRange => Value,
     NotEnoughMemory => Scene,
     Stopped => Stopped,

@@ -1,10 +1,11 @@
-//! Scenes, patches and other files, read.
+//! Scenes, patches, seals and other files, read.
 
 use std::path::Path;
 
 use asperity::model::EvenSliding;
 use asperity::patch::Patch;
 use asperity::scene::{FileFormats as _, Scene, SceneFile, Setting, read_file, read_text};
+use asperity::seal::Seal;
 use asperity::simulation::passed_phases;
 use asperity::tables::{FileKind, GivenColumns, ReadTable};
 use asperity_formats::Instruments;
@@ -41,6 +42,14 @@ pub fn load_scene(path: &Path, set: &[Setting]) -> Result<Scene, Error> {
 /// As for [`load_scene`].
 pub fn load_patch(path: &Path, set: &[Setting]) -> Result<Patch, Error> {
     Ok(Patch::parse_with(&text(path)?, path, &Instruments, set)?)
+}
+
+/// Reads the seal at `path`, its keys set to other values.
+///
+/// # Errors
+/// As for [`load_scene`].
+pub fn load_seal(path: &Path, set: &[Setting]) -> Result<Seal, Error> {
+    Ok(Seal::parse_with(&text(path)?, path, &Instruments, set)?)
 }
 
 /// The text of the file at `path`.

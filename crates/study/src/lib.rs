@@ -21,11 +21,13 @@
 //! | [`settings`] | | keys set in the text of a file, so that its comments stay |
 //! | `error` | progress | why something is not done: what was expected, what was found, and where |
 //! | [`uncertainty`] | error | what is not known of a scene, scenes drawn from it, what of it matters |
-//! | [`files`] | error, uncertainty | scenes, patches and other files, read |
+//! | [`files`] | error, uncertainty | scenes, patches, seals and other files, read |
 //! | [`csv`] | decimals, error, files | tables of text with a header, read and written |
 //! | [`masses`] | decimals, html, picture | what the masses of a layer do over a run, as arrays, as a picture and as an animation |
 //! | [`time_history`] | picture | a run over time as a picture |
 //! | [`patch_history`] | decimals, picture, time_history | a run of a patch as a picture |
+//! | [`seal_history`] | decimals, picture, time_history | a run of a seal as a picture |
+//! | [`stribeck`] | decimals, error, picture, progress, values | friction, film and leak of a seal in steady motion |
 //! | [`runner`] | progress, values | a scene along its excitation, row by row |
 //! | [`steady`] | | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
 //! | [`sweep`] | decimals, error, files, implausible, picture, progress, steady, uncertainty, values | friction over speed, load and temperature, as a table |
@@ -38,11 +40,11 @@
 //! | [`fit`] | decimals, error, files, picture, values | Prony series and shift factors from measured moduli |
 //! | [`material`] | decimals, error, picture, values | moduli of a scene's compound, or stiffnesses of its links, over frequency |
 //! | [`surface`] | decimals, files, picture, values | numbers, spectra and power laws of a surface; smoothed, split and made periodic |
-//! | [`summary`] | decimals, error, picture, runner, steady | what there is in a scene, a patch or a table, in lines |
+//! | [`summary`] | decimals, error, picture, runner, steady | what there is in a scene, a patch, a seal or a table, in lines |
 //! | [`run_figures`] | decimals, implausible, summary | forces and friction of a run, what it cost, and what would make it cheaper |
 //! | [`robustness`] | | a catalogue of perturbations of a scene, and the judge of perturbed runs |
-//! | [`pack`] | decimals, error, files, html, picture, robustness, runner, summary, sweep | scenes, tables and patches as FMUs |
-//! | [`motion`] | error, files | the motion that a patch is moved along |
+//! | [`pack`] | decimals, error, files, html, picture, robustness, runner, summary, sweep | scenes, tables, patches and seals as FMUs |
+//! | [`motion`] | error, files | the motion that a patch or a seal is moved along |
 //! | [`check`] | csv, decimals, error, picture, progress, runner, summary, sweep | elements and patches against what was swept |
 //! | [`benchmark`] | csv, decimals, picture, progress, robustness, runner, values | what the runs of a scene cost and how accurate they are |
 
@@ -74,8 +76,10 @@ pub mod rank;
 pub mod robustness;
 pub mod run_figures;
 pub mod runner;
+pub mod seal_history;
 pub mod settings;
 pub mod steady;
+pub mod stribeck;
 pub mod summary;
 pub mod surface;
 pub mod sweep;

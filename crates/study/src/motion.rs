@@ -1,10 +1,11 @@
-//! The motion of a patch as a file: the pose at times, which it goes through straight from row to row.
+//! The motion of a patch or of a seal as a file: its inputs at times, straight from row to row.
 
 use std::path::Path;
 
 use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchStart, Pose};
-use asperity::scene;
-use asperity::tables::{ContentError, Dimension, FINITE, FileKind, Others, ReadColumn, Role};
+use asperity::scene::{self, Unit};
+use asperity::seal::{Seal, SealMotion, SealStart};
+use asperity::tables::{ContentError, Dimension, FINITE, FileKind, Others, ReadColumn, ReadTable, Role};
 
 use crate::error::Error;
 use crate::files::read_table;
@@ -12,9 +13,16 @@ use crate::files::read_table;
 const TIME: &str = "time";
 const TRANSPORT: &str = "transport.speed";
 const TEMPERATURE: &str = "temperature";
+const U: &str = "u";
+const W: &str = "w";
+const SEALED: &str = "sealed_pressure";
 
-const ROLES: [Role; 9] = [
-    Role::new(TIME, "t, times, zeit", Dimension::Time).within(FINITE),
+const TIME_ROLE: Role = Role::new(TIME, "t, times, zeit", Dimension::Time).within(FINITE);
+const TEMPERATURE_ROLE: Role =
+    Role::new(TEMPERATURE, "T, temp, temperatur", Dimension::Temperature).within(FINITE).optional();
+
+const PATCH_ROLES: [Role; 9] = [
+    TIME_ROLE,
     Role::new("x", "position x", Dimension::Length).within(FINITE),
     Role::new("y", "position y", Dimension::Length).within(FINITE),
     Role::new("z", "position z", Dimension::Length).within(FINITE),
@@ -22,7 +30,7 @@ const ROLES: [Role; 9] = [
     Role::new("pitch", "angle of pitch", Dimension::Angle).within(FINITE),
     Role::new("yaw", "angle of yaw", Dimension::Angle).within(FINITE),
     Role::new(TRANSPORT, "transport, speed", Dimension::Speed).within(FINITE).optional(),
-    Role::new(TEMPERATURE, "T, temp, temperatur", Dimension::Temperature).within(FINITE).optional(),
+    TEMPERATURE_ROLE,
 ];
 /// The file of a patch's motion.
 pub const PATCH_MOTION: FileKind = FileKind {
@@ -31,32 +39,51 @@ pub const PATCH_MOTION: FileKind = FileKind {
     others: Others::Refused,
     ..FileKind::new(
         "a motion of a patch",
-        &ROLES,
+        &PATCH_ROLES,
         "time, x, y, z, roll, pitch, yaw, of a tread transport.speed, and temperature where it is an input",
+    )
+};
+
+const SEAL_ROLES: [Role; 5] = [
+    TIME_ROLE,
+    Role::new(U, "displacement, stroke, x", Dimension::Length).within(FINITE),
+    Role::new(SEALED, "sealed pressure, pressure, p_s", Dimension::Pressure).within(FINITE).optional(),
+    Role::new(W, "lift", Dimension::Length).within(FINITE).optional(),
+    TEMPERATURE_ROLE,
+];
+/// The file of a seal's motion.
+pub const SEAL_MOTION: FileKind = FileKind {
+    by_position: false,
+    rises: true,
+    others: Others::Refused,
+    ..FileKind::new(
+        "a motion of a seal",
+        &SEAL_ROLES,
+        "time, u of the rod, and sealed_pressure, w and temperature where they are inputs and change",
     )
 };
 
 /// A motion, row by row.
 #[derive(Debug)]
 pub struct MotionFile {
+    /// The names of the columns after the time, and their units.
+    columns: Vec<(&'static str, Unit)>,
     rows: Vec<MotionRow>,
-    has_transport: bool,
-    has_temperature: bool,
     /// How it was read.
     pub notes: Vec<String>,
 }
 
 /// A row of a motion.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct MotionRow {
     /// The time of the row, s.
     pub time: f64,
-    pose: [f64; 6],
-    /// The speed at which the tread runs, m/s; 0 without one.
-    transport_speed: f64,
-    /// Temperature of the face, K.
-    temperature: f64,
+    /// The values of the columns, SI units.
+    values: Vec<f64>,
 }
+
+/// What of a motion is an input: its key and unit, and why a column of it is refused where it is none.
+type Column = (&'static str, Unit, Result<(), &'static str>);
 
 impl MotionFile {
     /// Reads the motion of a patch: the columns `time` and those of the pose, `transport.speed` with a tread, and
@@ -64,34 +91,68 @@ impl MotionFile {
     ///
     /// # Errors
     /// Where the file cannot be read, a column is missing or is none of these, or a field is not what its column holds.
-    pub fn read(path: &Path, patch: &Patch) -> Result<Self, Error> {
-        let (has_transport, may_have_temperature) = (patch.has_tread(), patch.has_temperatures());
-        let mut table = read_table(path, &PATCH_MOTION, &[])?;
-        let refuse = |column: &ReadColumn, expected: &str| {
-            Error::content(path)(ContentError::value(table.line, "columns", &column.label(), expected))
-        };
-        if let Some(column) = table.column(TRANSPORT).filter(|_| !has_transport) {
-            return Err(refuse(column, "no such column of a patch without a tread"));
-        }
-        if has_transport && table.column(TRANSPORT).is_none() {
+    pub fn of_patch(path: &Path, patch: &Patch) -> Result<Self, Error> {
+        use scene::Unit::{Kelvin, Meter, MeterPerSecond, Radian};
+        let table = read_table(path, &PATCH_MOTION, &[])?;
+        if patch.has_tread() && table.column(TRANSPORT).is_none() {
             let error = ContentError::value(table.line, "columns", "no transport.speed", PATCH_MOTION.expected);
             return Err(Error::content(path)(error));
         }
-        if let Some(column) = table.column(TEMPERATURE).filter(|_| !may_have_temperature) {
-            return Err(refuse(column, "no such column of a patch whose temperature is no input"));
+        let pose = COORDINATES.into_iter().zip([Meter, Meter, Meter, Radian, Radian, Radian]);
+        let columns = pose.map(|(key, unit)| (key, unit, Ok(()))).chain([
+            (
+                TRANSPORT,
+                MeterPerSecond,
+                patch.has_tread().then_some(()).ok_or("no such column of a patch without a tread"),
+            ),
+            (
+                TEMPERATURE,
+                Kelvin,
+                patch.has_temperatures().then_some(()).ok_or("no such column of a patch whose temperature is no input"),
+            ),
+        ]);
+        Self::new(path, table, columns)
+    }
+
+    /// Reads the motion of a seal: the columns `time` and `u`, and `sealed_pressure`, `w` and `temperature` where these are
+    /// inputs and are to change.
+    ///
+    /// # Errors
+    /// As for [`of_patch`](Self::of_patch).
+    pub fn of_seal(path: &Path, seal: &Seal) -> Result<Self, Error> {
+        use scene::Unit::{Kelvin, Meter, Pascal};
+        let lifts = seal.can_be_lifted().then_some(()).ok_or("no such column of a seal without an approach_stiffness");
+        let columns = [
+            (U, Meter, Ok(())),
+            (SEALED, Pascal, Ok(())),
+            (W, Meter, lifts),
+            (
+                TEMPERATURE,
+                Kelvin,
+                seal.has_temperatures().then_some(()).ok_or("no such column of a seal whose temperature is no input"),
+            ),
+        ];
+        Self::new(path, read_table(path, &SEAL_MOTION, &[])?, columns.into_iter())
+    }
+
+    fn new(path: &Path, mut table: ReadTable, columns: impl Iterator<Item = Column>) -> Result<Self, Error> {
+        let refuse = |column: &ReadColumn, expected: &str| {
+            Error::content(path)(ContentError::value(table.line, "columns", &column.label(), expected))
+        };
+        let mut present = Vec::new();
+        for (key, unit, is_input) in columns {
+            let Some(column) = table.column(key) else { continue };
+            is_input.map_err(|expected| refuse(column, expected))?;
+            present.push((key, unit));
         }
-        let has_temperature = table.column(TEMPERATURE).is_some();
-        let value = |key: &str, row: usize| table.values(key).get(row).copied();
         let row = |i: usize| MotionRow {
-            time: value(TIME, i).unwrap_or(0.0),
-            pose: COORDINATES.map(|key| value(key, i).unwrap_or(0.0)),
-            transport_speed: value(TRANSPORT, i).unwrap_or(0.0),
-            temperature: value(TEMPERATURE, i).unwrap_or_else(|| patch.temperature()),
+            time: table.values(TIME).get(i).copied().unwrap_or(0.0),
+            values: present.iter().map(|(key, _)| table.values(key).get(i).copied().unwrap_or(0.0)).collect(),
         };
         let rows = (0..table.lines.len()).map(row).collect();
         let notes =
             std::mem::take(&mut table.notes).into_iter().map(|note| format!("{}: {}", path.display(), note.text));
-        Ok(Self { rows, has_transport, has_temperature, notes: notes.collect() })
+        Ok(Self { columns: present, rows, notes: notes.collect() })
     }
 
     /// Its rows, one at least.
@@ -105,53 +166,85 @@ impl MotionFile {
     }
 
     /// The names of its columns, and their units.
-    pub fn columns(&self) -> Vec<(&'static str, scene::Unit)> {
-        use scene::Unit::{Kelvin, Meter, MeterPerSecond, Radian, Second};
-        let mut columns = vec![(TIME, Second)];
-        columns.extend(COORDINATES.into_iter().zip([Meter, Meter, Meter, Radian, Radian, Radian]));
-        columns.extend(self.has_transport.then_some((TRANSPORT, MeterPerSecond)));
-        columns.extend(self.has_temperature.then_some((TEMPERATURE, Kelvin)));
-        columns
+    pub fn columns(&self) -> Vec<(&'static str, Unit)> {
+        [(TIME, Unit::Second)].into_iter().chain(self.columns.iter().copied()).collect()
     }
 
     /// The values of its columns.
     pub fn values(&self, row: &MotionRow) -> Vec<f64> {
-        let mut values = vec![row.time];
-        values.extend(row.pose);
-        values.extend(self.has_transport.then_some(row.transport_speed));
-        values.extend(self.has_temperature.then_some(row.temperature));
-        values
+        [row.time].into_iter().chain(row.values.iter().copied()).collect()
     }
 
-    /// The start, at the rates of the first interval.
-    pub fn start(&self) -> PatchStart {
+    /// The value of a column in a row; `None` without that column.
+    fn value(&self, row: &MotionRow, key: &str) -> Option<f64> {
+        let i = self.columns.iter().position(|(name, _)| *name == key)?;
+        Some(row.values[i])
+    }
+
+    /// How fast a column changes from a row to the next; 0 without that column.
+    fn rate(&self, [from, to]: [&MotionRow; 2], key: &str) -> f64 {
+        let (before, after) = (self.value(from, key).unwrap_or(0.0), self.value(to, key).unwrap_or(0.0));
+        (after - before) / (to.time - from.time)
+    }
+
+    /// How fast a column changes at the start.
+    fn first_rate(&self, key: &str) -> f64 {
+        self.rows.get(1).map_or(0.0, |next| self.rate([&self.rows[0], next], key))
+    }
+
+    /// The start of a patch, at the rates of the first interval.
+    pub fn start_of_patch(&self, patch: &Patch) -> PatchStart {
         let first = &self.rows[0];
-        let rates = self.rows.get(1).map_or([0.0; 6], |next| first.rates_to(next));
         PatchStart {
             time: first.time,
-            pose: Pose::from_coordinates(first.pose),
-            rates,
-            transport_speed: first.transport_speed,
-            temperature: first.temperature,
+            pose: Pose::from_coordinates(COORDINATES.map(|key| self.value(first, key).unwrap_or(0.0))),
+            rates: COORDINATES.map(|key| self.first_rate(key)),
+            transport_speed: self.value(first, TRANSPORT).unwrap_or(0.0),
+            temperature: self.value(first, TEMPERATURE).unwrap_or_else(|| patch.temperature()),
         }
     }
 
-    /// The motions from row to row.
-    pub fn motions(&self) -> impl Iterator<Item = (PatchMotion, &MotionRow)> {
-        self.rows.windows(2).map(|pair| {
+    /// The motions of a patch from row to row.
+    pub fn motions_of_patch(&self, patch: &Patch) -> impl Iterator<Item = (PatchMotion, &MotionRow)> {
+        self.pairs().map(|pair| {
             let motion = PatchMotion {
                 duration: pair[1].time - pair[0].time,
-                rates: pair[0].rates_to(&pair[1]),
-                transport_speed: pair[1].transport_speed,
-                temperature: pair[0].temperature,
+                rates: COORDINATES.map(|key| self.rate(pair, key)),
+                transport_speed: self.value(pair[1], TRANSPORT).unwrap_or(0.0),
+                temperature: self.value(pair[0], TEMPERATURE).unwrap_or_else(|| patch.temperature()),
             };
-            (motion, &pair[1])
+            (motion, pair[1])
         })
     }
-}
 
-impl MotionRow {
-    fn rates_to(&self, next: &Self) -> [f64; 6] {
-        std::array::from_fn(|i| (next.pose[i] - self.pose[i]) / (next.time - self.time))
+    /// The start of a seal, at the speed of the first interval.
+    pub fn start_of_seal(&self, seal: &Seal) -> SealStart {
+        let first = &self.rows[0];
+        SealStart {
+            time: first.time,
+            u: self.value(first, U).unwrap_or(0.0),
+            w: self.value(first, W).unwrap_or(0.0),
+            sealed_pressure: self.value(first, SEALED).unwrap_or_else(|| seal.sealed_pressure()),
+            temperature: self.value(first, TEMPERATURE).unwrap_or_else(|| seal.temperature()),
+            u_rate: self.first_rate(U),
+        }
+    }
+
+    /// The motions of a seal from row to row.
+    pub fn motions_of_seal(&self, seal: &Seal) -> impl Iterator<Item = (SealMotion, &MotionRow)> {
+        self.pairs().map(|pair| {
+            let motion = SealMotion {
+                duration: pair[1].time - pair[0].time,
+                u_rate: self.rate(pair, U),
+                w_rate: self.rate(pair, W),
+                pressure_rate: self.rate(pair, SEALED),
+                temperature: self.value(pair[0], TEMPERATURE).unwrap_or_else(|| seal.temperature()),
+            };
+            (motion, pair[1])
+        })
+    }
+
+    fn pairs(&self) -> impl Iterator<Item = [&MotionRow; 2]> {
+        self.rows.windows(2).map(|pair| [&pair[0], &pair[1]])
     }
 }

@@ -84,3 +84,30 @@ pub(crate) fn over_time<'a>(
     let y = Axis::linear(of, ys(&marks), Fit::Round);
     Panel::new(Axis::linear(("time", "s"), times.iter().copied(), Fit::Tight), y, marks).sized(894.0, 264.0)
 }
+
+/// The rows nearest to the ends of even parts of the time from the first to the last of them.
+pub(crate) fn ends_of_parts(times: &[f64], parts: usize) -> Vec<usize> {
+    let (Some(first), Some(last)) = (times.first(), times.last()) else { return Vec::new() };
+    let end = |part: usize| first + (last - first) * part as f64 / parts as f64;
+    let nearest = |time: f64| {
+        let after = times.partition_point(|&other| other < time).min(times.len() - 1);
+        let before = after.saturating_sub(1);
+        if time - times[before] < times[after] - time { before } else { after }
+    };
+    let mut rows: Vec<usize> = (1..=parts).map(|part| nearest(end(part))).collect();
+    rows.dedup();
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_of_parts_are_the_rows_nearest_to_even_parts_of_the_time() {
+        let times: Vec<f64> = (0..=100).map(|i| 2.0 + 0.01 * f64::from(i)).collect();
+        assert_eq!(ends_of_parts(&times, 5), [20, 40, 60, 80, 100]);
+        assert_eq!(ends_of_parts(&[0.0, 0.39, 0.62, 1.0], 5), [1, 2, 3]);
+        assert_eq!((ends_of_parts(&[0.0], 5), ends_of_parts(&[], 5)), (vec![0], vec![]));
+    }
+}

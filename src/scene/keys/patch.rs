@@ -3,7 +3,7 @@
 use super::definition::{Allowed, Key, Kinds, PATH, ROLES, key, kinds, number, numbers, table, whole, word};
 use super::scene_file::{DEPENDENCIES, INTEGERS, INTERVAL};
 use crate::scene::patch_file::{MAX_ELEMENTS, PatchGroup, TableExtrapolation};
-use crate::scene::values::{ANY, NumberRange, POSITIVE, Word, words};
+use crate::scene::values::{ANY, NOT_NEGATIVE, NumberRange, POSITIVE, Word, words};
 use crate::scene::{Extrapolation, Unit};
 
 pub(in crate::scene) const PATCH_ROOT: &[Key] = &[
@@ -92,7 +92,16 @@ pub(in crate::scene) const HEAT_SHARE: Key =
 /// So that their products and quotients are positive numbers too.
 const CONDUCTION: NumberRange = POSITIVE.down_to(1e-9).up_to(1e20);
 
-const FLAT: &[Key] = &[SHAPE, LENGTH, WIDTH, NX, NY, TRANSPORT, OFFSET, BACKING, HEAT];
+/// A parameter of an element, too. Rubber's loss factor is below 2, and bodies on it swing at 1 Hz and more.
+const DAMPING: Key = number(
+    "damping",
+    NOT_NEGATIVE.up_to(1.0),
+    Unit::Second,
+    "Loss of the springs along the plane and of the backing: their force is that of a spring and τ times its rate",
+)
+.default("0");
+
+const FLAT: &[Key] = &[SHAPE, LENGTH, WIDTH, NX, NY, TRANSPORT, OFFSET, BACKING, DAMPING, HEAT];
 const CYLINDER: &[Key] = &[
     SHAPE,
     number("radius", POSITIVE, Unit::Meter, "Radius").required(),
@@ -103,6 +112,7 @@ const CYLINDER: &[Key] = &[
     TRANSPORT,
     OFFSET,
     BACKING,
+    DAMPING,
     HEAT,
 ];
 const POINTS: &[Key] = &[
@@ -111,6 +121,7 @@ const POINTS: &[Key] = &[
     key("columns", Allowed::Text(ROLES), "Columns by what they hold, where their names do not say it"),
     OFFSET,
     BACKING,
+    DAMPING,
     HEAT,
 ];
 

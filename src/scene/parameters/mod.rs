@@ -38,6 +38,8 @@ impl Parameter {
     pub const INTERVAL: Self = Self::new("input.interval");
     /// What happens beyond the table of an element or a patch.
     pub const TABLE_EXTRAPOLATION: Self = Self::new("table.extrapolation");
+    /// The loss of the springs of an element or a patch.
+    pub const DAMPING: Self = Self::new("patch.damping");
     /// How many times finer a step of a patch is cut.
     pub const REFINE: Self = Self::new("solver.refine");
 

@@ -343,6 +343,7 @@ fn parameters_by_name_have_their_keys() {
         (Parameter::RELATIVE_TOLERANCE, "a number from 1e-30 to 0.1"),
         (Parameter::EXTRAPOLATION, "one of \"linear\", \"hold\""),
         (Parameter::TABLE_EXTRAPOLATION, "one of \"refuse\", \"hold\""),
+        (Parameter::DAMPING, "0 or a number from 1e-30 to 1.0"),
         (Parameter::REFINE, "a whole number from 1 to 1000"),
         (Parameter::new("patch.backing.normal"), "a number from 1e-30 to 1e30"),
         (Parameter::new("patch.heat.share"), "a number from 1e-30 to 1.0"),

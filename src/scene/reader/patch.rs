@@ -84,6 +84,7 @@ impl PatchFile {
             transport: face.transport,
             offset: face.offset,
             backing: face.backing,
+            damping: face.damping,
             heat: face.heat,
             input_rule,
             refine: u32::try_from(refine).unwrap_or(1),
@@ -101,6 +102,7 @@ struct FaceKeys {
     transport: bool,
     offset: [f64; 3],
     backing: Option<Backing>,
+    damping: f64,
     heat: Option<FaceHeat>,
     notes: Vec<ReadingNote>,
 }
@@ -118,9 +120,10 @@ fn read_face(entry: &Entry<'_>) -> Result<FaceKeys> {
     let transport = kind != ShapeKind::Points && table.flag("transport")?;
     let offset = table.entry("offset").map(|entry| read_offset(&entry)).transpose()?.unwrap_or_default();
     let backing = table.optional_table("backing", read_backing)?;
+    let damping = table.optional_number("damping")?.unwrap_or(0.0);
     let heat = table.optional_table("heat", read_heat)?;
     table.finish()?;
-    Ok(FaceKeys { shape, transport, offset, backing, heat, notes })
+    Ok(FaceKeys { shape, transport, offset, backing, damping, heat, notes })
 }
 
 fn read_heat(table: &mut TableReader<'_>) -> Result<FaceHeat> {

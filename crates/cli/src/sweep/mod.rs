@@ -1,6 +1,7 @@
 //! `asperity sweep`: the friction coefficient over speed, load and temperature, as a table and a plot.
 
 mod printed;
+mod seal;
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -15,6 +16,7 @@ use asperity_study::calibration::uncertain_scene;
 use asperity_study::files::ColumnOptions;
 use asperity_study::friction_map::Maps;
 use asperity_study::progress::Stop;
+use asperity_study::stribeck::StribeckOptions;
 use asperity_study::sweep::{
     Gaps, Over, SlidingOptions, SweepHeader, SweepOptions, SweepPlan, SweepRow, SweepTable, master_picture,
     matters_picture, over_ways, sweep_picture, verdict,
@@ -34,8 +36,9 @@ use super::table_file::TableFile;
 use super::terminal::{self, LabelledLine, lines, note, warn};
 
 /// Options of a sweep that --merge does not take.
-const OF_A_SCENE: [&str; 18] = [
+const OF_A_SCENE: [&str; 19] = [
     "gaps",
+    "sealed",
     "speeds",
     "pressures",
     "forces",
@@ -55,12 +58,36 @@ const OF_A_SCENE: [&str; 18] = [
     "set",
 ];
 
+/// Options of a sweep that --seal does not take.
+const NOT_OF_A_SEAL: [&str; 20] = [
+    "gaps",
+    "pressures",
+    "forces",
+    "method",
+    "way",
+    "points",
+    "friction_error",
+    "distance",
+    "over",
+    "data",
+    "columns",
+    "master",
+    "ways",
+    "samples",
+    "seed",
+    "refit",
+    "keep",
+    "shard",
+    "merge",
+    "converged",
+];
+
 #[derive(Debug, Args)]
 #[command(
-    override_usage = "asperity sweep [OPTIONS] --speeds <VALUES> <SCENE.toml>\n       asperity sweep [OPTIONS] --output <TABLE.csv> --merge <TABLE.csv>..."
+    override_usage = "asperity sweep [OPTIONS] --speeds <VALUES> <SCENE.toml>\n       asperity sweep [OPTIONS] --output <TABLE.csv> --merge <TABLE.csv>...\n       asperity sweep [OPTIONS] --seal <SEAL.toml>"
 )]
 #[command(group(ArgGroup::new("input").required(true)))]
-#[command(group(ArgGroup::new("speeds_or_merge").required(true).args(["speeds", "merge"])))]
+#[command(group(ArgGroup::new("speeds_or_merge").required(true).multiple(true).args(["speeds", "merge", "seal"])))]
 #[command(after_help = example!(
     "asperity sweep scenes/road/road.toml --speeds 1e-4..10/11 --pressures 3bar \\\n      --temperatures 5°C,20°C,40°C -o friction.csv"
 ))]
@@ -68,6 +95,12 @@ pub(crate) struct Sweep {
     /// The scene file; its excitation and outputs are not used.
     #[arg(value_name = "SCENE.toml", group = "input")]
     pub(crate) scene: Option<PathBuf>,
+    /// A seal file: the Stribeck curve of a lip with a film. Friction, film, share of contacts and leak rate in steady motion
+    /// to the air and back, over speed (default: the table's), sealed pressure and temperature, and the net leak of a stroke.
+    #[arg(long, value_name = "SEAL.toml", group = "input", conflicts_with_all = NOT_OF_A_SEAL)]
+    pub(crate) seal: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) stribeck: StribeckOptions,
     #[command(flatten)]
     pub(crate) options: SweepOptions,
     /// Also computes how a fluid passes the gaps of the contact, with --method steady: leak_gap and drag_gap, m, the distances
@@ -168,6 +201,7 @@ impl Shard {
 /// Computes a table or merges several.
 pub(crate) fn sweep(command: &Sweep) -> Result<(), Error> {
     match (&command.scene, &command.output) {
+        _ if command.seal.is_some() => seal::sweep(command),
         (Some(scene), _) => compute(command, scene),
         (_, Some(output)) => merge(command, output),
         // clap requires a scene, or tables and an output.

@@ -259,6 +259,7 @@ fn unknown(xml: &mut Xml, reference: u32, dependencies: Option<&str>) -> io::Res
 
 const LAYER_PAGE: &str = include_str!("../../../../modelDescription/documentation/index.html");
 const PATCH_PAGE: &str = include_str!("../../../../modelDescription/documentation/patch.html");
+const SEAL_PAGE: &str = include_str!("../../../../modelDescription/documentation/seal.html");
 const ELEMENT_PAGE: &str = include_str!("../../../../modelDescription/documentation/element.html");
 
 /// The files that are the same in every archive: path, content.
@@ -287,6 +288,7 @@ pub(super) fn documentation(
         Definition::Layer(_) => LAYER_PAGE,
         Definition::Element(_) => ELEMENT_PAGE,
         Definition::Patch(_) => PATCH_PAGE,
+        Definition::Seal(_) => SEAL_PAGE,
     };
     let summary: Vec<_> = summary.iter().map(|(name, text)| [(*name).into(), clean(text)]).collect();
     let is_parameter = |variable: &&VariableRef| matches!(variable.role, Role::Parameter(_));

@@ -9,6 +9,7 @@ use std::path::Path;
 use asperity::element::{FrictionTable, Node, PointContact, Quantity};
 use asperity::patch::Patch;
 use asperity::scene::{Input, OutputGroup, Phase, Scene, Value};
+use asperity::seal::Seal;
 use asperity::simulation::SimulationError;
 use asperity_fmi::{CommunicationStep, Definition, Inputs, Kind, Role, VariableRef, VariableTable};
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
@@ -33,7 +34,7 @@ const BYTES_OF_NUMBER: usize = 15;
 /// An experiment has so many rows, or there is none.
 const FEWEST_ROWS: usize = 10;
 /// What the names of outputs begin with that are no part of a result: they tell of the run, or of single masses.
-const LEFT_OUT: [&str; 3] = ["solver.", "energy.residual", "element["];
+const LEFT_OUT: [&str; 4] = ["solver.", "energy.residual", "element[", "cell["];
 /// The estimated error of the run, as a share of the largest force, and its steps.
 const ERROR: &str = "solver.error";
 const STEPS: &str = "solver.steps";
@@ -148,7 +149,15 @@ fn masses(definition: &Definition) -> u64 {
 
 /// The definition at a tenth of its tolerance with an estimate of its error, each communication step within a budget.
 fn tight(definition: &Definition, budget: Budget) -> Definition {
-    let Definition::Layer(scene) = definition else { return definition.clone() };
+    let scene = match definition {
+        Definition::Layer(scene) => scene,
+        Definition::Seal(seal) => {
+            let mut seal = seal.clone();
+            seal.relative_tolerance *= TIGHTER;
+            return Definition::Seal(seal);
+        }
+        Definition::Element(_) | Definition::Patch(_) => return definition.clone(),
+    };
     let mut scene = budget.limit(&at_tolerance(scene, TIGHTER * scene.solver.relative_tolerance));
     if !scene.outputs.contains(&OutputGroup::Solver) {
         scene.outputs.push(OutputGroup::Solver);
@@ -232,7 +241,30 @@ impl InputMotion {
             Definition::Layer(scene) => Self::of_layer(scene, budget),
             Definition::Element(contact) => Self::of_element(contact, &inputs).ok_or_else(no_press),
             Definition::Patch(patch) => Self::of_patch(patch, &inputs).ok_or_else(no_press),
+            Definition::Seal(seal) => Ok(Self::of_seal(seal, &inputs)),
         }
+    }
+
+    /// A stroke of some widths of the lip out and in, at the middle speed of its table.
+    fn of_seal(seal: &Seal, inputs: &[VariableRef]) -> Self {
+        const WIDTHS: f64 = 3.0;
+        let stroke = WIDTHS * seal.width();
+        let row = |i: u32| {
+            let passed = f64::from(i) / f64::from(INTERVALS / 2);
+            let value = |input: &VariableRef| match input.name.as_str() {
+                "u" => stroke * if passed > 1.0 { 2.0 - passed } else { passed },
+                _ => {
+                    if let Some(Value::Real(start)) = input.start {
+                        start
+                    } else {
+                        0.0
+                    }
+                }
+            };
+            (passed * stroke / seal.middle_speed(), inputs.iter().map(value).collect())
+        };
+        let (times, values) = (0..=INTERVALS).map(row).unzip();
+        Self { times, values }
     }
 
     /// Every `every`th row, the first and the last.

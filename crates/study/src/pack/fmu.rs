@@ -14,7 +14,7 @@ use super::{experiment, terminals};
 use crate::decimals::short;
 use crate::error::Error;
 use crate::files::bytes;
-use crate::summary::{LabelledLine, patch_rows, scene_rows, table_rows};
+use crate::summary::{LabelledLine, patch_rows, scene_rows, seal_rows, table_rows};
 use crate::sweep::is_converged;
 
 // What of an FMU is to choose. Not a doc comment: that would be the description of the command.
@@ -163,12 +163,13 @@ pub fn flat_names(definition: &Definition) -> Option<LabelledLine> {
     Some(("Names", format!("flat, such as {flat} for {own}; messages keep {own}")))
 }
 
-/// What there is in the scene, in the table or in the patch.
+/// What there is in the scene, in the table, in the patch or in the seal.
 pub fn summary(definition: &Definition) -> Vec<LabelledLine> {
     match definition {
         Definition::Layer(scene) => scene_rows(scene),
         Definition::Element(contact) => table_rows(contact.table()),
         Definition::Patch(patch) => [patch_rows(patch), table_rows(patch.table())].concat(),
+        Definition::Seal(seal) => [seal_rows(seal), table_rows(seal.table())].concat(),
     }
 }
 

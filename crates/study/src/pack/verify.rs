@@ -11,8 +11,9 @@ use std::path::{Path, PathBuf};
 use asperity::element::{FrictionTable, PointContact};
 use asperity::patch::Patch;
 use asperity::scene::Scene;
+use asperity::seal::Seal;
 use asperity::tables::fields;
-use asperity_fmi::{Definition, PATCH_FILE, SCENE_FILE, TABLE_FILE, VariableTable};
+use asperity_fmi::{Definition, PATCH_FILE, SCENE_FILE, SEAL_FILE, TABLE_FILE, VariableTable};
 use zip::ZipArchive;
 use zip::result::ZipError;
 
@@ -160,15 +161,17 @@ fn resources(files: &Files, folder: &Path) -> Result<(Definition, PathBuf), Erro
         let written = path.parent().map_or(Ok(()), fs::create_dir_all).and_then(|()| fs::write(&path, content));
         written.map_err(Error::io("write", &path))?;
     }
-    let [scene, patch, table] = [SCENE_FILE, PATCH_FILE, TABLE_FILE].map(|name| folder.join(name));
+    let [scene, patch, seal, table] = [SCENE_FILE, PATCH_FILE, SEAL_FILE, TABLE_FILE].map(|name| folder.join(name));
     if scene.is_file() {
         Ok((Scene::load(&scene)?.into(), scene))
     } else if patch.is_file() {
         Ok((Patch::load(&patch)?.into(), patch))
+    } else if seal.is_file() {
+        Ok((Seal::load(&seal)?.into(), seal))
     } else if table.is_file() {
         Ok((PointContact::new(FrictionTable::load(&table)?).into(), table))
     } else {
-        let expected = format!("expected {SCENE_FILE}, {PATCH_FILE} or {TABLE_FILE} in resources");
+        let expected = format!("expected {SCENE_FILE}, {PATCH_FILE}, {SEAL_FILE} or {TABLE_FILE} in resources");
         Err(Error::value(format!("{expected}: only FMUs of asperity can be verified")))
     }
 }

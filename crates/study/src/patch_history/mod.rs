@@ -10,7 +10,7 @@ use crate::picture::{
     Axis, Colour, ColourScale, Colours, Fill, Fit, Frame, Mark, Panel, Picture, Row, Shape, Symbol, fitted,
     rounded_down,
 };
-use crate::time_history::over_time;
+use crate::time_history::{ends_of_parts, over_time};
 use moment::{Detail, Moment, Tile};
 
 /// A run of a patch: force, moment and energy lost, collected row by row, and its face at some of the rows.
@@ -35,7 +35,10 @@ const RUN_PANELS: [RunPanel; 3] = [
     ("force", "N", |output| matches!(output, PatchOutput::Force(_) | PatchOutput::TransportForce)),
     ("moment", "N m", |output| matches!(output, PatchOutput::Moment(_))),
     ("energy lost", "J", |output| {
-        matches!(output, PatchOutput::Energy | PatchOutput::SlipEnergy | PatchOutput::ReleaseEnergy)
+        matches!(
+            output,
+            PatchOutput::Energy | PatchOutput::SlipEnergy | PatchOutput::ReleaseEnergy | PatchOutput::DamperEnergy
+        )
     }),
 ];
 /// Moments in the strip.
@@ -52,7 +55,7 @@ impl PatchHistory {
             times: Vec::new(),
             rows: Vec::new(),
             face: patch.layout(),
-            in_strip: ends_of_parts(times),
+            in_strip: ends_of_parts(times, STRIP),
             strip: Vec::new(),
             largest: None,
         }
@@ -98,20 +101,6 @@ impl PatchHistory {
         let strip = Row { panels: self.strip.iter().map(small).collect(), ..Row::default() };
         [Row { note, ..faces.panel(largest, LARGE).into() }, strip]
     }
-}
-
-/// The rows nearest to the ends of even parts of the time from the first to the last of them.
-fn ends_of_parts(times: &[f64]) -> Vec<usize> {
-    let (Some(first), Some(last)) = (times.first(), times.last()) else { return Vec::new() };
-    let end = |part: usize| first + (last - first) * part as f64 / STRIP as f64;
-    let nearest = |time: f64| {
-        let after = times.partition_point(|&other| other < time).min(times.len() - 1);
-        let before = after.saturating_sub(1);
-        if time - times[before] < times[after] - time { before } else { after }
-    };
-    let mut rows: Vec<usize> = (1..=STRIP).map(|part| nearest(end(part))).collect();
-    rows.dedup();
-    rows
 }
 
 /// The absolute value of the force, N.
@@ -217,17 +206,4 @@ fn tiles(moment: &Moment, per_metre: [f64; 2], are_free: bool) -> Vec<Mark> {
 /// Of a traction, Pa.
 fn length(tile: &Tile) -> f64 {
     tile.traction[0].hypot(tile.traction[1])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_strip_has_the_rows_nearest_to_even_parts_of_the_time() {
-        let times: Vec<f64> = (0..=100).map(|i| 2.0 + 0.01 * f64::from(i)).collect();
-        assert_eq!(ends_of_parts(&times), [20, 40, 60, 80, 100]);
-        assert_eq!(ends_of_parts(&[0.0, 0.39, 0.62, 1.0]), [1, 2, 3]);
-        assert_eq!((ends_of_parts(&[0.0]), ends_of_parts(&[])), (vec![0], vec![]));
-    }
 }

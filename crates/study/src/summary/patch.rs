@@ -32,6 +32,7 @@ pub fn patch_rows(patch: &Patch) -> Vec<LabelledLine> {
     if let Some(Backing { normal, shear }) = patch.backing() {
         rows.push(("Backing", format!("{normal:e} Pa/m along the normal and {shear:e} Pa/m in shear, in series")));
     }
+    rows.push(("Damping", damping(patch)));
     if let Some(FaceHeat { conductivity, capacity, density, share }) = patch.heat() {
         let rubber = format!("{conductivity} W/(m K), {capacity} J/(kg K), {density} kg/m³");
         rows.push(("Heat", format!("{share} of what slip loses warms the elements, of {rubber}")));
@@ -40,6 +41,14 @@ pub fn patch_rows(patch: &Patch) -> Vec<LabelledLine> {
     rows.push(("Low end", low_end(patch)));
     rows.push(("Outputs", format!("{}: {variables} variables", groups.join(", "))));
     rows
+}
+
+fn damping(patch: &Patch) -> String {
+    match (patch.damping(), patch.table().header.text_of("damping")) {
+        (0.0, Some(suggested)) => format!("none, so that what sticks swings without loss; {suggested}"),
+        (0.0, None) => "none, so that what sticks swings without loss".to_owned(),
+        (damping, _) => format!("{damping:e} s, of the springs along the plane and of the backing"),
+    }
 }
 
 /// A warning where the contacts of the table are stiffer than anything of rubber that could stand behind them: a
@@ -112,8 +121,13 @@ pub fn table_rows(table: &FrictionTable) -> Vec<LabelledLine> {
     if let Load::Pressure { area } = table.load {
         rows.push(("Area", format!("{area:e} m²")));
     }
-    let stated =
-        [("Foundation", "foundation"), ("Fine waves", "fine"), ("Sample", "sample"), ("Converged", "convergence")];
+    let stated = [
+        ("Foundation", "foundation"),
+        ("Fine waves", "fine"),
+        ("Sample", "sample"),
+        ("Converged", "convergence"),
+        ("Damping", "damping"),
+    ];
     rows.extend(stated.into_iter().filter_map(|(label, key)| Some((label, table.header.text_of(key)?.to_owned()))));
     rows.push(("w = 0", format!("a separation of {:e} m", table.rest_separation)));
     let mut errors: Vec<_> = left_out(table).iter().filter_map(|axis| errors(axis, table.load)).collect();

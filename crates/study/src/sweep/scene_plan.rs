@@ -1,9 +1,11 @@
 //! What a sweep of one scene computes: the points over speed, load and temperature, and the row of each.
 
+use std::f64::consts::PI;
+
 use asperity::element::{Load, OperatingPoint, Quantity, SWEEP, SweepGrid};
 use asperity::math::check_memory;
 use asperity::model::{EvenSliding, Model};
-use asperity::scene::{FineRoughness, ParameterError, Scene, Surface, Wlf};
+use asperity::scene::{FineRoughness, Material, ParameterError, Scene, Surface, Wlf};
 use asperity::simulation::Interrupt;
 use asperity::table::Header;
 
@@ -15,6 +17,7 @@ use super::search::StopBounds;
 use super::solved::{SolvedPoints, no_area};
 use super::table::{GAPS, SweepHeader, SweepRow};
 use crate::Error;
+use crate::decimals::short;
 use crate::error::Context as _;
 use crate::implausible::{FoundFriction, at, implausible};
 use crate::values::Values;
@@ -190,11 +193,23 @@ fn grid(options: &SweepOptions, scene: &Scene) -> Result<(Load, SweepGrid), Erro
     Ok((load, grid))
 }
 
+/// The `damping` of an element or a patch that loses as the compound does at 10 Hz, where a body of some 100 kg swings on a
+/// tread.
+fn suggested_damping(material: &Material) -> Option<String> {
+    const HERTZ: f64 = 10.0;
+    let omega = 2.0 * PI * HERTZ;
+    let (storage, loss) = material.complex_modulus(omega);
+    let seconds = loss / (storage * omega);
+    let temperature = material.wlf.map_or(String::new(), |wlf| format!(" and {} K", wlf.temperature));
+    (seconds > 0.0).then(|| format!("{} s is E''/(ω E') of the compound at {HERTZ} Hz{temperature}", short(seconds, 2)))
+}
+
 /// The header with what the table rests on, for those who use it.
 fn rests_on(keys: Header, scene: &Scene, convergence: Option<String>) -> Header {
     keys.with_some("foundation", scene.layer.foundation.map(|kind| kind.word()))
         .with_some("fine", scene.fine.as_ref().map(FineRoughness::describe))
         .with_some("convergence", convergence)
+        .with_some("damping", scene.material.as_ref().and_then(suggested_damping))
         .with_some("held", scene.carrier.z.map(|body| format!("load, on a carrier of {} kg", body.mass)))
 }
 
