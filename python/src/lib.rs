@@ -16,6 +16,7 @@ mod patch;
 mod rank;
 mod run;
 mod scene;
+mod seal;
 mod simulation;
 mod state;
 mod surface;
@@ -47,6 +48,8 @@ mod _native {
     use super::run::simulate;
     #[pymodule_export]
     use super::scene::Scene;
+    #[pymodule_export]
+    use super::seal::{Seal, SealRun, SealState};
     #[pymodule_export]
     use super::simulation::{Simulation, State};
     #[pymodule_export]

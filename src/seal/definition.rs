@@ -96,6 +96,17 @@ impl LipSet {
     }
 }
 
+/// Where a number of a seal file is.
+type Real = fn(&mut SealFile) -> Option<&mut f64>;
+
+/// Parameters that are numbers of its file.
+const REALS: [(Parameter, Real); 4] = [
+    (Parameter::new("seal.length"), |file| Some(&mut file.length)),
+    (Parameter::new("seal.stiffness"), |file| file.stiffness.as_mut()),
+    (Parameter::new("seal.approach_stiffness"), |file| file.approach_stiffness.as_mut()),
+    (Parameter::new("fluid.supply"), |file| Some(&mut file.supply)),
+];
+
 impl Seal {
     /// Reads the seal file at `path` and the files that it names.
     ///
@@ -272,19 +283,31 @@ impl Seal {
 
     /// The parameters, in the order of their variables.
     pub fn parameters(&self) -> Vec<Parameter> {
-        vec![
+        let others = [
             Parameter::TABLE_EXTRAPOLATION,
             Parameter::EXTRAPOLATION,
             Parameter::INTERVAL,
             Parameter::RELATIVE_TOLERANCE,
-        ]
+        ];
+        let reals = REALS.iter().map(|(parameter, _)| *parameter).filter(|parameter| self.real(*parameter).is_some());
+        others.into_iter().chain(reals).collect()
+    }
+
+    /// The value of a number of its file, if it has it.
+    fn real(&self, parameter: Parameter) -> Option<f64> {
+        let (_, real) = REALS.iter().find(|(own, _)| *own == parameter)?;
+        real(&mut (*self.file).clone()).copied()
     }
 
     /// The value of a parameter.
     pub fn parameter(&self, parameter: Parameter) -> Value {
         match parameter {
             Parameter::TABLE_EXTRAPOLATION => Value::Text(self.table_extrapolation.word().into()),
-            _ => self.input_rule.parameter(parameter).unwrap_or(Value::Real(self.relative_tolerance)),
+            Parameter::RELATIVE_TOLERANCE => Value::Real(self.relative_tolerance),
+            _ => {
+                let real = || Value::Real(self.real(parameter).unwrap_or(0.0));
+                self.input_rule.parameter(parameter).unwrap_or_else(real)
+            }
         }
     }
 
@@ -298,16 +321,16 @@ impl Seal {
         {
             return Ok(());
         }
-        match (parameter, &value) {
-            (Parameter::RELATIVE_TOLERANCE, &Value::Real(number)) => {
-                self.relative_tolerance = parameter.check_number(number)?;
-                Ok(())
-            }
-            _ => {
-                let problem = Problem::Value { given: value.to_string(), expected: parameter.allowed() };
-                Err(ParameterError::new(parameter.name(), problem))
-            }
+        let problem = Problem::Value { given: value.to_string(), expected: parameter.allowed() };
+        let refused = ParameterError::new(parameter.name(), problem);
+        let Value::Real(number) = value else { return Err(refused) };
+        if parameter == Parameter::RELATIVE_TOLERANCE {
+            self.relative_tolerance = parameter.check_number(number)?;
+            return Ok(());
         }
+        let (_, real) = REALS.iter().find(|(own, _)| *own == parameter).ok_or_else(|| refused.clone())?;
+        *real(Arc::make_mut(&mut self.file)).ok_or(refused)? = parameter.check_number(number)?;
+        Ok(())
     }
 
     /// Paths of the files that it reads besides its own, relative to that one's folder.

@@ -10,8 +10,9 @@ use std::{fs, mem, process, ptr};
 use asperity::element::{FrictionTable, PointContact};
 use asperity::patch::Patch;
 use asperity::scene::Scene;
+use asperity::seal::Seal;
 use asperity_fmi::bindings::*;
-use asperity_fmi::{Definition, PATCH_FILE, SCENE_FILE, Sources, TABLE_FILE, VariableTable};
+use asperity_fmi::{Definition, PATCH_FILE, SCENE_FILE, SEAL_FILE, Sources, TABLE_FILE, VariableTable};
 
 pub const OK: fmi2Status = fmi2Status_fmi2OK;
 pub const DISCARD: fmi2Status = fmi2Status_fmi2Discard;
@@ -99,6 +100,17 @@ impl Folder {
         folder
     }
 
+    /// A folder with a seal and the files that it names, which lie in `source`.
+    pub fn with_seal(seal: &str, source: &Path) -> Self {
+        let folder = Self::new("seal");
+        let file = folder.path().join(SEAL_FILE);
+        fs::write(&file, seal).unwrap();
+        for name in seal.split('"').filter(|text| text.ends_with(".csv")) {
+            fs::copy(source.join(name), folder.path().join(name)).unwrap();
+        }
+        folder
+    }
+
     pub fn path(&self) -> &Path {
         &self.0
     }
@@ -113,7 +125,7 @@ impl Folder {
 
     /// The GUID and the variables of the scene, the table or the patch in it.
     pub fn description(&self) -> (String, VariableTable) {
-        let files = [PATCH_FILE, TABLE_FILE, SCENE_FILE].map(|file| self.0.join(file));
+        let files = [PATCH_FILE, SEAL_FILE, TABLE_FILE, SCENE_FILE].map(|file| self.0.join(file));
         describe(files.iter().find(|file| file.is_file()).unwrap())
     }
 }
@@ -122,6 +134,8 @@ impl Folder {
 pub fn describe(file: &Path) -> (String, VariableTable) {
     let definition: Definition = if file.ends_with(PATCH_FILE) {
         Patch::load(file).unwrap().into()
+    } else if file.ends_with(SEAL_FILE) {
+        Seal::load(file).unwrap().into()
     } else if file.ends_with(TABLE_FILE) {
         PointContact::new(FrictionTable::load(file).unwrap()).into()
     } else {
@@ -234,6 +248,11 @@ impl Fmu {
     /// An instance of a patch with the table at `table`.
     pub fn of_patch(patch: &str, table: &Path) -> Self {
         Self::in_folder(Folder::with_patch(patch, table), false)
+    }
+
+    /// An instance of a seal whose files lie in `source`.
+    pub fn of_seal(seal: &str, source: &Path) -> Self {
+        Self::in_folder(Folder::with_seal(seal, source), false)
     }
 
     fn in_folder(folder: Folder, logging: bool) -> Self {

@@ -98,6 +98,21 @@ fn no_fault_is_found_in_patches() {
 }
 
 #[test]
+fn no_fault_is_found_in_seals() {
+    let folder = scratch("fmpy-seals");
+    let source = root().join("tests/reference/film");
+    for file in ["film-strokes.table.csv", "film-strokes.lip.csv"] {
+        fs::copy(source.join(file), folder.join(file)).unwrap();
+    }
+    let all = "[fmu]\noutputs = [\"forces\", \"dissipation\", \"film\", \"contact\", \"tangent\", \"cells\"]\n";
+    let text = fs::read_to_string(source.join("film-strokes.toml")).unwrap().replace("cells = 96", "cells = 8");
+    let (seal, fmu) = (folder.join("seal.toml"), folder.join("seal.fmu"));
+    fs::write(&seal, format!("{text}{all}")).unwrap();
+    run(asperity().args(["pack", "--seal"]).arg(&seal).arg("-o").arg(&fmu).arg("--library").arg(library()));
+    validate(&fmu);
+}
+
+#[test]
 fn the_same_scene_gives_the_same_bytes() {
     let folder = scratch("fmpy-bytes");
     let pack = || fs::read(pack(&root().join(DEFAULT_SCENE), &folder)).unwrap();

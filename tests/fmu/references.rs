@@ -89,6 +89,20 @@ fn elements_and_patches_press_and_slide() {
     }
 }
 
+/// A seal makes a stroke; its result is that of a tenth of its tolerance.
+#[test]
+fn a_seal_makes_a_stroke() {
+    let fmu = scratch("references-seal").join("seal.fmu");
+    let mut pack = asperity();
+    pack.args(["pack", "--seal"]).arg(root().join("tests/reference/film/film-strokes.toml")).arg("-o").arg(&fmu);
+    run(pack.arg("--library").arg(library()));
+    let rod = "terminal rod u:input sealed_pressure:input F_x:output F_z:output";
+    assert!(roles(&fmu, rod).iter().any(|role| role == "experiment/smoke-test"));
+    assert_reproduces(&fmu, 1e-3);
+    let verified = run(asperity().arg("verify").arg(&fmu));
+    assert!(verified.contains("gets 201 rows"), "{verified}");
+}
+
 /// Names are those of the FMU; without references there is no folder.
 #[test]
 fn names_follow_and_references_are_left_out_on_request() {

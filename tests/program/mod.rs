@@ -20,6 +20,7 @@ mod rank;
 mod report;
 mod samples;
 mod scene_errors;
+mod seal;
 mod seal_ring;
 mod steady;
 mod summaries;

@@ -17,7 +17,7 @@ pub struct SealHistory {
     width: f64,
     /// The indices of the rows whose film is drawn.
     drawn: Vec<usize>,
-    /// t (s), u (m), F_x (N), film.leak (m³).
+    /// t (s), u (m), F_x (N), film.leak (mm³).
     rows: Vec<[f64; 4]>,
     films: Vec<Moment>,
     /// The moment of the largest friction so far.
@@ -75,7 +75,7 @@ impl SealHistory {
         if self.drawn.contains(&self.rows.len()) {
             self.films.push(Moment::new(run, force.abs()));
         }
-        self.rows.push([run.time(), run.inputs()[0], force, leak]);
+        self.rows.push([run.time(), run.inputs()[0], force, 1e9 * leak]);
     }
 
     /// Friction over the stroke and leak over time; below them film and pressures over the width.
@@ -87,7 +87,7 @@ impl SealHistory {
             let along = Axis::linear((x.0, x.1), column(x.2), Fit::Tight);
             Panel::new(along, Axis::linear((y.0, y.1), ys(&marks), Fit::Round), marks).sized(894.0, 264.0)
         };
-        let (stroke, leak) = (("u", "m", 1), ("net leak to the air", "m³", 3));
+        let (stroke, leak) = (("u", "m", 1), ("net leak to the air", "mm³", 3));
         let over_time = [curve(stroke, ("force on the rod", "N", 2)), curve(("time", "s", 0), leak)];
         let films = self.largest.iter().map(|largest| self.pressures(largest));
         let panels = over_time.into_iter().chain([self.contents()]).chain(films);

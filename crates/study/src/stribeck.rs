@@ -17,6 +17,8 @@ use crate::values::Values;
 /// What the header of the table begins with.
 const STRIBECK: (&str, u64) = ("asperity stribeck", 1);
 
+/// Widths of the lip over which the outstroke lays its steady film, and the instroke takes it back.
+const LAID: usize = 12;
 /// A run goes on by this part of the lip's width until its force changes by no more than [`STEADY`] over one of them, and at
 /// most for so many of them.
 const WIDTH: f64 = 1.0;
@@ -31,7 +33,7 @@ const ROWS: u32 = 4;
 #[serde(default)]
 pub struct StribeckOptions {
     /// Of a seal, sealed pressures in Pa, in the format of --speeds. Default: the first one of its sets of pressures.
-    #[arg(long, value_name = "VALUES", value_parser = Values::of(Dimension::Pressure), requires = "seal")]
+    #[arg(long, value_name = "VALUES", value_parser = Values::from_zero(Dimension::Pressure), requires = "seal")]
     pub sealed: Option<Values>,
 }
 
@@ -213,11 +215,11 @@ impl Stribeck {
             groups.iter().enumerate().flat_map(|(look, &group)| [0, 1].map(|i| curve(look, group, i))).collect()
         };
         let [friction, film, share] =
-            [marks(|figures| figures.friction), marks(|figures| figures.thickness), marks(|figures| figures.share)];
+            [marks(|figures| figures.friction), marks(|figures| 1e6 * figures.thickness), marks(|figures| figures.share)];
         let x = Axis::logarithmic(("viscosity times speed", "N/m"), xs(&friction));
         let y = [
             Axis::linear(("friction coefficient", ""), ys(&friction).chain([0.0]), Fit::Round),
-            Axis::logarithmic(("film", "m"), ys(&film)),
+            Axis::logarithmic(("film", "µm"), ys(&film)),
             Axis::linear(("load on contacts", ""), [0.0, 1.0], Fit::Tight),
         ];
         let panels = y.into_iter().zip([friction, film, share]);
@@ -272,20 +274,20 @@ fn strokes(seal: &Seal, temperature: f64, sealed: f64, speed: f64) -> Result<[St
     let start = SealStart { sealed_pressure: sealed, temperature, ..SealStart::default() };
     let told = |error: FilmError| error.to_string();
     let mut run = SealRun::new(seal, &start).map_err(told)?;
-    let (out, widths) = follow(&mut run, seal, (Direction::Out, speed, temperature), MOST_WIDTHS).map_err(told)?;
-    // The film that comes back first is the steady one, as long as the way after the force has settled.
-    move_on(&mut run, seal, (Direction::Out, speed, temperature), widths as f64 * WIDTH).map_err(told)?;
-    let (back, _) = follow(&mut run, seal, (Direction::In, speed, temperature), widths.max(2)).map_err(told)?;
+    let out = follow(&mut run, seal, (Direction::Out, speed, temperature), MOST_WIDTHS).map_err(told)?;
+    // The film that comes back first is the steady one.
+    move_on(&mut run, seal, (Direction::Out, speed, temperature), LAID as f64 * WIDTH).map_err(told)?;
+    let back = follow(&mut run, seal, (Direction::In, speed, temperature), LAID).map_err(told)?;
     Ok([out, back])
 }
 
-/// Moves the rod until its force is steady, at most by so many parts of the width; also returns how many these were.
+/// Moves the rod until its force is steady, at most by so many parts of the width.
 fn follow(
     run: &mut SealRun,
     seal: &Seal,
     (direction, speed, temperature): (Direction, f64, f64),
     most: usize,
-) -> Result<(StrokeFigures, usize), FilmError> {
+) -> Result<StrokeFigures, FilmError> {
     let (mut before, mut passed, mut is_steady) = (f64::NAN, 0, false);
     while passed < most && !is_steady {
         move_on(run, seal, (direction, speed, temperature), WIDTH)?;
@@ -304,7 +306,7 @@ fn follow(
         leak_rate: run.leak_rate(),
         is_steady,
     };
-    Ok((figures, passed))
+    Ok(figures)
 }
 
 /// Moves the rod on by some widths of the lip.

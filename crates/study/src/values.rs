@@ -1,6 +1,6 @@
 //! Values of options as people write them: numbers with units, lists and ranges. An error says what was expected.
 
-use asperity::tables::{Dimension, POSITIVE, Unit, quantity};
+use asperity::tables::{Dimension, NOT_NEGATIVE, NumberRange, POSITIVE, Unit, quantity};
 use serde::{Deserialize, Serialize};
 
 use crate::decimals::rounded;
@@ -30,9 +30,18 @@ impl Values {
     /// # Errors
     /// What was expected of the text.
     pub fn parse(text: &str, dimension: Dimension) -> Result<Self, String> {
-        let mut numbers = Numbers { dimension, with_unit: None };
+        Self::parse_within(text, dimension, POSITIVE)
+    }
+
+    fn parse_within(text: &str, dimension: Dimension, range: NumberRange) -> Result<Self, String> {
+        let mut numbers = Numbers { dimension, range, with_unit: None };
         let parts = text.split(',').map(|part| values(part.trim(), &mut numbers));
         Ok(parts.collect::<Result<Vec<_>, _>>()?.concat().into())
+    }
+
+    /// What reads values of a dimension of which 0 is one.
+    pub fn from_zero(dimension: Dimension) -> impl Fn(&str) -> Result<Self, String> + Clone {
+        move |text| Self::parse_within(text, dimension, NOT_NEGATIVE)
     }
 
     /// What reads values of a dimension.
@@ -46,7 +55,7 @@ fn values(part: &str, numbers: &mut Numbers) -> Result<Vec<f64>, String> {
     let (high, count) = rest.rsplit_once('/').ok_or_else(|| wrong(part, "a..b/n, such as 1e-4..10/20"))?;
     let (low, high) = (numbers.read(low)?, numbers.read(high)?);
     let count: usize = count.trim().parse().map_err(|_| wrong(count, "a whole number of values"))?;
-    if low >= high || !(2..=MOST).contains(&count) {
+    if low >= high || (low == 0.0 && numbers.dimension != Dimension::Temperature) || !(2..=MOST).contains(&count) {
         return Err(wrong(part, &format!("a..b/n with a < b and 2 to {MOST} values")));
     }
     let last = count - 1;
@@ -62,12 +71,13 @@ fn values(part: &str, numbers: &mut Numbers) -> Result<Vec<f64>, String> {
 /// Reads the numbers of an option, all of them with units or none.
 struct Numbers {
     dimension: Dimension,
+    range: NumberRange,
     with_unit: Option<bool>,
 }
 
 impl Numbers {
     fn read(&mut self, text: &str) -> Result<f64, String> {
-        let found = quantity(text, self.dimension).filter(|&(number, _)| POSITIVE.holds(number));
+        let found = quantity(text, self.dimension).filter(|&(number, _)| self.range.holds(number));
         let (number, unit) = found.ok_or_else(|| wrong(text, &self.expected()))?;
         match *self.with_unit.get_or_insert(unit.is_some()) == unit.is_some() {
             true => Ok(number),
@@ -76,7 +86,7 @@ impl Numbers {
     }
 
     fn expected(&self) -> String {
-        format!("{POSITIVE} in {}, or with its unit, one of {}", Unit::si(self.dimension), self.dimension.units())
+        format!("{} in {}, or with its unit, one of {}", self.range, Unit::si(self.dimension), self.dimension.units())
     }
 }
 

@@ -21,6 +21,7 @@ from ._patch import Patch, PatchState
 from ._ranking import Ranking, rank
 from ._result import Result
 from ._scene import Scene
+from ._seal import Seal, SealState, Stribeck
 from ._simulation import Simulation, State
 from ._surface import Surface, surface
 from ._table import Table
@@ -39,9 +40,12 @@ __all__ = [
     "Result",
     "Scene",
     "SceneError",
+    "Seal",
+    "SealState",
     "Simulation",
     "SimulationError",
     "State",
+    "Stribeck",
     "Surface",
     "Table",
     "__version__",

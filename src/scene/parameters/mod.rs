@@ -58,10 +58,12 @@ impl Parameter {
         self.path().replace("[]", &format!("[{}]", self.index + 1))
     }
 
-    /// Its key, and which of several equal tables this is in: of scenes, or of patches and elements.
+    /// Its key, and which of several equal tables this is in: of scenes, of patches and elements, or of seals.
     fn found(self) -> (&'static Key, At) {
         let of_scenes = keys::find(keys::ROOT, self.path()).filter(|(key, _)| key.is_parameter && key.field.is_some());
-        let found = of_scenes.or_else(|| keys::find(keys::PATCH_ROOT, self.path()));
+        let found = of_scenes
+            .or_else(|| keys::find(keys::PATCH_ROOT, self.path()))
+            .or_else(|| keys::find(keys::SEAL_ROOT, self.path()));
         found.unwrap_or((&keys::NONE, At::FIRST))
     }
 

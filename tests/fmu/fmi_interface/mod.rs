@@ -14,6 +14,7 @@ mod many;
 mod master;
 mod material;
 mod patch;
+mod seal;
 mod provisional;
 mod provisional_states;
 mod states;

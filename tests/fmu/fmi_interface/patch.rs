@@ -124,7 +124,7 @@ fn its_variables_stand_in_their_order() {
     }
     assert_eq!(
         names[names.len() - 4..],
-        ["table.extrapolation", "input.extrapolation", "input.interval", "solver.refine"]
+        ["input.extrapolation", "input.interval", "solver.refine", "patch.damping"]
     );
 }
 

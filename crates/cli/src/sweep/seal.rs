@@ -31,7 +31,7 @@ pub(super) fn sweep(command: &Sweep) -> Result<(), Error> {
     picture.as_ref().map_or(Ok(()), |path| picture::write(&found.picture(), path))?;
     let [failed, unsteady] = found.failures();
     if unsteady > 0 {
-        warn(&format!("{unsteady} strokes are not steady after 60 widths of the lip: their rows say so"));
+        warn(&format!("{unsteady} strokes do not become steady within some widths of the lip: their rows say so"));
     }
     let problem = found.points.iter().find_map(|point| point.strokes.as_ref().err());
     let files = [output.as_path()].into_iter().chain(picture.as_deref()).map(named).collect::<Vec<_>>().join(", ");

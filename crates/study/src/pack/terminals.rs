@@ -26,6 +26,14 @@ const CARRIER: Terminal = Terminal {
     members: &["u", "w", "F_x", "F_z"],
 };
 
+/// Of a seal.
+const ROD: Terminal = Terminal {
+    name: "rod",
+    kind: "org.asperity.rod",
+    description: "Displacement of the rod, the pressure before the lip, and the force on the rod",
+    members: &["u", "w", "sealed_pressure", "F_x", "F_z"],
+};
+
 /// Of a patch.
 const BODY: Terminal = Terminal {
     name: "body",
@@ -56,7 +64,11 @@ pub(super) fn entries(
     variables: &VariableTable,
     picture: Option<&[u8]>,
 ) -> io::Result<Vec<ArchiveEntry>> {
-    let terminal = if matches!(definition, Definition::Patch(_)) { &BODY } else { &CARRIER };
+    let terminal = match definition {
+        Definition::Layer(_) | Definition::Element(_) => &CARRIER,
+        Definition::Patch(_) => &BODY,
+        Definition::Seal(_) => &ROD,
+    };
     let own = definition.variables();
     let named: Vec<(&str, &str)> =
         own.entries().zip(variables.entries()).map(|((_, own), (_, named))| (&*own.name, &*named.name)).collect();
