@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use asperity::scene::{Absent, KeyEntry, PatchFile, Scene, patch_keys, scene_keys};
+use asperity::scene::{
+    Absent, CanonicalFiles, KeyEntry, PatchFile, Scene, SealFile, patch_keys, scene_keys, seal_keys,
+};
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
 /// Ends of keys of which a scene keeps whether they are given, since only those that are given are parameters. The value
@@ -24,7 +26,7 @@ const KEPT_APART: [&str; 12] = [
 ];
 
 /// Keys that no other file has.
-const OTHERS: [&str; 6] = [
+const OTHERS: [&str; 7] = [
     "name = 'bodies'
     layer = { masses = 2, spacing = 1, mass = 1, vertical = { stiffness = 1 } }
     surface = { kind = 'flat' }
@@ -64,9 +66,16 @@ const OTHERS: [&str; 6] = [
     uncertainty.covariance = 'fit.csv'",
     "name = 'patch'
     table = { path = 'table.csv', extrapolation = 'refuse' }
-    patch = { shape = 'flat', length = 1, width = 1, nx = 1, ny = 1, transport = true, offset = [1, 0, 0] }
+    patch = { shape = 'flat', length = 1, width = 1, nx = 1, ny = 1, transport = true, offset = [1, 0, 0], damping = 1 }
     input = { extrapolation = 'hold', interval = 1 }
     solver = { refine = 2 }
+    fmu = { outputs = [], integers = 'real', dependencies = 'none' }",
+    "name = 'seal'
+    table = { path = 'table.csv', extrapolation = 'refuse', temperature = 300 }
+    seal = { pressure = 'lip.csv', length = 1, rough = 'moving', stiffness = 1, approach_stiffness = 1, cells = 8, columns = { x = 'x' } }
+    fluid = { viscosity = 1, air = 'dry', supply = 1, start = 1 }
+    input = { extrapolation = 'hold', interval = 1 }
+    solver = { relative_tolerance = 1e-2 }
     fmu = { outputs = [], integers = 'real', dependencies = 'none' }",
 ];
 
@@ -148,6 +157,7 @@ fn check<F: PartialEq>(keys: &[KeyEntry], parse: impl Fn(&str, &Path) -> Option<
     let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("motion.csv"), "time [s],u [m],w [m]\n0,0,0\n1,1,0\n").unwrap();
+    fs::write(folder.path().join("lip.csv"), "sealed_pressure [Pa],x [m],pressure [Pa]\n0,0,1\n0,1,1\n").unwrap();
     fs::write(folder.path().join("line.csv"), "x [m],z [m]\n0,0\n1,0\n2,0\n").unwrap();
     fs::write(folder.path().join("spectrum.csv"), "q,C\n1e3,1e-18\n1e4,1e-21\n1e5,1e-24\n").unwrap();
     fs::write(folder.path().join("fit.csv"), "key,value,scale,friction.coulomb\nfriction.coulomb,0.5,log,0.01\n")
@@ -176,4 +186,9 @@ fn of_a_scene() {
 #[test]
 fn of_a_patch() {
     check(&patch_keys(), |text, file| PatchFile::parse(text, file).ok());
+}
+
+#[test]
+fn of_a_seal() {
+    check(&seal_keys(), |text, file| SealFile::parse_with(text, file, &CanonicalFiles, &[]).ok());
 }

@@ -95,7 +95,7 @@ pub(crate) enum Command {
     /// Summarises a scene on a screen: what it contains, what is computed and what is left out; with -v also the constants
     /// derived from it.
     Describe(describe::Describe),
-    /// Packs a scene, or a point-contact element or a contact patch from a sweep table, as an FMI 2.0 co-simulation
+    /// Packs a scene, or a point-contact element, a contact patch or a seal from a sweep table, as an FMI 2.0 co-simulation
     /// FMU.
     Pack(pack::Pack),
     /// Verifies an FMU of asperity pack: every file is that which this program packs of its resources (start values, units, names,
@@ -132,7 +132,7 @@ pub(crate) enum Command {
     Completions(reference::Completions),
     /// Writes the manual pages, one for each command.
     Manual(reference::Manual),
-    /// Prints all keys of scenes and patches, all outputs and options, as Markdown: docs/reference.md.
+    /// Prints all keys of scenes, patches and seals, all outputs and options, as Markdown: docs/reference.md.
     #[command(hide = true)]
     Reference,
 }

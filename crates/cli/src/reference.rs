@@ -6,10 +6,13 @@ use std::path::PathBuf;
 
 use asperity::outputs::{OutputEntry, catalogue};
 use asperity::patch::{self, PatchKind, PatchOutputEntry};
-use asperity::scene::{Absent, KeyEntry, MOTION, POINTS, SOFTENING, Unit, patch_keys, scene_keys};
+use asperity::scene::{
+    Absent, KeyEntry, LIP_PRESSURES, MOTION, POINTS, SOFTENING, SealGroup, Unit, patch_keys, scene_keys, seal_keys,
+};
+use asperity::seal;
 use asperity::tables::{Dimension, Role, Unit as TableUnit, UnitRule};
 use asperity_study::calibration::FRICTION;
-use asperity_study::motion::PATCH_MOTION;
+use asperity_study::motion::{PATCH_MOTION, SEAL_MOTION};
 use asperity_study::{Error, fit, rank};
 use clap::{Arg, Args, Command};
 
@@ -53,7 +56,7 @@ pub(super) fn manual(command: &Manual, program: Command) -> std::io::Result<()> 
 
 const HEAD: &str = "# Reference
 
-All keys of scenes and patches, all outputs, and all commands with their options. This page is made by
+All keys of scenes, patches and seals, all outputs, and all commands with their options. This page is made by
 `asperity reference` from the tables that the program itself reads.
 
 Numbers are in SI units. A number that has a unit may also be a text with another one: `\"2 bar\"`, `\"25 µm\"`,
@@ -84,7 +87,7 @@ else a file has is left out, which is told. A column with another name is said t
 ";
 
 /// Kinds of files, and what their columns may hold.
-const FILES: [(&str, &[Role]); 11] = [
+const FILES: [(&str, &[Role]); 13] = [
     ("A profile: `surface.path`, `asperity surface`", &asperity_formats::profile::ROLES),
     ("A spectrum: `surface.fine.spectrum`", asperity_formats::SPECTRUM.roles),
     ("A softening: `surface.fine.softening`", SOFTENING.roles),
@@ -92,6 +95,8 @@ const FILES: [(&str, &[Role]); 11] = [
     ("A motion: `excitation.file`", MOTION.roles),
     ("Points of a patch: `patch.path`", POINTS.roles),
     ("A motion of a patch: `asperity simulate --motion`", PATCH_MOTION.roles),
+    ("The pressure on a lip: `seal.pressure`", LIP_PRESSURES.roles),
+    ("A motion of a seal: `asperity simulate --motion`", SEAL_MOTION.roles),
     ("Moduli: `asperity fit`", &fit::ROLES),
     ("Shift factors: `asperity fit --shifts`", fit::SHIFTS.roles),
     ("Measured friction: `--data` of `asperity calibrate`, `compare`, `rank` and `sweep`", FRICTION.roles),
@@ -120,10 +125,13 @@ pub(super) fn page(mut program: Command) -> String {
     let mut page = HEAD.to_owned();
     page += &format!("\n## Keys of a scene\n{}{UNCERTAIN}", key_tables(&scene_keys()));
     page += &format!("\n## Keys of a patch\n{}", key_tables(&patch_keys()));
+    page += &format!("\n## Keys of a seal\n{}", key_tables(&seal_keys()));
     page += "\n## Outputs of a scene\n\nBy the groups of `[fmu] outputs`; those of `elements` are of each mass, `element[i].…`.\n";
     page += &output_tables(&outputs_of_scenes());
     page += "\n## Outputs of a patch\n\nBy the groups of `[fmu] outputs`; those of `elements` are of each element, `element[i,j].…`. *only* names the key\nof `[patch]` without which there is no such output.\n";
     page += &output_tables(&outputs_of_patches());
+    page += "\n## Outputs of a seal\n\nBy the groups of `[fmu] outputs`; those of `cells` are of each cell.\n";
+    page += &output_tables(&outputs_of_seals());
     page += COLUMNS;
     page += &column_tables();
     page += "\n## Commands\n\nAll of them take `-q`, `--quiet`: results and warnings alone, neither notes nor progress; and `-v`,\n`--verbose`: every note where only some or their number would be printed. The examples run in a checkout of the\nrepository.\n";
@@ -200,6 +208,17 @@ fn outputs_of_patches() -> Vec<OutputLine> {
         description: entry.description,
     };
     patch::catalogue().into_iter().map(line).collect()
+}
+
+fn outputs_of_seals() -> Vec<OutputLine> {
+    let line = |(name, unit, group, description): (String, Unit, SealGroup, String)| OutputLine {
+        group: group.word(),
+        name,
+        unit: plain_unit(unit),
+        only: "",
+        description,
+    };
+    seal::catalogue().into_iter().map(line).collect()
 }
 
 /// A table for each group of outputs.

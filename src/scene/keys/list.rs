@@ -3,6 +3,7 @@
 use super::definition::{Absent, Allowed, Form, Key, KindKeys};
 use super::field::At;
 use super::patch::PATCH_ROOT;
+use super::seal::SEAL_ROOT;
 use super::scene_file::ROOT;
 use crate::scene::Unit;
 use crate::scene::values::{NumberRange, POSITIVE, closest};
@@ -97,6 +98,11 @@ pub fn scene_keys() -> Vec<KeyEntry> {
 /// All keys of a patch.
 pub fn patch_keys() -> Vec<KeyEntry> {
     rows(PATCH_ROOT).into_iter().map(KeyEntry::from).collect()
+}
+
+/// All keys of a seal.
+pub fn seal_keys() -> Vec<KeyEntry> {
+    rows(SEAL_ROOT).into_iter().map(KeyEntry::from).collect()
 }
 
 impl From<KeyRow> for KeyEntry {

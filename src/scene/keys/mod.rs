@@ -13,7 +13,7 @@ mod surface;
 pub use definition::Absent;
 pub(super) use definition::{Allowed, Form, Key, Kinds, NONE, PATH, TABLE};
 pub(super) use field::{At, Field};
-pub use list::{KeyEntry, patch_keys, scene_keys, similar_keys};
+pub use list::{KeyEntry, patch_keys, scene_keys, seal_keys, similar_keys};
 pub(super) use list::{KeyRow, elsewhere, fields, find, range_of};
 pub(super) use patch::{PATCH_ROOT, ShapeKind};
 pub(super) use scene_file::ROOT;

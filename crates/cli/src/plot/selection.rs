@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use asperity::outputs;
 use asperity::patch;
+use asperity::seal;
 use asperity::tables::ContentError;
 use asperity_formats::text::Row;
 use asperity_study::Error;
@@ -247,7 +248,7 @@ fn unit_of_name(column: &str) -> &'static str {
         "pressure" => "Pa",
         "speed" | "transport.speed" => "m/s",
         "area" => "m2",
-        _ => outputs::unit_of(column).or_else(|| patch::unit_of(column)).map(|unit| unit.name()).unwrap_or_default(),
+        _ => outputs::unit_of(column).or_else(|| patch::unit_of(column)).or_else(|| seal::unit_of(column)).map(|unit| unit.name()).unwrap_or_default(),
     }
 }
 
