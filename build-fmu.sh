@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Builds the program and the shared library and packs a scene, a patch or a table as an FMU.
+# Builds the program and the shared library and packs a scene, a patch, a table or a seal as an FMU.
 #
 #   ./build-fmu.sh [SCENE.toml] [-o OUT.fmu] [--simulate] [--all-platforms]
-#   ./build-fmu.sh --patch PATCH.toml | --table SWEEP.csv [-o OUT.fmu] [--all-platforms]
+#   ./build-fmu.sh --patch PATCH.toml | --table SWEEP.csv | --seal SEAL.toml [-o OUT.fmu] [--all-platforms]
 #   ./build-fmu.sh --wheel [--all-platforms]
 #
 # Default: the tread block in scenes/, packed as target/<name of the file>.fmu; a contact patch with --patch, the element
-# of a sweep's table with --table. With --simulate the FMU is run in fmpy along the scene's excitation; a table is
+# of a sweep's table with --table, a lip with a film with --seal. With --simulate the FMU is run in fmpy along the scene's excitation; a table is
 # printed and a picture drawn beside the FMU.
 #
 # With --all-platforms, on Linux on x86-64, the FMU has a library for linux64, from glibc 2.17 on, and one for win64.
@@ -39,7 +39,7 @@ scene='' kind=() output='' simulate=false all_platforms=false wheel=false
 while [ $# -gt 0 ]; do
     case $1 in
         -o | --output) [ $# -ge 2 ] || refuse "$1 needs a file name"; output=$2; shift ;;
-        --patch | --table) [ ${#kind[@]} -eq 0 ] || refuse "${kind[*]} or $1"; kind=("$1") ;;
+        --patch | --table | --seal) [ ${#kind[@]} -eq 0 ] || refuse "${kind[*]} or $1"; kind=("$1") ;;
         --simulate) simulate=true ;;
         --all-platforms) all_platforms=true ;;
         --wheel) wheel=true ;;

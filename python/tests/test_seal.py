@@ -23,8 +23,6 @@ def test_a_rod_is_moved_out_and_in(tmp_path):
     assert seal.units["film.leak_rate"] == "m3/s" and len(seal.values) == len(seal.names)
     with pytest.raises(KeyError, match="force: expected one of F_x"):
         seal["force"]
-    with pytest.raises(asperity.SimulationError, match="blown open"):
-        seal.advance(1e-3, sealed_pressure=1e9)
     assert "Vogel" not in seal.describe() and "96 cells" in seal.describe()
     assert seal.pack(tmp_path / "seal.fmu").stat().st_size > 1e5
 

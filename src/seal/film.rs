@@ -26,8 +26,9 @@ pub(super) struct Ends {
 /// A cell's content and what follows from it, with the derivative by the content.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cell {
-    /// The mean gap, m.
+    /// The mean gap, m, and the interval of the law in which it lies.
     gap: f64,
+    interval: usize,
     /// The fluid's pressure p_f, Pa, and Pa/m.
     pressure: [f64; 2],
     /// What the rod carries over its speed, c m/u, m, and 1.
@@ -43,6 +44,9 @@ struct FaceValue {
     slopes: [f64; 3],
 }
 
+/// A mean gap (m) below which a full contact closes: what it bears goes straight from that of the law to the total pressure.
+const CLOSED: f64 = 1e-10;
+
 /// The number of bands of the matrix.
 pub(super) const BANDS: usize = 5;
 
@@ -54,9 +58,11 @@ pub(super) struct Film {
     viscosity: f64,
     /// Whether the rough side is that of the rod.
     moving: bool,
-    /// The total pressure in each cell, Pa, and the gap at which contacts bear it, m.
+    /// The total pressure in each cell, Pa, the gap at which contacts bear it, m, and by how much it is above what they bear by
+    /// the law where that is 0, Pa.
     pub(super) totals: Vec<f64>,
     bearing: Vec<f64>,
+    closing: Vec<f64>,
     cells: Vec<Cell>,
     /// What flows through the faces to the air, by length along the lip, m²/s, from that of the sealed side.
     pub(super) flows: Vec<f64>,
@@ -74,6 +80,7 @@ impl Film {
             moving,
             totals: vec![0.0; count],
             bearing: vec![0.0; count],
+            closing: vec![0.0; count],
             cells: vec![Cell::default(); count],
             flows: vec![0.0; count + 1],
             by_speed: vec![0.0; count + 1],
@@ -93,9 +100,11 @@ impl Film {
 
     /// Sets the total pressure on each cell, Pa.
     pub(super) fn set_totals(&mut self, law: &GapLaw, total: impl Fn(usize) -> f64) {
-        for (i, (stored, bearing)) in self.totals.iter_mut().zip(&mut self.bearing).enumerate() {
-            *stored = total(i);
-            *bearing = law.gap_at(*stored);
+        let largest = law.at(0.0, 0).pressure.value;
+        for i in 0..self.totals.len() {
+            let total = total(i);
+            (self.totals[i], self.bearing[i]) = (total, law.gap_at(total));
+            self.closing[i] = if self.bearing[i] > 0.0 { 0.0 } else { (total - largest).max(0.0) };
         }
     }
 
@@ -112,6 +121,11 @@ impl Film {
     /// The mean gap in a cell, m, likewise.
     pub(super) fn gap(&self, i: usize) -> f64 {
         self.cells[i].gap
+    }
+
+    /// The interval of the law in which it lies, likewise.
+    pub(super) fn interval(&self, i: usize) -> usize {
+        self.cells[i].interval
     }
 
     /// How the fluid's pressure changes with the content, Pa/m, likewise.
@@ -133,18 +147,19 @@ impl Film {
     fn cell(&self, law: &GapLaw, i: usize, content: f64) -> Cell {
         let (bearing, total) = (self.bearing[i], self.totals[i]);
         let gap = content.max(bearing);
-        if gap <= 0.0 {
-            return Cell::default();
-        }
-        let point = law.at(gap);
+        let interval = law.interval(gap, self.cells[i].interval);
+        let point = law.at(gap, interval);
         let (carried, mobility) = (self.carried(gap, &point), self.mobility(&point));
         if content >= bearing {
-            let excess = total - point.pressure.value;
-            let pressure = if excess > 0.0 { [excess, -point.pressure.slope] } else { [0.0; 2] };
-            return Cell { gap, pressure, carried, mobility };
+            // In full contact contacts bear all until there is any fluid.
+            let closing = self.closing[i] * (1.0 - gap / CLOSED).max(0.0);
+            let slope = if closing > 0.0 { self.closing[i] / CLOSED } else { 0.0 };
+            let excess = total - point.pressure.value - closing;
+            let pressure = if excess > 0.0 { [excess, slope - point.pressure.slope] } else { [0.0; 2] };
+            return Cell { gap, interval, pressure, carried, mobility };
         }
         let partly = |[whole, _]: [f64; 2]| [whole * content / gap, whole / gap];
-        Cell { gap, pressure: [0.0; 2], carried: partly(carried), mobility: partly(mobility) }
+        Cell { gap, interval, pressure: [0.0; 2], carried: partly(carried), mobility: partly(mobility) }
     }
 
     /// Finds the flows at these contents (m) and the speed V (m/s), and how they change with both.
@@ -170,7 +185,7 @@ impl Film {
 
     fn sealed_end(&mut self, law: &GapLaw, speed: f64, ends: &Ends) {
         let (first, half) = (&self.cells[0], 0.5 * self.width);
-        let before = law.at(ends.supply);
+        let before = law.at(ends.supply, law.interval(ends.supply, usize::MAX));
         let excess = first.pressure[0] - ends.sealed;
         let [mobility, slope] = if excess < 0.0 { [self.mobility(&before)[0], 0.0] } else { first.mobility };
         let [carried, carried_slope] =

@@ -1,7 +1,6 @@
 //! What contacts bear, let through and rub with at a gap: the rows of a sweep with gaps, at one speed and temperature.
 
 use crate::element::{FrictionTable, Law, LawAtSpeed, Quantity};
-use crate::math::interval_of;
 
 /// A number and its derivative by the gap.
 #[derive(Clone, Copy, Debug, Default)]
@@ -103,9 +102,22 @@ impl GapLaw {
         Slope { value: row[i] + slope * (gap - gaps[i]), slope }
     }
 
-    /// What contacts do at a mean gap, m.
-    pub(super) fn at(&self, gap: f64) -> GapPoint {
-        let (i, last) = (interval_of(&self.gaps, gap), self.gaps.len() - 1);
+    /// The interval between the rows in which a mean gap (m) lies, or which is nearest; `near` is likely to be next to it.
+    pub(super) fn interval(&self, gap: f64, near: usize) -> usize {
+        let (gaps, last) = (&self.gaps, self.gaps.len() - 2);
+        let mut i = near.min(last);
+        while i < last && gap >= gaps[i + 1] {
+            i += 1;
+        }
+        while i > 0 && gap < gaps[i] {
+            i -= 1;
+        }
+        i
+    }
+
+    /// What contacts do at a mean gap (m) in its interval.
+    pub(super) fn at(&self, gap: f64, i: usize) -> GapPoint {
+        let last = self.gaps.len() - 1;
         let logarithm = self.straight(LOG_PRESSURE, i, gap);
         let pressure = logarithm.value.min(LARGEST_LOG).exp();
         let length = |row: usize| {
@@ -135,17 +147,10 @@ impl GapLaw {
         (self.gaps[i] + share * (self.gaps[i + 1] - self.gaps[i])).max(0.0)
     }
 
-    /// The share of the area that touches at a mean gap, m.
-    pub(super) fn contact_at(&self, gap: f64) -> f64 {
-        let (first, last) = (self.gaps[0], self.gaps[self.gaps.len() - 1]);
-        let gap = gap.clamp(first, last);
-        self.straight(CONTACT, interval_of(&self.gaps, gap), gap).value
-    }
-
-    /// The friction coefficient of contacts that bear a pressure, Pa: straight over ln p, that of the table's ends beyond.
-    pub(super) fn friction_at(&self, pressure: f64) -> f64 {
-        let (i, share) = self.place(pressure.max(f64::MIN_POSITIVE).ln());
-        let row = &self.rows[FRICTION];
-        row[i] + share.clamp(0.0, 1.0) * (row[i + 1] - row[i])
+    /// The share of the area that touches and the friction coefficient at a mean gap (m) in its interval: straight, which is
+    /// over ln p too, and those of the table's ends beyond.
+    pub(super) fn contact_and_friction(&self, gap: f64, i: usize) -> [f64; 2] {
+        let gap = gap.clamp(self.gaps[i], self.gaps[i + 1]);
+        [CONTACT, FRICTION].map(|row| self.straight(row, i, gap).value)
     }
 }

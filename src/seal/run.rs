@@ -383,8 +383,8 @@ impl SealRun {
 
     /// How force and leak at the end of a step change with the target of u: by a step to one a little farther.
     fn find_tangents(&mut self, motion: &SealMotion) -> Result<(), FilmError> {
-        /// Of the way, and at least of the width of a cell.
-        const FARTHER: f64 = 1e-4;
+        /// Of the way, and of a way that is this part of a cell at least: far beyond what the error of steps makes of the leak.
+        const FARTHER: f64 = 1e-2;
         let cell = self.seal.lip.width / self.seal.cells() as f64;
         let by = FARTHER * (motion.u_rate * motion.duration).abs().max(FARTHER * cell);
         let start = self.state.clone();

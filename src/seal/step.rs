@@ -183,11 +183,11 @@ impl Stepper {
         for (i, &content) in contents.iter().enumerate() {
             let (gap, total) = (film.gap(i), film.totals[i]);
             let borne = total - film.pressure(i);
-            let friction = law.friction_at(borne);
+            let [touches, friction] = law.contact_and_friction(gap, film.interval(i));
             let mut slope = -friction * film.stiffness(i);
             limit.solid += rubbing.area * friction * borne;
             if gap > 0.0 {
-                let shear = rubbing.shear * (1.0 - law.contact_at(gap)) / (gap * gap);
+                let shear = rubbing.shear * (1.0 - touches) / (gap * gap);
                 limit.viscous += rubbing.area * shear * content;
                 slope += if content < gap { shear } else { -shear };
             }
@@ -277,6 +277,7 @@ impl Stepper {
     fn solve(&mut self, film: &mut Film, stage: &Stage<'_>, mut speed: f64) -> Result<f64, NotSolved> {
         let count = self.contents.len();
         let (mut norm, mut lack) = self.residual(film, stage, speed, false);
+        let mut before = f64::INFINITY;
         for _ in 0..MOST_ITERATIONS {
             self.iterations += 1;
             self.assemble(film, stage.factor);
@@ -313,9 +314,13 @@ impl Stepper {
                 }
                 share *= 0.5;
             }
-            if largest <= stage.tolerance {
+            // What is left is the change times the rate of convergence, of whole steps (E. Hairer, G. Wanner, Solving Ordinary
+            // Differential Equations II, IV.8.10).
+            let rate = if share == 1.0 { largest / before } else { 1.0 };
+            if largest <= stage.tolerance || (rate < 1.0 && largest * rate / (1.0 - rate) <= stage.tolerance) {
                 return Ok(speed);
             }
+            before = largest;
         }
         Err(NotSolved)
     }

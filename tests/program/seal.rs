@@ -76,7 +76,7 @@ fn what_does_not_go_with_a_seal_is_refused() {
     let folder = scratch("seal-refused");
     let mut sweep = asperity();
     let told = said(sweep.current_dir(&folder).args(["sweep", "--temperatures", "300", "--seal"]).arg(seal()));
-    assert_names(&told, "`temperatures`: expected none");
+    assert_names(&told, "--temperatures: expected none");
     let told = said(asperity().current_dir(&folder).args(["sweep", "--sealed", "9MPa", "--speeds", "1e-3", "--seal"]).arg(seal()));
     assert_names(&told, "points have no result");
     fs::write(folder.join("motion.csv"), "time,u,w\n0,0,0\n1,0,0\n").unwrap();

@@ -79,7 +79,8 @@ impl Numbers {
     fn read(&mut self, text: &str) -> Result<f64, String> {
         let found = quantity(text, self.dimension).filter(|&(number, _)| self.range.holds(number));
         let (number, unit) = found.ok_or_else(|| wrong(text, &self.expected()))?;
-        match *self.with_unit.get_or_insert(unit.is_some()) == unit.is_some() {
+        // 0 is 0 in any unit.
+        match number == 0.0 || *self.with_unit.get_or_insert(unit.is_some()) == unit.is_some() {
             true => Ok(number),
             false => Err(wrong(text, "a unit behind each number or behind none")),
         }
