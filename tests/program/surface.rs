@@ -79,6 +79,29 @@ fn a_self_affine_surface_is_found_as_it_was_asked_for() {
     }
 }
 
+/// `rq` is `rms` by its name on drawings: of a profile and of a map.
+#[test]
+fn a_self_affine_surface_has_the_rq_that_it_was_given() {
+    let file = scratch("surface-rq").join("scene.toml");
+    let refused = |from: &str, to: &str| {
+        fs::write(&file, rough(0.8, 2000).replace(from, to)).unwrap();
+        Scene::load(&file).unwrap_err().to_string()
+    };
+    assert!(refused("rms = 0.00002", "rms = 2e-5, rq = 2e-5").contains("rms: both are the root mean square height"));
+    assert!(refused("rms = 0.00002, ", "").contains("or rq in its place"));
+    let isotropic = rough(0.8, 400).replace("= 0.0001, seed = 3", "= 0.001, seed = 3, isotropic = true");
+    for text in [rough(0.8, 2000), rough(0.8, 3001), isotropic] {
+        fs::write(&file, &text).unwrap();
+        let by_rms = Scene::load(&file).unwrap().surface;
+        fs::write(&file, text.replace("rms = ", "rq = ")).unwrap();
+        let by_rq = Scene::load(&file).unwrap().surface;
+        assert_eq!(by_rq, by_rms);
+        // The points themselves are scaled to it, whatever waves they leave out: roundings of sums of some thousand.
+        let found = findings(&file, &[]);
+        near(if by_rq.map().is_some() { &found["map"]["rms_height"] } else { &found["rms_height"] }, RMS, 1e-12);
+    }
+}
+
 /// What drawings say of a line of waves of 50 µm well below λc = 0.8 mm, printed and as JSON.
 #[test]
 fn a_line_of_waves_has_the_roughness_of_drawings() {
