@@ -98,11 +98,12 @@ fn friction_line(slide: &SteadySlide) -> String {
 /// Of a profile there is nothing to draw: its ridges close every way along the sliding, or none.
 fn flow_line(flow: &FlowGaps) -> String {
     let [leak, drag] = [flow.leak, flow.drag].map(|gap| rounded(gap, 4));
-    let whole = match flow.leak_across.map(|gap| rounded(gap, 4)) {
-        Some(across) => format!("{across} m across"),
-        None => "by the effective medium of a profile's gaps, of which no flow is drawn".to_owned(),
-    };
-    format!("leak gap {leak} m, drag gap {drag} m, {whole}")
+    match flow.leak_across.map(|gap| rounded(gap, 4)) {
+        Some(across) => format!("leak gap {leak} m, across the sliding {across} m, drag gap {drag} m"),
+        None => format!(
+            "leak gap {leak} m, drag gap {drag} m, by the effective medium of a profile's gaps, of which no flow is drawn"
+        ),
+    }
 }
 
 /// The fields by their names and units, a value for each point.

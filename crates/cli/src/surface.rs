@@ -138,8 +138,8 @@ fn roughness_rows(roughness: Option<&Roughness>) -> Vec<LabelledLine> {
     let rows = [
         format!("Ra {:.4e} m, Rq {:.4e} m, Rz {:.4e} m, by ISO 21920", found.ra, found.rq, found.rz),
         format!("Rmr {:.1} % at c = Rz/4 = {:.3e} m below the height of 5 %", 100.0 * found.rmr, found.rmr_depth),
-        format!("Gaussian filters: λc {:e} m, {chosen}; λs {:e} m{unresolved}", found.cut_off, found.shortest),
-        format!("evaluation length {:.4e} m{many}", found.evaluation_length),
+        format!("Gaussian filters: λc {:e} m, {chosen}", found.cut_off),
+        format!("λs {:e} m{unresolved}; evaluation length {:.4e} m{many}", found.shortest, found.evaluation_length),
     ];
     labelled("Roughness", rows)
 }
