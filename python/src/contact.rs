@@ -26,7 +26,7 @@ pub(crate) fn contact<'py>(
     let solved = in_background(py, None, move |_| solve_contact(&scene, options))?;
     let solved = solved.map_err(|error| error.raise())?;
     let picture = Picture(solved.picture()).into_pyobject(py)?;
-    let SolvedContact { slide, fields, problem, warnings, .. } = solved;
+    let SolvedContact { slide, fields, flow, problem, warnings, .. } = solved;
     let found = PyDict::new(py);
     found.set_item("picture", picture)?;
     let (friction, separation) = (slide.friction(), slide.contact.separation);
@@ -40,6 +40,9 @@ pub(crate) fn contact<'py>(
         ("separation", Some(separation)),
         ("flash_mean", slide.flash_mean),
         ("surface_rise", slide.surface_rise),
+        ("leak_gap", flow.map(|flow| flow.leak)),
+        ("drag_gap", flow.map(|flow| flow.drag)),
+        ("leak_gap_across", flow.and_then(|flow| flow.leak_across)),
     ] {
         found.set_item(name, value)?;
     }
@@ -54,5 +57,6 @@ pub(crate) fn contact<'py>(
     ] {
         found.set_item(name, values.into_pyarray(py))?;
     }
+    found.set_item("leak", fields.leak.map(|leak| leak.into_pyarray(py)))?;
     Ok(found)
 }

@@ -52,6 +52,8 @@ def test_a_surface_is_that_of_the_program(road, options, keywords, tmp_path):
     assert found.analysis == json.loads(printed)
     found.to_csv(tmp_path / "ours.csv")
     assert (tmp_path / "ours.csv").read_bytes() == (tmp_path / "out.csv").read_bytes()
+    # A walk of some µm has a cut-off of 0.8 mm at most.
+    assert found["roughness"]["cut_off"] <= 0.8e-3 and 0.0 < found["roughness"]["ra"] < found["roughness"]["rq"]
     assert len(found.plot().axes) == 2 and found.hurst == found["law"]["hurst"]
     # A matter of whether it was smoothed: what was read is drawn too.
     assert ("as read" in names(found.plot())) == (found["removed"] is not None)

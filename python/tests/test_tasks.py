@@ -56,7 +56,11 @@ def test_a_contact_pressure(block):
     assert contact.pressure.mean() == pytest.approx(2e5, rel=1e-6) and contact.status == "steady"
     touching = contact.pressure > 0.0
     assert touching.mean() == pytest.approx(contact.area) and contact.gap[touching].max() < contact.gap.max()
-    assert len(contact.plot().axes) == 2
+    assert len(contact.plot().axes) == 2 and contact.leak_gap is None
+    # A profile has the gaps of the effective medium, in which a fluid is carried less far than the mean gap, and no map.
+    flow = block.contact(pressure=2e5, speed=0.1, flow=True)
+    assert 0.0 < flow.leak_gap < flow.gap.mean() and 0.0 < flow.drag_gap < flow.gap.mean()
+    assert flow.leak_gap_across is None and flow.leak is None
 
 
 def test_frames_of_an_animation(small):

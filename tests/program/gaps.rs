@@ -1,6 +1,9 @@
 //! How a fluid passes the gaps of a contact, by `asperity sweep --gaps`.
 
-use crate::common::{Table, asperity, root, scratch};
+use std::fs;
+
+use crate::common::near::assert_relative;
+use crate::common::{Table, asperity, root, run, scratch};
 
 /// The cases of an independent program on the same grid: a map, solved and by the effective medium, and ridges.
 #[test]
@@ -48,4 +51,49 @@ fn gaps_of_a_sliding_layer_are_refused() {
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.code() == Some(1) && said.contains("gaps"), "{said}");
     assert!(!table.exists());
+}
+
+/// On a map the flow that is drawn and written leaks as much as the sweep's gap says; of a profile there are its gaps alone.
+#[test]
+fn a_contact_shows_where_it_leaks() {
+    for (name, is_map) in [("steady-map", true), ("steady-ridges", false)] {
+        let folder = scratch(&format!("gaps-contact-{name}"));
+        let scene = root().join(format!("tests/reference/film/gaps/{name}.toml"));
+        let [picture, points, table] = ["contact.svg", "contact.csv", "table.csv"].map(|file| folder.join(file));
+        let state = ["--pressure", "2e5", "--speed", "0.1"];
+        let mut command = asperity();
+        command
+            .arg("contact")
+            .arg(&scene)
+            .args(state)
+            .arg("-o")
+            .arg(&picture)
+            .arg("--write")
+            .arg(&points)
+            .arg("--flow");
+        let said = run(&mut command);
+        let swept = ["--speeds", "0.1", "--pressures", "2e5", "--gaps"];
+        run(asperity().arg("sweep").arg(&scene).arg("-o").arg(&table).args(swept));
+        let leak_gap = Table::read(&table).number(0, "leak_gap [m]");
+        assert!(leak_gap > 0.0, "{name}: nothing leaks, so nothing is tested");
+        // Both are printed with four digits.
+        let printed = |label: &str| {
+            let value = said.split_once(label).expect(label).1.split_whitespace().next().unwrap();
+            value.parse::<f64>().unwrap()
+        };
+        assert_relative("leak gap", printed("leak gap "), leak_gap, 1e-3);
+        assert_relative("drag gap", printed("drag gap "), Table::read(&table).number(0, "drag_gap [m]"), 1e-3);
+        let drawn = fs::read_to_string(&picture).unwrap();
+        assert_eq!((said.contains("effective medium"), drawn.contains("leak")), (!is_map, is_map), "{said}");
+        let written = Table::read(&points);
+        if is_map {
+            let (leak, gap) = (written.column("leak [m^3]"), written.column("gap [m]"));
+            // |q| is at least its part along the sliding, whose mean is the gap's cube, and 0 where it touches.
+            let mean = leak.iter().sum::<f64>() / leak.len() as f64;
+            assert!((1.0..3.0).contains(&(mean / leak_gap.powi(3))), "{mean} {leak_gap}");
+            assert!(leak.iter().zip(&gap).all(|(leak, gap)| *gap > 0.0 || *leak == 0.0));
+        } else {
+            assert!(!fs::read_to_string(&points).unwrap().contains("leak"));
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! Rough surfaces as a user meets them: `asperity surface`, and X3P files on their way into an FMU.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::fs;
 use std::io::{Cursor, Read as _, Write as _};
 use std::path::Path;
@@ -77,6 +77,49 @@ fn a_self_affine_surface_is_found_as_it_was_asked_for() {
         near(&law["wavelengths"][0], CUT_OFF, 0.25);
         assert_eq!(law["ends"], true);
     }
+}
+
+/// `rq` is `rms` by its name on drawings: of a profile and of a map.
+#[test]
+fn a_self_affine_surface_has_the_rq_that_it_was_given() {
+    let file = scratch("surface-rq").join("scene.toml");
+    let refused = |from: &str, to: &str| {
+        fs::write(&file, rough(0.8, 2000).replace(from, to)).unwrap();
+        Scene::load(&file).unwrap_err().to_string()
+    };
+    assert!(refused("rms = 0.00002", "rms = 2e-5, rq = 2e-5").contains("rms: both are the root mean square height"));
+    assert!(refused("rms = 0.00002, ", "").contains("or rq in its place"));
+    let isotropic = rough(0.8, 400).replace("= 0.0001, seed = 3", "= 0.001, seed = 3, isotropic = true");
+    for text in [rough(0.8, 2000), rough(0.8, 3001), isotropic] {
+        fs::write(&file, &text).unwrap();
+        let by_rms = Scene::load(&file).unwrap().surface;
+        fs::write(&file, text.replace("rms = ", "rq = ")).unwrap();
+        let by_rq = Scene::load(&file).unwrap().surface;
+        assert_eq!(by_rq, by_rms);
+        // The points themselves are scaled to it, whatever waves they leave out: roundings of sums of some thousand.
+        let found = findings(&file, &[]);
+        near(if by_rq.map().is_some() { &found["map"]["rms_height"] } else { &found["rms_height"] }, RMS, 1e-12);
+    }
+}
+
+/// What drawings say of a line of waves of 50 µm well below λc = 0.8 mm, printed and as JSON.
+#[test]
+fn a_line_of_waves_has_the_roughness_of_drawings() {
+    let line = scratch("surface-drawing").join("line.csv");
+    let rows =
+        (0..=10_000).map(|i| format!("{},{}\n", 0.5e-6 * f64::from(i), 2e-6 * (TAU * f64::from(i) / 100.0).sin()));
+    fs::write(&line, format!("x [m],z [m]\n{}", rows.collect::<String>())).unwrap();
+    let found = &findings(&line, &[])["roughness"];
+    // λs = 2.5 µm takes 1.7e-3 of waves of 50 µm, and the line ends where its tilt is not quite 0.
+    near(&found["ra"], 4e-6 / PI, 5e-3);
+    near(&found["rq"], 2e-6 / f64::sqrt(2.0), 5e-3);
+    near(&found["rz"], 4e-6, 5e-3);
+    near(&found["rmr"], ((0.05 * PI).cos() - 0.5).acos() / PI, 1e-2);
+    assert_eq!((&found["cut_off"], &found["chosen"]), (&8e-4.into(), &"default".into()));
+    let text = run(asperity().arg("surface").arg(&line));
+    assert_names(&text, "Ra | Rq | Rz | ISO 21920 | Rmr 33. | λc 8e-4 m, the default | λs 2.5e-6 m | 4.0000e-3 m");
+    let short = run(asperity().arg("surface").arg(&line).args(["--smooth", "1e-6", "--taper"]));
+    assert_names(&short, "Ra | λc 8e-4 m");
 }
 
 /// The same profile as a measurement: not known to be periodic, in µm and with decimal commas, and tilted.

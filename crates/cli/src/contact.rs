@@ -8,7 +8,7 @@ use asperity::scene::Scene;
 use asperity_study::Error;
 use asperity_study::contact::{ContactFields, ContactOptions, SolvedContact, solve_contact};
 use asperity_study::decimals::rounded;
-use asperity_study::steady::SteadySlide;
+use asperity_study::steady::{FlowGaps, SteadySlide};
 use clap::Args;
 use zip::result::ZipResult;
 
@@ -31,10 +31,10 @@ pub(crate) struct Contact {
     #[command(flatten)]
     pub(crate) options: ContactOptions,
     /// The picture to write, as SVG or PNG according to the file name: along a profile heights and pressure; of a map
-    /// pressure, gap and where it is touched.
+    /// pressure, gap, where it is touched and, with --flow, where it leaks.
     #[arg(short, long, value_name = "OUT.png", value_parser = values::picture())]
     pub(crate) output: PathBuf,
-    /// All points to write: x, y, height, pressure, gap, as a table or, with .npz, as arrays of numpy with a row for each y.
+    /// All points to write: x, y, height, pressure, gap and, of a map with --flow, leak, as a table or, with .npz, as arrays of numpy with a row for each y.
     #[arg(long, value_name = "OUT.csv|.npz", value_parser = table_or_arrays())]
     pub(crate) write: Option<PathBuf>,
     #[command(flatten)]
@@ -47,7 +47,7 @@ pub(crate) fn contact(command: &Contact) -> Result<(), Error> {
     let outputs: Vec<_> = [&command.output].into_iter().chain(&command.write).cloned().collect();
     check_outputs(&outputs, scene.sources(&command.scene))?;
     let solved = solve_contact(&scene, command.options)?;
-    let SolvedContact { slide, fields, problem, warnings, .. } = &solved;
+    let SolvedContact { fields, problem, warnings, .. } = &solved;
     picture::write(&solved.picture(), &command.output)?;
     if let Some(path) = &command.write {
         let bytes = if ends_in(path, "npz") {
@@ -58,11 +58,12 @@ pub(crate) fn contact(command: &Contact) -> Result<(), Error> {
         files::write(path, bytes)?;
     }
     problem.iter().map(ToString::to_string).chain(warnings.iter().cloned()).for_each(|text| warn(&text));
-    print_beside(&outputs, &summary(&scene, command, slide, fields))
+    print_beside(&outputs, &summary(&scene, command, &solved))
 }
 
-fn summary(scene: &Scene, command: &Contact, slide: &SteadySlide, fields: &ContactFields) -> String {
-    let ContactOptions { at, sliding } = command.options;
+fn summary(scene: &Scene, command: &Contact, solved: &SolvedContact) -> String {
+    let ContactOptions { at, sliding, .. } = command.options;
+    let SolvedContact { slide, fields, flow, .. } = solved;
     let digits = |value: f64| rounded(value, 4);
     let largest = fields.pressures.iter().copied().fold(0.0, f64::max);
     let mut labelled = vec![
@@ -76,6 +77,9 @@ fn summary(scene: &Scene, command: &Contact, slide: &SteadySlide, fields: &Conta
     }
     if let Some(flash) = slide.flash_mean {
         labelled.push(("Flash", format!("{} K above the mean of the surface", digits(flash))));
+    }
+    if let Some(flow) = flow {
+        labelled.push(("Flow", flow_line(flow)));
     }
     let names: Vec<String> = [&command.output].into_iter().chain(&command.write).map(|path| named(path)).collect();
     labelled.push(("Written", names.join(", ")));
@@ -91,27 +95,41 @@ fn friction_line(slide: &SteadySlide) -> String {
     }
 }
 
-/// A table with a line for each point.
-fn csv(fields: &ContactFields) -> String {
-    let mut text = "x [m],y [m],height [m],pressure [Pa],gap [m]\n".to_owned();
-    let places = fields.y.iter().flat_map(|y| fields.x.iter().map(move |x| (x, y)));
-    let values = fields.heights.iter().zip(&fields.pressures).zip(&fields.gaps);
-    for ((x, y), ((height, pressure), gap)) in places.zip(values) {
-        // Writing to a text does not fail.
-        let _ = writeln!(text, "{x:?},{y:?},{height:?},{pressure:?},{gap:?}");
+/// Of a profile there is nothing to draw: its ridges close every way along the sliding, or none.
+fn flow_line(flow: &FlowGaps) -> String {
+    let [leak, drag] = [flow.leak, flow.drag].map(|gap| rounded(gap, 4));
+    match flow.leak_across.map(|gap| rounded(gap, 4)) {
+        Some(across) => format!("leak gap {leak} m, across the sliding {across} m, drag gap {drag} m"),
+        None => format!(
+            "leak gap {leak} m, drag gap {drag} m, by the effective medium of a profile's gaps, of which no flow is drawn"
+        ),
     }
-    text
 }
 
-/// The arrays x and y, and height, pressure and gap with a row for each y, as `numpy.load` reads them.
+/// The fields by their names and units, a value for each point.
+fn named_fields(fields: &ContactFields) -> Vec<(&'static str, &'static str, &[f64])> {
+    let all = [("height", "m", &fields.heights[..]), ("pressure", "Pa", &fields.pressures), ("gap", "m", &fields.gaps)];
+    all.into_iter().chain(fields.leak.as_ref().map(|leak| ("leak", "m^3", &leak[..]))).collect()
+}
+
+/// A table with a line for each point.
+fn csv(fields: &ContactFields) -> String {
+    let named = named_fields(fields);
+    let mut text = "x [m],y [m]".to_owned();
+    // Writing to a text does not fail.
+    named.iter().for_each(|(name, unit, _)| _ = write!(text, ",{name} [{unit}]"));
+    let places = fields.y.iter().flat_map(|y| fields.x.iter().map(move |x| (x, y)));
+    for (i, (x, y)) in places.enumerate() {
+        let _ = write!(text, "\n{x:?},{y:?}");
+        named.iter().for_each(|(.., values)| _ = write!(text, ",{:?}", values[i]));
+    }
+    text + "\n"
+}
+
+/// The arrays x and y, and the fields with a row for each y, as `numpy.load` reads them.
 fn arrays(fields: &ContactFields) -> ZipResult<Vec<u8>> {
     let shape = vec![fields.y.len(), fields.x.len()];
-    let field = |name, values| Array { name, shape: shape.clone(), values: Values::Reals(Cow::Borrowed(values)) };
-    npz::npz([
-        Array::line("x", &fields.x),
-        Array::line("y", &fields.y),
-        field("height", &fields.heights[..]),
-        field("pressure", &fields.pressures[..]),
-        field("gap", &fields.gaps[..]),
-    ])
+    let field = |(name, _, values)| Array { name, shape: shape.clone(), values: Values::Reals(Cow::Borrowed(values)) };
+    let places = [Array::line("x", &fields.x), Array::line("y", &fields.y)];
+    npz::npz(places.into_iter().chain(named_fields(fields).into_iter().map(field)))
 }

@@ -5,12 +5,14 @@ use std::path::PathBuf;
 use asperity::scene::{self, HeightMap, PowerLaw, RoughnessSpectrum};
 use asperity_formats::Instruments;
 use asperity_study::Error;
-use asperity_study::surface::{FinerWaves, MapAnalysis, ProfileReading, Removed, SurfaceAnalysis, TreatedSurface};
+use asperity_study::surface::{
+    CutOff, FinerWaves, MapAnalysis, ProfileReading, Removed, Roughness, SurfaceAnalysis, TreatedSurface,
+};
 
 use super::cli::Surface;
 use super::files::{self, check_outputs, ends_in, load_without_run, name_of, named, print_beside};
 use super::picture;
-use super::terminal::{LabelledLine, lines, note, warn};
+use super::terminal::{LabelledLine, labelled, lines, note, warn};
 
 /// Reads the surface, prints the analysis, plots it and writes the profile.
 pub(crate) fn surface(command: &Surface) -> Result<(), Error> {
@@ -104,6 +106,7 @@ fn summary(analysis: &SurfaceAnalysis) -> String {
         ("", format!("{:.4e} m peak to valley", numbers.peak_to_valley)),
         ("Slopes", format!("rms {:.4}, largest {:.4}, of the spline", numbers.rms_slope, numbers.largest_slope)),
     ];
+    rows.extend(roughness_rows(analysis.roughness.as_ref()));
     rows.extend(analysis.removed.map(|Removed { cut_off, rms_slope }| {
         ("Smoothed", format!("waves of {cut_off:.3e} m halved, shorter ones taken away: rms slope {rms_slope:.4}"))
     }));
@@ -115,6 +118,30 @@ fn summary(analysis: &SurfaceAnalysis) -> String {
     rows.extend(law_rows(analysis.law.as_ref(), analysis.removed.as_ref()).into_iter().map(|row| ("", row)));
     rows.extend(analysis.map.iter().flat_map(map_rows));
     lines(&rows)
+}
+
+fn roughness_rows(roughness: Option<&Roughness>) -> Vec<LabelledLine> {
+    let Some(found) = roughness else {
+        let problem = "none by ISO 21920: λc of 0.08 mm, the shortest, takes a length of 0.4 mm, λc of 8 mm, the longest, \
+                       points at most 1 mm apart";
+        return vec![("Roughness", problem.to_owned())];
+    };
+    let chosen = match found.chosen {
+        CutOff::Default => "the default for this Rz",
+        CutOff::LongestThatFits => "the longest of which five fit; for this Rz the default is a longer one",
+        CutOff::ShortestResolved => {
+            "the shortest in which there are points enough; for this Rz the default is a shorter one"
+        }
+    };
+    let unresolved = if found.shortest < 2.0 * found.spacing { ", below the points' shortest wave" } else { "" };
+    let many = if found.evaluations == 1 { String::new() } else { format!(", mean of {}", found.evaluations) };
+    let rows = [
+        format!("Ra {:.4e} m, Rq {:.4e} m, Rz {:.4e} m, by ISO 21920", found.ra, found.rq, found.rz),
+        format!("Rmr {:.1} % at c = Rz/4 = {:.3e} m below the height of 5 %", 100.0 * found.rmr, found.rmr_depth),
+        format!("Gaussian filters: λc {:e} m, {chosen}", found.cut_off),
+        format!("λs {:e} m{unresolved}; evaluation length {:.4e} m{many}", found.shortest, found.evaluation_length),
+    ];
+    labelled("Roughness", rows)
 }
 
 fn law_rows(law: Option<&PowerLaw>, removed: Option<&Removed>) -> Vec<String> {
@@ -157,5 +184,5 @@ fn map_rows(map: &MapAnalysis) -> Vec<LabelledLine> {
         format!("gradient: rms {:.4}, of splines along lines and columns", map.rms_gradient),
         format!("Hurst exponent along x {along_x}, along y {along_y}"),
     ];
-    rows.into_iter().enumerate().map(|(i, row)| (if i == 0 { "Map" } else { "" }, row)).collect()
+    labelled("Map", rows)
 }

@@ -8,7 +8,7 @@ use crate::Error;
 use crate::decimals::rounded;
 use crate::implausible::{FoundFriction, implausible};
 use crate::picture::{Axis, Colour, ColourScale, Colours, Fit, Mark, Panel, Picture, Row, Shape, fitted, slides};
-use crate::steady::{SlideProblem, SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
+use crate::steady::{FlowGaps, SlideProblem, SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 use crate::sweep::{Method, SlidingOptions, SweepMethod, check_possible};
 use crate::values::{pressure, speed};
 
@@ -25,6 +25,9 @@ pub struct ContactFields {
     pub pressures: Vec<f64>,
     /// Gaps between rubber and surface, m.
     pub gaps: Vec<f64>,
+    /// Where a fluid leaks along the sliding: 12η|q|/G of the flow per width q under the mean gradient of pressure G, m³, whose
+    /// part along the sliding is the leak gap's cube in the mean; of a map, where it is asked for.
+    pub leak: Option<Vec<f64>>,
 }
 
 /// Steady sliding that was solved for.
@@ -36,6 +39,8 @@ pub struct SolvedContact {
     pub slide: SteadySlide,
     /// What stands at every point.
     pub fields: ContactFields,
+    /// How a fluid passes the gaps, where it is asked for and the contact was found.
+    pub flow: Option<FlowGaps>,
     /// Why not all of the values can be relied on; `None` where they can.
     pub problem: Option<SlideProblem>,
     /// A pressure that is too much for linear rubber; what of it no rubber has, and why.
@@ -64,6 +69,11 @@ pub struct ContactOptions {
     #[command(flatten)]
     #[serde(flatten)]
     pub sliding: SlidingOptions,
+    /// Solves for how a fluid passes the gaps: prints leak gap and drag gap, and draws over a map where it leaks along the
+    /// sliding. Of a profile both are those of the effective medium of its gaps.
+    #[arg(long)]
+    #[serde(default)]
+    pub flow: bool,
 }
 
 /// Solves for steady sliding of a scene.
@@ -71,7 +81,7 @@ pub struct ContactOptions {
 /// # Errors
 /// Where the scene cannot be solved for, or there is no such state.
 pub fn solve_contact(scene: &Scene, options: ContactOptions) -> Result<SolvedContact, Error> {
-    let ContactOptions { at, sliding } = options;
+    let ContactOptions { at, sliding, flow } = options;
     check_possible("speed", "m/s", &[at.speed])?;
     check_possible("pressure", "Pa", &[at.pressure])?;
     let no_material = || Error::scene("the scene has no material or layer.width, so its contact has no pressure");
@@ -85,14 +95,15 @@ pub fn solve_contact(scene: &Scene, options: ContactOptions) -> Result<SolvedCon
     let mut solver = SteadySolver::new(surface);
     let slide = solver.slide_over(&rubber, at.speed, at.pressure, sliding.way);
     let surface = solver.surface().clone();
-    let (fields, problem) = (ContactFields::new(&surface, &slide), slide.problem());
+    let (mut fields, problem) = (ContactFields::new(&surface, &slide), slide.problem());
+    let flow = (flow && slide.is_found()).then(|| fields.solve_flow(&surface));
     let place = format!("at {} m/s, {} Pa", at.speed, at.pressure);
     let area = slide.real_area.unwrap_or(slide.area);
     let rise = slide.flash_mean.map(|flash| flash + slide.surface_rise.unwrap_or(0.0));
     let found = slide.friction().map(|friction| FoundFriction { place, friction, area: Some(area), rise });
     let pressed = scene.hard_pressure("`pressure`", at.pressure, false);
     let warnings = pressed.into_iter().chain(implausible(scene, found)).collect();
-    Ok(SolvedContact { surface, slide, fields, problem, warnings })
+    Ok(SolvedContact { surface, slide, fields, flow, problem, warnings })
 }
 
 impl ContactFields {
@@ -108,13 +119,24 @@ impl ContactFields {
             heights: surface.heights.clone(),
             pressures,
             gaps: slide.contact.gaps.clone(),
+            leak: None,
         }
+    }
+
+    /// How a fluid passes the gaps: on a map as solved for, with where it leaks, else by the effective medium.
+    fn solve_flow(&mut self, surface: &SurfaceGrid) -> FlowGaps {
+        if surface.size.ny == 1 {
+            return FlowGaps::of_medium(&self.gaps);
+        }
+        let (gaps, leak) = FlowGaps::of_map_with_leak(&self.gaps, surface.size, surface.spacing());
+        self.leak = Some(leak);
+        gaps
     }
 }
 
 impl SolvedContact {
-    /// Along a profile the rubber's surface above it and the pressure; over a map pressure, gap, and where on the heights
-    /// the contact is.
+    /// Along a profile the rubber's surface above it and the pressure; over a map pressure, gap, where on the heights
+    /// the contact is, and where it leaks.
     pub fn picture(&self) -> Picture {
         if self.surface.size.ny > 1 { self.maps() } else { self.fields.curves() }
     }
@@ -142,13 +164,19 @@ impl SolvedContact {
             Panel { title: of.0.into(), scale: Some(scale), ..panel }
         };
         let contact = format!("contact, {} % of the area", rounded(100.0 * self.slide.area, 3));
-        let panels = vec![
+        let mut panels = vec![
             map(("pressure", "Pa"), &fields.pressures, Colours::Viridis, ("no contact", Colour::GRID), &|i| {
                 !is_touched(i)
             }),
             map(("gap", "m"), &fields.gaps, Colours::Blues, ("", Colour::GRID), &|_| false),
             map(("height", "m"), &fields.heights, Colours::Greys, (&contact, Colour::nth(1)), &is_touched),
         ];
+        if let (Some(leak), Some(flow)) = (&fields.leak, &self.flow) {
+            let mean = flow.leak.powi(3).max(f64::MIN_POSITIVE);
+            let over_mean: Vec<f64> = leak.iter().map(|leak| leak / mean).collect();
+            let of = ("leak over its mean", "");
+            panels.push(map(of, &over_mean, Colours::Viridis, ("", Colour::nth(1)), &is_touched));
+        }
         let note = slides(1.0).trim_start_matches(", ").to_owned();
         let mut rows = match is_long {
             true => panels.into_iter().map(Row::from).collect(),

@@ -2,6 +2,7 @@
 //! and call nothing of what is compared.
 
 pub mod elastic;
+pub mod film;
 pub mod heat;
 pub mod oscillator;
 pub mod page;
@@ -34,6 +35,8 @@ pub const ALL: &[Entry] = &[
     viscoelastic::FULL,
     rough::AREA,
     rough::SPECTRUM,
+    film::RIDGES,
+    film::ROUGH,
     heat::HALF_SPACE,
     heat::STRIP,
     rubber::SOLID,

@@ -12,22 +12,27 @@ use super::scenes::{rubber, slide};
 const FILE: &str = "examples/validation/suite/rough.rs";
 /// The period, m, the rms gradient, and the exponent of heights over wave numbers, -(1 + H) with H = 0.8.
 const LENGTH: f64 = 1e-3;
-const GRADIENT: f64 = 0.1;
+pub const GRADIENT: f64 = 0.1;
 const EXPONENT: f64 = -1.8;
 
 /// The waves of a self-affine map from a roll-off at L over `first` down to L over `last`, longer ones as high as that:
 /// their numbers along x and y, and heights, m.
-fn waves(first: f64, last: i64) -> Vec<(i64, i64, f64)> {
+pub fn waves(first: f64, last: i64) -> Vec<(i64, i64, f64)> {
     let all = (0..=last).flat_map(|m| (-last..=last).map(move |k| (m, k)));
     let kept = all.filter(|&(m, k)| !(m == 0 && k <= 0) && m * m + k * k <= last * last);
     let waves: Vec<_> = kept.map(|(m, k)| (m, k, f64::hypot(m as f64, k as f64).max(first).powf(EXPONENT))).collect();
+    scaled(waves)
+}
+
+/// Waves with the rms gradient.
+pub fn scaled(waves: Vec<(i64, i64, f64)>) -> Vec<(i64, i64, f64)> {
     let square = |&(m, k, a): &(i64, i64, f64)| 0.5 * (a * TAU / LENGTH * f64::hypot(m as f64, k as f64)).powi(2);
     let factor = GRADIENT / waves.iter().map(square).sum::<f64>().sqrt();
     waves.into_iter().map(|(m, k, a)| (m, k, factor * a)).collect()
 }
 
 /// The map of these waves with as many points to the shortest, and phases by the seed: along y first, then along x.
-fn self_affine(waves: &[(i64, i64, f64)], points: usize, seed: u64) -> SurfaceGrid {
+pub fn self_affine(waves: &[(i64, i64, f64)], points: usize, seed: u64) -> SurfaceGrid {
     let last = waves.iter().map(|wave| wave.0).max().unwrap_or_default();
     let n = last as usize * points;
     let mut random = SplitMix64::new(seed);

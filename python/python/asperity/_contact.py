@@ -31,6 +31,11 @@ class Contact:
         separation: Distance of the mean planes of rubber and surface, m.
         flash_mean: Mean flash temperature over the contact, K; None where friction heats nothing.
         surface_rise: How much warmer the surface is than the rubber was before, K; None without a way.
+        leak_gap: Distance of smooth plates that let as much of a fluid through along the sliding, m; None unless asked for.
+        drag_gap: Distance of smooth plates that carry as much of it along, m; None unless asked for.
+        leak_gap_across: The leak gap across the sliding, m; None of a profile, and unless asked for.
+        leak: Where it leaks along the sliding, m³, shape (ny, nx): 12 η times the flow per width over the mean gradient of
+            pressure; None of a profile, whose gaps stand for an isotropic roughness, and unless asked for.
         status: "steady", or why the values cannot be relied on.
     """
 
@@ -48,18 +53,23 @@ class Contact:
     separation: float
     flash_mean: float | None
     surface_rise: float | None
+    leak_gap: float | None
+    drag_gap: float | None
+    leak_gap_across: float | None
+    leak: Floats | None
     status: str
     _picture: _native.Picture
 
     @classmethod
     def _of(cls, found: dict[str, Any]) -> Contact:
         shape = (len(found["y"]), len(found["x"]))
-        fields = {name: found[name].reshape(shape) for name in ("height", "pressure", "gap")}
+        given = (name for name in ("height", "pressure", "gap", "leak") if found[name] is not None)
+        fields = {name: found[name].reshape(shape) for name in given}
         picture = found.pop("picture")
         return cls(**{**found, **fields}, _picture=picture)
 
     def plot(self) -> Figure:
-        """Draws curves along a profile with matplotlib; over a map pressure, gap, and where on the heights it is."""
+        """Draws with matplotlib: along a profile curves, over a map pressure, gap, contact and, where it has one, leak."""
         from ._plots import drawn
 
         return drawn(self._picture)

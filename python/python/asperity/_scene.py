@@ -162,7 +162,13 @@ class Scene(SceneInputs):
         return table
 
     def contact(
-        self, pressure: float, speed: float, points: int | None = None, *, way: float | None = None
+        self,
+        pressure: float,
+        speed: float,
+        points: int | None = None,
+        *,
+        way: float | None = None,
+        flow: bool = False,
     ) -> Contact:
         """Where the rubber touches in steady sliding, and how hard.
 
@@ -174,6 +180,7 @@ class Scene(SceneInputs):
             points: Points of a period along x; None: the surface's own, or of a profile 8 to its shortest wave where
                 they are uneven or fewer.
             way: As for :meth:`sweep`.
+            flow: Whether it has how a fluid passes the gaps, and of a map where it leaks.
 
         Raises:
             SceneError: Where the scene cannot be solved for.
@@ -181,8 +188,8 @@ class Scene(SceneInputs):
         from ._contact import Contact
 
         slid = None if way is None else positive("way", way)
-        at = given(pressure=positive("pressure", pressure), speed=positive("speed", speed), way=slid, points=points)
-        found = _native.contact(self._native, at)
+        state = {"pressure": positive("pressure", pressure), "speed": positive("speed", speed)}
+        found = _native.contact(self._native, given(**state, way=slid, points=points, flow=flow))
         for warning in found.pop("warnings"):
             warnings.warn(warning, stacklevel=2)
         return Contact._of(found)

@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 class Surface:
     """A profile or a map, as read or smoothed, split, made periodic, and its analysis.
 
-    ``surface["rms_height"]`` is a number of the analysis, by the names that ``asperity surface --json`` has.
+    ``surface["rms_height"]`` is a number of the analysis, by the names that ``asperity surface --json`` has;
+    ``surface["roughness"]`` has what drawings say, by ISO 21920: ``ra``, ``rq``, ``rz``, ``rmr_depth`` in m, ``rmr``, and by
+    which filters; None of a surface that is too short for any of them.
 
     Attributes:
         name: The name of the file or of the scene.

@@ -9,6 +9,7 @@ use crate::scene::files::{NamedTable, with_seams};
 use crate::scene::height_map::Seam;
 use crate::scene::keys::{PATH, SurfaceKind, TABLE};
 use crate::scene::surface::{Coordinate, check_points};
+use crate::scene::values::POSITIVE;
 use crate::scene::{
     FileFormats, Layer, LoadedProfile, MOST_HEIGHTS, ProfileOptions, SceneFile, SelfAffine, Surface, line_note,
     warnings,
@@ -115,7 +116,7 @@ fn read_self_affine(table: &mut TableReader<'_>, found: &mut Findings) -> Result
     let length = table.number("length")?;
     let points = table.required("points")?;
     let count = points.whole()?;
-    let (hurst, rms) = (table.number("hurst")?, table.number("rms")?);
+    let (hurst, rms) = (table.number("hurst")?, read_rms_height(table)?);
     let roll_off_entry = table.required("roll_off_wavelength")?;
     let roll_off = roll_off_entry.number()?;
     let cut_off_entry = table.required("cut_off_wavelength")?;
@@ -153,6 +154,17 @@ fn read_self_affine(table: &mut TableReader<'_>, found: &mut Findings) -> Result
             found.notes.push(line_note("an isotropic surface", taken, lines, line.is_some()));
             Ok(law.surface(line))
         }
+    }
+}
+
+/// The root mean square height, m, by one of its names.
+fn read_rms_height(table: &mut TableReader<'_>) -> Result<f64> {
+    match [table.entry("rms"), table.entry("rq")] {
+        [Some(_), Some(rq)] => {
+            Err(rq.refuse("no such key beside rms: both are the root mean square height, of which one is given"))
+        }
+        [Some(entry), None] | [None, Some(entry)] => entry.number(),
+        [None, None] => Err(table.missing("rms", format_args!("{POSITIVE} m, or rq in its place"))),
     }
 }
 

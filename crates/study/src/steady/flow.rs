@@ -59,9 +59,15 @@ impl FlowGaps {
     /// Solves for the flow through `gaps` (m), 0 where the surfaces touch, at points `spacing` (m) apart along and across the
     /// sliding, period in both directions.
     pub fn of_map(gaps: &[f64], size: GridSize, spacing: [f64; 2]) -> Self {
+        Self::of_map_with_leak(gaps, size, spacing).0
+    }
+
+    /// The same, and where it leaks along the sliding: at each point 12η|q|/G, m³, of the flow per width q under the mean
+    /// gradient of pressure G. The mean of its part along the sliding is the leak gap's cube.
+    pub fn of_map_with_leak(gaps: &[f64], size: GridSize, spacing: [f64; 2]) -> (Self, Vec<f64>) {
         let largest = gaps.iter().copied().fold(0.0, f64::max);
         if largest <= 0.0 {
-            return Self { leak_across: Some(0.0), ..Self::ZERO };
+            return (Self { leak_across: Some(0.0), ..Self::ZERO }, vec![0.0; gaps.len()]);
         }
         // In units of the largest gap, and of a length that makes faces of even gaps 1.
         let relative: Vec<f64> = gaps.iter().map(|gap| gap / largest).collect();
@@ -75,8 +81,10 @@ impl FlowGaps {
         let carried = network.sources(Direction::Along, |_, face| face);
         let pressures = network.solve(&carried);
         let drag = network.mean_carried(&pressures);
+        let flows = if leak > 0.0 { network.flows(&along) } else { vec![[0.0; 2]; gaps.len()] };
+        let flows = flows.iter().map(|[x, y]| largest.powi(3) * x.hypot(*y)).collect();
         let [leak, drag, across] = [leak, drag.max(0.0), leak_across].map(|gap| largest * gap);
-        Self { leak, drag, leak_across: Some(across) }
+        (Self { leak, drag, leak_across: Some(across) }, flows)
     }
 }
 
@@ -211,6 +219,27 @@ impl Network {
         power / faces.len() as f64
     }
 
+    /// The flow at each point along and across the sliding, under a mean gradient of 1 along it: the mean of what passes the
+    /// faces before and behind.
+    fn flows(&self, pressures: &[f64]) -> Vec<[f64; 2]> {
+        // Pressures are in units of the fall from point to point along the sliding.
+        let share = self.weights[Direction::Across as usize];
+        let through = |face: usize, direction: Direction| {
+            let conductance = self.conductances[direction as usize][face];
+            match direction {
+                Direction::Along => conductance * self.fall(pressures, face, direction),
+                Direction::Across => {
+                    share * conductance * (pressures[face] - pressures[self.size.behind(face, direction)])
+                }
+            }
+        };
+        let at = |i: usize| {
+            [Direction::Along, Direction::Across]
+                .map(|direction| 0.5 * (through(self.size.before(i, direction), direction) + through(i, direction)))
+        };
+        (0..pressures.len()).map(at).collect()
+    }
+
     /// The mean of what the moving side carries less what the pressures hold back.
     fn mean_carried(&self, pressures: &[f64]) -> f64 {
         let faces = &self.conductances[Direction::Along as usize];
@@ -319,6 +348,28 @@ mod tests {
             let through = (0..size.ny).map(flow).sum::<f64>() / size.ny as f64;
             assert!((through / mean - 1.0).abs() < 1e-9, "{column}: {through} {mean}");
         }
+        // So is the mean of what flows at the points, none of it where it touches.
+        let flows = network.flows(&pressures);
+        let along = flows.iter().map(|flow| flow[0]).sum::<f64>() / gaps.len() as f64;
+        assert!((along / mean - 1.0).abs() < 1e-9, "{along} {mean}");
+        assert!(flows.iter().zip(&gaps).all(|(flow, gap)| *gap > 0.0 || *flow == [0.0; 2]));
+    }
+
+    #[test]
+    fn the_flow_at_a_point_has_its_size_in_both_directions() {
+        // Even gaps: all of it along, h³, whatever the distances of the points.
+        let (even, leak) = FlowGaps::of_map_with_leak(&[2e-6; 12], GridSize { nx: 4, ny: 3 }, [1e-5, 3e-6]);
+        assert!((even.leak / 2e-6 - 1.0).abs() < 1e-12);
+        assert!(leak.iter().all(|flow| (flow / 8e-18 - 1.0).abs() < 1e-12), "{leak:?}");
+        // A channel a point wide that winds up like stairs: as much flows through its legs, per width of a point.
+        let is_open = |i: usize| matches!((i % 8, i / 8), (0..=3, 0) | (3, 0..=4) | (3..=7, 4) | (7, 4..=7) | (7, 0));
+        let gaps: Vec<f64> = (0..64).map(|i| if is_open(i) { 1e-6 } else { 0.0 }).collect();
+        let [dx, dy] = [1e-5, 4e-6];
+        let (_, leak) = FlowGaps::of_map_with_leak(&gaps, GridSize { nx: 8, ny: 8 }, [dx, dy]);
+        let ([along, other], across) = ([leak[1], leak[4 * 8 + 5]], leak[2 * 8 + 3]);
+        // The residual of the pressures is 1e-12 of what drives them.
+        assert!(along > 0.0 && (other / along - 1.0).abs() < 1e-9, "{along} {other}");
+        assert!((across * dx / (along * dy) - 1.0).abs() < 1e-9, "{along} {across}");
     }
 
     /// Of even gaps both lengths are the gap; from the share of contact at which ways close on there are none.

@@ -7,6 +7,7 @@ use asperity::scene::{HeightMap, PowerLaw, RoughnessSpectrum, Spectrum, Spectrum
 use serde::Serialize;
 
 use super::options::Wavelengths;
+use super::roughness::Roughness;
 
 /// Heights and slopes of a profile, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -173,6 +174,8 @@ pub struct SurfaceAnalysis {
     /// Heights and slopes.
     #[serde(flatten)]
     pub statistics: ProfileStatistics,
+    /// What drawings say; `None` where it is too short, or its points are too far apart.
+    pub roughness: Option<Roughness>,
     /// What smoothing or splitting took away.
     pub removed: Option<Removed>,
     /// The waves that splitting took away.
@@ -199,7 +202,8 @@ impl SurfaceAnalysis {
         let window =
             if surface.is_periodic() { "over one period, as it is" } else { "without tilt, under a Hann window" };
         let map = MapAnalysis::of(surface, wavelengths);
-        Self { statistics, removed: None, finer: None, map, law, taken: format!("{points}{window}"), spectrum: bands }
+        let (roughness, taken) = (Roughness::of(surface), format!("{points}{window}"));
+        Self { statistics, roughness, removed: None, finer: None, map, law, taken, spectrum: bands }
     }
 
     /// Wave numbers (rad/m) and densities (m³) of the power law, at the bands of the spectrum down to its shortest wave;
