@@ -21,9 +21,9 @@ pub const SWEEP: (&str, u64) = ("asperity sweep", 1);
 const GIVES_WAY: f64 = 1e-3;
 const GIVES_WAY_ALL: f64 = 1e-15;
 
-/// How much stiffer along the surface a contact in full contact is than the stiffest of the table's others; 1e20 Pa/m where
-/// all points are in full contact.
-const STIFFER: f64 = 1e3;
+/// How much stiffer along the surface a contact in full contact is than the stiffest of the table's others, which are near
+/// that; much more would not be smooth beside soft ones at the next speed. 1e20 Pa/m where all points are in full contact.
+const STIFFER: f64 = 10.0;
 const STIFF_ALL: f64 = 1e20;
 
 /// The points of a table, checked: every point of the grid has a row and was steady or in full contact.
@@ -157,12 +157,9 @@ impl FrictionTable {
             return Err(self.header.error(format!("{problem}; {BACKING}")));
         }
         let full = self.nodes().filter(|node| self.is_full_contact(*node));
-        let of = |node| {
-            format!("{} is in full contact, which has no stiffness of its own", self.point(node).describe(self.load))
-        };
-        let full: Vec<String> = full.map(of).collect();
+        let full: Vec<String> = full.map(|node| self.point(node).describe(self.load)).collect();
         Err(self.header.error(format!(
-            "{}; {BACKING}; or leave a speed, a {} or a temperature out",
+            "full contact, which has no stiffness of its own, at {}; {BACKING}; or leave a speed, a {} or a temperature out",
             some_of(&full),
             self.load.name()
         )))

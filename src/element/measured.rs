@@ -13,7 +13,8 @@ use super::quantity::Quantity;
 use crate::scene::{FileFormats, read_file};
 use crate::table::{Header, Table, TableError};
 use crate::tables::{
-    ABOVE_ZERO, Dimension, FileKind, GivenColumns, NOT_NEGATIVE, Others, ReadTable, ReadingNote, Role, canonical,
+    ABOVE_ZERO, ContentError, Dimension, FileKind, GivenColumns, NOT_NEGATIVE, Others, ReadTable, ReadingNote, Role,
+    canonical,
 };
 
 /// Speed of sliding.
@@ -59,8 +60,7 @@ pub const MEASURED_TABLE: FileKind = FileKind {
     ..FileKind::new(
         "measured friction",
         &[SPEED, PRESSURE, FRICTION_COEFFICIENT, TEMPERATURE],
-        "speed [m/s], pressure [Pa], friction and, where it depends on it, temperature [K], nothing else; or the table of a \
-         sweep, with its line `# asperity sweep = 1`",
+        "speed [m/s], pressure [Pa], friction and, where it depends on it, temperature [K], nothing else",
     )
 };
 
@@ -89,7 +89,11 @@ impl FrictionTable {
             };
         }
         let read = formats.table(&bytes, &MEASURED_TABLE, columns);
-        let mut read = read.map_err(|error| refused(error.line, error.to_string()))?;
+        let or_sweep = |error: ContentError| match &error.key[..] {
+            "columns" => error.or("the table of a sweep, with its line `# asperity sweep = 1`"),
+            _ => error,
+        };
+        let mut read = read.map_err(or_sweep).map_err(|error| refused(error.line, error.to_string()))?;
         let notes = std::mem::take(&mut read.notes);
         Ok((Self::of_sweep(&swept(&read, path))?, notes))
     }
