@@ -36,7 +36,10 @@ fn a_run_is_written_and_drawn() {
 #[test]
 fn it_is_described() {
     let told = run(asperity().args(["describe", "--seal"]).arg(seal()));
-    assert_names(&told, "Lip with a film of 96 cells | 2e6 N/m along the motion | the rod | the film that left comes back");
+    assert_names(
+        &told,
+        "Lip with a film of 96 cells | 2e6 N/m along the motion | the rod | the film that left comes back",
+    );
 }
 
 fn curve(folder: &Path, options: &[&str]) -> Table {
@@ -77,7 +80,9 @@ fn what_does_not_go_with_a_seal_is_refused() {
     let mut sweep = asperity();
     let told = said(sweep.current_dir(&folder).args(["sweep", "--temperatures", "300", "--seal"]).arg(seal()));
     assert_names(&told, "`temperatures`: expected none");
-    let told = said(asperity().current_dir(&folder).args(["sweep", "--sealed", "9MPa", "--speeds", "1e-3", "--seal"]).arg(seal()));
+    let told = said(
+        asperity().current_dir(&folder).args(["sweep", "--sealed", "9MPa", "--speeds", "1e-3", "--seal"]).arg(seal()),
+    );
     assert_names(&told, "points have no result");
     fs::write(folder.join("motion.csv"), "time,u,w\n0,0,0\n1,0,0\n").unwrap();
     let mut simulate = asperity();
@@ -85,7 +90,9 @@ fn what_does_not_go_with_a_seal_is_refused() {
     assert_names(&said(&mut simulate), "columns | no such column of a seal without an approach_stiffness");
     // A table without gaps says what to do.
     let text = fs::read_to_string(seal()).unwrap().replace("film-strokes.table", "block.table");
-    for (from, to) in [("film/film-strokes.lip.csv", "film-strokes.lip.csv"), ("patch/block.table.csv", "block.table.csv")] {
+    for (from, to) in
+        [("film/film-strokes.lip.csv", "film-strokes.lip.csv"), ("patch/block.table.csv", "block.table.csv")]
+    {
         fs::copy(root().join("tests/reference").join(from), folder.join(to)).unwrap();
     }
     fs::write(folder.join("dry.toml"), text).unwrap();

@@ -214,8 +214,11 @@ impl Stribeck {
             };
             groups.iter().enumerate().flat_map(|(look, &group)| [0, 1].map(|i| curve(look, group, i))).collect()
         };
-        let [friction, film, share] =
-            [marks(|figures| figures.friction), marks(|figures| 1e6 * figures.thickness), marks(|figures| figures.share)];
+        let [friction, film, share] = [
+            marks(|figures| figures.friction),
+            marks(|figures| 1e6 * figures.thickness),
+            marks(|figures| figures.share),
+        ];
         let x = Axis::logarithmic(("viscosity times speed", "N/m"), xs(&friction));
         let y = [
             Axis::linear(("friction coefficient", ""), ys(&friction).chain([0.0]), Fit::Round),

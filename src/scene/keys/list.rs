@@ -3,8 +3,8 @@
 use super::definition::{Absent, Allowed, Form, Key, KindKeys};
 use super::field::At;
 use super::patch::PATCH_ROOT;
-use super::seal::SEAL_ROOT;
 use super::scene_file::ROOT;
+use super::seal::SEAL_ROOT;
 use crate::scene::Unit;
 use crate::scene::values::{NumberRange, POSITIVE, closest};
 

@@ -122,10 +122,7 @@ fn its_variables_stand_in_their_order() {
     ] {
         assert_eq!(names[index], name);
     }
-    assert_eq!(
-        names[names.len() - 4..],
-        ["input.extrapolation", "input.interval", "solver.refine", "patch.damping"]
-    );
+    assert_eq!(names[names.len() - 4..], ["input.extrapolation", "input.interval", "solver.refine", "patch.damping"]);
 }
 
 /// The library's own run, to rounding of the poses that the master gives.

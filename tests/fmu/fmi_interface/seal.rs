@@ -153,7 +153,10 @@ fn tangents_are_changes_with_the_target() {
         give(&fmu, 10, true);
         assert_eq!(fmu.set_rate("u", SPEED + shift / H), OK);
         assert_eq!(fmu.step(10.0 * H, H), OK);
-        (["F_x", "film.leak"].map(|name| fmu.real(name)), ["tangent.F_x.u", "tangent.film.leak.u"].map(|name| fmu.real(name)))
+        (
+            ["F_x", "film.leak"].map(|name| fmu.real(name)),
+            ["tangent.F_x.u", "tangent.film.leak.u"].map(|name| fmu.real(name)),
+        )
     };
     let by = 1e-3 * SPEED * H;
     let ((before, _), (_, tangents), (after, _)) = (end(-by), end(0.0), end(by));

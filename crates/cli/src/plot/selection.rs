@@ -248,7 +248,11 @@ fn unit_of_name(column: &str) -> &'static str {
         "pressure" => "Pa",
         "speed" | "transport.speed" => "m/s",
         "area" => "m2",
-        _ => outputs::unit_of(column).or_else(|| patch::unit_of(column)).or_else(|| seal::unit_of(column)).map(|unit| unit.name()).unwrap_or_default(),
+        _ => outputs::unit_of(column)
+            .or_else(|| patch::unit_of(column))
+            .or_else(|| seal::unit_of(column))
+            .map(|unit| unit.name())
+            .unwrap_or_default(),
     }
 }
 

@@ -155,7 +155,7 @@ fn range(values: &[f64], unit: &str) -> String {
 }
 
 /// A table by its scene, or by its file where it was measured.
-fn named(table: &FrictionTable) -> String {
+pub(super) fn named(table: &FrictionTable) -> String {
     if table.is_measured() { table.origin() } else { table.scene().to_owned() }
 }
 
