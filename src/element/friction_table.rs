@@ -1,17 +1,32 @@
-//! The law's points from the table of a sweep: every point of the grid is there and steady.
+//! The law's points from the table of a sweep: every point of the grid is there, steady or in full contact.
+//!
+//! In full contact all of the surface touches: the separation is 0 however hard it is pressed, and nothing gives way but what
+//! stands behind. Such a table serves behind a backing. In its law a contact then gives way by so little that the
+//! backing's slope is all that is seen, and by enough to have an inverse.
 
 use std::path::Path;
 
 use super::grid::{Load, OperatingPoint, SweepGrid};
 use super::point_status::PointStatus;
 use super::quantity::{Need, Quantity};
-use crate::scene::{is_possible, read_text};
+use crate::scene::{Backing, is_possible, read_text};
 use crate::table::{Header, Table, TableError};
 
 /// What the header of a sweep's table begins with; the number grows when readers have to know of a change.
 pub const SWEEP: (&str, u64) = ("asperity sweep", 1);
 
-/// The points of a table, checked: every point of the grid has a row and was steady.
+/// How much closer a contact in full contact comes from one load to the next, over the most by which one of the table's
+/// others does: with a thousandth the law over speed and temperature is still smooth beside them. 1e-15 m where all
+/// points are in full contact.
+const GIVES_WAY: f64 = 1e-3;
+const GIVES_WAY_ALL: f64 = 1e-15;
+
+/// How much stiffer along the surface a contact in full contact is than the stiffest of the table's others, which are near
+/// that; much more would not be smooth beside soft ones at the next speed. 1e20 Pa/m where all points are in full contact.
+const STIFFER: f64 = 10.0;
+const STIFF_ALL: f64 = 1e20;
+
+/// The points of a table, checked: every point of the grid has a row and was steady or in full contact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrictionTable {
     /// What stands before the rows: what the numbers rest on.
@@ -24,6 +39,8 @@ pub struct FrictionTable {
     pub grid: SweepGrid,
     /// By quantity, where the table has it, and point.
     values: [Option<Vec<f64>>; Quantity::ALL.len()],
+    /// By point, whether it is in full contact.
+    full_contact: Vec<bool>,
 }
 
 /// A point of a table by its indices on the axes of the grid.
@@ -84,6 +101,13 @@ impl FrictionTable {
     /// # Errors
     /// As for [`load`](Self::load).
     pub fn new(table: &Table) -> Result<Self, TableError> {
+        let found = Self::of_sweep(table)?;
+        found.check_alone()?;
+        Ok(found)
+    }
+
+    /// From the table of a sweep, which may have points in full contact.
+    pub(super) fn of_sweep(table: &Table) -> Result<Self, TableError> {
         table.header.check_kind(SWEEP)?;
         let load = Load::of_table(table)?;
         let points = points(table, load)?;
@@ -94,21 +118,56 @@ impl FrictionTable {
         };
         if grid.loads.len() < 2 {
             return Err(table.error(format!(
-                "{} values of the {}, expected at least two: the normal stiffness is the slope between them",
+                "{} values of the {}, expected at least two: the law goes from one to the next",
                 grid.loads.len(),
                 load.name()
             )));
         }
         let order = rows_of_points(table, &grid, load, &points)?;
-        check_steady(table, load, &points, &order)?;
+        let full_contact = full_contact(table, load, &points, &order)?;
         let mut values = [const { None }; Quantity::ALL.len()];
         for quantity in Quantity::ALL {
-            values[quantity as usize] = values_of(table, load, quantity, &order)?;
+            values[quantity as usize] = values_of(table, load, quantity, (&order, &full_contact))?;
         }
         let rest_separation = rest_separation(&table.header)?;
-        let found = Self { header: table.header.clone(), load, rest_separation, grid, values };
+        let mut found = Self { header: table.header.clone(), load, rest_separation, grid, values, full_contact };
         found.check_separations().map_err(|crossing| table.error(crossing.to_string()))?;
+        found.stiffen_full_contact();
         Ok(found)
+    }
+
+    /// Whether it has points that only what stands behind a contact gives way at: in full contact, or measured.
+    pub fn needs_backing(&self) -> bool {
+        self.full_contact.contains(&true)
+    }
+
+    /// Refuses a table that needs a backing.
+    ///
+    /// # Errors
+    /// [`TableError`] with what helps.
+    pub fn check_alone(&self) -> Result<(), TableError> {
+        /// How a backing is given.
+        const BACKING: &str =
+            "a patch with a backing takes it, of one element too: [patch] backing = { normal = .., shear = .. }";
+        if !self.needs_backing() {
+            return Ok(());
+        }
+        if self.is_measured() {
+            let problem = "friction that was measured is as in full contact, which has no stiffness of its own";
+            return Err(self.header.error(format!("{problem}; {BACKING}")));
+        }
+        let full = self.nodes().filter(|node| self.is_full_contact(*node));
+        let full: Vec<String> = full.map(|node| self.point(node).describe(self.load)).collect();
+        Err(self.header.error(format!(
+            "full contact, which has no stiffness of its own, at {}; {BACKING}; or leave a speed, a {} or a temperature out",
+            some_of(&full),
+            self.load.name()
+        )))
+    }
+
+    /// Whether a point is in full contact.
+    pub fn is_full_contact(&self, node: Node) -> bool {
+        self.full_contact[self.index(node)]
     }
 
     /// The name of the scene that was swept.
@@ -127,19 +186,20 @@ impl FrictionTable {
     }
 
     /// The time (s) in which a carrier that is pressed the hardest passes the way to slip, μ F/k, at the largest speed
-    /// of the table; `None` where nothing sticks.
-    pub fn stick_time(&self) -> Option<f64> {
+    /// of the table; `None` where nothing sticks. In full contact k is that of the backing, if there is one.
+    pub fn stick_time(&self, backing: Option<Backing>) -> Option<f64> {
         let last = |axis: &[f64]| axis.len().saturating_sub(1);
         let node = Node { temperature: 0, load: last(&self.grid.loads), speed: last(&self.grid.speeds) };
-        self.stick_time_at(node)
+        self.stick_time_at(node, backing)
     }
 
     /// The time (s) in which a carrier passes the way to slip, μ F/k, at the load and the speed of a node; `None` where
-    /// nothing sticks there.
-    pub fn stick_time_at(&self, node: Node) -> Option<f64> {
+    /// nothing sticks there. In full contact k is that of the backing, if there is one.
+    pub fn stick_time_at(&self, node: Node, backing: Option<Backing>) -> Option<f64> {
         let (load, speed) = (self.grid.loads.get(node.load)?, self.grid.speeds.get(node.speed)?);
         let limit = self.value(Quantity::Friction, node) * self.load.force(*load);
-        let time = limit / self.value(Quantity::Stiffness, node) / speed;
+        let behind = backing.filter(|_| self.is_full_contact(node)).map(|backing| backing.shear * self.load.area());
+        let time = limit / behind.unwrap_or_else(|| self.value(Quantity::Stiffness, node)) / speed;
         (time.is_finite() && time > 0.0).then_some(time)
     }
 
@@ -153,7 +213,7 @@ impl FrictionTable {
     }
 
     /// The nodes by temperature, load, speed, as the points of the [grid](SweepGrid::points).
-    fn nodes(&self) -> impl Iterator<Item = Node> {
+    pub fn nodes(&self) -> impl Iterator<Item = Node> + use<> {
         let (speeds, loads) = (self.grid.speeds.len(), self.grid.loads.len());
         (0..self.grid.count()).map(move |index| Node {
             temperature: index / speeds / loads,
@@ -164,28 +224,71 @@ impl FrictionTable {
 
     /// The table without the points at `index` of an axis.
     pub(super) fn without(&self, axis: TableAxis, index: usize) -> Self {
-        let rest = |values: &Vec<f64>| {
-            let kept = self.nodes().zip(values).filter(|(node, _)| axis.index(*node) != index);
-            kept.map(|(_, &value)| value).collect()
+        let kept: Vec<bool> = self.nodes().map(|node| axis.index(node) != index).collect();
+        let mut table = Self {
+            values: std::array::from_fn(|i| self.values[i].as_ref().map(|values| those(&kept, values))),
+            full_contact: those(&kept, &self.full_contact),
+            ..self.clone()
         };
-        let mut table = Self { values: std::array::from_fn(|i| self.values[i].as_ref().map(rest)), ..self.clone() };
         let grid = &mut table.grid;
         [&mut grid.speeds, &mut grid.loads, &mut grid.temperatures][axis as usize].remove(index);
         table
     }
 
-    /// Pressed harder, the carrier is closer: the separations have an inverse.
+    /// Pressed harder, the carrier is closer: the separations have an inverse. In full contact it stays where it is.
     fn check_separations(&self) -> Result<(), SeparationsCross> {
         let separation = |node| self.value(Quantity::Separation, node);
         for node in self.nodes().filter(|node| node.load > 0) {
-            let (here, before) = (separation(node), separation(Node { load: node.load - 1, ..node }));
-            if here >= before {
+            let below = Node { load: node.load - 1, ..node };
+            let (here, before) = (separation(node), separation(below));
+            let crosses = match (self.is_full_contact(below), self.is_full_contact(node)) {
+                (true, is_full) => !is_full || here > before,
+                (false, _) => here >= before,
+            };
+            if crosses {
                 let (load, point) = (self.load.name(), self.point(node).describe(self.load));
                 return Err(SeparationsCross { here, before, point, load });
             }
         }
         Ok(())
     }
+
+    /// Lets points in full contact give way by a little along the normal, and sets their stiffness along the surface: that
+    /// of the backing is all that is left of it in series.
+    fn stiffen_full_contact(&mut self) {
+        if !self.needs_backing() {
+            return;
+        }
+        let below = |node: Node| Some(Node { load: node.load.checked_sub(1)?, ..node });
+        let steps = self.nodes().filter_map(|node| Some((node, below(node)?)));
+        let closer = |(node, below)| self.value(Quantity::Separation, below) - self.value(Quantity::Separation, node);
+        let step = GIVES_WAY * steps.map(closer).fold(0.0, f64::max);
+        let step = if step > 0.0 { step } else { GIVES_WAY_ALL };
+        let others = self.nodes().filter(|node| !self.is_full_contact(*node));
+        let stiffness = STIFFER * others.map(|node| self.value(Quantity::Stiffness, node)).fold(0.0, f64::max);
+        let stiffness = if stiffness > 0.0 { stiffness } else { STIFF_ALL * self.load.area() };
+        for node in self.nodes() {
+            if !self.is_full_contact(node) {
+                continue;
+            }
+            let own = self.value(Quantity::Separation, node);
+            let closer = below(node).map_or(own, |below| self.value(Quantity::Separation, below) - step);
+            self.set(Quantity::Separation, node, own.min(closer));
+            self.set(Quantity::Stiffness, node, stiffness);
+        }
+    }
+
+    fn set(&mut self, quantity: Quantity, node: Node, value: f64) {
+        let index = self.index(node);
+        if let Some(values) = &mut self.values[quantity as usize] {
+            values[index] = value;
+        }
+    }
+}
+
+/// Those of `values` that are `kept`.
+fn those<T: Copy>(kept: &[bool], values: &[T]) -> Vec<T> {
+    kept.iter().zip(values).filter(|(kept, _)| **kept).map(|(_, value)| *value).collect()
 }
 
 /// A carrier that is pressed harder is no closer.
@@ -248,18 +351,23 @@ fn rows_of_points(
     }
 }
 
-fn check_steady(table: &Table, load: Load, points: &[OperatingPoint], order: &[usize]) -> Result<(), TableError> {
-    let mut failed = Vec::new();
+/// Whether the points, each steady or in full contact, are in full contact, in the order of the rows.
+fn full_contact(
+    table: &Table,
+    load: Load,
+    points: &[OperatingPoint],
+    order: &[usize],
+) -> Result<Vec<bool>, TableError> {
+    let (mut full, mut failed) = (Vec::with_capacity(order.len()), Vec::new());
     for &row in order {
-        let point = points[row].describe(load);
-        match PointStatus::of_row(table, row)? {
-            PointStatus::Steady => (),
-            PointStatus::FullContact => failed.push(format!("{point} is in full contact, which has no stiffness")),
-            status => failed.push(format!("{point} is not steady: {}", status.text())),
+        let status = PointStatus::of_row(table, row)?;
+        if !status.is_result() {
+            failed.push(format!("{} is not steady: {}", points[row].describe(load), status.text()));
         }
+        full.push(status == PointStatus::FullContact);
     }
     if failed.is_empty() {
-        return Ok(());
+        return Ok(full);
     }
     Err(table.error(format!(
         "{}; an element needs every point of the table: sweep them again, or leave a speed, a pressure or a temperature out",
@@ -268,8 +376,13 @@ fn check_steady(table: &Table, load: Load, points: &[OperatingPoint], order: &[u
 }
 
 /// The values of a quantity, in the order of `rows`; `None` where an element ignores it, or it is missing or empty and
-/// need not be there.
-fn values_of(table: &Table, load: Load, quantity: Quantity, rows: &[usize]) -> Result<Option<Vec<f64>>, TableError> {
+/// need not be there. The stiffness in full contact is none.
+fn values_of(
+    table: &Table,
+    load: Load,
+    quantity: Quantity,
+    (rows, full_contact): (&[usize], &[bool]),
+) -> Result<Option<Vec<f64>>, TableError> {
     let (need, name, unit) = (quantity.need(), quantity.name(load), quantity.unit(load));
     if need == Need::Ignored || (need == Need::Optional && !table.has(&name, unit)) {
         return Ok(None);
@@ -278,11 +391,14 @@ fn values_of(table: &Table, load: Load, quantity: Quantity, rows: &[usize]) -> R
     if need == Need::Optional && cells.iter().all(|(_, cell)| *cell == Ok(None)) {
         return Ok(None);
     }
-    let value = |(row, cell): (usize, Result<Option<f64>, TableError>)| {
+    let value = |((row, cell), is_full): ((usize, Result<Option<f64>, TableError>), &bool)| {
+        if quantity == Quantity::Stiffness && *is_full {
+            return Ok(f64::NAN);
+        }
         let number = cell.ok().flatten().filter(|&number| quantity.allows(number));
         number.ok_or_else(|| table.cell_error(row, &name, unit, quantity.expected()))
     };
-    cells.into_iter().map(value).collect::<Result<_, _>>().map(Some)
+    cells.into_iter().zip(full_contact).map(value).collect::<Result<_, _>>().map(Some)
 }
 
 /// The first of `texts`, and how many more there are.

@@ -124,8 +124,9 @@ impl Law {
     }
 
     /// The largest second derivative with the temperature of ln p at a separation, or of ln μ, at the table's points,
-    /// 1/K²; 0 where it has one temperature.
-    pub(super) fn bend_over_temperature(&self) -> f64 {
+    /// 1/K²; 0 where it has one temperature. The separation is that of a face with a backing, whose p/k_n at the pressures
+    /// are given (m), none without one.
+    pub(super) fn bend_over_temperature(&self, indentations: &[f64]) -> f64 {
         let (temperatures, speeds) = (&self.temperatures, self.log_speeds.len());
         let cells = |quantity: Quantity| self.over_temperature[quantity as usize].as_deref().unwrap_or_default();
         let (friction, differences) = (cells(Quantity::Friction), cells(Quantity::Separation));
@@ -139,8 +140,9 @@ impl Law {
                 for load in (0..self.log_pressures.len()).rev() {
                     bend_of_separation += differences[load * speeds + speed].bend(temperatures, i);
                     let from = load.min(self.log_pressures.len() - 2);
+                    let behind = indentations.get(from..from + 2).map_or(0.0, |ends| ends[1] - ends[0]);
                     let slope = (self.log_pressures[from + 1] - self.log_pressures[from])
-                        / differences[from * speeds + speed].least(i);
+                        / (differences[from * speeds + speed].least(i) + behind);
                     largest = largest.max(slope * bend_of_separation);
                 }
             }

@@ -14,7 +14,8 @@ pub struct LeftOut {
     /// The largest error of the friction coefficient, as a share of it, and where; `None` where the axis has no inner
     /// point.
     pub friction: Option<(f64, OperatingPoint)>,
-    /// The largest error of F_z at the separation of the point, as a share of it, and where.
+    /// The largest error of F_z at the separation of the point, as a share of it, and where; `None` of a table with points in
+    /// full contact, whose separation does not tell it.
     pub force_z: Option<(f64, OperatingPoint)>,
 }
 
@@ -57,8 +58,10 @@ impl LeftOut {
 
     fn compare(&mut self, table: &FrictionTable, curve: &LawAtSpeed, node: Node) {
         let point = table.point(node);
-        let found = curve.at(-table.value(Quantity::Separation, node));
-        keep_larger(&mut self.force_z, found.normal.value / table.load.force(point.load) - 1.0, point);
+        if !table.needs_backing() {
+            let found = curve.at(-table.value(Quantity::Separation, node));
+            keep_larger(&mut self.force_z, found.normal.value / table.load.force(point.load) - 1.0, point);
+        }
         let friction = curve.at_pressure(Quantity::Friction, point.load);
         keep_larger(&mut self.friction, friction / table.value(Quantity::Friction, node) - 1.0, point);
     }

@@ -71,7 +71,7 @@ impl PointContact {
 
     /// What it is, in a sentence.
     pub fn description(&self) -> String {
-        format!("Point-contact element from {} points swept of {}", self.table.grid.count(), self.table.scene())
+        format!("Point-contact element from {} points {}", self.table.grid.count(), self.table.origin())
     }
 
     /// Its output variables.
@@ -232,6 +232,9 @@ pub fn dependencies(output: Output) -> Dependencies {
 /// which the touch was found it may be that much earlier.
 const MARGIN: f64 = 0.01;
 
+/// The least way that counts, m.
+const LEAST_WAY: f64 = 1e-9;
+
 /// The separation at which the contacts of a table begin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearance {
@@ -258,7 +261,8 @@ impl Clearance {
                 (touch, closest) = (curve.touch.min(touch), curve.closest().max(closest));
             }
         }
-        let way = closest - touch;
+        // A contact that does not give way has none.
+        let way = (closest - touch).max(LEAST_WAY);
         Self { separation: MARGIN * way - touch, way }
     }
 

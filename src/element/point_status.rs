@@ -7,7 +7,7 @@ use crate::table::{Column, Table, TableError};
 pub enum PointStatus {
     /// The values can be relied on.
     Steady,
-    /// So can friction and area; everything touches, so there is no stiffness, and no element.
+    /// So can friction and area; everything touches, so that nothing gives way but what stands behind.
     FullContact,
     /// What is wrong.
     Problem(String),

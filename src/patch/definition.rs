@@ -114,8 +114,13 @@ impl Patch {
         Self::new(PatchFile::parse_with(text, path, formats, settings)?, path)
     }
 
-    fn new(file: PatchFile, path: &Path) -> Result<Self, PatchError> {
-        let table = FrictionTable::load(&path.parent().unwrap_or(Path::new("")).join(&file.table))?;
+    fn new(mut file: PatchFile, path: &Path) -> Result<Self, PatchError> {
+        let table_path = path.parent().unwrap_or(Path::new("")).join(&file.table);
+        let (table, notes) = FrictionTable::read(&table_path, file.values.formats(), &file.table_columns)?;
+        if file.backing.is_none() {
+            table.check_alone()?;
+        }
+        file.notes.extend(notes.into_iter().map(|note| note.of(&file.table)));
         Ok(Self {
             nominal_area: nominal_area(&file, &table)?,
             temperature: temperature(&file, &table)?,
@@ -138,15 +143,15 @@ impl Patch {
         &self.file.name
     }
 
-    /// How the file of points was read.
+    /// How the files were read.
     pub fn notes(&self) -> &[ReadingNote] {
         &self.file.notes
     }
 
     /// What it is, in a sentence.
     pub fn description(&self) -> String {
-        let (count, table) = (self.face.count(), self.table.scene());
-        format!("Contact patch of {count} elements from {} points swept of {table}", self.table.grid.count())
+        let (count, origin) = (self.face.count(), self.table.origin());
+        format!("Contact patch of {count} elements from {} points {origin}", self.table.grid.count())
     }
 
     /// The table.
@@ -228,6 +233,12 @@ impl Patch {
         Self { backing: None, heat: None, damping: 0.0, ..self.clone() }
     }
 
+    /// The time (s) in which a face that is pressed the hardest passes the way to slip, at the largest speed of the table;
+    /// `None` where nothing sticks.
+    pub fn stick_time(&self) -> Option<f64> {
+        self.table.stick_time(self.backing)
+    }
+
     /// The largest tangential stiffness per area (Pa/m) of a contact at the largest pressure of the table, whatever its
     /// speed and temperature.
     pub fn contact_stiffness(&self) -> f64 {
@@ -300,7 +311,8 @@ impl Patch {
         &self.files
     }
 
-    /// What an FMU carries of one of the [`files`](Self::files): the points in their canonical form, the table as it is.
+    /// What an FMU carries of one of the [`files`](Self::files): points and measured friction in their canonical form, the
+    /// table of a sweep as it is.
     ///
     /// # Errors
     /// Where it cannot be read.
@@ -312,7 +324,10 @@ impl Patch {
                 let columns: Vec<_> = roles.map(|(role, values)| (role.key, role.dimension, &values[..])).collect();
                 Ok(canonical(&columns).into_bytes())
             }
-            _ => read_file(&folder.join(file)),
+            _ => match self.table.canonical() {
+                Some(text) => Ok(text.into_bytes()),
+                None => read_file(&folder.join(file)),
+            },
         }
     }
 
@@ -335,6 +350,11 @@ impl Patch {
     pub(super) fn law(&self) -> ResampledLaw {
         let law = if self.heat.is_some() { ResampledLaw::of_warm_elements } else { ResampledLaw::new };
         law(&self.table, self.nominal_area, self.temperature, self.backing)
+    }
+
+    /// Memory in bytes that its law takes.
+    pub(super) fn law_memory(&self) -> usize {
+        ResampledLaw::memory(&self.table, self.nominal_area, self.backing, self.heat.is_some())
     }
 
     /// An element where `entered` cells of the tread have entered.

@@ -87,7 +87,7 @@ impl Patch {
         let laws = threads(self.work()).max(1);
         let is_warm = self.heat().is_some();
         let element = ELEMENT + if is_warm { 2 * size_of::<ElementHeat>() } else { 0 };
-        BLOCK + laws * (BLOCK + ResampledLaw::memory(self.table(), is_warm)) + element * self.count()
+        BLOCK + laws * (BLOCK + self.law_memory()) + element * self.count()
     }
 
     /// Elements times parts of a step, at least.

@@ -221,6 +221,11 @@ enum Obstacle {
 }
 
 impl FileValues {
+    /// The formats of the files that it names.
+    pub fn formats(&self) -> &'static dyn FileFormats {
+        self.formats
+    }
+
     /// The values of a `text` as if it were the content of `file`.
     pub(super) fn parse(text: &str, file: &Path, formats: &'static dyn FileFormats) -> Result<Self> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);

@@ -18,6 +18,8 @@ pub struct PatchFile {
     pub name: String,
     /// Path of the table, relative to the folder of the patch file.
     pub table: PathBuf,
+    /// Columns of a table of measured friction whose names do not say what they are.
+    pub table_columns: Vec<(String, String)>,
     /// Temperature at the start, K.
     pub temperature: Option<f64>,
     /// What elements do where the table ends.
@@ -44,7 +46,7 @@ pub struct PatchFile {
     pub outputs: Vec<PatchGroup>,
     /// What its FMU's description says for simple importers.
     pub fmu: FmuOptions,
-    /// How the file of points was read.
+    /// How the files were read.
     pub notes: Vec<ReadingNote>,
     /// The values that it was read from.
     pub values: Arc<FileValues>,

@@ -16,6 +16,8 @@ pub struct SealFile {
     pub name: String,
     /// Path of the table of the contact, relative to the folder of the seal file.
     pub table: PathBuf,
+    /// Columns of a table of measured friction whose names do not say what they are.
+    pub table_columns: Vec<(String, String)>,
     /// Temperature at the start, K.
     pub temperature: Option<f64>,
     /// What happens where the table, or the sets of pressures, end.
@@ -50,7 +52,7 @@ pub struct SealFile {
     pub outputs: Vec<SealGroup>,
     /// What its FMU's description says for simple importers.
     pub fmu: FmuOptions,
-    /// How the file of pressures was read.
+    /// How the files were read.
     pub notes: Vec<ReadingNote>,
     /// The values that it was read from.
     pub values: Arc<FileValues>,

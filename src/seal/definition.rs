@@ -130,10 +130,11 @@ impl Seal {
         Self::new(SealFile::parse_with(text, path, formats, settings)?, path)
     }
 
-    fn new(file: SealFile, path: &Path) -> Result<Self, SealError> {
+    fn new(mut file: SealFile, path: &Path) -> Result<Self, SealError> {
         let table_path = path.parent().unwrap_or(Path::new("")).join(&file.table);
-        let table = FrictionTable::load(&table_path)?;
-        check_table(&table, &table_path)?;
+        let (table, notes) = FrictionTable::read(&table_path, file.values.formats(), &file.table_columns)?;
+        check_table(&table)?;
+        file.notes.extend(notes.into_iter().map(|note| note.of(&file.table)));
         Ok(Self {
             temperature: temperature(&file, &table)?,
             lip: Arc::new(LipPressures::new(&file.sets, file.cells)),
@@ -158,8 +159,9 @@ impl Seal {
 
     /// What it is, in a sentence.
     pub fn description(&self) -> String {
-        let (cells, table) = (self.file.cells, self.table.scene());
-        format!("Lip with a film of {cells} cells over its width, its contact swept of {table}")
+        let (cells, origin) = (self.file.cells, self.table.origin());
+        let film = if self.table.is_measured() { "without" } else { "with" };
+        format!("Lip {film} a film, of {cells} cells over its width, its contact {origin}")
     }
 
     /// What its file says.
@@ -172,7 +174,7 @@ impl Seal {
         &self.table
     }
 
-    /// How the file of pressures was read.
+    /// How the files were read.
     pub fn notes(&self) -> &[ReadingNote] {
         &self.file.notes
     }
@@ -338,13 +340,17 @@ impl Seal {
         self.file.files()
     }
 
-    /// What an FMU carries of one of the [`files`](Self::files): the pressures in their canonical form, the table as it is.
+    /// What an FMU carries of one of the [`files`](Self::files): pressures and measured friction in their canonical form, the
+    /// table of a sweep as it is.
     ///
     /// # Errors
     /// Where it cannot be read.
     pub fn carried(&self, folder: &Path, file: &Path) -> std::io::Result<Vec<u8>> {
         if file != self.file.pressure {
-            return read_file(&folder.join(file));
+            return match self.table.canonical() {
+                Some(text) => Ok(text.into_bytes()),
+                None => read_file(&folder.join(file)),
+            };
         }
         let mut columns = [const { Vec::new() }; 3];
         for set in &self.file.sets {
@@ -364,16 +370,21 @@ impl Seal {
     }
 }
 
-/// A film needs gaps, under pressures.
-fn check_table(table: &FrictionTable, path: &Path) -> Result<(), TableError> {
+/// A film needs gaps, under pressures; friction that was measured is without one.
+fn check_table(table: &FrictionTable) -> Result<(), TableError> {
+    if table.is_measured() {
+        return Ok(());
+    }
     let problem = if !matches!(table.load, Load::Pressure { .. }) {
         "a table of forces; a seal needs one of pressures, asperity sweep --pressures"
     } else if !table.has(Quantity::LeakGap) || !table.has(Quantity::DragGap) {
         "no columns leak_gap and drag_gap, which a film needs: sweep the scene again with --gaps"
+    } else if table.needs_backing() {
+        "has points in full contact, where no film is between: leave their pressures out"
     } else {
         return Ok(());
     };
-    Err(TableError { file: path.to_owned(), line: None, problem: problem.to_owned() })
+    Err(table.header.error(problem))
 }
 
 /// The temperature at the start: given, or the middle one of the table's.

@@ -164,6 +164,10 @@ impl Film {
 
     /// Finds the flows at these contents (m) and the speed V (m/s), and how they change with both.
     pub(super) fn evaluate(&mut self, law: &GapLaw, contents: &[f64], speed: f64, ends: &Ends) {
+        // Where there is no gap nothing flows: cells and flows are the 0 that they were made with.
+        if law.is_closed() {
+            return;
+        }
         for (i, &content) in contents.iter().enumerate() {
             self.cells[i] = self.cell(law, i, content);
         }

@@ -35,6 +35,8 @@ pub(super) struct GapLaw {
     rows: [Vec<f64>; 5],
     /// The least pressure of the table, Pa.
     least_pressure: f64,
+    /// Whether contacts bear all and leave no gap: friction that was measured, whatever was between the surfaces.
+    is_closed: bool,
 }
 
 /// The columns of [`GapLaw::rows`].
@@ -56,7 +58,8 @@ impl GapLaw {
         let at_speed = LawAtSpeed::new(&law, speed);
         let count = table.grid.loads.len();
         let (gaps, rows, least_pressure) = (vec![0.0; count], [const { Vec::new() }; 5], table.grid.loads[0]);
-        let mut new = Self { law, at_speed, temperature, speed, gaps, rows, least_pressure };
+        let is_closed = table.is_measured();
+        let mut new = Self { law, at_speed, temperature, speed, gaps, rows, least_pressure, is_closed };
         new.rows.iter_mut().for_each(|row| row.resize(count, 0.0));
         new.fill();
         new
@@ -141,8 +144,16 @@ impl GapLaw {
         (i, (log - logs[i]) / (logs[i + 1] - logs[i]))
     }
 
+    /// Whether contacts bear all and leave no gap, so that nothing flows.
+    pub(super) fn is_closed(&self) -> bool {
+        self.is_closed
+    }
+
     /// The mean gap (m) at which contacts bear a pressure (Pa): 0 at the least.
     pub(super) fn gap_at(&self, pressure: f64) -> f64 {
+        if self.is_closed {
+            return 0.0;
+        }
         let (i, share) = self.place(pressure.max(LEAST_SHARE * self.least_pressure).ln());
         (self.gaps[i] + share * (self.gaps[i + 1] - self.gaps[i])).max(0.0)
     }

@@ -203,7 +203,7 @@ impl SealRun {
         let mut run = Self::at(seal, totals);
         run.check(sealed_pressure, w, temperature, false)?;
         run.set_conditions();
-        match seal.file.start {
+        match seal.file.start.filter(|_| !run.law.is_closed()) {
             Some(content) => run.state.contents.fill(content),
             None => run.rest()?,
         }

@@ -40,6 +40,12 @@ impl Header {
         Self::default().with_whole(kind, version)
     }
 
+    /// That of a table in the file at `path`.
+    #[must_use]
+    pub fn of_file(self, path: &Path) -> Self {
+        Self { file: path.to_owned(), ..self }
+    }
+
     /// Refuses a table of another kind or version.
     ///
     /// # Errors

@@ -208,7 +208,12 @@ impl Table {
 
     /// Adds a row, a cell for each column.
     pub fn push(&mut self, cells: impl IntoIterator<Item = Cell>) {
-        self.rows.push(Row { line: 0, cells: cells.into_iter().collect() });
+        self.push_read(0, cells);
+    }
+
+    /// Adds a row that was read in a line of the file, from 1.
+    pub fn push_read(&mut self, line: usize, cells: impl IntoIterator<Item = Cell>) {
+        self.rows.push(Row { line, cells: cells.into_iter().collect() });
     }
 
     /// The columns.

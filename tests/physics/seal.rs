@@ -190,3 +190,39 @@ fn fluid_is_kept_and_states_go_on_as_they_were() {
     assert_eq!(again.save(), run.save());
     assert_eq!((again.force(), again.leak_rate()), (run.force(), run.leak_rate()));
 }
+
+/// With measured friction contacts bear all, and nothing flows: ∫ μ(V, p_0) p_0 against the motion, on a rigid lip and on one
+/// that has slid a long way on its spring.
+#[test]
+fn a_lip_of_measured_friction_is_without_a_film() {
+    let folder = scratch("seal-measured");
+    let table = "speed [m/s],pressure [Pa],friction [1]\n0.01,1e5,0.5\n0.01,1e6,0.3\n1,1e5,0.7\n1,1e6,0.4\n";
+    fs::write(folder.join("tester.csv"), table).unwrap();
+    // Half of the lip under 1e5 Pa, half under 1e6 Pa.
+    let lip = "0,0,1e5\n0,1e-4,1e5\n0,1.000001e-4,1e6\n0,2e-4,1e6\n";
+    fs::write(folder.join("lip.csv"), format!("sealed_pressure [Pa],x [m],pressure [Pa]\n{lip}")).unwrap();
+    let (length, area) = (0.1, 1e-5);
+    for (keys, ways) in [("", 1), (", stiffness = 2e5", 4)] {
+        let text = format!(
+            "name = 's'\ntable = {{ path = 'tester.csv' }}\n\
+             seal = {{ pressure = 'lip.csv', length = {length}, rough = 'moving', cells = 64{keys} }}\n\
+             fluid = {{ viscosity = 0.05, start = 1e-6, air = 'flooded' }}\n"
+        );
+        let seal = Seal::parse_with(&text, &folder.join("s.toml"), &CanonicalFiles, &[]).unwrap();
+        assert!(seal.description().contains("without a film") && seal.description().contains("measured"));
+        for (speed, [low, high]) in [(0.01, [0.5, 0.3]), (1.0, [0.7, 0.4]), (0.1, [0.6, 0.35])] {
+            for direction in [1.0, -1.0] {
+                let mut run = SealRun::new(&seal, &SealStart::default()).unwrap();
+                let motion = SealMotion { duration: 2e-5 / speed, u_rate: direction * speed, ..SealMotion::default() };
+                (0..ways).for_each(|_| run.advance(&motion).unwrap());
+                let expected = -direction * area * (low * 1e5 + high * 1e6);
+                // The spring is at its limit to the tolerance of a step.
+                assert!((run.force() / expected - 1.0).abs() < 1e-6, "{keys} {speed}: {} {expected}", run.force());
+                assert!(
+                    run.leak() == 0.0 && run.drawn() == 0.0 && run.contents().iter().all(|content| *content == 0.0)
+                );
+                assert!((run.load() / (area * 1.1e6) - 1.0).abs() < 1e-9, "{}", run.load());
+            }
+        }
+    }
+}

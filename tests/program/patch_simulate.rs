@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::common::{Table, asperity, root, run, scratch};
+use crate::common::{Table, asperity, assert_names, ended, library, root, run, scratch};
 
 /// A motion that starts beyond the table is warned of, also where there is no step after the start.
 #[test]
@@ -60,4 +60,44 @@ fn units_stand_behind_the_names_of_the_columns() {
     assert!(header.starts_with(start) && header.contains(",contact.count,"), "{header}");
     let names: Vec<&str> = header.split(',').map(|name| name.split(" [").next().unwrap()).collect();
     assert_eq!(names.join(","), header_with(&[]));
+}
+
+/// Friction from a tester, as a spreadsheet has it: read in its units, packed in SI units, "measured" wherever it is told of.
+/// Behind its backing the face bears k_n Δ; alone it is refused, with what helps.
+#[test]
+fn measured_friction_serves_behind_a_backing() {
+    let folder = scratch("patch-simulate-measured");
+    let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
+    write("tester.csv", "v2 [mm/s];p [bar];Reibwert\n1,0;0,5;0,8\n1,0;2;0,7\n100;0,5;1,1\n100;2;0,9\n");
+    let patch = |backing: &str| {
+        format!(
+            "name = 'pad'\n[table]\npath = 'tester.csv'\ncolumns = {{ speed = 'v2' }}\n[patch]\nshape = 'flat'\n\
+             length = 0.02\nwidth = 0.01\nnx = 2\nny = 1\n{backing}\n"
+        )
+    };
+    write("pad.toml", &patch("backing = { normal = 1e9, shear = 4e8 }"));
+    write("bare.toml", &patch(""));
+    write("motion.csv", "time,x,y,z,roll,pitch,yaw\n0,0,0,0,0,0,0\n1,0,0,-2e-4,0,0,0\n2,0.1,0,-2e-4,0,0,0\n");
+    let asked = |words: &[&str]| run(asperity().current_dir(&folder).args(words));
+    assert_names(
+        asked(&["describe", "--patch", "pad.toml"]),
+        "points measured (tester.csv) | 1e9 Pa/m along the normal",
+    );
+    asked(&["simulate", "--patch", "pad.toml", "--motion", "motion.csv", "-o", "out.csv"]);
+    let table = Table::read(&folder.join("out.csv"));
+    let [x, z] = ["force.x", "force.z"].map(|name| table.column(name)[2]);
+    // 2e-4 m² under 1e9 Pa/m times 2e-4 m, rubbing at 100 mm/s with 0.9 under 2 bar.
+    assert!((z / 40.0 - 1.0).abs() < 1e-9 && (x / -36.0 - 1.0).abs() < 1e-9, "{x} {z}");
+    let library = library().to_str().unwrap();
+    let told = asked(&["pack", "--patch", "pad.toml", "-o", "pad.fmu", "--library", library]);
+    assert_names(&told, "Measured | tester.csv");
+    let mut archive = zip::ZipArchive::new(fs::File::open(folder.join("pad.fmu")).unwrap()).unwrap();
+    let mut read = |name: &str| std::io::read_to_string(archive.by_name(name).unwrap()).unwrap();
+    assert!(read("resources/tester.csv").starts_with("speed [m/s],pressure [Pa],friction [1]\n0.001,50000.0,0.8\n"));
+    assert_names(read("documentation/index.html"), "Measured | tester.csv");
+    for refused in [&["describe", "--patch", "bare.toml"][..], &["pack", "--patch", "bare.toml", "-o", "bare.fmu"]] {
+        let (status, _, told) = ended(asperity().current_dir(&folder).args(refused));
+        assert!(status == 1, "{told}");
+        assert_names(told, "tester.csv | measured | full contact | [patch] backing");
+    }
 }

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
 
+use asperity::element::MEASURED_TABLE;
 use asperity::outputs::{OutputEntry, catalogue};
 use asperity::patch::{self, PatchKind, PatchOutputEntry};
 use asperity::scene::{
@@ -87,12 +88,13 @@ else a file has is left out, which is told. A column with another name is said t
 ";
 
 /// Kinds of files, and what their columns may hold.
-const FILES: [(&str, &[Role]); 13] = [
+const FILES: [(&str, &[Role]); 14] = [
     ("A profile: `surface.path`, `asperity surface`", &asperity_formats::profile::ROLES),
     ("A spectrum: `surface.fine.spectrum`", asperity_formats::SPECTRUM.roles),
     ("A softening: `surface.fine.softening`", SOFTENING.roles),
     ("A Prony series: `material.prony`", asperity_formats::SERIES.roles),
     ("A motion: `excitation.file`", MOTION.roles),
+    ("Measured friction of a patch or a lip: `table.path`", MEASURED_TABLE.roles),
     ("Points of a patch: `patch.path`", POINTS.roles),
     ("A motion of a patch: `asperity simulate --motion`", PATCH_MOTION.roles),
     ("The pressure on a lip: `seal.pressure`", LIP_PRESSURES.roles),

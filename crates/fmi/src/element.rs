@@ -70,7 +70,7 @@ impl FmuModel for PointContact {
     }
 
     fn default_experiment(&self) -> Option<Experiment> {
-        self.table().stick_time().map(|step| Experiment { stop: None, tolerance: None, step })
+        self.table().stick_time(None).map(|step| Experiment { stop: None, tolerance: None, step })
     }
 
     fn start(&self, inputs: &Inputs, time: f64) -> Result<Box<dyn FmuRun>, Error> {

@@ -127,7 +127,7 @@ impl FmuModel for Patch {
     }
 
     fn default_experiment(&self) -> Option<Experiment> {
-        self.table().stick_time().map(|step| Experiment { stop: None, tolerance: None, step })
+        self.stick_time().map(|step| Experiment { stop: None, tolerance: None, step })
     }
 
     /// At the pose given, moving at the derivatives given, else at rest.

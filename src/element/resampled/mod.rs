@@ -135,21 +135,21 @@ impl ResampledLaw {
     ) -> Self {
         let mut law = Law::new(table, temperature);
         let curve = LawAtSpeed::new(&law, 0.0);
-        let shift = (table.load.area() / area).ln();
+        let log_pressures = log_pressures(table, area);
+        let backing = backing.map(|backing| SeriesBacking::new(backing, &log_pressures));
         let width = if has_planes { MAX_WIDTH_OF_PLANES } else { MAX_WIDTH };
         let (speeds, pressures) = (SpeedGrid::new(law.log_speeds().to_vec(), width), table.grid.loads.len());
         let cells_of_plane = speeds.cells();
-        let planes = if has_planes { Planes::new(table, &law, cells_of_plane) } else { None };
+        let planes = if has_planes { Planes::new(table, &law, cells_of_plane, indentations(&backing)) } else { None };
         let cells = cells_of_plane * planes.map_or(1, |planes| planes.count);
         let earliest_touch = match planes {
             Some(planes) => planes.earliest_touch(&mut law),
             None => law.earliest_touch(),
         };
-        let log_pressures: Vec<f64> = curve.points()[0].iter().map(|y| y + shift).collect();
         Self {
             temperature,
             area,
-            backing: backing.map(|backing| SeriesBacking::new(backing, &log_pressures)),
+            backing,
             log_pressures,
             speeds,
             interval_starts: vec![IntervalStarts::NONE; cells * starts_of(pressures)],
@@ -164,12 +164,15 @@ impl ResampledLaw {
         }
     }
 
-    /// Memory in bytes that the law of `table` takes, of elements that are warmer or not.
-    pub fn memory(table: &FrictionTable, is_warm: bool) -> usize {
+    /// Memory in bytes that the law of `table` takes, of a layer that stands for `area` (m²), in series with a backing, of
+    /// elements that are warmer or not.
+    pub fn memory(table: &FrictionTable, area: f64, backing: Option<Backing>, is_warm: bool) -> usize {
         let speeds = table.grid.speeds.iter().map(|speed| speed.ln()).collect();
         let width = if is_warm { MAX_WIDTH_OF_PLANES } else { MAX_WIDTH };
         let cells = SpeedGrid::new(speeds, width).cells();
-        let planes = if is_warm { Planes::new(table, &Law::new(table, 0.0), cells) } else { None };
+        let backing = backing.map(|backing| SeriesBacking::new(backing, &log_pressures(table, area)));
+        let law = is_warm.then(|| Law::new(table, 0.0));
+        let planes = law.and_then(|law| Planes::new(table, &law, cells, indentations(&backing)));
         let cells = cells * planes.map_or(1, |planes| planes.count);
         let pressures = table.grid.loads.len();
         let at_pressure = size_of::<LawCoefficients>() + size_of::<ShareCoefficients>();
@@ -502,6 +505,17 @@ impl ResampledLaw {
 
 /// The polynomials that are 1 at one of 0, 1/2 and 1, and 0 at the others, by power.
 const LAGRANGE: [[f64; SAMPLES]; SAMPLES] = [[1.0, -3.0, 2.0], [0.0, 4.0, -4.0], [0.0, -1.0, 2.0]];
+
+/// ln p at the pressures of a table, p in Pa, of a layer that stands for `area` (m²).
+fn log_pressures(table: &FrictionTable, area: f64) -> Vec<f64> {
+    let shift = (table.load.area() / area).ln();
+    table.grid.loads.iter().map(|load| load.ln() + shift).collect()
+}
+
+/// p/k_n at the pressures of a table, m; none without a backing.
+fn indentations(backing: &Option<SeriesBacking>) -> &[f64] {
+    backing.as_ref().map_or(&[], |backing| &backing.indentations)
+}
 
 /// How many [`IntervalStarts`] hold those of all pressures but the first.
 const fn starts_of(pressures: usize) -> usize {

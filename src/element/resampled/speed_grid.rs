@@ -159,11 +159,11 @@ pub(super) struct Planes {
 }
 
 impl Planes {
-    /// Those of a table of several temperatures, with so many cells each.
-    pub(super) fn new(table: &FrictionTable, law: &Law, cells: usize) -> Option<Self> {
+    /// Those of a table of several temperatures, with so many cells each, and p/k_n of a backing (m) at its pressures.
+    pub(super) fn new(table: &FrictionTable, law: &Law, cells: usize, indentations: &[f64]) -> Option<Self> {
         let [first, .., last] = *table.grid.temperatures.as_slice() else { return None };
         // A straight line over a parabola is off by its second derivative times the distance² over 8.
-        let distance = (8.0 * PLANE_TOLERANCE / law.bend_over_temperature()).sqrt().min(MAX_DISTANCE);
+        let distance = (8.0 * PLANE_TOLERANCE / law.bend_over_temperature(indentations)).sqrt().min(MAX_DISTANCE);
         let steps = ((last - first) / distance).ceil().clamp(1.0, MAX_PLANES - 1.0);
         Some(Self { first, distance: (last - first) / steps, count: steps as usize + 1, cells })
     }

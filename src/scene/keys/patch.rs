@@ -16,11 +16,18 @@ pub(in crate::scene) const PATCH_ROOT: &[Key] = &[
 ];
 
 const TABLE: &[Key] = &[
-    key("path", Allowed::Text(PATH), "Table of a sweep").required(),
+    key("path", Allowed::Text(PATH), "Table of a sweep, or of measured friction").required(),
+    TABLE_COLUMNS,
     number("temperature", POSITIVE, Unit::Kelvin, "Temperature").follows("the middle one of the table's"),
     TABLE_EXTRAPOLATION.default("\"hold\""),
     number("nominal_area", POSITIVE, Unit::SquareMeter, "Area that one layer stands for"),
 ];
+
+pub(super) const TABLE_COLUMNS: Key = key(
+    "columns",
+    Allowed::Text(ROLES),
+    "Columns of a table of measured friction by what they hold, where their names do not say it",
+);
 
 /// A parameter of an element, too.
 pub(in crate::scene) const TABLE_EXTRAPOLATION: Key = word::<TableExtrapolation>(

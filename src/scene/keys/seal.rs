@@ -1,7 +1,7 @@
 //! The keys of a seal file.
 
 use super::definition::{Allowed, Key, PATH, ROLES, key, number, table, whole, word};
-use super::patch::{EXTRAPOLATION, TABLE_EXTRAPOLATION};
+use super::patch::{EXTRAPOLATION, TABLE_COLUMNS, TABLE_EXTRAPOLATION};
 use super::scene_file::{DEPENDENCIES, INTEGERS, INTERVAL};
 use crate::scene::Unit;
 use crate::scene::seal_file::{Air, RoughSide, SealGroup};
@@ -18,7 +18,8 @@ pub(in crate::scene) const SEAL_ROOT: &[Key] = &[
 ];
 
 const TABLE: &[Key] = &[
-    key("path", Allowed::Text(PATH), "Table of a sweep with gaps").required(),
+    key("path", Allowed::Text(PATH), "Table of a sweep with gaps, or of measured friction").required(),
+    TABLE_COLUMNS,
     number("temperature", POSITIVE, Unit::Kelvin, "Temperature").follows("the middle one of the table's"),
     TABLE_EXTRAPOLATION.default("\"hold\""),
 ];

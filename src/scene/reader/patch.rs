@@ -66,6 +66,7 @@ impl PatchFile {
         let temperature = table.entry("temperature");
         let nominal_area = table.entry("nominal_area");
         let path = surface::read_path(&table.required("path")?)?;
+        let table_columns = surface::read_roles(&mut table)?;
         let table_extrapolation = table.optional_choice("extrapolation")?.unwrap_or(TableExtrapolation::Hold);
         table.finish()?;
         let face = read_face(&root.required("patch")?)?;
@@ -77,6 +78,7 @@ impl PatchFile {
         Ok(Self {
             name,
             table: path,
+            table_columns,
             temperature: temperature.map(|entry| entry.number()).transpose()?,
             table_extrapolation,
             nominal_area: nominal_area.map(|entry| entry.number()).transpose()?,

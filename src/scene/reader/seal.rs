@@ -53,9 +53,10 @@ impl SealFile {
         values.set_own(settings, "seal file")?;
         let mut root = TableReader::root(Source { values: &values, form: Form::Direct, keys: SEAL_ROOT })?;
         let name = read_name(&root.required("name")?)?;
-        let (table, temperature, table_extrapolation) = root.required("table")?.table(|table| {
+        let ((table, table_columns), temperature, table_extrapolation) = root.required("table")?.table(|table| {
             let extrapolation = table.optional_choice("extrapolation")?.unwrap_or(TableExtrapolation::Hold);
-            Ok((surface::read_path(&table.required("path")?)?, table.optional_number("temperature")?, extrapolation))
+            let file = (surface::read_path(&table.required("path")?)?, surface::read_roles(table)?);
+            Ok((file, table.optional_number("temperature")?, extrapolation))
         })?;
         let mut notes = Vec::new();
         let mut seal = root.required("seal")?.open()?;
@@ -80,6 +81,7 @@ impl SealFile {
         Ok(Self {
             name,
             table,
+            table_columns,
             temperature,
             table_extrapolation,
             pressure,

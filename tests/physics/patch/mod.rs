@@ -3,6 +3,7 @@
 mod backing;
 mod exact;
 mod extreme;
+mod full_contact;
 mod heat;
 mod invariants;
 mod reference;

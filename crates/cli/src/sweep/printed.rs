@@ -44,7 +44,9 @@ pub(super) fn lines(table: &SweepTable) -> Vec<LabelledLine> {
         texts.push(format!("{NOT_STEADY} not steady"));
     }
     if has(|status| *status == PointStatus::FullContact) {
-        texts.push(format!("{FULL_CONTACT} full contact: friction and area, but no stiffness, so no element"));
+        texts.push(format!(
+            "{FULL_CONTACT} full contact: friction and area, but no stiffness; serves a patch with a backing"
+        ));
     }
     labelled("Friction", texts)
 }

@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::path::Path;
 
-use asperity::element::{Load, OperatingPoint, some_of};
+use asperity::element::{FRICTION_COEFFICIENT, Load, OperatingPoint, PRESSURE, SPEED, TEMPERATURE, some_of};
 use asperity::scene::FileFormats as _;
 use asperity::tables::{
     ABOVE_ZERO, ANY, ContentError, Dimension, FileKind, GivenColumns, NOT_NEGATIVE, NumberRange, Others, POSITIVE,
@@ -51,21 +51,8 @@ pub struct Measurements {
 }
 
 const ROLES: [Role; 8] = [
-    Role::new(
-        "speed",
-        "v, velocity, sliding speed, sliding velocity, slip speed, slip velocity, slide speed, mean speed, relative speed, \
-         relative velocity, geschwindigkeit, gleitgeschwindigkeit",
-        Dimension::Speed,
-    )
-    .within(ABOVE_ZERO),
-    Role::new(
-        "pressure",
-        "p, nominal pressure, contact pressure, mean pressure, average pressure, normal pressure, nominal contact \
-         pressure, mean contact pressure, druck, flächenpressung",
-        Dimension::Pressure,
-    )
-    .within(ABOVE_ZERO)
-    .optional(),
+    SPEED,
+    PRESSURE.optional(),
     Role::new(
         "normal_force",
         "force, load, normal load, F_N, F_n, F_z, Fz, Fn, vertical force, vertical load, mean normal force, measured normal \
@@ -74,15 +61,7 @@ const ROLES: [Role; 8] = [
     )
     .within(ABOVE_ZERO)
     .optional(),
-    Role::new(
-        "friction",
-        "mu, μ, cof, mu_k, friction coefficient, coefficient of friction, coefficient, mean friction, mean friction \
-         coefficient, measured friction, friction coefficient measured, kinetic friction coefficient, dynamic friction \
-         coefficient, sliding friction coefficient, reibwert, reibungszahl",
-        Dimension::Number,
-    )
-    .within(ANY)
-    .optional(),
+    FRICTION_COEFFICIENT.within(ANY).optional(),
     Role::new(
         "tangential_force",
         "F_T, F_t, F_x, F_r, F_f, friction, friction force, lateral force, traction, traction force, tangential, mean \
@@ -91,15 +70,7 @@ const ROLES: [Role; 8] = [
     )
     .within(ANY)
     .optional(),
-    Role::new(
-        "temperature",
-        "T, t, temp, sample temperature, rubber temperature, surface temperature, track temperature, ambient temperature, \
-         mean temperature, measured temperature, temperatur",
-        Dimension::Temperature,
-    )
-    .within(ABOVE_ZERO)
-    .with_unit()
-    .optional(),
+    TEMPERATURE,
     Role::new(
         "sigma",
         "σ, std, std dev, sd, stdev, stddev, deviation, standard deviation, standard deviation of friction, standard \

@@ -37,14 +37,17 @@ impl PatchCheck {
     /// The check of a patch by the scene that its table was swept of, with `count` elements at a speed or fewer.
     ///
     /// # Errors
-    /// Where the table was swept of another scene, or no element stands where its table has values.
+    /// Where the table was swept of another scene, no element stands where its table has values, or contacts need their
+    /// backing.
     pub fn new(patch: &Patch, scene: Scene, count: usize) -> Result<Self, Error> {
+        // Layers stand on what does not give way.
+        patch.table().check_alone().context("`check`")?;
         let scene = swept_scene(patch.table(), scene)?;
         let temperature = point(patch, 0.0).temperature;
         let swept = Swept::of_table(&scene, patch.table(), temperature.as_slice()).context("`check`")?;
         // At rest, and at the middles of smaller elements, pressures are a little beyond those of the table.
         let hold = Value::Text(TableExtrapolation::Hold.word().into());
-        // Layers stand on what does not give way, and at one temperature.
+        // And at one temperature.
         let mut patch = patch.contacts_alone();
         patch.set_parameter(Parameter::TABLE_EXTRAPOLATION, hold.clone())?;
         let speeds = speeds(&patch.table().grid);

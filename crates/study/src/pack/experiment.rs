@@ -8,7 +8,7 @@ use std::path::Path;
 
 use asperity::element::{FrictionTable, Node, PointContact, Quantity};
 use asperity::patch::Patch;
-use asperity::scene::{Input, OutputGroup, Phase, Scene, Value};
+use asperity::scene::{Backing, Input, OutputGroup, Phase, Scene, Value};
 use asperity::seal::Seal;
 use asperity::simulation::SimulationError;
 use asperity_fmi::{CommunicationStep, Definition, Inputs, Kind, Role, VariableRef, VariableTable};
@@ -316,13 +316,13 @@ impl InputMotion {
     }
 
     fn of_element(contact: &PointContact, inputs: &[VariableRef]) -> Option<Self> {
-        let press = Press::new(contact.table())?;
+        let press = Press::new(contact.table(), None)?;
         let [u, w] = [Input::U, Input::W].map(Input::name);
         Some(press.motion(inputs, u, (w, press.depth)))
     }
 
     fn of_patch(patch: &Patch, inputs: &[VariableRef]) -> Option<Self> {
-        let press = Press::new(patch.table())?;
+        let press = Press::new(patch.table(), patch.backing())?;
         Some(press.motion(inputs, "x", ("z", press.depth)))
     }
 }
@@ -367,7 +367,8 @@ const PRESS: (u32, f64) = (40, 20.0);
 const SLIDE: (u32, f64) = (60, 10.0);
 
 impl Press {
-    fn new(table: &FrictionTable) -> Option<Self> {
+    /// Of contacts of `table` alone, or with a backing, which gives way where they are in full contact.
+    fn new(table: &FrictionTable, backing: Option<Backing>) -> Option<Self> {
         let grid = &table.grid;
         let middle = |axis: &[f64]| axis.len() / 2;
         let node = Node {
@@ -376,9 +377,11 @@ impl Press {
             speed: middle(&grid.speeds),
         };
         let clear = PointContact::new(table.clone()).clear_displacement();
-        let depth = table.value(Quantity::Separation, node) - table.rest_separation - clear;
+        let behind = backing.filter(|_| table.is_full_contact(node));
+        let behind = behind.map_or(0.0, |backing| grid.loads[node.load] / backing.normal);
+        let depth = table.value(Quantity::Separation, node) - table.rest_separation - clear - behind;
         let speed = *grid.speeds.get(node.speed)?;
-        let stick_time = table.stick_time_at(node)?;
+        let stick_time = table.stick_time_at(node, backing)?;
         (depth < 0.0).then_some(Self { depth, speed, stick_time })
     }
 

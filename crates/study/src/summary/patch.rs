@@ -25,7 +25,7 @@ pub fn patch_rows(patch: &Patch) -> Vec<LabelledLine> {
     let variables = patch.variables().len();
     let mut rows = vec![("Patch", patch.description())];
     rows.push(("Tread", if patch.has_tread() { "runs through the contact" } else { "none" }.to_owned()));
-    rows.push(("Table", format!("{}, {} points", patch.table().scene(), patch.table().grid.count())));
+    rows.push(("Table", format!("{}, {} points", named(patch.table()), patch.table().grid.count())));
     if patch.has_temperatures() {
         rows.push(("Temperature", format!("an input, {} K at the start", patch.temperature())));
     }
@@ -69,10 +69,11 @@ fn low_end(patch: &Patch) -> String {
     let least = patch.table().grid.loads.first().copied().unwrap_or_default();
     match share_below_table(patch) {
         Ok(share) => format!(
-            "{} % of the load is borne below {least} {}, where the law is a parabola, when the face stands level and its \
-             largest pressure is the table's",
+            "{} % of the load is borne below {least} {}, where {}, when the face stands level and its largest pressure is the \
+             table's",
             rounded(100.0 * share, 2),
-            load.unit()
+            load.unit(),
+            if patch.table().is_measured() { "friction is that at it" } else { "the law is a parabola" }
         ),
         Err(error) => error.to_string(),
     }
@@ -111,14 +112,19 @@ fn at_rest(patch: &Patch, z: f64) -> Result<PatchRun, MotionError> {
 /// The summary of an element: its table, and the errors where points of it are left out and interpolated.
 pub fn table_rows(table: &FrictionTable) -> Vec<LabelledLine> {
     let mut rows = vec![
-        ("Swept", table.scene().to_owned()),
+        (if table.is_measured() { "Measured" } else { "Swept" }, table.scene().to_owned()),
         ("Speeds", range(&table.grid.speeds, "m/s")),
         ("Loads", range(&table.grid.loads, table.load.unit())),
     ];
     if !table.grid.temperatures.is_empty() {
         rows.push(("Temperature", range(&table.grid.temperatures, "K")));
     }
-    if let Load::Pressure { area } = table.load {
+    if let Some((full, all)) = full_contact(table) {
+        rows.push(("Full contact", format!("at {full} of {all} points, where the backing alone gives way")));
+    }
+    if table.is_measured() {
+        rows.push(("Contacts", "give way in their backing alone: how they do was not measured".to_owned()));
+    } else if let Load::Pressure { area } = table.load {
         rows.push(("Area", format!("{area:e} m²")));
     }
     let stated = [
@@ -129,7 +135,9 @@ pub fn table_rows(table: &FrictionTable) -> Vec<LabelledLine> {
         ("Damping", "damping"),
     ];
     rows.extend(stated.into_iter().filter_map(|(label, key)| Some((label, table.header.text_of(key)?.to_owned()))));
-    rows.push(("w = 0", format!("a separation of {:e} m", table.rest_separation)));
+    if !table.is_measured() {
+        rows.push(("w = 0", format!("a separation of {:e} m", table.rest_separation)));
+    }
     let mut errors: Vec<_> = left_out(table).iter().filter_map(|axis| errors(axis, table.load)).collect();
     if errors.is_empty() {
         errors.push("no axis has a point between two others".to_owned());
@@ -144,6 +152,18 @@ fn range(values: &[f64], unit: &str) -> String {
         [one] => format!("{one} {unit}"),
         [first, .., last] => format!("{} from {first} to {last} {unit}", values.len()),
     }
+}
+
+/// A table by its scene, or by its file where it was measured.
+pub(super) fn named(table: &FrictionTable) -> String {
+    if table.is_measured() { table.origin() } else { table.scene().to_owned() }
+}
+
+/// How many points of a sweep's table are in full contact, where some are, and how many it has.
+fn full_contact(table: &FrictionTable) -> Option<(usize, usize)> {
+    let all = table.grid.count();
+    let full = table.nodes().filter(|node| table.is_full_contact(*node)).count();
+    (full > 0 && !table.is_measured()).then_some((full, all))
 }
 
 /// The errors at the points of an axis, each left out in turn.

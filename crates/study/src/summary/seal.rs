@@ -3,6 +3,7 @@
 use asperity::scene::{Air, RoughSide, SealFile};
 use asperity::seal::Seal;
 
+use super::patch::named;
 use super::words::LabelledLine;
 use crate::decimals::short;
 
@@ -19,18 +20,22 @@ pub fn seal_rows(seal: &Seal) -> Vec<LabelledLine> {
         ("Seal", seal.description()),
         ("Lip", lip(seal)),
         ("Rough side", rough_side(file.rough).to_owned()),
-        ("Table", format!("{}, {} points", seal.table().scene(), seal.table().grid.count())),
-        ("Fluid", fluid(seal)),
-        ("Air side", air(file).to_owned()),
-        ("Sealed side", format!("flooded to {:e} m", file.supply)),
+        ("Table", format!("{}, {} points", named(seal.table()), seal.table().grid.count())),
     ];
-    rows.push((
-        "Film",
-        match file.start {
+    if seal.table().is_measured() {
+        rows.push(("Film", "none: contacts bear all, with the friction measured; [fluid] has no effect".to_owned()));
+    } else {
+        let film = match file.start {
             Some(content) => format!("{content:e} m at the start"),
             None => "at the start what is there after a long rest".to_owned(),
-        },
-    ));
+        };
+        rows.extend([
+            ("Fluid", fluid(seal)),
+            ("Air side", air(file).to_owned()),
+            ("Sealed side", format!("flooded to {:e} m", file.supply)),
+            ("Film", film),
+        ]);
+    }
     if seal.has_temperatures() {
         rows.push(("Temperature", format!("an input, {} K at the start", seal.temperature())));
     }
