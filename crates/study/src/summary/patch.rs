@@ -4,7 +4,7 @@ use asperity::element::{FrictionTable, LeftOut, Load, OperatingPoint, left_out};
 use asperity::patch::{MotionError, Patch, PatchRun, PatchStart, Pose};
 use asperity::scene::{Backing, FaceHeat, Parameter, TableExtrapolation, Value};
 
-use super::words::{LabelledLine, labelled};
+use super::words::{DRY, LabelledLine, labelled};
 use crate::decimals::rounded;
 use crate::error::Error;
 
@@ -33,6 +33,7 @@ pub fn patch_rows(patch: &Patch) -> Vec<LabelledLine> {
         rows.push(("Backing", format!("{normal:e} Pa/m along the normal and {shear:e} Pa/m in shear, in series")));
     }
     rows.push(("Damping", damping(patch)));
+    rows.push(("Fluid", DRY.to_owned()));
     if let Some(FaceHeat { conductivity, capacity, density, share }) = patch.heat() {
         let rubber = format!("{conductivity} W/(m K), {capacity} J/(kg K), {density} kg/m³");
         rows.push(("Heat", format!("{share} of what slip loses warms the elements, of {rubber}")));

@@ -15,7 +15,7 @@ use serde::Serialize;
 
 use super::foundation::{foundation, foundation_in_brief, reduction};
 use super::friction::{FineFrictionCurve, MIDDLE, fine, fine_in_brief, friction};
-use super::words::{LEFT_OUT, LabelledLine, each_once, labelled, number, or_left_out, word};
+use super::words::{DRY, LEFT_OUT, LabelledLine, each_once, labelled, number, or_left_out, word};
 use crate::decimals::rounded;
 use crate::picture::{Mark, Picture, Stroke};
 use crate::runner::start;
@@ -90,6 +90,7 @@ pub fn scene_rows(scene: &Scene) -> Vec<LabelledLine> {
     rows.push(("Profile", profile(&scene.surface)));
     rows.extend(friction(scene, true));
     rows.extend(labelled("Fine", fine(scene)));
+    rows.push(("Fluid", DRY.to_owned()));
     rows.extend(labelled("Outputs", OutputGroup::ALL.map(|group| outputs(scene, group))));
     rows.push(("Solver", solver(scene)));
     rows.extend(reduction(scene));
@@ -311,6 +312,7 @@ fn left_out(scene: &Scene) -> String {
     let has_shear = friction.is_some_and(|law| law.shear_strength.is_some() || law.shear_force.is_some());
     let links = LinkKind::ALL.into_iter().filter(|kind| scene.link(*kind).is_none());
     let parts = [
+        (true, "a fluid (the contact is dry)"),
         (scene.layer.roughness.is_empty(), "layer.roughness"),
         (material.is_some_and(|material| material.viscosity.is_none()), "material.viscosity"),
         (material.is_some_and(|material| material.wlf.is_none()), "material.wlf"),

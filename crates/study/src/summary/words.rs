@@ -53,3 +53,6 @@ pub(super) fn each_once(parts: impl IntoIterator<Item = (&'static str, Vec<Strin
     }
     rows
 }
+
+/// What is said of the fluid where there is none.
+pub(super) const DRY: &str = "none: the contact is dry (a lip with a film: --seal)";
