@@ -20,7 +20,7 @@
 //! | `contact` | integrator, math, model, scene | the rules of mode changes and the impact, event location, the end-of-step correction |
 //! | [`outputs`] | integrator, model, scene | the table of the outputs: names, units, values, derivatives, dependencies |
 //! | [`simulation`] | contact, integrator, math, model, outputs, scene | a run: its state, the steps of both methods and their lengths, local regions, the reference run |
-//! | [`element`] | math, model, outputs, scene, simulation, table | a point-contact element: the forces of a layer, looked up in a table of a sweep |
+//! | [`element`] | math, model, outputs, scene, simulation, table, tables | a point-contact element: the forces of a layer, looked up in a table of a sweep |
 //! | [`patch`] | element, math, model, outputs, scene, table, tables | a contact patch: many point-contact elements on a rigid face, in three dimensions |
 //! | [`seal`] | element, math, scene, table, tables | a lip with a film of fluid: what rubs and leaks where a seal runs in oil |
 //!

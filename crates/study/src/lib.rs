@@ -39,7 +39,7 @@
 //! | [`rank`] | calibration, comparison, csv, decimals, error, files, picture, progress, sweep, uncertainty, values | scenes in the order of their friction, and how sure that is |
 //! | [`fit`] | decimals, error, files, picture, values | Prony series and shift factors from measured moduli |
 //! | [`material`] | decimals, error, picture, values | moduli of a scene's compound, or stiffnesses of its links, over frequency |
-//! | [`surface`] | decimals, files, picture, values | numbers, spectra and power laws of a surface; smoothed, split and made periodic |
+//! | [`surface`] | decimals, files, picture, steady, values | numbers, spectra and power laws of a surface; smoothed, split and made periodic |
 //! | [`summary`] | decimals, error, picture, runner, steady | what there is in a scene, a patch, a seal or a table, in lines |
 //! | [`run_figures`] | decimals, implausible, summary | forces and friction of a run, what it cost, and what would make it cheaper |
 //! | [`robustness`] | | a catalogue of perturbations of a scene, and the judge of perturbed runs |

@@ -34,6 +34,7 @@ use super::output::is_stream;
 use super::picture;
 use super::table_file::TableFile;
 use super::terminal::{self, LabelledLine, lines, note, warn};
+use seal::SealSweep;
 
 /// Options of a sweep that --merge does not take.
 const OF_A_SCENE: [&str; 19] = [
@@ -200,8 +201,19 @@ impl Shard {
 
 /// Computes a table or merges several.
 pub(crate) fn sweep(command: &Sweep) -> Result<(), Error> {
+    if let Some(path) = &command.seal {
+        return seal::sweep(&SealSweep {
+            path,
+            set: &command.set,
+            output: command.output.as_ref(),
+            plot: command.plot.as_ref(),
+            force: command.force,
+            speeds: command.options.speeds.as_ref(),
+            temperatures: command.options.temperatures.as_ref(),
+            options: &command.stribeck,
+        });
+    }
     match (&command.scene, &command.output) {
-        _ if command.seal.is_some() => seal::sweep(command),
         (Some(scene), _) => compute(command, scene),
         (_, Some(output)) => merge(command, output),
         // clap requires a scene, or tables and an output.
