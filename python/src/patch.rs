@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use crate::errors::{Raise as _, check_dt, no_output};
 use crate::options::Options;
 use crate::pack::pack;
-use crate::state::{Reduced, read, reduced};
+use crate::state::state_class;
 
 /// A contact patch, read from its file.
 #[pyclass(frozen, module = "asperity._native")]
@@ -73,27 +73,7 @@ impl Patch {
     }
 }
 
-/// All that changes in a run.
-#[pyclass(frozen, module = "asperity._native")]
-#[derive(Debug)]
-pub(crate) struct PatchState(asperity::patch::PatchState);
-
-#[pymethods]
-impl PatchState {
-    #[new]
-    fn new(bytes: &[u8]) -> PyResult<Self> {
-        Ok(Self(read(bytes, "a patch")?))
-    }
-
-    /// For pickle and copy.
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        reduced(slf, &slf.get().0)
-    }
-
-    fn __eq__(&self, other: &Self) -> bool {
-        self.0 == other.0
-    }
-}
+state_class!(PatchState, asperity::patch::PatchState, "a patch");
 
 /// A patch that is moved step by step.
 #[pyclass(frozen, module = "asperity._native")]

@@ -19,7 +19,7 @@ use crate::errors::{Raise as _, check_dt, no_output};
 use crate::found::{FoundColumn, Picture, columns};
 use crate::options::Options;
 use crate::pack::pack;
-use crate::state::{Reduced, read, reduced};
+use crate::state::state_class;
 
 /// A seal, read from its file.
 #[pyclass(frozen, module = "asperity._native")]
@@ -94,27 +94,7 @@ impl Seal {
     }
 }
 
-/// All that changes in a run.
-#[pyclass(frozen, module = "asperity._native")]
-#[derive(Debug)]
-pub(crate) struct SealState(asperity::seal::SealState);
-
-#[pymethods]
-impl SealState {
-    #[new]
-    fn new(bytes: &[u8]) -> PyResult<Self> {
-        Ok(Self(read(bytes, "a seal")?))
-    }
-
-    /// For pickle and copy.
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        reduced(slf, &slf.get().0)
-    }
-
-    fn __eq__(&self, other: &Self) -> bool {
-        self.0 == other.0
-    }
-}
+state_class!(SealState, asperity::seal::SealState, "a seal");
 
 /// A seal whose rod is moved step by step.
 #[pyclass(frozen, module = "asperity._native")]

@@ -13,29 +13,9 @@ use pyo3::prelude::*;
 
 use crate::errors::{Raise as _, check_dt, no_output};
 use crate::scene::Scene;
-use crate::state::{Reduced, read, reduced};
+use crate::state::state_class;
 
-/// All that changes in a simulation.
-#[pyclass(frozen, module = "asperity._native")]
-#[derive(Debug)]
-pub(crate) struct State(SimulationState);
-
-#[pymethods]
-impl State {
-    #[new]
-    fn new(bytes: &[u8]) -> PyResult<Self> {
-        Ok(Self(read(bytes, "a simulation")?))
-    }
-
-    /// For pickle and copy.
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        reduced(slf, &slf.get().0)
-    }
-
-    fn __eq__(&self, other: &Self) -> bool {
-        self.0 == other.0
-    }
-}
+state_class!(State, SimulationState, "a simulation");
 
 /// A run of a scene, advanced step by step.
 #[pyclass(frozen, module = "asperity._native")]

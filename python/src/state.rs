@@ -20,3 +20,31 @@ pub(crate) fn reduced<'py, C: PyClass>(of: &Bound<'py, C>, state: &impl Serializ
     let bytes = postcard::to_stdvec(state).map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
     Ok((of.as_any().get_type().into_any(), (PyBytes::new(of.py(), &bytes),)))
 }
+
+/// A class of Python for all that changes in a run of `$what`: made of bytes, pickled, copied and compared.
+macro_rules! state_class {
+    ($name:ident, $state:ty, $what:literal) => {
+        /// All that changes in a run.
+        #[pyclass(frozen, module = "asperity._native")]
+        #[derive(Debug)]
+        pub(crate) struct $name(pub(crate) $state);
+
+        #[pymethods]
+        impl $name {
+            #[new]
+            fn new(bytes: &[u8]) -> PyResult<Self> {
+                Ok(Self($crate::state::read(bytes, $what)?))
+            }
+
+            /// For pickle and copy.
+            fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<$crate::state::Reduced<'py>> {
+                $crate::state::reduced(slf, &slf.get().0)
+            }
+
+            fn __eq__(&self, other: &Self) -> bool {
+                self.0 == other.0
+            }
+        }
+    };
+}
+pub(crate) use state_class;

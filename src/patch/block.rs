@@ -413,9 +413,9 @@ impl<T: Number> ElementBlock<T> {
             self.mode.fill(ElementMode::Free as u8);
             return;
         }
-        let is_damped = step.damping.shear > 0.0;
+        let damped = (step.damping.shear > 0.0).then(|| self.damped_loads(step.damping));
         let (force, pressure) =
-            if is_damped { self.damped_loads(step.damping) } else { (self.springs.force, end.pressure) };
+            damped.as_ref().map_or((&self.springs.force, &end.pressure), |(force, pressure)| (force, pressure));
         // Forces on the body, their moments about the pose's point, and the force along the tread.
         let mut loads = [[T::constant(0.0); BLOCK]; 7];
         for i in 0..BLOCK {

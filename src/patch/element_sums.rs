@@ -151,9 +151,15 @@ impl PatchRun {
 
     /// The traction of the ground on element `i` along x or y, Pa.
     pub(super) fn traction_on(&mut self, i: usize, axis: usize) -> f64 {
-        let (totals, now) = (self.totals, self.totals.instant());
-        let here = self.element_contact(i, &totals, &now, self.springs.rise_of_law(i));
-        if here.area > 0.0 { -self.force_on_ground(i, &here)[axis] / here.area } else { 0.0 }
+        let totals = self.totals;
+        let area = self.patch.element(i, totals.place).area;
+        let force = if self.patch.damping() > 0.0 {
+            let here = self.element_contact(i, &totals, &totals.instant(), self.springs.rise_of_law(i));
+            self.force_on_ground(i, &here)[axis]
+        } else {
+            [self.springs.x[i], self.springs.y[i]][axis]
+        };
+        if area > 0.0 { -force / area } else { 0.0 }
     }
 
     /// The force of an element on the ground along the plane, with its damper's part, N.

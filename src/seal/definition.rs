@@ -96,15 +96,18 @@ impl LipSet {
     }
 }
 
-/// Where a number of a seal file is.
-type Real = fn(&mut SealFile) -> Option<&mut f64>;
+/// A parameter that is a number of a seal file: its value, and where that is.
+type Real = (Parameter, fn(&SealFile) -> Option<f64>, fn(&mut SealFile) -> Option<&mut f64>);
 
-/// Parameters that are numbers of its file.
-const REALS: [(Parameter, Real); 4] = [
-    (Parameter::new("seal.length"), |file| Some(&mut file.length)),
-    (Parameter::new("seal.stiffness"), |file| file.stiffness.as_mut()),
-    (Parameter::new("seal.approach_stiffness"), |file| file.approach_stiffness.as_mut()),
-    (Parameter::new("fluid.supply"), |file| Some(&mut file.supply)),
+const REALS: [Real; 4] = [
+    (Parameter::new("seal.length"), |file| Some(file.length), |file| Some(&mut file.length)),
+    (Parameter::new("seal.stiffness"), |file| file.stiffness, |file| file.stiffness.as_mut()),
+    (
+        Parameter::new("seal.approach_stiffness"),
+        |file| file.approach_stiffness,
+        |file| file.approach_stiffness.as_mut(),
+    ),
+    (Parameter::new("fluid.supply"), |file| Some(file.supply), |file| Some(&mut file.supply)),
 ];
 
 impl Seal {
@@ -291,14 +294,15 @@ impl Seal {
             Parameter::INTERVAL,
             Parameter::RELATIVE_TOLERANCE,
         ];
-        let reals = REALS.iter().map(|(parameter, _)| *parameter).filter(|parameter| self.real(*parameter).is_some());
+        let reals =
+            REALS.map(|(parameter, ..)| parameter).into_iter().filter(|&parameter| self.real(parameter).is_some());
         others.into_iter().chain(reals).collect()
     }
 
     /// The value of a number of its file, if it has it.
     fn real(&self, parameter: Parameter) -> Option<f64> {
-        let (_, real) = REALS.iter().find(|(own, _)| *own == parameter)?;
-        real(&mut (*self.file).clone()).copied()
+        let (_, value, _) = REALS.iter().find(|(own, ..)| *own == parameter)?;
+        value(&self.file)
     }
 
     /// The value of a parameter.
@@ -330,7 +334,7 @@ impl Seal {
             self.relative_tolerance = parameter.check_number(number)?;
             return Ok(());
         }
-        let (_, real) = REALS.iter().find(|(own, _)| *own == parameter).ok_or_else(|| refused.clone())?;
+        let (.., real) = REALS.iter().find(|(own, ..)| *own == parameter).ok_or_else(|| refused.clone())?;
         *real(Arc::make_mut(&mut self.file)).ok_or(refused)? = parameter.check_number(number)?;
         Ok(())
     }

@@ -20,6 +20,22 @@ use asperity::simulation::SimulationState;
 /// A file that an FMU carries: its path relative to the definition's own, and what is in it.
 pub type CarriedFile = (PathBuf, Vec<u8>);
 
+/// Those of a definition in a folder, whose `content` is what it carries of a file.
+///
+/// # Errors
+/// The first file that cannot be read.
+pub(super) fn carried<'a>(
+    folder: &Path,
+    files: impl IntoIterator<Item = &'a PathBuf>,
+    content: impl Fn(&Path) -> io::Result<Vec<u8>>,
+) -> Result<Vec<CarriedFile>, (PathBuf, io::Error)> {
+    let read = |file: &PathBuf| match content(file) {
+        Ok(bytes) => Ok((file.clone(), bytes)),
+        Err(error) => Err((folder.join(file), error)),
+    };
+    files.into_iter().map(read).collect()
+}
+
 /// What an FMU simulates, with its parameters as they are set.
 pub trait FmuModel: Debug {
     /// The model's name.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::{Error, InputOutOfRange, RestoreError};
 use super::inputs::{CommunicationStep, InputKind, InputScales, Inputs, MAX_INPUTS};
-use super::model::{CarriedFile, Experiment, FmuModel, FmuRun, RunState};
+use super::model::{CarriedFile, Experiment, FmuModel, FmuRun, RunState, carried};
 use super::resources::PATCH_FILE;
 use super::variables::VariableRef;
 use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchRun, PatchStart, PatchVariable, Pose, ReckonedWork};
@@ -44,11 +44,7 @@ impl FmuModel for Patch {
     }
 
     fn carried(&self, folder: &Path) -> Result<Vec<CarriedFile>, (PathBuf, io::Error)> {
-        let content = |file: &PathBuf| match self.carried(folder, file) {
-            Ok(bytes) => Ok((file.clone(), bytes)),
-            Err(error) => Err((folder.join(file), error)),
-        };
-        self.files().iter().map(content).collect()
+        carried(folder, self.files(), |file| self.carried(folder, file))
     }
 
     fn sources(&self, path: &Path) -> Vec<PathBuf> {

@@ -59,15 +59,27 @@ impl FlowGaps {
     /// Solves for the flow through `gaps` (m), 0 where the surfaces touch, at points `spacing` (m) apart along and across the
     /// sliding, period in both directions.
     pub fn of_map(gaps: &[f64], size: GridSize, spacing: [f64; 2]) -> Self {
-        Self::of_map_with_leak(gaps, size, spacing).0
+        Self::solve(gaps, size, spacing).0
     }
 
     /// The same, and where it leaks along the sliding: at each point 12η|q|/G, m³, of the flow per width q under the mean
     /// gradient of pressure G. The mean of its part along the sliding is the leak gap's cube.
     pub fn of_map_with_leak(gaps: &[f64], size: GridSize, spacing: [f64; 2]) -> (Self, Vec<f64>) {
         let largest = gaps.iter().copied().fold(0.0, f64::max);
+        match Self::solve(gaps, size, spacing) {
+            (found, Some((network, along))) if found.leak > 0.0 => {
+                let size = |[x, y]: &[f64; 2]| largest.powi(3) * x.hypot(*y);
+                (found, network.flows(&along).iter().map(size).collect())
+            }
+            (found, _) => (found, vec![0.0; gaps.len()]),
+        }
+    }
+
+    /// The same, and the network with its pressures along the sliding, where there is a gap; in units of the largest.
+    fn solve(gaps: &[f64], size: GridSize, spacing: [f64; 2]) -> (Self, Option<(Network, Vec<f64>)>) {
+        let largest = gaps.iter().copied().fold(0.0, f64::max);
         if largest <= 0.0 {
-            return (Self { leak_across: Some(0.0), ..Self::ZERO }, vec![0.0; gaps.len()]);
+            return (Self { leak_across: Some(0.0), ..Self::ZERO }, None);
         }
         // In units of the largest gap, and of a length that makes faces of even gaps 1.
         let relative: Vec<f64> = gaps.iter().map(|gap| gap / largest).collect();
@@ -81,10 +93,8 @@ impl FlowGaps {
         let carried = network.sources(Direction::Along, |_, face| face);
         let pressures = network.solve(&carried);
         let drag = network.mean_carried(&pressures);
-        let flows = if leak > 0.0 { network.flows(&along) } else { vec![[0.0; 2]; gaps.len()] };
-        let flows = flows.iter().map(|[x, y]| largest.powi(3) * x.hypot(*y)).collect();
         let [leak, drag, across] = [leak, drag.max(0.0), leak_across].map(|gap| largest * gap);
-        (Self { leak, drag, leak_across: Some(across) }, flows)
+        (Self { leak, drag, leak_across: Some(across) }, Some((network, along)))
     }
 }
 
