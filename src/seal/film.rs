@@ -10,7 +10,7 @@
 //! the gap is partly empty. What crosses a face between two cells is that of the cell upstream, with van Leer's limited
 //! slope (J. Comput. Phys. 32, 1979): upstream by V for the part carried, by the gradient of the pressure for the other.
 
-use super::law::{GapLaw, GapPoint};
+use super::law::{GapLaw, GapPoint, Slope};
 
 /// What is beyond the ends of the lip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -45,7 +45,8 @@ struct FaceValue {
 }
 
 /// A mean gap (m) below which a full contact closes: what it bears goes straight from that of the law to the total pressure.
-const CLOSED: f64 = 1e-10;
+/// Contents below it count as it in errors. Over a tenth of it the limit would fall faster than a stiff lip's spring.
+const CLOSED: f64 = 1e-9;
 
 /// The number of bands of the matrix.
 pub(super) const BANDS: usize = 5;
@@ -63,6 +64,8 @@ pub(super) struct Film {
     pub(super) totals: Vec<f64>,
     bearing: Vec<f64>,
     closing: Vec<f64>,
+    /// The friction coefficient of contacts that bear all of it.
+    frictions: Vec<f64>,
     cells: Vec<Cell>,
     /// What flows through the faces to the air, by length along the lip, m²/s, from that of the sealed side.
     pub(super) flows: Vec<f64>,
@@ -81,6 +84,7 @@ impl Film {
             totals: vec![0.0; count],
             bearing: vec![0.0; count],
             closing: vec![0.0; count],
+            frictions: vec![0.0; count],
             cells: vec![Cell::default(); count],
             flows: vec![0.0; count + 1],
             by_speed: vec![0.0; count + 1],
@@ -104,6 +108,7 @@ impl Film {
         for i in 0..self.totals.len() {
             let total = total(i);
             (self.totals[i], self.bearing[i]) = (total, law.gap_at(total));
+            self.frictions[i] = law.friction_at(total);
             self.closing[i] = if self.bearing[i] > 0.0 { 0.0 } else { (total - largest).max(0.0) };
         }
     }
@@ -123,9 +128,11 @@ impl Film {
         self.cells[i].gap
     }
 
-    /// The interval of the law in which it lies, likewise.
-    pub(super) fn interval(&self, i: usize) -> usize {
-        self.cells[i].interval
+    /// The share of its area that does not touch over the gap (1/m), and the friction coefficient of its contacts, likewise.
+    pub(super) fn open_and_friction(&self, law: &GapLaw, i: usize) -> (Slope, f64) {
+        let Cell { gap, interval, pressure, .. } = self.cells[i];
+        let (open, friction) = law.open_and_friction(gap, interval);
+        (open, if pressure[0] > 0.0 { friction } else { self.frictions[i] })
     }
 
     /// How the fluid's pressure changes with the content, Pa/m, likewise.

@@ -158,10 +158,26 @@ impl GapLaw {
         (self.gaps[i] + share * (self.gaps[i + 1] - self.gaps[i])).max(0.0)
     }
 
-    /// The share of the area that touches and the friction coefficient at a mean gap (m) in its interval: straight, which is
-    /// over ln p too, and those of the table's ends beyond.
-    pub(super) fn contact_and_friction(&self, gap: f64, i: usize) -> [f64; 2] {
-        let gap = gap.clamp(self.gaps[i], self.gaps[i + 1]);
-        [CONTACT, FRICTION].map(|row| self.straight(row, i, gap).value)
+    /// The friction coefficient of contacts that bear a pressure, Pa: straight over ln p, that of the table's ends beyond.
+    pub(super) fn friction_at(&self, pressure: f64) -> f64 {
+        let (i, share) = self.place(pressure.max(f64::MIN_POSITIVE).ln());
+        let row = &self.rows[FRICTION];
+        row[i] + share.clamp(0.0, 1.0) * (row[i + 1] - row[i])
+    }
+
+    /// The share of the area that does not touch over the mean gap (1/m), and the friction coefficient, at a gap (m) in its
+    /// interval: straight, which is over ln p too, and those of the table's ends beyond; but nothing is open where the gap is 0.
+    pub(super) fn open_and_friction(&self, gap: f64, i: usize) -> (Slope, f64) {
+        let (low, high) = (self.gaps[i], self.gaps[i + 1]);
+        let within = gap.clamp(low, high);
+        let touches = self.straight(CONTACT, i, within);
+        let value = (1.0 - touches.value) / gap.max(low);
+        let open = if gap < low {
+            Slope { value, slope: 0.0 }
+        } else {
+            let slope = if gap > high { 0.0 } else { touches.slope };
+            Slope { value, slope: -(value + slope) / gap }
+        };
+        (open, self.straight(FRICTION, i, within).value)
     }
 }

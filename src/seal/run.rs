@@ -573,6 +573,14 @@ impl SealRun {
     fn accept(&mut self, h: f64, stepped: &Stepped, motion: &SealMotion, is_event: bool) -> f64 {
         let stiffness = self.seal.file.stiffness;
         self.state.contents.copy_from_slice(&self.stepper.contents);
+        // In slip the spring is at the limit of the contents found: what their last iteration left would have to slip at once.
+        let rubbing = self.rubbing();
+        let limit = match stiffness {
+            Some(_) if self.state.totals.slips != 0.0 => {
+                self.stepper.limit(&self.film, &self.law, &self.state.contents, rubbing).whole()
+            }
+            _ => 0.0,
+        };
         let totals = &mut self.state.totals;
         let was_slip = totals.slips;
         totals.time += h;
@@ -582,7 +590,7 @@ impl SealRun {
         totals.drawn += stepped.into;
         totals.lost += stepped.loss;
         match stiffness {
-            Some(_) if was_slip != 0.0 => (totals.spring, totals.speed) = (stepped.force, stepped.speed),
+            Some(_) if was_slip != 0.0 => (totals.spring, totals.speed) = (was_slip * limit, stepped.speed),
             Some(stiffness) => totals.spring += stiffness * motion.u_rate * h,
             None => totals.speed = motion.u_rate,
         }

@@ -183,13 +183,16 @@ impl Stepper {
         for (i, &content) in contents.iter().enumerate() {
             let (gap, total) = (film.gap(i), film.totals[i]);
             let borne = total - film.pressure(i);
-            let [touches, friction] = law.contact_and_friction(gap, film.interval(i));
+            let (open, friction) = film.open_and_friction(law, i);
             let mut slope = -friction * film.stiffness(i);
             limit.solid += rubbing.area * friction * borne;
-            if gap > 0.0 {
-                let shear = rubbing.shear * (1.0 - touches) / (gap * gap);
-                limit.viscous += rubbing.area * shear * content;
-                slope += if content < gap { shear } else { -shear };
+            // η|V| (1 - A) m/u²; with u as m where there is fluid enough.
+            if content < gap {
+                limit.viscous += rubbing.area * rubbing.shear * open.value * content / gap;
+                slope += rubbing.shear * open.value / gap;
+            } else {
+                limit.viscous += rubbing.area * rubbing.shear * open.value;
+                slope += rubbing.shear * open.slope;
             }
             self.limit_slopes[i] = rubbing.area * slope;
         }

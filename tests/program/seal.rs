@@ -38,7 +38,7 @@ fn it_is_described() {
     let told = run(asperity().args(["describe", "--seal"]).arg(seal()));
     assert_names(
         &told,
-        "Lip with a film of 96 cells | 2e6 N/m along the motion | the rod | the film that left comes back",
+        "Lip with a film, of 96 cells | 2e6 N/m along the motion | the rod | the film that left comes back",
     );
 }
 
@@ -86,7 +86,7 @@ fn what_does_not_go_with_a_seal_is_refused() {
     fs::write(folder.join("motion.csv"), "time,u,w\n0,0,0\n1,0,0\n").unwrap();
     let mut simulate = asperity();
     simulate.current_dir(&folder).args(["simulate", "--motion", "motion.csv", "--seal"]).arg(seal());
-    assert_names(&said(&mut simulate), "columns | no such column of a seal without an approach_stiffness");
+    assert_names(said(&mut simulate), "columns | no such column of a seal without an approach_stiffness");
     // A table without gaps says what to do.
     let text = fs::read_to_string(seal()).unwrap().replace("film-strokes.table", "block.table");
     for (from, to) in
