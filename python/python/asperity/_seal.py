@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from . import _native
 from ._arguments import Floats, described
-from ._files import folder_of
-from ._library import options as library_options
-from ._library import warn_of_packed
+from ._moving import Moving
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -25,12 +21,17 @@ if TYPE_CHECKING:
 SealState = _native.SealState
 
 
-class Seal:
+class Seal(Moving[_native.SealState]):
     """A lip with a film, and the rod that moves under it.
 
     ``seal["F_x"]`` is the present value of an output; ``seal.state`` is all that changes, to be kept, pickled and put back.
     A copy goes on exactly as the original, bit for bit.
     """
+
+    _native_definition = _native.Seal
+    _native_run = _native.SealRun
+    _definition: _native.Seal
+    _started: _native.SealRun | None
 
     def __init__(
         self,
@@ -56,16 +57,16 @@ class Seal:
             SceneError: Where the seal is refused.
             SimulationError: Where it is open at the start given.
         """
-        self._folder: TemporaryDirectory[str] | None = None
-        self._seal = _native.Seal(Path(path))
+        self._folder = None
+        self._definition = _native.Seal(Path(path))
         self._start = (u, w, sealed_pressure, temperature, u_rate)
-        self._started: _native.SealRun | None = None
+        self._started = None
 
     @property
     def _run(self) -> _native.SealRun:
         """The run, which begins where it is first looked at."""
         if self._started is None:
-            self._started = _native.SealRun(self._seal, *self._start)
+            self._started = _native.SealRun(self._definition, *self._start)
             self._warn(stacklevel=4)
         return self._started
 
@@ -97,13 +98,9 @@ class Seal:
         self._run.advance(dt, u, w=w, sealed_pressure=sealed_pressure, temperature=temperature)
         self._warn(stacklevel=3)
 
-    def __getitem__(self, name: str) -> float:
-        """The present value of an output of the seal's groups."""
-        return self._run.value(name)
-
     def describe(self) -> str:
         """What the seal is, in the lines of ``asperity describe --seal``."""
-        return described(self._seal.describe())
+        return described(self._definition.describe())
 
     def sweep(
         self,
@@ -126,7 +123,7 @@ class Seal:
         """
         from ._arguments import axis, numbers, shown
 
-        found = self._seal.sweep(
+        found = self._definition.sweep(
             None if speeds is None else axis("speeds", speeds),
             None if sealed is None else list(numbers("sealed", sealed)),
             None if temperatures is None else axis("temperatures", temperatures),
@@ -136,42 +133,17 @@ class Seal:
 
     def __len__(self) -> int:
         """The number of cells."""
-        return len(self._seal)
-
-    @property
-    def name(self) -> str:
-        """The seal's name."""
-        return self._seal.name
+        return len(self._definition)
 
     @property
     def width(self) -> float:
         """The width of the lip, m."""
-        return self._seal.width
-
-    @property
-    def names(self) -> list[str]:
-        """The names of the outputs."""
-        return self._run.names
-
-    @property
-    def units(self) -> dict[str, str]:
-        """Their units."""
-        return dict(self._run.units)
-
-    @property
-    def values(self) -> Floats:
-        """Present values of all outputs, in the order of :attr:`names`, shape (n,)."""
-        return self._run.values()
+        return self._definition.width
 
     @property
     def contents(self) -> Floats:
         """The fluid's volume per area in the cells from the sealed side, m, shape (cells,)."""
         return self._run.contents()
-
-    @property
-    def time(self) -> float:
-        """The time reached, s."""
-        return self._run.time
 
     @property
     def u(self) -> float:
@@ -182,50 +154,6 @@ class Seal:
     def sealed_pressure(self) -> float:
         """The pressure of the fluid before the lip, Pa."""
         return self._run.inputs[2]
-
-    @property
-    def state(self) -> SealState:
-        """All that changes in the run; can be set, compared, copied and pickled."""
-        return self._run.state()
-
-    @state.setter
-    def state(self, state: SealState) -> None:
-        self._run.set_state(state)
-
-    def copy(self) -> Seal:
-        """A seal that goes on as this one."""
-        return _seal(self._seal, self._run.copy(), self._folder)
-
-    def __copy__(self) -> Seal:
-        return self.copy()
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> Seal:
-        return self.copy()
-
-    def __reduce__(self) -> tuple[Any, tuple[str, dict[str, bytes], SealState]]:
-        file = self._seal.file
-        files = {str(name): (file.parent / name).read_bytes() for name in (Path(file.name), *self._seal.files())}
-        return _unpickled, (file.name, files, self.state)
-
-    def pack(
-        self,
-        path: str | PathLike[str],
-        libraries: Sequence[str | PathLike[str]] | None = None,
-        *,
-        flat_names: bool = False,
-        references: bool = True,
-    ) -> Path:
-        """Packs the seal, where it starts left out, as an FMU, and returns its path.
-
-        Args:
-            path: The FMU to write.
-            libraries: As for :meth:`Scene.pack`.
-            flat_names: As for :meth:`Scene.pack`.
-            references: As for :meth:`Scene.pack`.
-        """
-        given = library_options() if libraries is None else [str(library) for library in libraries]
-        warn_of_packed(self._seal.pack(Path(path), given, {"flat_names": flat_names, "references": references}))
-        return Path(path)
 
     def __repr__(self) -> str:
         return f"<asperity.Seal {self.name!r}: {len(self)} cells>"
@@ -275,15 +203,3 @@ class Stribeck:
 
     def __repr__(self) -> str:
         return f"<asperity.Stribeck: {len(self.stroke)} rows; {', '.join(self._columns)}>"
-
-
-def _seal(native: _native.Seal, run: _native.SealRun, folder: TemporaryDirectory[str] | None) -> Seal:
-    seal = Seal.__new__(Seal)
-    seal._seal, seal._started, seal._folder = native, run, folder
-    return seal
-
-
-def _unpickled(name: str, files: dict[str, bytes], state: SealState) -> Seal:
-    folder = folder_of(files)
-    native = _native.Seal(Path(folder.name) / name)
-    return _seal(native, _native.SealRun.restore(native, state), folder)
