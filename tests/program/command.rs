@@ -66,7 +66,7 @@ fn errors_on_the_command_line_say_what_was_expected() {
         (&["simulate", &scene, "-o", "x.csv", "--rows", "0"], "--rows | 1 or more"),
         (&["material", &scene, "-o", "out.pdf"], ".svg | .png | .csv"),
         (&["material", &scene, "--temperature", "-5"], "--temperature | 0 K"),
-        (&["pack", "-o", "x.fmu"], "<SCENE.toml|--table <TABLE.csv>|--patch <PATCH.toml>>"),
+        (&["pack", "-o", "x.fmu"], "<SCENE.toml|--table <TABLE.csv>|--patch <PATCH.toml>| | --seal <SEAL.toml>>"),
         (&["report", &scene, "-o", "x", "--stress", "13"], "--stress | 0 to 12"),
     ];
     for (arguments, text) in expected {

@@ -27,7 +27,7 @@ use super::terminal::{Bars, LabelledLine, labelled, lines, note, warn};
 
 #[derive(Debug, Args)]
 #[command(
-    override_usage = "asperity pack [OPTIONS] --output <OUT.fmu>\n       <SCENE.toml|--table <TABLE.csv>|--patch <PATCH.toml>|--seal <SEAL.toml>>"
+    override_usage = "asperity pack [OPTIONS] --output <OUT.fmu>\n       <SCENE.toml|--table <TABLE.csv>|--patch <PATCH.toml>|\n        --seal <SEAL.toml>>"
 )]
 #[command(group(ArgGroup::new("input").required(true).multiple(true)))]
 #[command(after_help = example!("asperity pack scenes/tread-block/tread-block.toml -o block.fmu"))]

@@ -48,6 +48,7 @@ fn its_variables_have_the_names_of_a_layers() {
         "table.extrapolation",
         "input.extrapolation",
         "input.interval",
+        "patch.damping",
     ];
     assert_eq!(names, expected);
     let warm = Grid { temperatures: vec![290.0, 300.0, 310.0], ..Grid::plain() };

@@ -199,7 +199,7 @@ fn another_scene_or_format_is_refused_and_named() {
     assert_names(refused(&fmu, &other.frozen()), "another scene");
     let mut later = fmu.frozen();
     later[8] += 1;
-    assert_names(refused(&fmu, &later), "13 | 12");
+    assert_names(refused(&fmu, &later), "14 | 13");
     assert!(refused(&fmu, b"PK").contains("does not begin like one"));
 }
 

@@ -149,7 +149,8 @@ fn in_full_contact_the_backing_alone_gives_way() {
     for i in 0..=800 {
         let speed = 10.0_f64.powf(-4.5 + 5.0 * f64::from(i) / 800.0);
         let mut before = 0.0;
-        for j in 1..60 {
+        // Up to the table's largest pressure, 4 MPa: beyond it contacts come closer along their tangent.
+        for j in 1..=53 {
             let depth = 1e-4 * f64::from(j);
             let found = pressure(depth, speed);
             let range = (depth - closest) * NORMAL..(depth + farthest) * NORMAL;

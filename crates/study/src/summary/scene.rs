@@ -312,7 +312,7 @@ fn left_out(scene: &Scene) -> String {
     let has_shear = friction.is_some_and(|law| law.shear_strength.is_some() || law.shear_force.is_some());
     let links = LinkKind::ALL.into_iter().filter(|kind| scene.link(*kind).is_none());
     let parts = [
-        (true, "a fluid (the contact is dry)"),
+        (true, "a fluid (dry)"),
         (scene.layer.roughness.is_empty(), "layer.roughness"),
         (material.is_some_and(|material| material.viscosity.is_none()), "material.viscosity"),
         (material.is_some_and(|material| material.wlf.is_none()), "material.wlf"),
