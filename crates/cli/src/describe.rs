@@ -16,6 +16,7 @@ use super::simulate::NOT_STARTED;
 use super::terminal::{LabelledLine, is_verbose, lines, screen_lines, warn};
 
 #[derive(Debug, Args)]
+#[command(override_usage = "asperity describe [OPTIONS]\n       <SCENE.toml|--patch <PATCH.toml>|--seal <SEAL.toml>>")]
 #[command(group(ArgGroup::new("described").required(true).args(["scene", "patch", "seal"])))]
 #[command(after_help = example!("asperity describe scenes/road/road.toml"))]
 pub(crate) struct Describe {

@@ -27,6 +27,7 @@ use super::result_file::ResultWriter;
 use super::terminal::{LabelledLine, bar, is_verbose, lines, note, warn};
 
 #[derive(Debug, Args)]
+#[command(override_usage = "asperity simulate [OPTIONS]\n       <SCENE.toml|--patch <PATCH.toml>|--seal <SEAL.toml>>")]
 #[command(group(ArgGroup::new("simulated").required(true).args(["scene", "patch", "seal"])))]
 #[command(after_help = example!("asperity simulate scenes/tread-block/tread-block.toml -o block.csv --plot block.svg"))]
 pub(crate) struct Simulate {
