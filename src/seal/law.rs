@@ -48,6 +48,8 @@ const FRICTION: usize = 4;
 
 /// Pressures below this part of the table's least count as that.
 const LEAST_SHARE: f64 = 1e-6;
+/// Gaps below this count as this where something is divided by them, m.
+const LEAST_GAP: f64 = 1e-9;
 /// The largest ln p that is taken.
 const LARGEST_LOG: f64 = 60.0;
 
@@ -166,18 +168,19 @@ impl GapLaw {
     }
 
     /// The share of the area that does not touch over the mean gap (1/m), and the friction coefficient, at a gap (m) in its
-    /// interval: straight, which is over ln p too, and those of the table's ends beyond; but nothing is open where the gap is 0.
+    /// interval: straight, which is over ln p too, and those of the table's ends beyond. Below the least gap the share that
+    /// is open goes to 0 with it.
     pub(super) fn open_and_friction(&self, gap: f64, i: usize) -> (Slope, f64) {
         let (low, high) = (self.gaps[i], self.gaps[i + 1]);
-        let within = gap.clamp(low, high);
-        let touches = self.straight(CONTACT, i, within);
-        let value = (1.0 - touches.value) / gap.max(low);
-        let open = if gap < low {
-            Slope { value, slope: 0.0 }
-        } else {
-            let slope = if gap > high { 0.0 } else { touches.slope };
-            Slope { value, slope: -(value + slope) / gap }
-        };
-        (open, self.straight(FRICTION, i, within).value)
+        let friction = self.straight(FRICTION, i, gap.clamp(low, high)).value;
+        if self.is_closed {
+            return (Slope::default(), friction);
+        }
+        let least = low.max(LEAST_GAP);
+        let touches = self.straight(CONTACT, i, gap.max(least).min(high));
+        let value = (1.0 - touches.value) / gap.max(least);
+        let slope = if gap > high { 0.0 } else { touches.slope };
+        let slope = if gap < least { 0.0 } else { -(value + slope) / gap };
+        (Slope { value, slope }, friction)
     }
 }

@@ -80,6 +80,11 @@ fn patches() {
 }
 
 #[test]
+fn seals() {
+    run("seal", targets::seal::run, 100);
+}
+
+#[test]
 fn motions_of_patches() {
     run("patch_motion", targets::patch_motion::run, 100);
     let mut random = Random::new(9);

@@ -5,6 +5,7 @@ pub mod patch;
 pub mod patch_motion;
 pub mod profile;
 pub mod scene;
+pub mod seal;
 pub mod state;
 pub mod table;
 
