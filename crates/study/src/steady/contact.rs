@@ -27,7 +27,17 @@ const BELOW: f64 = 1.0e-7;
 /// The pressure that a point begins with as it comes to the contact, over the mean.
 const NEXT_TO_NOTHING: f64 = 1.0e-6;
 /// The most sets of a grid.
-const MOST_SETS: usize = 60;
+const MOST_SETS: usize = 20;
+/// Where the real part of the compliance of each wave is more than this part of it, sets do not swing.
+const SWINGS: f64 = 0.35;
+/// What is added to the compliance becomes smaller by this factor from rung to rung, where that fails by a smaller one, ...
+const LADDER_STEP: f64 = 4.0;
+const LEAST_LADDER_STEP: f64 = 1.5;
+/// ... until it is this part of the least compliance; then nothing is added.
+const LEAST_PROXIMAL: f64 = 0.02;
+/// The most rungs, and the sets of each.
+const MOST_RUNGS: usize = 120;
+const SETS_OF_RUNG: usize = 8;
 /// The most sets of a grid from which a finer one starts.
 const MOST_COARSE_SETS: usize = 6;
 /// The accuracy of the derivative by the separation.
@@ -50,6 +60,8 @@ pub struct Contact {
     pub left_over: usize,
     /// How many sets were tried on the grid itself.
     pub sets: usize,
+    /// To which the last one was solved.
+    accuracy: f64,
 }
 
 /// The solver of contacts on a surface and the coarser grids of it, with its memory.
@@ -65,6 +77,14 @@ struct Level {
     linear: LinearSolver,
     rms: f64,
     peak_to_valley: f64,
+}
+
+/// A linear complementarity problem: pressures p ≥ 0 of a mean (Pa), under which the surface lies on or above the heights (m).
+#[derive(Clone, Copy, Debug)]
+struct Obstacle<'a> {
+    compliance: &'a Compliance,
+    heights: &'a [f64],
+    pressure: f64,
 }
 
 /// How far a grid is solved.
@@ -176,6 +196,16 @@ impl Goal {
         Self { first_accuracy, accuracy: ACCURACY, wrong: 0.0, sets: MOST_SETS }
     }
 
+    /// That of a rung of the ladder.
+    fn of_rung(self) -> Self {
+        Self { first_accuracy: COARSE_ACCURACIES.0, sets: SETS_OF_RUNG, ..self }
+    }
+
+    /// Whether a contact is solved as far.
+    fn is_met(self, contact: &Contact) -> bool {
+        contact.left_over as f64 <= self.wrong * contact.points.len() as f64 && contact.accuracy <= self.accuracy
+    }
+
     /// The accuracy of the set after one.
     fn next(self, accuracy: f64) -> f64 {
         let tenth = 0.1 * accuracy;
@@ -194,6 +224,7 @@ impl Contact {
             is_full: false,
             left_over: 0,
             sets: 0,
+            accuracy: 0.0,
         }
     }
 
@@ -249,8 +280,61 @@ impl Level {
     }
 
     /// The contact from the pressures `field` (Pa) at all points, of any mean: the first set is where they are positive.
-    fn solve(&mut self, compliance: &Compliance, mut field: Vec<f64>, pressure: f64, goal: Goal) -> Contact {
-        let count = self.surface.size.points();
+    fn solve(&mut self, compliance: &Compliance, field: Vec<f64>, pressure: f64, goal: Goal) -> Contact {
+        let (share, heights) = (self.surface.share_of_point(), self.surface.heights.clone());
+        let mut sets = 0;
+        if compliance.least_storage() > SWINGS {
+            let obstacle = Obstacle { compliance, heights: &heights, pressure };
+            let found = self.by_sets(&obstacle, field.clone(), goal);
+            // A grid from which a finer one starts is good enough.
+            if goal.is_met(&found) || goal.wrong > 0.0 {
+                return found;
+            }
+            sets = found.sets;
+        }
+        // Loss far above storage lets sets swing. The operator is strictly monotone all the same, so that the proximal point
+        // algorithm finds the one solution (R. T. Rockafellar, SIAM J. Control Optim. 14, 1976): (C + ε) p + d = h + ε x on the
+        // set, where x is the solution before, whose sets swing the less the larger ε is.
+        let [eight, least] = compliance.sizes(self.surface.size);
+        let (mut epsilon, mut factor, mut x) = (eight, LADDER_STEP, field);
+        let mut found = Contact::nothing();
+        for _ in 0..MOST_RUNGS {
+            if epsilon < LEAST_PROXIMAL * least {
+                epsilon = 0.0;
+            }
+            let by = epsilon / share;
+            let lifted: Vec<f64> = heights.iter().zip(&x).map(|(height, x)| height + by * x).collect();
+            let (proximal, goal) = (compliance.proximal(epsilon, share), goal.of_rung());
+            let obstacle = Obstacle { compliance: &proximal, heights: &lifted, pressure };
+            found = self.by_sets(&obstacle, x.clone(), goal);
+            sets += found.sets;
+            found.sets = sets;
+            match (goal.is_met(&found), epsilon == 0.0) {
+                (true, true) => return found,
+                (true, false) => {
+                    x.fill(0.0);
+                    let least = NEXT_TO_NOTHING * pressure;
+                    found.points.iter().zip(&found.pressures).for_each(|(&point, p)| x[point as usize] = p.max(least));
+                    epsilon /= factor;
+                    factor = LADDER_STEP;
+                }
+                (false, true) => {
+                    factor = smaller(factor);
+                    epsilon = LEAST_PROXIMAL * least * factor * factor;
+                }
+                (false, false) => {
+                    epsilon *= factor;
+                    factor = smaller(factor);
+                }
+            }
+        }
+        found.left_over = found.left_over.max(1);
+        found
+    }
+
+    /// The contact by sets alone, from the pressures `field` (Pa) at all points.
+    fn by_sets(&mut self, obstacle: &Obstacle<'_>, mut field: Vec<f64>, goal: Goal) -> Contact {
+        let (count, pressure) = (self.surface.size.points(), obstacle.pressure);
         let (mut seen, mut accuracy) = (HashSet::new(), goal.first_accuracy);
         let mut gaps = vec![0.0; count];
         let mut found = Contact::nothing();
@@ -260,7 +344,7 @@ impl Level {
             let mut pressures: Vec<f64> = points.iter().map(|&point| field[point as usize]).collect();
             let scale = pressure * count as f64 / sum(&pressures);
             pressures.iter_mut().for_each(|p| *p *= scale);
-            let separation = self.solve_set(compliance, &points, &mut pressures, accuracy * self.rms, &mut gaps);
+            let separation = self.solve_set(obstacle, &points, &mut pressures, accuracy * self.rms, &mut gaps);
 
             // Step 2, who is wrong: p < 0 on the set is a pull, g < 0 beside it lies below. Gaps are known as well as they
             // were solved for.
@@ -270,9 +354,9 @@ impl Level {
             let come = gaps.iter().filter(|&&gap| gap < below).count();
             let left_over = leave + come;
             let is_full = points.len() == count;
-            found = Contact { points, pressures, separation, is_full, left_over, sets, ..Contact::nothing() };
+            found = Contact { points, pressures, separation, is_full, left_over, sets, accuracy, ..Contact::nothing() };
             // p ≥ 0 on the set and g ≥ 0 beside it, as far as this grid is to be solved.
-            if left_over as f64 <= goal.wrong * found.points.len() as f64 && accuracy <= goal.accuracy {
+            if goal.is_met(&found) {
                 break;
             }
 
@@ -305,14 +389,14 @@ impl Level {
     /// Solves for the pressures on a set, and writes the gaps of all points, 0 on the set; returns the separation, m.
     fn solve_set(
         &mut self,
-        compliance: &Compliance,
+        obstacle: &Obstacle<'_>,
         set: &[u32],
         pressures: &mut [f64],
         tolerance: f64,
         gaps: &mut [f64],
     ) -> f64 {
         // C p + d = h on the set: u = C p is how the surface moves, g = u + d - h.
-        let heights = &self.surface.heights;
+        let Obstacle { compliance, heights, .. } = *obstacle;
         let mut residual = vec![0.0; set.len()];
         let off = |moved: &[f64], residual: &mut [f64]| {
             set.iter().zip(residual).for_each(|(&point, off)| *off = heights[point as usize] - moved[point as usize]);
@@ -328,6 +412,11 @@ impl Level {
         set.iter().for_each(|&point| gaps[point as usize] = 0.0);
         separation
     }
+}
+
+/// The factor of the ladder after a rung that failed.
+fn smaller(factor: f64) -> f64 {
+    factor.powf(0.7).max(LEAST_LADDER_STEP)
 }
 
 fn fingerprint(points: &[u32]) -> u64 {

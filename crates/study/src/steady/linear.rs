@@ -16,7 +16,7 @@ use rustfft::num_complex::Complex;
 
 use super::krylov::Gmres;
 use super::surface::SurfaceGrid;
-use super::transform::Convolution;
+use super::transform::{Convolution, GridSize};
 
 /// The factors of the waves of a grid, each with the 1/N of the transforms.
 #[derive(Clone, Debug)]
@@ -56,6 +56,34 @@ impl Compliance {
             }
         }
         found
+    }
+}
+
+impl Compliance {
+    /// The same with ε added to each wave's, as those are stored: with the `share` of a point.
+    pub(super) fn proximal(&self, epsilon: f64, share: f64) -> Self {
+        let added = |compliance: &Complex<f64>| {
+            // That of the mean stays 0.
+            if compliance.norm_sqr() > 0.0 { compliance + epsilon } else { *compliance }
+        };
+        let compliance: Vec<_> = self.compliance.iter().map(added).collect();
+        let inverse = |c: &Complex<f64>| if c.norm_sqr() > 0.0 { share * share / c } else { *c };
+        let stiffness = if epsilon > 0.0 { compliance.iter().map(inverse).collect() } else { self.stiffness.clone() };
+        Self { compliance, stiffness }
+    }
+
+    /// The least real part of a wave's compliance over its size.
+    pub(super) fn least_storage(&self) -> f64 {
+        let waves = self.compliance.iter().filter(|wave| wave.norm_sqr() > 0.0);
+        waves.map(|wave| wave.re / wave.norm()).fold(1.0, f64::min)
+    }
+
+    /// The size of the compliance of the wave of eight points along the sliding, and the least of all.
+    pub(super) fn sizes(&self, size: GridSize) -> [f64; 2] {
+        let waves = self.compliance.iter().map(|wave| wave.norm()).filter(|&norm| norm > 0.0);
+        let least = waves.fold(f64::INFINITY, f64::min);
+        let eight = self.compliance[(size.nx / 8).max(1) * size.ny].norm();
+        [eight.max(least), least]
     }
 }
 

@@ -80,6 +80,12 @@ impl SlidingRubber {
         })
     }
 
+    /// E''/E' at an angular frequency, 1/s.
+    pub(crate) fn loss_factor(&self, omega: f64) -> f64 {
+        let (storage, loss) = self.material.complex_modulus(omega);
+        loss / storage
+    }
+
     /// Whether a contact on this slope jams: Coulomb's friction presses it by more than it takes.
     pub(super) fn jams(&self, slope: &Slope) -> bool {
         self.friction.coulomb * slope.pressing() >= 1.0

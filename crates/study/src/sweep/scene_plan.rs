@@ -134,12 +134,13 @@ impl ScenePlan {
         self.solved.as_ref().map_or(0, SolvedPoints::solutions)
     }
 
-    /// What to look at in the rows: few points of the surface in contact, and friction that no rubber has.
+    /// What to look at in the rows: few points of the surface in contact, pressures that alternate, friction that no rubber has.
     pub(super) fn warnings(&self, rows: &[SweepRow]) -> Vec<String> {
         let few = self.solved.as_ref().and_then(|solved| solved.few_points(rows, &self.header));
         let found = rows.iter().filter_map(|row| found_friction(row, self.header.load));
         let uneven = self.uneven(rows);
-        few.into_iter().chain(implausible(&self.scene, found)).chain(uneven).collect()
+        let alternating = self.solved.as_ref().and_then(|solved| solved.alternating(rows, &self.header));
+        few.into_iter().chain(alternating).chain(implausible(&self.scene, found)).chain(uneven).collect()
     }
 
     /// The warning where a layer does not slide evenly at some of the rows.

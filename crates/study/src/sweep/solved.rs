@@ -13,6 +13,7 @@ use super::point::{steady_sliding, steady_sliding_at};
 use super::search::{NotSteady, SteadySliding, StopBounds};
 use super::table::{SweepHeader, SweepRow};
 use crate::Error;
+use crate::decimals::short;
 use crate::steady::{FlowGaps, SlidingRubber, SteadySlide, SteadySolver, SurfaceGrid};
 
 /// The solver of the points of a sweep, on all threads.
@@ -60,6 +61,8 @@ impl Solvers {
     }
 }
 
+/// Pressures alternate from point to point where E''/E' is beyond this at the shortest wave.
+const ALTERNATES: f64 = 3.0;
 /// With fewer points in contact friction and area are chance.
 const FEW: f64 = 20.0;
 
@@ -189,6 +192,24 @@ impl SolvedPoints {
             (Quantity::DragGapMedium, beside.map(|gaps| gaps.drag)),
         ];
         values.into_iter().for_each(|(quantity, value)| row.set(quantity, value));
+    }
+
+    /// The warning where loss is far above storage at the surface's shortest wave, 1.
+    pub(super) fn alternating(&self, rows: &[SweepRow], header: &SweepHeader) -> Option<String> {
+        let shortest = std::f64::consts::PI / self.surface().spacing()[0];
+        let loss = |row: &SweepRow| {
+            let (_, rubber) = self.rubbers.iter().find(|(temperature, _)| *temperature == row.point.temperature)?;
+            Some(rubber.loss_factor(shortest * row.point.speed)).filter(|factor| *factor > ALTERNATES)
+        };
+        let found: Vec<(&SweepRow, f64)> = rows.iter().filter_map(|row| Some((row, loss(row)?))).collect();
+        let (first, factor) = found.first()?;
+        Some(format!(
+            "E''/E' is beyond {ALTERNATES} at the shortest wave of the surface at {} of the points of the table, {} at {}: \
+             pressures alternate from point to point there, and the contact ratio follows the spacing of the points",
+            found.len(),
+            short(*factor, 2),
+            first.point.describe(header.load)
+        ))
     }
 
     /// The warning where some of the rows have few points in contact.
