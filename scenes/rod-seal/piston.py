@@ -13,7 +13,7 @@ from fmpy import extract, read_model_description
 from fmpy.fmi2 import FMU2Slave
 
 MASS, STIFFNESS, SPEED, SEALED = 5.0, 2e5, 2e-4, 5e6  # kg, N/m, m/s, Pa
-H, END, PARTS = 1e-4, 2.0, 4  # s, s, parts of a step of the piston
+H, END, PARTS = 1e-4, 8.0, 4  # s, s, parts of a step of the piston
 
 
 def main():

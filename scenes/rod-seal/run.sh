@@ -21,7 +21,7 @@ asperity=$("$root/scenes/program")
 "$root/build-fmu.sh" --seal "$here/seal.toml" -o "$folder/seal.fmu"
 cd "$folder"
 "$python" -B "$here/strokes.py" seal.fmu .
-"$asperity" plot loop-1mm.csv loop-10mm.csv loop-100mm.csv --x u --y F_x --y film.leak \
+"$asperity" plot loop-1mm.csv loop-10mm.csv loop-100mm.csv --x u --y F_x --y "leak in mm³" \
     --labels "1 mm/s,10 mm/s,100 mm/s" --title "Two strokes of the rod, 5 MPa sealed" -o loops.svg
 "$asperity" simulate --seal "$here/seal.toml" --motion motion-10mm.csv -o film.csv --plot film.svg
 "$python" -B "$here/piston.py" seal.fmu piston.csv

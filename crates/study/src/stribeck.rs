@@ -17,10 +17,9 @@ use crate::values::Values;
 /// What the header of the table begins with.
 const STRIBECK: (&str, u64) = ("asperity stribeck", 1);
 
-/// Widths of the lip over which the outstroke lays its steady film, and the instroke takes it back.
-const LAID: usize = 12;
 /// A run goes on by this part of the lip's width until its force changes by no more than [`STEADY`] over one of them, and at
-/// most for so many of them.
+/// most for so many of them: what the outstroke lays is as long. Where little comes back it gathers before the lip for some
+/// forty of them.
 const WIDTH: f64 = 1.0;
 const STEADY: f64 = 1e-4;
 const MOST_WIDTHS: usize = 60;
@@ -279,8 +278,8 @@ fn strokes(seal: &Seal, temperature: f64, sealed: f64, speed: f64) -> Result<[St
     let mut run = SealRun::new(seal, &start).map_err(told)?;
     let out = follow(&mut run, seal, (Direction::Out, speed, temperature), MOST_WIDTHS).map_err(told)?;
     // The film that comes back first is the steady one.
-    move_on(&mut run, seal, (Direction::Out, speed, temperature), LAID as f64 * WIDTH).map_err(told)?;
-    let back = follow(&mut run, seal, (Direction::In, speed, temperature), LAID).map_err(told)?;
+    move_on(&mut run, seal, (Direction::Out, speed, temperature), MOST_WIDTHS as f64 * WIDTH).map_err(told)?;
+    let back = follow(&mut run, seal, (Direction::In, speed, temperature), MOST_WIDTHS).map_err(told)?;
     Ok([out, back])
 }
 
