@@ -325,4 +325,26 @@ mod tests {
             }
         }
     }
+
+    /// In full contact contacts bear all without a fluid, what the law has with a nanometre of it, straight between; nothing
+    /// there is open but in proportion.
+    #[test]
+    fn a_full_contact_opens_without_a_leap() {
+        let law = law(0.02);
+        let mut film = Film::new(1, 2e-5, true);
+        let closes = law.at(0.0, 0).pressure.value;
+        let total = 2.0 * closes;
+        film.set_totals(&law, |_| total);
+        let mut borne = |content: f64| {
+            film.evaluate(&law, &[content], 0.0, &Ends::default());
+            let (open, _) = film.open_and_friction(&law, 0);
+            assert!(open.value.is_finite() && open.slope.is_finite(), "{content}: {open:?}");
+            total - film.pressure(0)
+        };
+        assert_eq!(borne(0.0), total);
+        // The law itself falls by 5e-3 over a nanometre.
+        let by_law = |content: f64| closes * (-content / 2e-7).exp();
+        assert!((borne(0.5 * CLOSED) / (by_law(0.5 * CLOSED) + 0.5 * closes) - 1.0).abs() < 1e-9);
+        assert!((borne(CLOSED) / by_law(CLOSED) - 1.0).abs() < 1e-9);
+    }
 }
