@@ -13,6 +13,7 @@ pub mod row;
 pub mod rubber;
 pub mod scenes;
 pub mod springs;
+pub mod strain;
 pub mod viscoelastic;
 
 use std::path::Path;
@@ -35,6 +36,7 @@ pub const ALL: &[Entry] = &[
     viscoelastic::FULL,
     rough::AREA,
     rough::SPECTRUM,
+    strain::FRICTION_NEAR_ONE,
     film::RIDGES,
     film::ROUGH,
     heat::HALF_SPACE,

@@ -146,7 +146,8 @@ impl Statistics {
             covers_bounds: vec![false; count],
         };
         statistics.decompose(jacobian, &inner);
-        let factor = student(degrees);
+        // Given deviations are known, those of the residuals estimated.
+        let factor = if problem.has_sigma { NORMAL } else { student(degrees) };
         for (index, parameter) in problem.parameters.iter().enumerate() {
             let value = parameter.value(places[index]);
             statistics.intervals[index] = statistics.errors[index].map(|error| {
@@ -221,11 +222,12 @@ pub fn chi_square_per_degree(chi_square: f64, degrees: usize) -> f64 {
     chi_square / degrees.max(1) as f64
 }
 
-/// The factor of the standard error in a 95 % interval: Student's t, by its expansion in the inverse of the degrees of
+/// The factor of the standard error in a 95 % interval of the normal distribution.
+const NORMAL: f64 = 1.959_963_984_540_054;
+
+/// That of an estimated error: Student's t, by its expansion in the inverse of the degrees of
 /// freedom (M. Abramowitz, I. A. Stegun, 26.7.5), to 1 % from three on.
 fn student(degrees: usize) -> f64 {
-    /// Of the normal distribution.
-    const NORMAL: f64 = 1.959_963_984_540_054;
     let (z, inverse) = (NORMAL, 1.0 / degrees.max(1) as f64);
     let square = z * z;
     let first = z * (square + 1.0) / 4.0;

@@ -21,7 +21,7 @@ use crate::decimals::{plain, real, short};
 use crate::error::Error;
 use crate::files::name_of;
 use crate::settings::edited;
-use crate::uncertainty::{FittedNumber, Scale};
+use crate::uncertainty::{DEGREES_OF_FREEDOM, FittedNumber, Scale};
 
 /// Fits numbers of a scene, of which this is the `text` with keys set, to measured friction: what it found, and the text of the scene
 /// with the numbers, and their covariance. `found` is called for every point that was found, and says whether to go on.
@@ -160,7 +160,11 @@ impl FitCovariance {
             entries: told.iter().map(|&a| told.iter().map(|&b| entry(a, b)).collect()).collect(),
             left_out,
             fitted_to: format!("{} measurements of {}", problem.rows.len(), name_of(free.data())),
-            stored: stored(free, problem, &told),
+            stored: if problem.has_sigma || statistics.degrees == 0 {
+                stored(free, problem, &told)
+            } else {
+                stored(free, problem, &told).with_whole(DEGREES_OF_FREEDOM, statistics.degrees as u64)
+            },
             misfit: statistics.misfit,
         }
     }

@@ -185,7 +185,7 @@ impl UncertainScene {
                 Some(refit) => refit.refit(&|found: &[f64]| scene_with(&named(found)).map(|(scene, _)| scene))?,
                 None => covariance.numbers.iter().map(|number| number.value).collect(),
             };
-            off = fitted(covariance, &about, normal);
+            off = fitted(covariance, &about, normal, unit);
         }
         let (scene, transformed) = scene_with(&off)?;
         values.extend(off.into_iter().chain(transformed));
@@ -263,10 +263,17 @@ fn drawn(value: f64, distribution: Distribution, unit: f64, normal: f64) -> f64 
 }
 
 /// Numbers that were fitted together, off from these.
-fn fitted(covariance: &Covariance, about: &[f64], normal: impl Fn(&str) -> f64) -> Vec<(String, f64)> {
+fn fitted(
+    covariance: &Covariance,
+    about: &[f64],
+    normal: impl Fn(&str) -> f64,
+    unit: impl Fn(&str) -> f64,
+) -> Vec<(String, f64)> {
     let file = covariance.file.to_string_lossy();
+    let widened = covariance.widened(unit(&variance_axis(&file)));
     let normals: Vec<f64> = (0..covariance.numbers.len()).map(|i| normal(&fitted_axis(&file, i))).collect();
-    let moved = |row: &[f64]| row.iter().zip(&normals).map(|(part, normal)| part * normal).sum::<f64>();
+    // One χ² for all: they are off together by a multivariate t.
+    let moved = |row: &[f64]| widened * row.iter().zip(&normals).map(|(part, normal)| part * normal).sum::<f64>();
     let numbers = covariance.numbers.iter().zip(about).zip(&covariance.root).map(|((number, about), row)| {
         let value = match number.scale {
             Scale::Log => about * moved(row).exp(),
@@ -341,7 +348,8 @@ pub(super) fn groups(uncertainty: &Uncertainty) -> Vec<Group> {
     let of_key = |key: &UncertainKey| Group { name: key.key.clone(), axes: axes(key) };
     let fitted = covariance.iter().map(|covariance| {
         let name = covariance.file.to_string_lossy().into_owned();
-        Group { axes: (0..covariance.numbers.len()).map(|i| fitted_axis(&name, i)).collect(), name }
+        let numbers = (0..covariance.numbers.len()).map(|i| fitted_axis(&name, i));
+        Group { axes: numbers.chain(covariance.degrees.map(|_| variance_axis(&name))).collect(), name }
     });
     keys.iter().map(of_key).chain(fitted).collect()
 }
@@ -364,6 +372,11 @@ pub fn decade_name(decade: i32) -> String {
 /// Axis `index` of a file.
 pub(super) fn fitted_axis(file: &str, index: usize) -> String {
     format!("{file} {}", index + 1)
+}
+
+/// The axis of the variance of what a file was fitted to.
+fn variance_axis(file: &str) -> String {
+    format!("{file} variance")
 }
 
 /// Nodes about these decades of relaxation times: even decades, the same in every scene.

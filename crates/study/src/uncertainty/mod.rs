@@ -10,7 +10,7 @@ mod section_tests;
 #[cfg(test)]
 mod tests;
 
-pub use covariance::{CANNOT_SAY, Covariance, FittedNumber, Scale};
+pub use covariance::{CANNOT_SAY, Covariance, DEGREES_OF_FREEDOM, FittedNumber, Scale};
 pub use drawing::{Drawn, DrawnAt, Draws, Group, Refit, Refused, UncertainScene, decade_name};
 pub use indices::{Index, Indices, indices};
 pub use sampler::{SampleOptions, Sampler, inverse_normal};
