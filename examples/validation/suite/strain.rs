@@ -24,7 +24,8 @@ const POISSON: f64 = 0.499;
 fn slid(coulomb: f64, slope: f64) -> SteadySlide {
     let scene = parse(&format!(
         "name = 'rubber'\nlayer = {{ foundation = 'half_space', masses = 100, spacing = 1e-5, width = 1e-2 }}\n\
-         material = {{ density = 1100.0, poisson_ratio = {POISSON}, equilibrium_modulus = {MODULUS:e} }}\n\
+         material = {{ density = 1100.0, poisson_ratio = {POISSON}, equilibrium_modulus = {MODULUS:e}, \
+         prony = [] }}\n\
          friction = {{ coulomb = {coulomb} }}\nsurface = {{ kind = 'sinusoid', amplitude = 1e-5, wavelength = 1e-3 }}"
     ));
     let full = 0.5 * slope * MODULUS / (1.0 - POISSON * POISSON);
