@@ -29,7 +29,8 @@ if [ "${2:-}" = --sled ]; then
     "$asperity" plot stop-values.csv stop-rates.csv stop-hold.csv --y F_x --labels "values alone,rates,hold" -o stop.svg
     "$root/build-fmu.sh" --patch "$root/scenes/patch-mujoco/tread.toml" -o tread.fmu
     "$python" "$here/slope.py" tread.fmu
-    "$asperity" plot slope-values.csv slope-hold.csv slope-rates.csv --y F_x --labels "values alone,hold,rates" -o slope.svg
+    "$asperity" plot slope-values.csv slope-hold.csv slope-rates.csv slope-damped.csv --y F_x \
+        --labels "values alone,hold,rates,damped" -o slope.svg
     "$asperity" plot sled-layer.csv sled-element.csv --y F_x --labels layer,element -o sled.svg
     exit
 fi
