@@ -39,8 +39,12 @@ impl RodFilm {
         }
         self.pieces.push((length, volume.max(0.0) / length));
         if self.pieces.len() > MOST_PIECES {
-            let difference = |i: &usize| (self.pieces[*i].1 - self.pieces[*i + 1].1).abs();
-            let nearest = (0..MOST_PIECES).min_by(|a, b| difference(a).total_cmp(&difference(b)));
+            // Over what length joining changes the film, and by which part of it: friction follows a thin film's logarithm.
+            let changed = |i: &usize| {
+                let ((a, thick), (b, other)) = (self.pieces[*i], self.pieces[*i + 1]);
+                (thick - other).abs() / (thick + other).max(f64::MIN_POSITIVE) * a * b / (a + b)
+            };
+            let nearest = (0..MOST_PIECES).min_by(|a, b| changed(a).total_cmp(&changed(b)));
             if let Some(i) = nearest {
                 let ((a, thick), (b, other)) = (self.pieces[i], self.pieces.remove(i + 1));
                 self.pieces[i] = (a + b, (a * thick + b * other) / (a + b));

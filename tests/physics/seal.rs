@@ -256,10 +256,10 @@ fn a_closed_lip_breaks_away() {
     let largest = fine.iter().fold(0.0_f64, |largest, force| largest.max(force.abs()));
     let slides = fine[99].abs();
     assert!(largest > 20.0 * slides, "{largest} {slides}");
-    // Where the lip dries, as it turns, friction differs by up to 1.8e-2 of the largest between tolerances.
+    // film.md 4 allows 3e-3 of the largest beside another program; this is its own error of time, 2.2e-3.
     coarse
         .iter()
         .zip(&fine)
         .enumerate()
-        .for_each(|(i, (a, b))| assert!((a - b).abs() < 2.5e-2 * largest, "{i}: {a} {b}"));
+        .for_each(|(i, (a, b))| assert!((a - b).abs() < 5e-3 * largest, "{i}: {a} {b}"));
 }
