@@ -81,8 +81,6 @@ pub(super) struct Stepped {
     pub(super) loss: f64,
     /// The speed at its end, m/s.
     pub(super) speed: f64,
-    /// The force of the spring at its end, N.
-    pub(super) force: f64,
     /// The error over the tolerance.
     pub(super) error: f64,
 }
@@ -268,7 +266,6 @@ impl Stepper {
         stepped.travel = speeds.iter().zip(weights).map(|(speed, weight)| speed * weight).sum();
         stepped.loss = power.iter().zip(weights).map(|(power, weight)| power * weight).sum();
         stepped.speed = speeds[2];
-        stepped.force = drive.force(h, stepped.travel);
         stepped.error = self.error(start, h, tolerance);
         // The fluid is kept: what flows in is what flows out and stays.
         let stays: f64 = self.contents.iter().zip(start).map(|(end, start)| end - start).sum();
@@ -375,14 +372,6 @@ impl Drive {
     fn slip(self, time: f64, slipped: f64, own: f64) -> Option<[f64; 3]> {
         let Self::Slips { sign, force, stiffness, rod_speed, .. } = self else { return None };
         Some([force + stiffness * (rod_speed * time - slipped), stiffness * own, sign])
-    }
-
-    /// The force of the spring after a step of `h` (s) that slipped by `travel` (m).
-    fn force(self, h: f64, travel: f64) -> f64 {
-        match self {
-            Self::Given(_) => 0.0,
-            Self::Slips { force, stiffness, rod_speed, .. } => force + stiffness * (rod_speed * h - travel),
-        }
     }
 }
 

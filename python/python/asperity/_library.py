@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import sys
 import warnings
+from collections.abc import Sequence
+from os import PathLike
 from pathlib import Path
 
 _BINARIES = Path(__file__).parent / "binaries"
@@ -35,12 +37,14 @@ def own_libraries() -> list[str]:
     return [f"{path.parent.name}={path}" for path in sorted(_BINARIES.glob("*/*")) if path.suffix in _LIBRARIES]
 
 
-def options() -> list[str]:
-    """The shared libraries that this package brings, one a platform, as ``asperity pack --library`` takes them.
+def options(given: Sequence[str | PathLike[str]] | None = None) -> list[str]:
+    """The shared libraries given, as ``asperity pack --library`` takes them; ``None``: those that this package brings.
 
     Raises:
-        FileNotFoundError: Where this package was built without any.
+        FileNotFoundError: Where none are given and this package was built without any.
     """
+    if given is not None:
+        return [str(library) for library in given]
     libraries = own_libraries()
     if not libraries:
         raise FileNotFoundError(f"no shared library below {_BINARIES}: {_WHEEL}")

@@ -142,6 +142,6 @@ class Moving(Generic[State]):
             flat_names: As for :meth:`Scene.pack`.
             references: As for :meth:`Scene.pack`.
         """
-        given = library_options() if libraries is None else [str(library) for library in libraries]
+        given = library_options(libraries)
         warn_of_packed(self._definition.pack(Path(path), given, {"flat_names": flat_names, "references": references}))
         return Path(path)

@@ -345,7 +345,7 @@ class Scene(SceneInputs):
         """
         from ._errors import SceneError
 
-        given = library_options() if libraries is None else [str(library) for library in libraries]
+        given = library_options(libraries)
         packed = self._in_own_folder(self.to_toml(), [], self._read_files())
         if packed != self:
             raise SceneError(

@@ -242,7 +242,7 @@ class Table:
             flat_names: As for :meth:`Scene.pack`.
             references: As for :meth:`Scene.pack`.
         """
-        given = library_options() if libraries is None else [str(library) for library in libraries]
+        given = library_options(libraries)
         with tempfile.TemporaryDirectory(prefix="asperity-") as folder:
             file = Path(folder) / "table.csv"
             self.to_csv(file)

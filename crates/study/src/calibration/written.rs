@@ -152,6 +152,8 @@ impl FitCovariance {
                 scale: if parameter.is_logarithmic() { Scale::Log } else { Scale::Linear },
             }
         };
+        // Given deviations are known, those of the residuals estimated.
+        let estimated = (!problem.has_sigma && statistics.degrees > 0).then_some(statistics.degrees);
         // The statistics' coordinate of a value is that over the distance of its bounds.
         let unit = |index: usize| problem.parameters[index].error_of_coordinate(1.0);
         let entry = |a: usize, b: usize| statistics.covariance[(a, b)] * unit(a) * unit(b);
@@ -160,11 +162,7 @@ impl FitCovariance {
             entries: told.iter().map(|&a| told.iter().map(|&b| entry(a, b)).collect()).collect(),
             left_out,
             fitted_to: format!("{} measurements of {}", problem.rows.len(), name_of(free.data())),
-            stored: if problem.has_sigma || statistics.degrees == 0 {
-                stored(free, problem, &told)
-            } else {
-                stored(free, problem, &told).with_whole(DEGREES_OF_FREEDOM, statistics.degrees as u64)
-            },
+            stored: stored(free, problem, &told).with_some(DEGREES_OF_FREEDOM, estimated.map(|n| n.to_string())),
             misfit: statistics.misfit,
         }
     }

@@ -79,12 +79,15 @@ struct Level {
     peak_to_valley: f64,
 }
 
-/// A linear complementarity problem: pressures p ≥ 0 of a mean (Pa), under which the surface lies on or above the heights (m).
+/// A linear complementarity problem: pressures p ≥ 0 of a mean (Pa), under which the surface lies on or above the heights (m);
+/// and the rms height and the peak to valley of its surface (m), over which it is solved.
 #[derive(Clone, Copy, Debug)]
 struct Obstacle<'a> {
     compliance: &'a Compliance,
     heights: &'a [f64],
     pressure: f64,
+    rms: f64,
+    peak_to_valley: f64,
 }
 
 /// How far a grid is solved.
@@ -281,39 +284,49 @@ impl Level {
 
     /// The contact from the pressures `field` (Pa) at all points, of any mean: the first set is where they are positive.
     fn solve(&mut self, compliance: &Compliance, field: Vec<f64>, pressure: f64, goal: Goal) -> Contact {
-        let (share, heights) = (self.surface.share_of_point(), self.surface.heights.clone());
-        let mut sets = 0;
-        if compliance.least_storage() > SWINGS {
-            let obstacle = Obstacle { compliance, heights: &heights, pressure };
-            let found = self.by_sets(&obstacle, field.clone(), goal);
-            // A grid from which a finer one starts is good enough.
-            if goal.is_met(&found) || goal.wrong > 0.0 {
-                return found;
-            }
-            sets = found.sets;
+        let Self { surface, linear, rms, peak_to_valley } = self;
+        let (rms, peak_to_valley) = (*rms, *peak_to_valley);
+        let obstacle = Obstacle { compliance, heights: &surface.heights, pressure, rms, peak_to_valley };
+        if compliance.least_storage() <= SWINGS {
+            return obstacle.by_ladder(linear, surface, field, goal);
         }
-        // Loss far above storage lets sets swing. The operator is strictly monotone all the same, so that the proximal point
-        // algorithm finds the one solution (R. T. Rockafellar, SIAM J. Control Optim. 14, 1976): (C + ε) p + d = h + ε x on the
-        // set, where x is the solution before, whose sets swing the less the larger ε is.
-        let [eight, least] = compliance.sizes(self.surface.size);
+        let found = obstacle.by_sets(linear, field.clone(), goal);
+        // A grid from which a finer one starts is good enough.
+        if goal.is_met(&found) || goal.wrong > 0.0 {
+            return found;
+        }
+        let ladder = obstacle.by_ladder(linear, surface, field, goal);
+        Contact { sets: found.sets + ladder.sets, ..ladder }
+    }
+}
+
+impl Obstacle<'_> {
+    /// The contact by the proximal point algorithm, from the pressures `field` (Pa) at all points of a surface.
+    ///
+    /// Loss far above storage lets sets swing. The operator is strictly monotone all the same, so that this finds the one
+    /// solution (R. T. Rockafellar, SIAM J. Control Optim. 14, 1976): (C + ε) p + d = h + ε x on the set, where x is the solution
+    /// before, whose sets swing the less the larger ε is.
+    fn by_ladder(&self, linear: &mut LinearSolver, surface: &SurfaceGrid, field: Vec<f64>, goal: Goal) -> Contact {
+        let (share, goal) = (surface.share_of_point(), goal.of_rung());
+        let [eight, least] = self.compliance.sizes(surface.size);
         let (mut epsilon, mut factor, mut x) = (eight, LADDER_STEP, field);
-        let mut found = Contact::nothing();
+        let (mut found, mut sets) = (Contact::nothing(), 0);
         for _ in 0..MOST_RUNGS {
             if epsilon < LEAST_PROXIMAL * least {
                 epsilon = 0.0;
             }
             let by = epsilon / share;
-            let lifted: Vec<f64> = heights.iter().zip(&x).map(|(height, x)| height + by * x).collect();
-            let (proximal, goal) = (compliance.proximal(epsilon, share), goal.of_rung());
-            let obstacle = Obstacle { compliance: &proximal, heights: &lifted, pressure };
-            found = self.by_sets(&obstacle, x.clone(), goal);
+            let heights: Vec<f64> = self.heights.iter().zip(&x).map(|(height, x)| height + by * x).collect();
+            let compliance = self.compliance.proximal(epsilon, share);
+            let rung = Obstacle { compliance: &compliance, heights: &heights, ..*self };
+            found = rung.by_sets(linear, x.clone(), goal);
             sets += found.sets;
             found.sets = sets;
             match (goal.is_met(&found), epsilon == 0.0) {
                 (true, true) => return found,
                 (true, false) => {
                     x.fill(0.0);
-                    let least = NEXT_TO_NOTHING * pressure;
+                    let least = NEXT_TO_NOTHING * self.pressure;
                     found.points.iter().zip(&found.pressures).for_each(|(&point, p)| x[point as usize] = p.max(least));
                     epsilon /= factor;
                     factor = LADDER_STEP;
@@ -333,8 +346,8 @@ impl Level {
     }
 
     /// The contact by sets alone, from the pressures `field` (Pa) at all points.
-    fn by_sets(&mut self, obstacle: &Obstacle<'_>, mut field: Vec<f64>, goal: Goal) -> Contact {
-        let (count, pressure) = (self.surface.size.points(), obstacle.pressure);
+    fn by_sets(&self, linear: &mut LinearSolver, mut field: Vec<f64>, goal: Goal) -> Contact {
+        let (count, pressure) = (self.heights.len(), self.pressure);
         let (mut seen, mut accuracy) = (HashSet::new(), goal.first_accuracy);
         let mut gaps = vec![0.0; count];
         let mut found = Contact::nothing();
@@ -344,7 +357,7 @@ impl Level {
             let mut pressures: Vec<f64> = points.iter().map(|&point| field[point as usize]).collect();
             let scale = pressure * count as f64 / sum(&pressures);
             pressures.iter_mut().for_each(|p| *p *= scale);
-            let separation = self.solve_set(obstacle, &points, &mut pressures, accuracy * self.rms, &mut gaps);
+            let separation = self.solve_set(linear, &points, &mut pressures, accuracy * self.rms, &mut gaps);
 
             // Step 2, who is wrong: p < 0 on the set is a pull, g < 0 beside it lies below. Gaps are known as well as they
             // were solved for.
@@ -388,22 +401,22 @@ impl Level {
 
     /// Solves for the pressures on a set, and writes the gaps of all points, 0 on the set; returns the separation, m.
     fn solve_set(
-        &mut self,
-        obstacle: &Obstacle<'_>,
+        &self,
+        linear: &mut LinearSolver,
         set: &[u32],
         pressures: &mut [f64],
         tolerance: f64,
         gaps: &mut [f64],
     ) -> f64 {
         // C p + d = h on the set: u = C p is how the surface moves, g = u + d - h.
-        let Obstacle { compliance, heights, .. } = *obstacle;
+        let Self { compliance, heights, .. } = *self;
         let mut residual = vec![0.0; set.len()];
         let off = |moved: &[f64], residual: &mut [f64]| {
             set.iter().zip(residual).for_each(|(&point, off)| *off = heights[point as usize] - moved[point as usize]);
         };
-        off(self.linear.moved(compliance, set, pressures), &mut residual);
-        self.linear.solve(compliance, set, pressures, &mut residual, tolerance);
-        let moved = self.linear.moved(compliance, set, pressures);
+        off(linear.moved(compliance, set, pressures), &mut residual);
+        linear.solve(compliance, set, pressures, &mut residual, tolerance);
+        let moved = linear.moved(compliance, set, pressures);
         off(moved, &mut residual);
         // d is the mean of h - C p over the set; what is left of the differences from it is within the tolerance.
         let separation = sum(&residual) / residual.len() as f64;
