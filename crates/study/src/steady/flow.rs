@@ -29,6 +29,8 @@ pub struct FlowGaps {
 const CLOSES_AT: f64 = 0.42;
 /// A leak gap whose cube is this part of that of the gap's root mean square is closed.
 const CLOSED: f64 = 1e-10;
+/// A gap below this part of its root mean square is closed: its cube is a hundredth of that.
+const TOUCHES: f64 = 1e-4;
 
 impl FlowGaps {
     const ZERO: Self = Self { leak: 0.0, drag: 0.0, leak_across: None };
@@ -82,10 +84,12 @@ impl FlowGaps {
             return (Self { leak_across: Some(0.0), ..Self::ZERO }, None);
         }
         // In units of the largest gap, and of a length that makes faces of even gaps 1.
-        let relative: Vec<f64> = gaps.iter().map(|gap| gap / largest).collect();
-        let network = Network::new(&relative, size, spacing);
+        let mut relative: Vec<f64> = gaps.iter().map(|gap| gap / largest).collect();
+        let rms = (dot(&relative, &relative) / gaps.len() as f64).sqrt();
+        let grounds = close_pools(&mut relative, size, TOUCHES * rms);
+        let network = Network::new(&relative, size, spacing, &grounds);
         let along = network.solve(&network.sources(Direction::Along, |face, _| face));
-        let closed = CLOSED * (dot(&relative, &relative) / gaps.len() as f64).powf(1.5);
+        let closed = CLOSED * rms.powi(3);
         let cube = |mean: f64| if mean > closed { mean } else { 0.0 };
         let leak = cube(network.conductance(Direction::Along, &along)).cbrt();
         let across = network.solve(&network.sources(Direction::Across, |face, _| face));
@@ -131,7 +135,8 @@ const RESIDUAL: f64 = 1e-12;
 const MOST_ITERATIONS: usize = 20_000;
 
 impl Network {
-    fn new(gaps: &[f64], size: GridSize, [dx, dy]: [f64; 2]) -> Self {
+    /// That of gaps whose pools are closed, with the pressure 0 at a point of each way.
+    fn new(gaps: &[f64], size: GridSize, [dx, dy]: [f64; 2], grounds: &[usize]) -> Self {
         let harmonic = |a: f64, b: f64| if a > 0.0 && b > 0.0 { 2.0 * a * b / (a + b) } else { 0.0 };
         let cubes: Vec<f64> = gaps.iter().map(|gap| gap.powi(3)).collect();
         let faces = |values: &[f64], direction| -> Vec<f64> {
@@ -148,7 +153,7 @@ impl Network {
             [along[0], along[1], across[0], across[1]]
         };
         let links: Vec<Links> = (0..gaps.len()).map(links).collect();
-        let (carried, pivots) = (faces(gaps, Direction::Along), pivots(&links));
+        let (carried, pivots) = (faces(gaps, Direction::Along), pivots(&links, grounds));
         Self { size, conductances, carried, weights, links, pivots }
     }
 
@@ -259,13 +264,54 @@ impl Network {
     }
 }
 
-/// Cholesky's incomplete factors on the places of the matrix itself, (D - L) D⁻¹ (D - Lᵀ), as D.
-fn pivots(links: &[Links]) -> Vec<f64> {
+/// Closes gaps up to `touches`, and pools: what does not go round the period in any direction, where nothing flows in the mean and
+/// the pressure is any. Returns the first point of each way that is left.
+fn close_pools(gaps: &mut [f64], size: GridSize, touches: f64) -> Vec<usize> {
+    // Where each point that was reached lies, in whole periods from the one that it was reached from.
+    let mut periods: Vec<Option<[i32; 2]>> = vec![None; gaps.len()];
+    let mut grounds = Vec::new();
+    for first in 0..gaps.len() {
+        if gaps[first] <= touches {
+            gaps[first] = 0.0;
+        } else if periods[first].is_none() {
+            let (mut reached, mut next, mut goes_round) = (vec![first], 0, false);
+            periods[first] = Some([0; 2]);
+            while let Some(&i) = reached.get(next) {
+                next += 1;
+                let Some(here) = periods[i] else { continue };
+                for (j, crossed) in size.beside(i) {
+                    let there = [here[0] + crossed[0], here[1] + crossed[1]];
+                    match periods[j] {
+                        _ if gaps[j] <= touches => {}
+                        Some(before) => goes_round |= before != there,
+                        None => {
+                            periods[j] = Some(there);
+                            reached.push(j);
+                        }
+                    }
+                }
+            }
+            if goes_round {
+                grounds.push(first);
+            } else {
+                reached.iter().for_each(|&i| gaps[i] = 0.0);
+            }
+        }
+    }
+    grounds
+}
+
+/// Cholesky's incomplete factors on the places of the matrix itself, (D - L) D⁻¹ (D - Lᵀ), as D; 0 at the grounds, whose pressure
+/// is known.
+fn pivots(links: &[Links], grounds: &[usize]) -> Vec<f64> {
     let mut pivots = vec![0.0; links.len()];
     for (i, links_here) in links.iter().enumerate() {
+        if grounds.contains(&i) {
+            continue;
+        }
         let whole: f64 = links_here.iter().map(|link| link.1).sum();
         let mut pivot = whole;
-        for &(j, link) in links_here.iter().filter(|&&(j, link)| j < i && link > 0.0) {
+        for &(j, link) in links_here.iter().filter(|&&(j, link)| j < i && link > 0.0 && pivots[j] > 0.0) {
             let later: f64 = links[j].iter().filter(|(k, _)| *k > j).map(|link| link.1).sum();
             pivot -= link * (link + RELAXATION * (later - link)) / pivots[j];
         }
@@ -275,6 +321,17 @@ fn pivots(links: &[Links]) -> Vec<f64> {
 }
 
 impl GridSize {
+    /// The points beside one, and how many periods are crossed on the way to each along and across the sliding.
+    fn beside(self, i: usize) -> [(usize, [i32; 2]); 4] {
+        let (column, row, last_row) = (i % self.nx, i / self.nx, self.ny - 1);
+        [
+            (self.before(i, Direction::Along), [-i32::from(column == 0), 0]),
+            (self.behind(i, Direction::Along), [i32::from(column + 1 == self.nx), 0]),
+            (self.before(i, Direction::Across), [0, -i32::from(row == 0)]),
+            (self.behind(i, Direction::Across), [0, i32::from(row == last_row)]),
+        ]
+    }
+
     /// The point behind one in a direction.
     fn behind(self, i: usize, direction: Direction) -> usize {
         let points = self.points();
@@ -345,8 +402,9 @@ mod tests {
             let wave = |[a, b, c]: &[f64; 3]| (TAU * ((a * 4.0).round() * x + (b * 4.0).round() * y + c)).cos();
             0.6 + phases.iter().map(wave).sum::<f64>() * 0.3
         };
-        let gaps: Vec<f64> = (0..size.points()).map(|i| height(i).max(0.0)).collect();
-        let network = Network::new(&gaps, size, [1.0, 0.7]);
+        let mut gaps: Vec<f64> = (0..size.points()).map(|i| height(i).max(0.0)).collect();
+        let grounds = close_pools(&mut gaps, size, 0.0);
+        let network = Network::new(&gaps, size, [1.0, 0.7], &grounds);
         let pressures = network.solve(&network.sources(Direction::Along, |face, _| face));
         let mean = network.conductance(Direction::Along, &pressures);
         assert!(mean > 1e-3 && gaps.iter().filter(|gap| **gap == 0.0).count() > 100, "{mean}");
@@ -363,6 +421,24 @@ mod tests {
         let along = flows.iter().map(|flow| flow[0]).sum::<f64>() / gaps.len() as f64;
         assert!((along / mean - 1.0).abs() < 1e-9, "{along} {mean}");
         assert!(flows.iter().zip(&gaps).all(|(flow, gap)| *gap > 0.0 || *flow == [0.0; 2]));
+    }
+
+    /// A channel along the sliding, and beside it a pool whose gaps have a thousandfold of sizes: as without the pool.
+    #[test]
+    fn what_is_enclosed_carries_nothing() {
+        let size = GridSize { nx: 16, ny: 8 };
+        let gap = |i: usize, has_pool: bool| match (i % size.nx, i / size.nx) {
+            (column, 0) => 1e-6 + 5e-7 * (column as f64).sin(),
+            (column @ 4..=9, 3..=5) if has_pool => 1e-6 * 10.0_f64.powi(4 - column as i32).max(1e-3),
+            _ => 0.0,
+        };
+        let found = [true, false].map(|has_pool| {
+            let gaps: Vec<f64> = (0..size.points()).map(|i| gap(i, has_pool)).collect();
+            FlowGaps::of_map(&gaps, size, [1e-5, 1e-5])
+        });
+        assert!((found[0].leak / found[1].leak - 1.0).abs() < 1e-9, "{found:?}");
+        assert!(found[1].drag > 0.0 && (found[0].drag / found[1].drag - 1.0).abs() < 1e-9, "{found:?}");
+        assert_eq!(found.map(|gaps| gaps.leak_across), [Some(0.0); 2]);
     }
 
     #[test]
