@@ -9,6 +9,7 @@
 
 use asperity::math::{bracketed_root, dot, sum};
 
+use super::network::Network;
 use super::transform::GridSize;
 
 /// Lengths that tell how a fluid passes a contact. All tend to the mean gap where nothing touches, and are 0 where every
@@ -69,36 +70,35 @@ impl FlowGaps {
     pub fn of_map_with_leak(gaps: &[f64], size: GridSize, spacing: [f64; 2]) -> (Self, Vec<f64>) {
         let largest = gaps.iter().copied().fold(0.0, f64::max);
         match Self::solve(gaps, size, spacing) {
-            (found, Some((network, along))) if found.leak > 0.0 => {
+            (found, Some((faces, along))) if found.leak > 0.0 => {
                 let size = |[x, y]: &[f64; 2]| largest.powi(3) * x.hypot(*y);
-                (found, network.flows(&along).iter().map(size).collect())
+                (found, faces.flows(&along).iter().map(size).collect())
             }
             (found, _) => (found, vec![0.0; gaps.len()]),
         }
     }
 
-    /// The same, and the network with its pressures along the sliding, where there is a gap; in units of the largest.
-    fn solve(gaps: &[f64], size: GridSize, spacing: [f64; 2]) -> (Self, Option<(Network, Vec<f64>)>) {
+    /// The same, and the faces with the pressures along the sliding, where there is a gap; in units of the largest.
+    fn solve(gaps: &[f64], size: GridSize, spacing: [f64; 2]) -> (Self, Option<(Faces, Vec<f64>)>) {
         let largest = gaps.iter().copied().fold(0.0, f64::max);
         if largest <= 0.0 {
             return (Self { leak_across: Some(0.0), ..Self::ZERO }, None);
         }
         // In units of the largest gap, and of a length that makes faces of even gaps 1.
-        let mut relative: Vec<f64> = gaps.iter().map(|gap| gap / largest).collect();
-        let rms = (dot(&relative, &relative) / gaps.len() as f64).sqrt();
-        let grounds = close_pools(&mut relative, size, TOUCHES * rms);
-        let network = Network::new(&relative, size, spacing, &grounds);
-        let along = network.solve(&network.sources(Direction::Along, |face, _| face));
+        let rms = (dot(gaps, gaps) / gaps.len() as f64).sqrt() / largest;
+        let open = |gap: &f64| if gap / largest > TOUCHES * rms { gap / largest } else { 0.0 };
+        let relative: Vec<f64> = gaps.iter().map(open).collect();
+        let faces = Faces::new(&relative, size, spacing);
+        let network = faces.network();
+        let along = network.solve(&faces.sources(Direction::Along));
         let closed = CLOSED * rms.powi(3);
         let cube = |mean: f64| if mean > closed { mean } else { 0.0 };
-        let leak = cube(network.conductance(Direction::Along, &along)).cbrt();
-        let across = network.solve(&network.sources(Direction::Across, |face, _| face));
-        let leak_across = cube(network.conductance(Direction::Across, &across)).cbrt();
-        let carried = network.sources(Direction::Along, |_, face| face);
-        let pressures = network.solve(&carried);
-        let drag = network.mean_carried(&pressures);
+        let leak = cube(faces.conductance(Direction::Along, &along)).cbrt();
+        let across = network.solve(&faces.sources(Direction::Across));
+        let leak_across = cube(faces.conductance(Direction::Across, &across)).cbrt();
+        let drag = if leak > 0.0 { faces.mean_carried(&along) } else { 0.0 };
         let [leak, drag, across] = [leak, drag.max(0.0), leak_across].map(|gap| largest * gap);
-        (Self { leak, drag, leak_across: Some(across) }, Some((network, along)))
+        (Self { leak, drag, leak_across: Some(across) }, Some((faces, along)))
     }
 }
 
@@ -109,106 +109,45 @@ enum Direction {
     Across,
 }
 
-/// The faces between the points of a grid with a period in both directions, as conductances of a network, and Cholesky's
-/// incomplete factors of its matrix.
-struct Network {
+/// The faces between the points of a grid with a period in both directions.
+struct Faces {
     size: GridSize,
     /// Of the face behind each point in each direction: the harmonic mean of g³.
     conductances: [Vec<f64>; 2],
     /// The harmonic mean of g on the faces behind along the sliding.
     carried: Vec<f64>,
-    /// What a face of each direction counts in the matrix.
+    /// What a face of each direction counts in the network.
     weights: [f64; 2],
-    links: Vec<Links>,
-    /// The pivots of the factors; 0 of points without a face.
-    pivots: Vec<f64>,
 }
 
-/// The points beside one, and what of the matrix is between.
-type Links = [(usize, f64); 4];
-
-/// How much of what the factors leave out is taken from the pivots: nearly all, for which the iterations grow with the root
-/// of the points along a side alone (I. Gustafsson, BIT 18, 1978), but less than all, for the matrix is singular.
-const RELAXATION: f64 = 0.97;
-/// The residual over that of the start, in the norm of the factors, and the most iterations.
-const RESIDUAL: f64 = 1e-12;
-const MOST_ITERATIONS: usize = 20_000;
-
-impl Network {
-    /// That of gaps whose pools are closed, with the pressure 0 at a point of each way.
-    fn new(gaps: &[f64], size: GridSize, [dx, dy]: [f64; 2], grounds: &[usize]) -> Self {
+impl Faces {
+    fn new(gaps: &[f64], size: GridSize, [dx, dy]: [f64; 2]) -> Self {
         let harmonic = |a: f64, b: f64| if a > 0.0 && b > 0.0 { 2.0 * a * b / (a + b) } else { 0.0 };
         let cubes: Vec<f64> = gaps.iter().map(|gap| gap.powi(3)).collect();
         let faces = |values: &[f64], direction| -> Vec<f64> {
             (0..values.len()).map(|i| harmonic(values[i], values[size.behind(i, direction)])).collect()
         };
         let conductances = [Direction::Along, Direction::Across].map(|direction| faces(&cubes, direction));
-        let weights = [dy / dx, dx / dy];
-        let links = |i: usize| {
-            let [along, across] = [Direction::Along, Direction::Across].map(|direction| {
-                let (before, of) = (size.before(i, direction), direction as usize);
-                let link = |face: usize| weights[of] * conductances[of][face];
-                [(before, link(before)), (size.behind(i, direction), link(i))]
-            });
-            [along[0], along[1], across[0], across[1]]
+        let carried = faces(gaps, Direction::Along);
+        Self { size, conductances, carried, weights: [dy / dx, dx / dy] }
+    }
+
+    fn network(&self) -> Network {
+        let links = |direction: Direction| {
+            let faces = self.conductances[direction as usize].iter().enumerate();
+            faces.flat_map(move |(i, face)| {
+                let (behind, link) = (self.size.behind(i, direction), self.weights[direction as usize] * face);
+                [(i, behind, link), (behind, i, link)]
+            })
         };
-        let links: Vec<Links> = (0..gaps.len()).map(links).collect();
-        let (carried, pivots) = (faces(gaps, Direction::Along), pivots(&links, grounds));
-        Self { size, conductances, carried, weights, links, pivots }
+        Network::new(self.size.points(), links(Direction::Along).chain(links(Direction::Across)).collect())
     }
 
-    /// The direction that the factors make of a residual.
-    fn precondition(&self, residual: &[f64], direction: &mut [f64]) {
-        let through = |i: usize, direction: &[f64], is_known: &dyn Fn(usize) -> bool| -> f64 {
-            self.links[i].iter().filter(|(j, _)| is_known(*j)).map(|&(j, link)| link * direction[j]).sum()
-        };
-        for i in 0..residual.len() {
-            let known = through(i, direction, &|j| j < i);
-            direction[i] = if self.pivots[i] > 0.0 { (residual[i] + known) / self.pivots[i] } else { 0.0 };
-        }
-        for i in (0..residual.len()).rev() {
-            let known = through(i, direction, &|j| j > i);
-            direction[i] += if self.pivots[i] > 0.0 { known / self.pivots[i] } else { 0.0 };
-        }
-    }
-
-    fn apply(&self, pressures: &[f64], flows: &mut [f64]) {
-        for (i, flow) in flows.iter_mut().enumerate() {
-            *flow = self.links[i].iter().map(|&(j, link)| link * (pressures[i] - pressures[j])).sum();
-        }
-    }
-
-    /// What flows into each point if a face carries so much, told from its conductance and what it carries along.
-    fn sources(&self, direction: Direction, through: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+    /// What flows into each point under an even gradient of 1.
+    fn sources(&self, direction: Direction) -> Vec<f64> {
         let faces = &self.conductances[direction as usize];
-        let flow = |face: usize| self.weights[direction as usize] * through(faces[face], self.carried[face]);
+        let flow = |face: usize| self.weights[direction as usize] * faces[face];
         (0..faces.len()).map(|i| flow(self.size.before(i, direction)) - flow(i)).collect()
-    }
-
-    /// The pressures under which as much flows out of each point, by the method of conjugate gradients.
-    fn solve(&self, sources: &[f64]) -> Vec<f64> {
-        let count = sources.len();
-        let (mut pressures, mut residual) = (vec![0.0; count], sources.to_vec());
-        let (mut direction, mut image) = (vec![0.0; count], vec![0.0; count]);
-        self.precondition(&residual, &mut image);
-        direction.copy_from_slice(&image);
-        let mut norm = dot(&residual, &image);
-        let enough = RESIDUAL * RESIDUAL * norm;
-        for _ in 0..MOST_ITERATIONS {
-            if norm <= enough {
-                break;
-            }
-            self.apply(&direction, &mut image);
-            let step = norm / dot(&direction, &image);
-            pressures.iter_mut().zip(&direction).for_each(|(pressure, direction)| *pressure += step * direction);
-            residual.iter_mut().zip(&image).for_each(|(residual, image)| *residual -= step * image);
-            self.precondition(&residual, &mut image);
-            let next = dot(&residual, &image);
-            let share = next / norm;
-            direction.iter_mut().zip(&image).for_each(|(direction, image)| *direction = image + share * *direction);
-            norm = next;
-        }
-        pressures
     }
 
     /// The fall of the pressure over a face in a mean gradient of 1, in that over the same face where all are alike.
@@ -255,83 +194,15 @@ impl Network {
         (0..pressures.len()).map(at).collect()
     }
 
-    /// The mean of what the moving side carries less what the pressures hold back.
-    fn mean_carried(&self, pressures: &[f64]) -> f64 {
-        let faces = &self.conductances[Direction::Along as usize];
-        let fall = |i: usize| pressures[i] - pressures[self.size.behind(i, Direction::Along)];
-        let flows: Vec<f64> = (0..faces.len()).map(|i| self.carried[i] + faces[i] * fall(i)).collect();
-        sum(&flows) / flows.len() as f64
+    /// The mean of what the moving side carries less what pressures hold back, from those under a mean gradient of 1 along the
+    /// sliding: as the network is symmetric, what a face carries counts by its fall of the pressure in that flow.
+    fn mean_carried(&self, along: &[f64]) -> f64 {
+        let carried = |(i, face): (usize, &f64)| face * self.fall(along, i, Direction::Along);
+        self.carried.iter().enumerate().map(carried).sum::<f64>() / self.carried.len() as f64
     }
-}
-
-/// Closes gaps up to `touches`, and pools: what does not go round the period in any direction, where nothing flows in the mean and
-/// the pressure is any. Returns the first point of each way that is left.
-fn close_pools(gaps: &mut [f64], size: GridSize, touches: f64) -> Vec<usize> {
-    // Where each point that was reached lies, in whole periods from the one that it was reached from.
-    let mut periods: Vec<Option<[i32; 2]>> = vec![None; gaps.len()];
-    let mut grounds = Vec::new();
-    for first in 0..gaps.len() {
-        if gaps[first] <= touches {
-            gaps[first] = 0.0;
-        } else if periods[first].is_none() {
-            let (mut reached, mut next, mut goes_round) = (vec![first], 0, false);
-            periods[first] = Some([0; 2]);
-            while let Some(&i) = reached.get(next) {
-                next += 1;
-                let Some(here) = periods[i] else { continue };
-                for (j, crossed) in size.beside(i) {
-                    let there = [here[0] + crossed[0], here[1] + crossed[1]];
-                    match periods[j] {
-                        _ if gaps[j] <= touches => {}
-                        Some(before) => goes_round |= before != there,
-                        None => {
-                            periods[j] = Some(there);
-                            reached.push(j);
-                        }
-                    }
-                }
-            }
-            if goes_round {
-                grounds.push(first);
-            } else {
-                reached.iter().for_each(|&i| gaps[i] = 0.0);
-            }
-        }
-    }
-    grounds
-}
-
-/// Cholesky's incomplete factors on the places of the matrix itself, (D - L) D⁻¹ (D - Lᵀ), as D; 0 at the grounds, whose pressure
-/// is known.
-fn pivots(links: &[Links], grounds: &[usize]) -> Vec<f64> {
-    let mut pivots = vec![0.0; links.len()];
-    for (i, links_here) in links.iter().enumerate() {
-        if grounds.contains(&i) {
-            continue;
-        }
-        let whole: f64 = links_here.iter().map(|link| link.1).sum();
-        let mut pivot = whole;
-        for &(j, link) in links_here.iter().filter(|&&(j, link)| j < i && link > 0.0 && pivots[j] > 0.0) {
-            let later: f64 = links[j].iter().filter(|(k, _)| *k > j).map(|link| link.1).sum();
-            pivot -= link * (link + RELAXATION * (later - link)) / pivots[j];
-        }
-        pivots[i] = if pivot > f64::EPSILON * whole { pivot } else { whole };
-    }
-    pivots
 }
 
 impl GridSize {
-    /// The points beside one, and how many periods are crossed on the way to each along and across the sliding.
-    fn beside(self, i: usize) -> [(usize, [i32; 2]); 4] {
-        let (column, row, last_row) = (i % self.nx, i / self.nx, self.ny - 1);
-        [
-            (self.before(i, Direction::Along), [-i32::from(column == 0), 0]),
-            (self.behind(i, Direction::Along), [i32::from(column + 1 == self.nx), 0]),
-            (self.before(i, Direction::Across), [0, -i32::from(row == 0)]),
-            (self.behind(i, Direction::Across), [0, i32::from(row == last_row)]),
-        ]
-    }
-
     /// The point behind one in a direction.
     fn behind(self, i: usize, direction: Direction) -> usize {
         let points = self.points();
@@ -402,22 +273,21 @@ mod tests {
             let wave = |[a, b, c]: &[f64; 3]| (TAU * ((a * 4.0).round() * x + (b * 4.0).round() * y + c)).cos();
             0.6 + phases.iter().map(wave).sum::<f64>() * 0.3
         };
-        let mut gaps: Vec<f64> = (0..size.points()).map(|i| height(i).max(0.0)).collect();
-        let grounds = close_pools(&mut gaps, size, 0.0);
-        let network = Network::new(&gaps, size, [1.0, 0.7], &grounds);
-        let pressures = network.solve(&network.sources(Direction::Along, |face, _| face));
-        let mean = network.conductance(Direction::Along, &pressures);
+        let gaps: Vec<f64> = (0..size.points()).map(|i| height(i).max(0.0)).collect();
+        let faces = Faces::new(&gaps, size, [1.0, 0.7]);
+        let pressures = faces.network().solve(&faces.sources(Direction::Along));
+        let mean = faces.conductance(Direction::Along, &pressures);
         assert!(mean > 1e-3 && gaps.iter().filter(|gap| **gap == 0.0).count() > 100, "{mean}");
         for column in 0..size.nx {
             let flow = |row: usize| {
                 let i = row * size.nx + column;
-                network.conductances[0][i] * network.fall(&pressures, i, Direction::Along)
+                faces.conductances[0][i] * faces.fall(&pressures, i, Direction::Along)
             };
             let through = (0..size.ny).map(flow).sum::<f64>() / size.ny as f64;
             assert!((through / mean - 1.0).abs() < 1e-9, "{column}: {through} {mean}");
         }
         // So is the mean of what flows at the points, none of it where it touches.
-        let flows = network.flows(&pressures);
+        let flows = faces.flows(&pressures);
         let along = flows.iter().map(|flow| flow[0]).sum::<f64>() / gaps.len() as f64;
         assert!((along / mean - 1.0).abs() < 1e-9, "{along} {mean}");
         assert!(flows.iter().zip(&gaps).all(|(flow, gap)| *gap > 0.0 || *flow == [0.0; 2]));

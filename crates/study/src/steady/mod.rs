@@ -15,6 +15,7 @@ mod flow;
 mod heat;
 mod krylov;
 mod linear;
+mod network;
 pub mod persson;
 mod rubber;
 mod slide;
