@@ -187,7 +187,9 @@ pub(crate) fn advance<T: Number>(force: [T; 2], segment: &Segment<T>) -> Advance
     let slips = (trial[0] * trial[0] + trial[1] * trial[1]).value() > (last * last).value();
     let slip = slip(e, segment, &radius);
     let [x, y] = [slip.elongation[0].or(slips, trial[0]), slip.elongation[1].or(slips, trial[1])];
+    // Without stiffness there is none, nor a slope: that of the elongation may be no number where limits are 0, too.
     let force = [(k_b * x).or(slips, stuck[0]), (k_b * y).or(slips, stuck[1])];
+    let force = force.map(|force| force.or(k_b.value() > 0.0, T::constant(0.0)));
 
     // ∫ L s dt by the mean of the limits where the slip begins and where it ends.
     let limit = begin.limit + (end.limit - begin.limit) * slip.begins;
