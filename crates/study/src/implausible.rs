@@ -14,6 +14,9 @@ const LARGEST_RISE: f64 = 150.0;
 /// A real area that is this part of the nominal one is all of it.
 const WHOLE: f64 = 0.99;
 
+/// The part of friction that its strain may add to it before that is said.
+const STRAINED: f64 = 0.03;
+
 /// What was found at a point or in a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundFriction {
@@ -67,6 +70,25 @@ pub fn implausible(scene: &Scene, found: impl IntoIterator<Item = FoundFriction>
         )
     });
     largest.into_iter().chain(touching).chain(hottest).collect()
+}
+
+/// Where friction draws the surface of a layer along the slopes of its profile by more than can be passed over: links that are
+/// linear in material coordinates have that strain, and not what elasticity adds at the same order (docs/steady.md).
+pub fn strained(scene: &Scene, found: impl IntoIterator<Item = FoundFriction>) -> Option<String> {
+    scene.foundation.as_ref()?;
+    let slope = scene.surface.rms_slope();
+    let excess = |one: &FoundFriction| one.friction * slope * slope;
+    let found: Vec<FoundFriction> = found.into_iter().filter(|one| excess(one) > STRAINED).collect();
+    let most = found.iter().max_by(|a, b| a.friction.total_cmp(&b.friction))?;
+    Some(format!(
+        "friction of {} on slopes of {} in the root mean square strains the layer along them, {}{}: it comes out some {} % too \
+         large, which a layer at rest and `sweep --method steady` do not have",
+        rounded(most.friction, 3),
+        rounded(slope, 3),
+        most.place,
+        more(found.len()),
+        rounded(100.0 * excess(most), 2)
+    ))
 }
 
 const NO_FINE: &str = "without surface.fine the profile counts as smooth between its points, and the shear strength acts on all \
@@ -166,6 +188,19 @@ mod tests {
             said[0].starts_with("contacts are 199 K above the temperature of the scene at 3 m/s and at one more"),
             "{said:?}"
         );
+    }
+
+    #[test]
+    fn friction_that_strains_a_layer_is_said_with_what_it_adds() {
+        let found = |friction| FoundFriction { place: "at 1 m/s".into(), friction, area: None, rise: None };
+        // The slope of 2π 5e-5/1e-3 has a mean square of 0.0493.
+        let steep = scene("kind = 'sinusoid', amplitude = 5e-5, wavelength = 1e-3", "coulomb = 0.9");
+        assert_eq!(strained(&steep, [found(0.6)]), None);
+        let said = strained(&steep, [found(0.7), found(0.9), found(0.5)]).unwrap();
+        let beginning = "friction of 0.9 on slopes of 0.222 in the root mean square strains the layer along them, at 1 m/s and at \
+                         one more point: it comes out some 4.4 % too large";
+        assert!(said.starts_with(beginning), "{said}");
+        assert_eq!(strained(&scene("kind = 'flat'", "coulomb = 5"), [found(5.0)]), None);
     }
 
     /// Glass is smooth, and Coulomb's friction has no area.

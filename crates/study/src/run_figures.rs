@@ -9,7 +9,7 @@ use asperity::scene::{Method, Scene};
 use asperity::simulation::Simulation;
 
 use crate::decimals::{rounded, with_prefix};
-use crate::implausible::{FoundFriction, implausible};
+use crate::implausible::{FoundFriction, implausible, strained};
 use crate::summary::{LabelledLine, labelled};
 
 /// Forces and friction over the rows of a run.
@@ -138,7 +138,8 @@ pub fn implausible_run(scene: &Scene, figures: &RunFigures, simulation: &mut Sim
         _ => value(Output::ContactCount).map(|count| count / scene.layer.masses as f64),
     };
     let place = "over the run".to_owned();
-    implausible(scene, [FoundFriction { place, friction, area, rise: None }])
+    let found = FoundFriction { place, friction, area, rise: None };
+    implausible(scene, [found.clone()]).into_iter().chain(strained(scene, [found])).collect()
 }
 
 /// What a run cost.

@@ -33,6 +33,7 @@ pub const ALL: &[Entry] = &[
     elastic::WAVES,
     viscoelastic::ROLLING,
     viscoelastic::CYLINDERS,
+    viscoelastic::CONSTANT_LOSS,
     viscoelastic::FULL,
     rough::AREA,
     rough::SPECTRUM,

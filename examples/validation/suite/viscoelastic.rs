@@ -3,9 +3,10 @@
 use std::f64::consts::{PI, TAU};
 
 use asperity_study::decimals::{percent, short};
+use asperity_study::steady::SteadySlide;
 
 use super::row::{Claim, Comparison, Curve, Entry, Picture, Row};
-use super::scenes::{cylinder, largest_pressure, parse, rubber, sine, slide};
+use super::scenes::{cylinder, largest_pressure, map, parse, rubber, sine, slide};
 
 const FILE: &str = "examples/validation/suite/viscoelastic.rs";
 
@@ -307,4 +308,51 @@ fn bonded(q: f64, thickness: f64, poisson: f64) -> f64 {
     let [_, normal, height] = at(1.0, e);
     // 2G/M is 1 - ν.
     q * (1.0 - poisson) * normal / height
+}
+
+pub const CONSTANT_LOSS: Entry = Entry {
+    title: "Cylinder and sphere on rubber of a constant loss tangent",
+    reference: "half-space, first order of the loss",
+    source: "the losses of the waves of Hertz' pressures, π/2 tan δ |p_q|² a wave: J. A. Greenwood, H. Minshall and D. Tabor, \
+             Proc. R. Soc. A 259, 1961, 480",
+    file: FILE,
+    quick: true,
+    compare: constant_loss,
+};
+
+/// The loss tangent at the frequency of the contact.
+const LOSS: f64 = 0.02;
+
+fn constant_loss() -> Comparison {
+    // Four terms a decade lose E'' = π/2 g/ln 10^(1/4), whatever the frequency within them.
+    let (speed, step) = (1e-2, 10f64.powf(0.25));
+    let frequency = speed / HALF_WIDTH;
+    let term = LOSS * SOFT * step.ln() / (0.5 * PI);
+    let terms: Vec<[f64; 2]> = (-24..=24).map(|i| [term, step.powi(i) / frequency]).collect();
+    // E' at that frequency is the half of all terms above what is at rest.
+    let scene = rubber(SOFT - 0.5 * term * terms.len() as f64, 0.5, &terms);
+    let modulus = SOFT / 0.75;
+    let over = |friction: f64| friction * RADIUS / (HALF_WIDTH * LOSS);
+
+    let base = 16.0 * HALF_WIDTH;
+    let force = PI * modulus * HALF_WIDTH * HALF_WIDTH / (4.0 * RADIUS);
+    let line = slide(&scene, cylinder(4096, base, RADIUS, HALF_WIDTH), speed, force / base);
+
+    let base = 10.0 * HALF_WIDTH;
+    let force = 4.0 * modulus * HALF_WIDTH.powi(3) / (3.0 * RADIUS);
+    let ball = map(512, base, |x, y| -x.hypot(y).min(4.0 * HALF_WIDTH).powi(2) / (2.0 * RADIUS));
+    let point = slide(&scene, ball, speed, force / (base * base));
+
+    let row = |name: &str, expected: f64, slide: &SteadySlide| {
+        let name = format!("friction of a {name} over tan δ a/R");
+        Row::new(name, [expected, over(slide.friction().unwrap())], "", Claim::Share(0.03))
+    };
+    Comparison {
+        about: format!(
+            "Rubber with tan δ = {LOSS} at every frequency, as 49 terms have it; a is the half-width at E' there."
+        ),
+        rows: vec![row("cylinder", 8.0 / (3.0 * PI), &line), row("sphere", 0.6079, &point)],
+        remark: "First order of tan δ; E' grows by 3 % a decade.".into(),
+        ..Comparison::default()
+    }
 }

@@ -181,7 +181,8 @@ fn steep_slopes(foundation: &Foundation) -> Option<String> {
     (slope > STEEP).then(|| {
         format!(
             "small slopes only: the root mean square slope of {slope:.2} is above {STEEP}: friction comes out too large, by \
-             10 % at 0.3, by 30 % at 0.6 and by a factor at 1"
+             10 % at 0.3, by 30 % at 0.6 and by a factor at 1, as the links have the strain along the slopes and not what finite \
+             strain adds to it"
         )
     })
 }

@@ -7,7 +7,7 @@
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-use super::linear::{Compliance, LinearSolver, gather};
+use super::linear::{Compliance, LinearSolver, gather, scatter};
 use super::surface::SurfaceGrid;
 use super::transform::{Convolution, GridSize};
 use asperity::math::{SplitMix64, sum};
@@ -136,7 +136,7 @@ impl ContactSolver {
         let compliance = |level: &Level| Compliance::new(&level.surface, material, &wave_stiffness, speed);
         // Step 1: full contact, where p = P + M K h is nowhere a pull.
         let finest = compliance(&self.levels[0]);
-        if let Some(full) = self.levels[0].full_contact(&finest, pressure) {
+        if let Some(full) = self.levels[0].full_contact(&finest, None, pressure) {
             return (full, finest);
         }
         // Step 3: from the coarsest grid up, each solved from the pressures of the one before; the coarsest of all from P
@@ -149,14 +149,31 @@ impl ContactSolver {
                 Some((coarse, nx)) => level.interpolated(coarse, *nx),
             };
             if index == 0 {
-                return (level.solve(&finest, first, pressure, Goal::finest(level.surface.size)), finest);
+                return (level.solve(&finest, None, first, pressure), finest);
             }
             let compliance = compliance(level);
-            let found = level.solve(&compliance, first, pressure, Goal::COARSE);
+            let found = level.solve_to(Goal::COARSE, &compliance, None, first, pressure);
             start = Some((found, level.surface.size.nx));
         }
         // There is always a finest level, which returns.
         (Contact::nothing(), finest)
+    }
+
+    /// The contact with other `heights` (m) and under another compliance than one that was found.
+    pub(super) fn solve_again(
+        &mut self,
+        compliance: &Compliance,
+        heights: &[f64],
+        found: &Contact,
+        pressure: f64,
+    ) -> Contact {
+        let level = &mut self.levels[0];
+        if let Some(full) = level.full_contact(compliance, Some(heights), pressure) {
+            return full;
+        }
+        let mut first = vec![0.0; heights.len()];
+        scatter(&found.points, &found.pressures, &mut first);
+        level.solve(compliance, Some(heights), first, pressure)
     }
 
     /// The change of the mean pressure with the separation at a contact whose points stay, Pa/m, under a compliance; `None`
@@ -245,9 +262,9 @@ impl Level {
     }
 
     /// p = P + M K h, where that is nowhere a pull.
-    fn full_contact(&mut self, compliance: &Compliance, pressure: f64) -> Option<Contact> {
+    fn full_contact(&mut self, compliance: &Compliance, heights: Option<&[f64]>, pressure: f64) -> Option<Contact> {
         // The surface would lie on h everywhere: û = h, less its mean, needs p_q = M K h_q.
-        let mut p = self.surface.heights.clone();
+        let mut p = heights.unwrap_or(&self.surface.heights).to_vec();
         self.linear.convolution.apply(&mut p, &compliance.stiffness);
         p.iter_mut().for_each(|p| *p += pressure);
         p.iter().all(|&p| p > 0.0).then(|| Contact {
@@ -282,11 +299,25 @@ impl Level {
         fine
     }
 
-    /// The contact from the pressures `field` (Pa) at all points, of any mean: the first set is where they are positive.
-    fn solve(&mut self, compliance: &Compliance, field: Vec<f64>, pressure: f64, goal: Goal) -> Contact {
+    /// [`solve_to`](Self::solve_to) the last digits.
+    fn solve(&mut self, compliance: &Compliance, heights: Option<&[f64]>, field: Vec<f64>, pressure: f64) -> Contact {
+        self.solve_to(Goal::finest(self.surface.size), compliance, heights, field, pressure)
+    }
+
+    /// The contact from the pressures `field` (Pa) at all points, of any mean: the first set is where they are positive. With
+    /// other heights (m) than those of the surface, where some are given.
+    fn solve_to(
+        &mut self,
+        goal: Goal,
+        compliance: &Compliance,
+        heights: Option<&[f64]>,
+        field: Vec<f64>,
+        pressure: f64,
+    ) -> Contact {
         let Self { surface, linear, rms, peak_to_valley } = self;
         let (rms, peak_to_valley) = (*rms, *peak_to_valley);
-        let obstacle = Obstacle { compliance, heights: &surface.heights, pressure, rms, peak_to_valley };
+        let heights = heights.unwrap_or(&surface.heights);
+        let obstacle = Obstacle { compliance, heights, pressure, rms, peak_to_valley };
         if compliance.least_storage() <= SWINGS {
             return obstacle.by_ladder(linear, surface, field, goal);
         }
@@ -317,8 +348,9 @@ impl Obstacle<'_> {
             }
             let by = epsilon / share;
             let heights: Vec<f64> = self.heights.iter().zip(&x).map(|(height, x)| height + by * x).collect();
-            let compliance = self.compliance.proximal(epsilon, share);
-            let rung = Obstacle { compliance: &compliance, heights: &heights, ..*self };
+            let proximal = (epsilon > 0.0).then(|| self.compliance.with(|_| epsilon.into(), share));
+            let compliance = proximal.as_ref().unwrap_or(self.compliance);
+            let rung = Obstacle { compliance, heights: &heights, ..*self };
             found = rung.by_sets(linear, x.clone(), goal);
             sets += found.sets;
             found.sets = sets;

@@ -60,15 +60,12 @@ impl Compliance {
 }
 
 impl Compliance {
-    /// The same with ε added to each wave's, as those are stored: with the `share` of a point.
-    pub(super) fn proximal(&self, epsilon: f64, share: f64) -> Self {
-        let added = |compliance: &Complex<f64>| {
-            // That of the mean stays 0.
-            if compliance.norm_sqr() > 0.0 { compliance + epsilon } else { *compliance }
-        };
-        let compliance: Vec<_> = self.compliance.iter().map(added).collect();
+    /// The same with something added to each wave's, as those are stored: with the `share` of a point. That of the mean stays 0.
+    pub(super) fn with(&self, added: impl Fn(usize) -> Complex<f64>, share: f64) -> Self {
+        let whole = |(i, c): (usize, &Complex<f64>)| if c.norm_sqr() > 0.0 { c + added(i) } else { *c };
+        let compliance: Vec<_> = self.compliance.iter().enumerate().map(whole).collect();
         let inverse = |c: &Complex<f64>| if c.norm_sqr() > 0.0 { share * share / c } else { *c };
-        let stiffness = if epsilon > 0.0 { compliance.iter().map(inverse).collect() } else { self.stiffness.clone() };
+        let stiffness = compliance.iter().map(inverse).collect();
         Self { compliance, stiffness }
     }
 

@@ -10,6 +10,7 @@
 //! rubber (docs/steady.md).
 
 mod contact;
+mod coupling;
 mod flash;
 mod flow;
 mod heat;

@@ -33,8 +33,9 @@ pub struct SlidingRubber {
 /// A point of the surface as what slides over it has it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slope {
-    /// h_x, 1.
+    /// h_x and h_y, 1.
     pub(super) along: f64,
+    across: f64,
     /// q1 and q2, 1.
     way: f64,
     area: f64,
@@ -53,6 +54,8 @@ pub(super) struct SlidingContact {
     pub(super) by_flash: f64,
 }
 
+/// From this Poisson ratio on the coupling is not counted: it would take up to some 0.7 % of a friction coefficient near one.
+const NEARLY_INCOMPRESSIBLE: f64 = 0.48;
 /// Accuracy of N over itself, and the most evaluations of the law for it.
 const ACCURACY: f64 = 1.0e-12;
 const MOST_EVALUATIONS: usize = 100;
@@ -140,6 +143,17 @@ impl SlidingRubber {
         }
     }
 
+    /// By how much tangential traction moves the surface along the normal: κ'; `None` where that is next to nothing.
+    pub(super) fn coupling(&self) -> Option<f64> {
+        let nu = self.material.poisson_ratio;
+        (nu < NEARLY_INCOMPRESSIBLE).then(|| (1.0 - 2.0 * nu) / (2.0 * (1.0 - nu)))
+    }
+
+    /// Whether it is that of a layer, for which it is not known.
+    pub(super) fn lacks_coupling(&self) -> bool {
+        self.coupling().is_some() && matches!(self.body, ElasticBody::Bonded { .. })
+    }
+
     /// The factor of the normal stiffness of a contact that gives the tangential one: R. D. Mindlin's of a half-space; of
     /// ridges, which move along without shearing, 1.
     pub(super) fn tangential_factor(&self, surface: &SurfaceGrid) -> f64 {
@@ -177,12 +191,18 @@ impl Slope {
     }
 
     fn new(along: f64, across: f64) -> Self {
-        Self { along, way: along.hypot(1.0), area: (1.0 + along * along + across * across).sqrt() }
+        Self { along, across, way: along.hypot(1.0), area: (1.0 + along * along + across * across).sqrt() }
     }
 
     /// ∂(N/A)/∂τ, 1.
     fn pressing(&self) -> f64 {
         self.along * self.area / self.way
+    }
+
+    /// The traction on the rubber along and across the sliding, Pa, under a pressure and τ q1 (Pa).
+    pub(super) fn traction(&self, pressure: f64, friction: f64) -> [f64; 2] {
+        let across = self.across * (pressure + friction * self.along / (self.way * self.way));
+        [-(pressure * self.along + friction), -across]
     }
 
     /// What shear does that holds the `pressure` (Pa) alone, by the law at N = 0.

@@ -1,6 +1,7 @@
 //! Steady sliding under a pressure at a speed: contact, friction of its points, and the heat that it makes.
 
 use super::contact::{Contact, ContactSolver};
+use super::coupling::Coupling;
 use super::flash::{MOST_STEPS, RubbingContact, SurfaceRise, WarmingContact, march};
 use super::linear::{Compliance, scatter, viscous_losses};
 use super::rubber::{SlidingContact, SlidingRubber, Slope};
@@ -43,7 +44,13 @@ pub struct SteadySlide {
     pub heat_converged: bool,
     /// Points that touch on slopes so steep that Coulomb's friction presses them by more than it takes.
     pub jammed: usize,
+    /// Whether tangential traction moves the surface along the normal by what is not known: on a layer of compressible rubber.
+    pub lacks_coupling: bool,
 }
+
+/// The change of how traction moves the surface at the fixed point, over the rms height, and the most steps to it.
+const COUPLING_ACCURACY: f64 = 1e-7;
+const MOST_COUPLINGS: usize = 60;
 
 impl SteadySlide {
     /// Whether the points that touch were found: else nothing of it can be relied on.
@@ -64,6 +71,7 @@ impl SteadySlide {
     /// Why not all of its values can be relied on; `None` where they can.
     pub fn problem(&self) -> Option<SlideProblem> {
         match self.contact.left_over {
+            0 if self.lacks_coupling => Some(SlideProblem::CompressibleLayer),
             0 if self.jammed > 0 => Some(SlideProblem::Jams { points: self.jammed }),
             0 if !self.heat_converged => Some(SlideProblem::HeatNotConverged),
             0 if self.contact.is_full => Some(SlideProblem::FullContact),
@@ -89,6 +97,12 @@ pub enum SlideProblem {
         /// [`SteadySlide::jammed`].
         points: usize,
     },
+    /// The rubber is a bonded layer and compressible.
+    #[error(
+        "tangential traction lifts a bonded layer of a Poisson ratio below 0.48 by what is not known: take foundation = \
+         \"half_space\", or a Poisson ratio from 0.48 on"
+    )]
+    CompressibleLayer,
     /// The flash temperature did not come to its fixed point.
     #[error("the flash temperature does not come to rest")]
     HeatNotConverged,
@@ -116,9 +130,11 @@ pub struct SteadySolver {
 }
 
 /// Friction of the contacts of a surface.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct Rubbed {
-    /// Over all points.
+    /// At each point in contact; none where it is not known.
+    points: Vec<SlidingContact>,
+    /// Over all of them.
     sums: SlidingContact,
     flash_mean: Option<f64>,
     surface_rise: Option<f64>,
@@ -152,10 +168,14 @@ impl SteadySolver {
     /// [`slide`](Self::slide) of rubber that was as warm as the scene before it slid over a `way` (m); `None`: whose surface is.
     pub fn slide_over(&mut self, rubber: &SlidingRubber, speed: f64, pressure: f64, way: Option<f64>) -> SteadySlide {
         let (contact, compliance) = self.solver.solve(&rubber.material, |q| rubber.body.normal(q), speed, pressure);
+        let rubbed = self.rub(rubber, speed, &contact, way);
+        let (contact, rubbed) = match rubber.coupling() {
+            Some(factor) => self.coupled(rubber, (speed, pressure, way), (contact, rubbed), &compliance, factor),
+            None => (contact, rubbed),
+        };
         let normal_stiffness = self.solver.stiffness(&compliance, &contact);
         let tangential_stiffness = self.tangential_stiffness(rubber, speed, &contact, normal_stiffness);
         let viscous_share = self.viscous_share(rubber, speed, &contact, &compliance);
-        let rubbed = self.rub(rubber, speed, &contact, way);
 
         // Means over the surface, of which contacts are `share` each.
         let surface = self.solver.surface();
@@ -164,7 +184,7 @@ impl SteadySolver {
         let drag: f64 = points().map(|(&point, p)| p * self.slopes[point as usize].along).sum();
         let coefficient = |sum: f64| share * sum / pressure;
         let is_found = contact.left_over == 0;
-        let slides = is_found && rubbed.jammed == 0;
+        let slides = is_found && rubbed.jammed == 0 && !rubber.lacks_coupling();
         let profile_hysteresis = coefficient(drag);
         let fine_hysteresis = (slides && rubber.fine_rubs).then_some(coefficient(rubbed.sums.hysteresis));
         SteadySlide {
@@ -183,8 +203,51 @@ impl SteadySolver {
             has_friction: rubber.has_friction,
             heat_converged: rubbed.heat_converged,
             jammed: rubbed.jammed,
+            lacks_coupling: rubber.lacks_coupling(),
             contact,
         }
+    }
+
+    /// The contact that was found without it, with what tangential traction does along the normal: a fixed point.
+    fn coupled(
+        &mut self,
+        rubber: &SlidingRubber,
+        (speed, pressure, way): (f64, f64, Option<f64>),
+        (mut contact, mut rubbed): (Contact, Rubbed),
+        compliance: &Compliance,
+        factor: f64,
+    ) -> (Contact, Rubbed) {
+        let surface = self.solver.surface().clone();
+        let accuracy = COUPLING_ACCURACY * surface.rms_height() * (surface.size.points() as f64).sqrt();
+        let mut coupling: Option<(Coupling, Compliance)> = None;
+        let mut before = vec![0.0; self.slopes.len()];
+        for _ in 0..MOST_COUPLINGS {
+            if contact.left_over > 0 || rubbed.jammed > 0 {
+                return (contact, rubbed);
+            }
+            let friction = rubbed.points.iter().map(|at| at.friction).chain(std::iter::repeat(0.0));
+            let points = contact.points.iter().zip(&contact.pressures).zip(friction);
+            let tractions: Vec<[f64; 2]> =
+                points.map(|((&point, p), friction)| self.slopes[point as usize].traction(*p, friction)).collect();
+            // The part of it that is as the pressure belongs to the linear problem.
+            let (coupling, whole) = coupling.get_or_insert_with(|| {
+                let mean = -tractions.iter().map(|traction| traction[0]).sum::<f64>() / sum(&contact.pressures);
+                let coupling = Coupling::new(&surface, compliance, factor, mean);
+                let whole = coupling.compliance(compliance, surface.share_of_point());
+                (coupling, whole)
+            });
+            let moved = coupling.moved(&contact, &tractions, self.solver.convolution());
+            let change: f64 = moved.iter().zip(&before).map(|(moved, before)| (moved - before).powi(2)).sum();
+            let heights: Vec<f64> = surface.heights.iter().zip(&moved).map(|(height, moved)| height - moved).collect();
+            contact = self.solver.solve_again(whole, &heights, &contact, pressure);
+            rubbed = self.rub(rubber, speed, &contact, way);
+            if change.sqrt() <= accuracy {
+                return (contact, rubbed);
+            }
+            before = moved;
+        }
+        contact.left_over = contact.left_over.max(1);
+        (contact, rubbed)
     }
 
     /// What friction does in a contact, and how warm that becomes.
@@ -202,6 +265,7 @@ impl SteadySolver {
             rubbed.sums.friction += at.friction;
             rubbed.sums.hysteresis += at.hysteresis;
             rubbed.sums.share += at.share;
+            rubbed.points.push(at);
         }
         rubbed
     }

@@ -89,6 +89,15 @@ impl SurfaceGrid {
         TAU / self.length * column as f64
     }
 
+    /// q of a column and a row of the spectrum, rad/m; 0 in a direction in which there are two points a wave, which have no
+    /// phase.
+    pub fn wave_vector(&self, column: usize, row: usize) -> [f64; 2] {
+        let ny = self.size.ny;
+        let along = if self.size.is_shortest(column) { 0.0 } else { self.wave_number(column) };
+        let has_phase = ny > 1 && 2 * row != ny;
+        [along, if has_phase { TAU / self.width * self.size.wave_along_y(row) } else { 0.0 }]
+    }
+
     /// |q| of a column and a row of the spectrum, rad/m.
     pub fn magnitude(&self, column: usize, row: usize) -> f64 {
         if self.size.ny == 1 {
@@ -109,32 +118,21 @@ impl SurfaceGrid {
 
     /// ∂h/∂x of the waves, at the points; that of two points a wave is 0 there.
     pub fn slopes(&self, convolution: &mut Convolution) -> Vec<f64> {
-        self.derivative(
-            convolution,
-            |column, _| {
-                if self.size.is_shortest(column) { 0.0 } else { self.wave_number(column) }
-            },
-        )
+        self.derivative(convolution, 0)
     }
 
     /// ∂h/∂y of the waves alike; of ridges 0.
     pub fn slopes_across(&self, convolution: &mut Convolution) -> Vec<f64> {
-        let ny = self.size.ny;
-        if ny == 1 {
+        if self.size.ny == 1 {
             return vec![0.0; self.size.points()];
         }
-        self.derivative(
-            convolution,
-            |_, row| {
-                if 2 * row == ny { 0.0 } else { TAU / self.width * self.size.wave_along_y(row) }
-            },
-        )
+        self.derivative(convolution, 1)
     }
 
-    /// The derivative along the direction in which a wave of a column and a row has the `wave_number`.
-    fn derivative(&self, convolution: &mut Convolution, wave_number: impl Fn(usize, usize) -> f64) -> Vec<f64> {
+    /// The derivative along x (0) or y (1).
+    fn derivative(&self, convolution: &mut Convolution, axis: usize) -> Vec<f64> {
         let share = self.share_of_point();
-        let factor = |(column, row)| Complex::new(0.0, wave_number(column, row) * share);
+        let factor = |(column, row)| Complex::new(0.0, self.wave_vector(column, row)[axis] * share);
         let waves = (0..self.size.columns()).flat_map(|column| (0..self.size.ny).map(move |row| (column, row)));
         let kernel: Vec<_> = waves.map(factor).collect();
         let mut slopes = self.heights.clone();

@@ -19,7 +19,7 @@ use super::table::{GAPS, SweepHeader, SweepRow};
 use crate::Error;
 use crate::decimals::short;
 use crate::error::Context as _;
-use crate::implausible::{FoundFriction, at, implausible};
+use crate::implausible::{FoundFriction, at, implausible, strained};
 use crate::values::Values;
 
 /// A sweep of a scene, its points not found yet.
@@ -137,10 +137,16 @@ impl ScenePlan {
     /// What to look at in the rows: few points of the surface in contact, pressures that alternate, friction that no rubber has.
     pub(super) fn warnings(&self, rows: &[SweepRow]) -> Vec<String> {
         let few = self.solved.as_ref().and_then(|solved| solved.few_points(rows, &self.header));
-        let found = rows.iter().filter_map(|row| found_friction(row, self.header.load));
+        let found: Vec<_> = rows.iter().filter_map(|row| found_friction(row, self.header.load)).collect();
+        let strained = if self.solved.is_none() { strained(&self.scene, found.clone()) } else { None };
         let uneven = self.uneven(rows);
         let alternating = self.solved.as_ref().and_then(|solved| solved.alternating(rows, &self.header));
-        few.into_iter().chain(alternating).chain(implausible(&self.scene, found)).chain(uneven).collect()
+        few.into_iter()
+            .chain(alternating)
+            .chain(implausible(&self.scene, found))
+            .chain(strained)
+            .chain(uneven)
+            .collect()
     }
 
     /// The warning where a layer does not slide evenly at some of the rows.
