@@ -43,6 +43,12 @@ const CREEP_SLACK: [f64; 2] = [10.0, 100.0];
 /// Recommended 3 to 30. Friction changes by some tenths of itself with the logarithm of that speed; with 100 steps of 1e-2
 /// know no more than its magnitude.
 const MEMORY_SLACK: f64 = 10.0;
+/// The same of a mass that slides with the carrier, and by which factor the speeds may differ there.
+///
+/// Recommended 0.03 to 0.1, and 1.2 to 3. Where contacts remember long enough to slide evenly, errors of that speed make them
+/// stick and be flung; what sticks and slips by its own needs no more than the magnitude.
+const EVEN_MEMORY_SLACK: f64 = 0.1;
+const EVEN: f64 = 1.5;
 
 /// The change of temperature, K, over which friction changes by a part of itself.
 const FLASH_SCALE: f64 = 10.0;
@@ -194,11 +200,15 @@ impl ErrorTest<'_> {
         if model.friction.memory.is_none() {
             return 0.0;
         }
-        let (slowest, allowed) = (model.friction.creep_speed(), MEMORY_SLACK * tolerance.relative);
+        let slowest = model.friction.creep_speed();
+        let carrier = self.carrier[self.tableau.last()].x.speed.abs();
+        let is_even = |speed: f64| speed * EVEN > carrier && speed < carrier * EVEN;
         let of = |i: usize| {
             let error: f64 =
                 self.stages.iter().zip(&self.tableau.error).map(|(at, weight)| weight * at.memory_rate[i]).sum();
-            square(h * error / (allowed * (self.end.memory[i] + slowest)))
+            let remembered = self.end.memory[i];
+            let slack = if is_even(remembered) { EVEN_MEMORY_SLACK } else { MEMORY_SLACK };
+            square(h * error / (slack * tolerance.relative * (remembered + slowest)))
         };
         (0..self.end.mode.len()).filter(|&i| self.end.mode[i] != Mode::Stick).map(of).sum()
     }

@@ -99,10 +99,11 @@ impl<T: Number> ElementBlock<T> {
         (self.start, self.count, self.part_duration) = (start, count, 0.0);
         self.springs = BlockSprings::none();
         self.heat.reset();
-        // Both, since the law is not looked up in all lanes.
+        // Both, since the law is not looked up in all lanes; and those behind the last element stand still.
         for contacts in [&mut self.begin, &mut self.end] {
             contacts.count = count;
-            contacts.place.iter_mut().for_each(|lanes| lanes[count..].fill(0.0));
+            let BlockContacts { place, direction, arc, .. } = &mut **contacts;
+            place.iter_mut().chain(direction).chain([arc]).for_each(|lanes| lanes[count..].fill(0.0));
             contacts.is_free = true;
             contacts.clear();
         }
