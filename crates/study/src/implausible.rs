@@ -81,12 +81,13 @@ pub fn strained(scene: &Scene, found: impl IntoIterator<Item = FoundFriction>) -
     let found: Vec<FoundFriction> = found.into_iter().filter(|one| excess(one) > STRAINED).collect();
     let most = found.iter().max_by(|a, b| a.friction.total_cmp(&b.friction))?;
     Some(format!(
-        "friction of {} on slopes of {} in the root mean square strains the layer along them, {}{}: it comes out some {} % too \
-         large, which a layer at rest and `sweep --method steady` do not have",
+        "friction of {} on slopes of {} in the root mean square strains the layer along them, {}{}: it comes out {} to {} % too \
+         large, which finite strain and `sweep --method steady` have not",
         rounded(most.friction, 3),
         rounded(slope, 3),
         most.place,
         more(found.len()),
+        rounded(50.0 * excess(most), 2),
         rounded(100.0 * excess(most), 2)
     ))
 }
@@ -198,7 +199,7 @@ mod tests {
         assert_eq!(strained(&steep, [found(0.6)]), None);
         let said = strained(&steep, [found(0.7), found(0.9), found(0.5)]).unwrap();
         let beginning = "friction of 0.9 on slopes of 0.222 in the root mean square strains the layer along them, at 1 m/s and at \
-                         one more point: it comes out some 4.4 % too large";
+                         one more point: it comes out 2.2 to 4.4 % too large";
         assert!(said.starts_with(beginning), "{said}");
         assert_eq!(strained(&scene("kind = 'flat'", "coulomb = 5"), [found(5.0)]), None);
     }

@@ -32,7 +32,7 @@ Known beyond the rows:
   % too wide.
 - *Heat* flows along the depth alone: good above 0.1 m/s for contacts of 0.2 mm, 3 to 4 % off below 10 mm/s
   ([Jaeger's strip](#the-flash-temperature-of-a-moving-contact)).
-- *Linear* rubber: neither large strains nor tangential traction move the normal problem. Of incompressible rubber finite
+- *Linear* rubber: large strains do not move the normal problem. Of incompressible rubber finite
   strain makes [0.5 % of friction](#friction-near-one-on-a-wave) at peak slopes of 0.3; no row tests a compound that softens.
 
 ";

@@ -338,21 +338,28 @@ fn constant_loss() -> Comparison {
     let force = PI * modulus * HALF_WIDTH * HALF_WIDTH / (4.0 * RADIUS);
     let line = slide(&scene, cylinder(4096, base, RADIUS, HALF_WIDTH), speed, force / base);
 
-    let base = 10.0 * HALF_WIDTH;
+    // The period has no waves from none to one of it, of which half the first is a part of the integral over all waves; of
+    // the sphere the sum of |q_x|/|q| |p_q|² over the waves of a period of 16 a is so much of its integral.
+    let of_line = 0.5 * PI * HALF_WIDTH / base;
+    let of_point = 0.6079 * (1.0 - 0.97637);
+
+    let base = 16.0 * HALF_WIDTH;
     let force = 4.0 * modulus * HALF_WIDTH.powi(3) / (3.0 * RADIUS);
     let ball = map(512, base, |x, y| -x.hypot(y).min(4.0 * HALF_WIDTH).powi(2) / (2.0 * RADIUS));
     let point = slide(&scene, ball, speed, force / (base * base));
 
     let row = |name: &str, expected: f64, slide: &SteadySlide| {
         let name = format!("friction of a {name} over tan δ a/R");
-        Row::new(name, [expected, over(slide.friction().unwrap())], "", Claim::Share(0.03))
+        Row::new(name, [expected, over(slide.friction().unwrap())], "", Claim::Share(0.01))
     };
     Comparison {
         about: format!(
             "Rubber with tan δ = {LOSS} at every frequency, as 49 terms have it; a is the half-width at E' there."
         ),
-        rows: vec![row("cylinder", 8.0 / (3.0 * PI), &line), row("sphere", 0.6079, &point)],
-        remark: "First order of tan δ; E' grows by 3 % a decade.".into(),
+        rows: vec![row("cylinder", 8.0 / (3.0 * PI) - of_line, &line), row("sphere", 0.6079 - of_point, &point)],
+        remark: "First order of tan δ; E' grows by 3 % a decade. On an infinite half-space the numbers are 8/(3π) = 0.8488 and \
+                 0.6079: what is expected here lacks the long waves that a period of 16 a has not."
+            .into(),
         ..Comparison::default()
     }
 }
