@@ -171,11 +171,12 @@ fn full_contact_on_a_map_has_a_closed_form() {
         waves.iter().map(wave).sum::<f64>()
     };
     let heights = (0..30).flat_map(|j| (0..24).map(move |i| (i, j))).map(|(i, j)| height(i, j)).collect();
-    let found = slide(&rubber(TERM, 0.3), SurfaceGrid::new(size, length, length, heights), 2.0, p);
+    // Nearly incompressible: the traction of more compressible rubber lifts it.
+    let found = slide(&rubber(TERM, 0.48), SurfaceGrid::new(size, length, length, heights), 2.0, p);
     let loss = |(m, n, a, _): &(f64, f64, f64, f64)| {
         let (along, whole) = (q * m, q * f64::hypot(*m, *n));
         // Both signs: twice |h_q|² = a²/4.
-        along * 0.5 * a * a * 0.5 * whole * plane_modulus(along * 2.0, 0.3)[1]
+        along * 0.5 * a * a * 0.5 * whole * plane_modulus(along * 2.0, 0.48)[1]
     };
     assert!(found.contact.is_full && found.tangential_stiffness.is_none());
     assert_eq!((found.area, found.contact.separation), (1.0, 0.0));
