@@ -19,7 +19,8 @@ pub const FRICTION_NEAR_ONE: Entry = Entry {
 /// E, Pa.
 const MODULUS: f64 = 3e6;
 
-/// Elastic rubber of a Poisson ratio under Coulomb's friction on a wave of 1 mm and a peak slope, at a fifth of the pressure that closes it.
+/// Elastic rubber of a Poisson ratio under Coulomb's friction on a wave of 1 mm and a peak slope, at a fifth of the pressure
+/// that closes it.
 fn slid(poisson: f64, coulomb: f64, slope: f64) -> SteadySlide {
     let scene = parse(&format!(
         "name = 'rubber'\nlayer = {{ foundation = 'half_space', masses = 100, spacing = 1e-5, width = 1e-2 }}\n\

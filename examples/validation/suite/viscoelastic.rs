@@ -343,7 +343,6 @@ fn constant_loss() -> Comparison {
     let of_line = 0.5 * PI * HALF_WIDTH / base;
     let of_point = 0.6079 * (1.0 - 0.97637);
 
-    let base = 16.0 * HALF_WIDTH;
     let force = 4.0 * modulus * HALF_WIDTH.powi(3) / (3.0 * RADIUS);
     let ball = map(512, base, |x, y| -x.hypot(y).min(4.0 * HALF_WIDTH).powi(2) / (2.0 * RADIUS));
     let point = slide(&scene, ball, speed, force / (base * base));

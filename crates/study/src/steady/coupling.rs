@@ -4,9 +4,10 @@
 //!
 //!   û_z = -iκ' (q·t)/|q| 2/(M |q|),   κ' = (1 - 2ν)/(2(1 - ν))
 //!
-//! (K. L. Johnson, Contact Mechanics, section 2.3: a wave of shear lifts what lies ahead of it). Of a contact
-//! t = -(p h_x + τ q1) along the sliding and -h_y (p + τ h_x/q1) across it.
+//! positive into the rubber, so that what lies ahead of a traction gives way (K. L. Johnson, Contact Mechanics, 1985, section
+//! 2.3). Of a contact t = -(p h_x + τ q1) along the sliding and -h_y (p + τ h_x/q1) across it, Pa per horizontal area.
 
+use asperity::math::add_weighted_sum;
 use rustfft::num_complex::Complex;
 
 use super::contact::Contact;
@@ -54,7 +55,7 @@ impl Coupling {
         let mut moved = moves(along, &self.along);
         if tractions.iter().any(|traction| traction[1] != 0.0) {
             let across = moves(tractions.iter().map(|traction| traction[1]).collect(), &self.across);
-            moved.iter_mut().zip(&across).for_each(|(moved, across)| *moved += across);
+            add_weighted_sum(&mut moved, [(1.0, &across[..])]);
         }
         moved
     }

@@ -1,9 +1,9 @@
 //! What the gaps of a contact let through and carry along: the flow of a thin film between rubber and surface, after
 //! Reynolds, on the points of the solver.
 //!
-//! On a map -∂x(g³ ∂x p) - ∂y(g³ ∂y p) = s by finite volumes around the points, with the harmonic mean of g³ on the faces
-//! between them: for a mean gradient of 1, and for what a moving smooth side carries. A profile's ridges would close every
-//! way along x; there the gaps stand for an isotropic roughness, by the effective medium of their heights (D. A. G.
+//! On a map -∂x(g³ ∂x p) - ∂y(g³ ∂y p) = 0 by finite volumes around the points, with the harmonic mean of g³ on the faces
+//! between them, for a mean gradient of 1; what a moving smooth side carries follows from the same p. A profile's ridges would
+//! close every way along x; there the gaps stand for an isotropic roughness, by the effective medium of their heights (D. A. G.
 //! Bruggeman; B. N. J. Persson, J. Phys.: Condens. Matter 22, 2010), whose ways close at the share of contact that rough
 //! surfaces have (W. B. Dapp et al., Phys. Rev. Lett. 108, 2012).
 

@@ -1,11 +1,12 @@
 //! Pressures in a network of conductances of any contrast: what flows into each point flows out through its links.
 //!
-//! Points with few links, of which the last ways through a nearly closed gap consist, are eliminated exactly. What is left is solved by conjugate gradients, preconditioned by a multigrid cycle on aggregates of strongly linked points (Y.
-//! Notay, Electron. Trans. Numer. Anal. 37, 2010; O. E. Livne and A. Brandt, SIAM J. Sci. Comput. 34, 2012): a lake behind
-//! narrow straits becomes one point of a coarser network, where its pressure is found at once. Links are added alone and flows
-//! told by differences of pressures, so that nothing is lost where links differ by many orders.
+//! Points with few links, of which the last ways through a nearly closed gap consist, are eliminated exactly. What is left
+//! is solved by conjugate gradients, preconditioned by a multigrid cycle on aggregates of strongly linked points (Y. Notay,
+//! Electron. Trans. Numer. Anal. 37, 2010; O. E. Livne and A. Brandt, SIAM J. Sci. Comput. 34, 2012): a lake behind narrow
+//! straits becomes one point of a coarser network, where its pressure is found at once. Links are added alone and flows told
+//! by differences of pressures, so that nothing is lost where links differ by many orders.
 
-use asperity::math::dot;
+use asperity::math::{add_weighted_sum, dot};
 
 /// A link between two points, told from either side: from, to, conductance.
 pub(super) type Link = (usize, usize, f64);
@@ -76,8 +77,8 @@ impl Network {
             }
             let image = finest.links.flows(&direction);
             let step = norm / dot(&direction, &image);
-            add(&mut pressures, step, &direction);
-            add(&mut residual, -step, &image);
+            add_weighted_sum(&mut pressures, [(step, &direction[..])]);
+            add_weighted_sum(&mut residual, [(-step, &image[..])]);
             let corrected = self.cycle(0, &residual);
             let next = dot(&residual, &corrected);
             let share = next / norm;
@@ -98,7 +99,7 @@ impl Network {
         }
         (0..sources.len()).for_each(|i| links.balance(i, sources, &mut pressures));
         let mut left = sources.to_vec();
-        add(&mut left, -1.0, &links.flows(&pressures));
+        add_weighted_sum(&mut left, [(-1.0, &links.flows(&pressures)[..])]);
         let mut restricted = vec![0.0; level.aggregate_count];
         level.aggregates.iter().zip(&left).for_each(|(&aggregate, left)| restricted[aggregate] += left);
         // Twice on the coarser level, whose links are too strong where pressures vary within aggregates.
@@ -106,17 +107,13 @@ impl Network {
         coarser.eliminate(&mut restricted);
         let left = restricted.clone();
         let mut correction = self.cycle(depth + 1, &restricted);
-        add(&mut restricted, -1.0, &coarser.links.flows(&correction));
-        add(&mut correction, 1.0, &self.cycle(depth + 1, &restricted));
+        add_weighted_sum(&mut restricted, [(-1.0, &coarser.links.flows(&correction)[..])]);
+        add_weighted_sum(&mut correction, [(1.0, &self.cycle(depth + 1, &restricted)[..])]);
         coarser.substitute(&left, &mut correction);
         pressures.iter_mut().zip(&level.aggregates).for_each(|(p, &aggregate)| *p += correction[aggregate]);
         (0..sources.len()).rev().for_each(|i| links.balance(i, sources, &mut pressures));
         pressures
     }
-}
-
-fn add(sum: &mut [f64], factor: f64, terms: &[f64]) {
-    sum.iter_mut().zip(terms).for_each(|(sum, term)| *sum += factor * term);
 }
 
 impl Level {

@@ -143,15 +143,21 @@ impl SlidingRubber {
         }
     }
 
-    /// By how much tangential traction moves the surface along the normal: κ'; `None` where that is next to nothing.
+    /// By how much tangential traction moves the surface of a half-space along the normal: κ'; `None` where that is next to
+    /// nothing, or not known.
     pub(super) fn coupling(&self) -> Option<f64> {
         let nu = self.material.poisson_ratio;
-        (nu < NEARLY_INCOMPRESSIBLE).then(|| (1.0 - 2.0 * nu) / (2.0 * (1.0 - nu)))
+        (nu < NEARLY_INCOMPRESSIBLE && !self.is_bonded()).then(|| (1.0 - 2.0 * nu) / (2.0 * (1.0 - nu)))
     }
 
-    /// Whether it is that of a layer, for which it is not known.
+    /// Whether that is not known: of a layer of compressible rubber.
     pub(super) fn lacks_coupling(&self) -> bool {
-        self.coupling().is_some() && matches!(self.body, ElasticBody::Bonded { .. })
+        self.material.poisson_ratio < NEARLY_INCOMPRESSIBLE && self.is_bonded()
+    }
+
+    /// Whether it is a layer on a rigid base.
+    pub(super) fn is_bonded(&self) -> bool {
+        matches!(self.body, ElasticBody::Bonded { .. })
     }
 
     /// The factor of the normal stiffness of a contact that gives the tangential one: R. D. Mindlin's of a half-space; of

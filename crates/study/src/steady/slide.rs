@@ -7,7 +7,6 @@ use super::linear::{Compliance, scatter, viscous_losses};
 use super::rubber::{SlidingContact, SlidingRubber, Slope};
 use super::surface::SurfaceGrid;
 use asperity::math::sum;
-use asperity::scene::ElasticBody;
 
 /// Steady sliding at one speed and pressure. Forces are over the mean pressure times the area of the whole surface.
 #[derive(Clone, Debug)]
@@ -302,7 +301,7 @@ impl SteadySolver {
         normal: Option<f64>,
     ) -> Option<f64> {
         let surface = self.solver.surface();
-        if surface.size.ny == 1 && matches!(rubber.body, ElasticBody::Bonded { .. }) {
+        if surface.size.ny == 1 && rubber.is_bonded() {
             let compliance = Compliance::new(surface, &rubber.material, |q| rubber.body.tangential(q), speed);
             return self.solver.stiffness(&compliance, contact);
         }
