@@ -21,6 +21,8 @@ pub struct Layer {
     pub mass: Option<f64>,
     /// How the links follow from the material; in the material form alone.
     pub foundation: Option<FoundationKind>,
+    /// By what spacing the links along z are measured; in the material form alone.
+    pub kinematics: Option<Kinematics>,
     /// Thickness H, m; in the material form alone, and not of a half-space.
     pub thickness: Option<f64>,
     /// Width B, m; in the material form alone.
@@ -38,6 +40,11 @@ impl Layer {
     /// Position X_i of mass `i` (from 0) at rest, m.
     pub fn rest_position(&self, i: usize) -> f64 {
         self.origin + i as f64 * self.spacing
+    }
+
+    /// By what spacing the links along z are measured.
+    pub fn kinematics(&self) -> Kinematics {
+        self.kinematics.unwrap_or_default()
     }
 }
 
@@ -134,6 +141,21 @@ pub enum FoundationKind {
 impl Word for FoundationKind {
     const WORDS: &'static [(&'static str, Self)] =
         &[("springs", Self::Springs), ("half_space", Self::HalfSpace), ("layer", Self::Layer)];
+}
+
+/// By what spacing of the masses the links along z are measured (docs/foundation.md, section 8).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kinematics {
+    /// That at rest: links are linear in material coordinates.
+    #[default]
+    Material,
+    /// The present one.
+    Spatial,
+}
+
+impl Word for Kinematics {
+    const WORDS: &'static [(&'static str, Self)] = &[("material", Self::Material), ("spatial", Self::Spatial)];
 }
 
 impl FoundationKind {

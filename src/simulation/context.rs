@@ -182,7 +182,7 @@ impl RunContext {
             self.start_from_forces();
         }
         let (layer, carrier) = (&self.state.layer, self.state.carrier.at(self.state.s));
-        layer.rates.on_carrier(&self.model, &layer.state.maxwell, &carrier)
+        layer.rates.on_carrier(&self.model, &layer.state, &carrier)
     }
 
     /// Energies through the channels up to the fraction `theta` of the step of length `h` (s) tried last, J.

@@ -5,7 +5,7 @@ use super::field::{At, FieldValue, field};
 use super::surface::SURFACE;
 use crate::scene::values::{ANY, LOOSEST_TOLERANCE, NOT_NEGATIVE, POSITIVE, words};
 use crate::scene::{
-    Axis, CarrierInitial, DependencyList, Extrapolation, FoundationKind, Initial, IntegerType, LinkKind, Method,
+    Axis, CarrierInitial, DependencyList, Extrapolation, FoundationKind, Initial, IntegerType, Kinematics, LinkKind, Method,
     OutputGroup, Scene, Unit,
 };
 
@@ -65,6 +65,9 @@ const LAYER: &[Key] = &[
         .reads(field!(|scene, _| scene.layer.width)),
     word::<FoundationKind>("foundation", "What the links stand for: springs, half_space or layer")
         .default("\"layer\"")
+        .material(),
+    word::<Kinematics>("kinematics", "By what spacing the links along z are measured: material, that at rest, or spatial")
+        .default("\"material\"")
         .material(),
 ];
 
