@@ -170,7 +170,8 @@ impl SpatialMeasure {
     /// Takes over the forces of the links by their laws and makes those in spatial measure of them.
     pub(super) fn measure(&mut self, forces: &mut ByLink<Vec<f64>>) {
         for (n, kind) in Self::LINKS.into_iter().enumerate() {
-            self.links[n].force.copy_from_slice(&forces[kind]);
+            // A layer may have no such links.
+            self.links[n].force.iter_mut().zip(&forces[kind]).for_each(|(mine, force)| *mine = *force);
             forces[kind].iter_mut().enumerate().for_each(|(link, force)| *force *= self.factor(kind, link));
         }
     }
@@ -297,7 +298,7 @@ impl SpatialMeasure {
     ) {
         for ((kind, links), energies) in Self::LINKS.into_iter().zip(&self.links).zip(energies) {
             for (link, energy) in energies.iter_mut().enumerate() {
-                let rate_z = rates.map_or(0.0, |rates| rates[kind][link]);
+                let rate_z = rates.and_then(|rates| rates[kind].get(link).copied()).unwrap_or(0.0);
                 let motion = MeasuredMotion { x: 0.0, z: kind.difference(elongation, 0.0, link), rate_z };
                 let of_row = |row: &super::MaxwellRow| {
                     2.0 * state.maxwell[row.range.start + link] * of_element(row, row.range.start + link)
@@ -375,5 +376,117 @@ impl Forces {
         measure.set_energies_at_stage(model, motion, squares);
         measure.measure(&mut self.link);
         self.sum_on_masses();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::in_tests::assert_within;
+    use crate::math::Jet;
+    use crate::model::{CarrierPoint, elastic_energy};
+    use crate::scene::{Axis, ByAxis};
+
+    const SCENE: &str = "name = 'a'
+        layer = { kinematics = 'spatial', masses = 4, spacing = 1.0, mass = 1.0,
+                  vertical = { stiffness = 2.0, damping = 0.7, maxwell = [{ stiffness = 3.0, relaxation_time = 0.2 }] },
+                  horizontal = { stiffness = 1.5 }, lateral_x = { stiffness = 1.0, damping = 0.3 },
+                  lateral_z = { stiffness = 1.0, damping = 0.4, maxwell = [{ stiffness = 1.5, relaxation_time = 1.0 }] } }
+        surface = { kind = 'flat' }";
+    /// Central differences over this err by its square, some 1e-8 of forces of 1, and by rounding over it.
+    const STEP: f64 = 1e-4;
+    const ALLOWED: f64 = 1e-7;
+
+    fn strained(model: &Model) -> State {
+        let mut state = State::new(model);
+        for i in 0..model.masses() {
+            let x = i as f64;
+            (state.elongation_x[i], state.elongation_z[i]) = (0.1 * x - 0.06 * x * x, 0.3 - 0.05 * x * x);
+            (state.velocity_x[i], state.velocity_z[i]) = (0.3 - x, 0.2 * x * x);
+        }
+        state.maxwell.iter_mut().enumerate().for_each(|(n, a)| *a = 0.1 - 0.03 * n as f64);
+        state
+    }
+
+    fn forces(model: &Model, state: &State, carrier: &CarrierPoint) -> Forces {
+        let mut forces = Forces::new(model);
+        forces.evaluate(model, state, carrier);
+        forces
+    }
+
+    /// With dampers at rest, and dashpots that stand still: a moves with e.
+    #[test]
+    fn forces_are_the_gradient_of_the_energy() {
+        let model = Model::from_text(SCENE);
+        let mut state = strained(&model);
+        state.velocity_x.fill(0.0);
+        state.velocity_z.fill(0.0);
+        let forces = forces(&model, &state, &CarrierPoint::default());
+        let energy = |i: usize, by: ByAxis<f64>| {
+            let mut moved = state.clone();
+            // No time for the dashpots to follow.
+            moved.displace(&model, i, by, 0.0);
+            elastic_energy(&model, &moved)
+        };
+        for i in 0..model.masses() {
+            for axis in Axis::ALL {
+                let by = |h: f64| ByAxis::from_fn(|along| if along == axis { h } else { 0.0 });
+                let slope = (energy(i, by(STEP)) - energy(i, by(-STEP))) / (2.0 * STEP);
+                assert_within(forces.on_mass(i)[axis], -slope, ALLOWED);
+            }
+        }
+    }
+
+    /// By each mass's position, height and its rate, and by the carrier's, with the elements held.
+    #[test]
+    fn variations_are_those_of_a_difference_quotient() {
+        let model = Model::from_text(SCENE);
+        let (state, carrier) = (strained(&model), CarrierPoint::default());
+        let here = forces(&model, &state, &carrier);
+        let measure = here.spatial.as_ref().unwrap();
+        let along_x = |i: usize, forces: &Forces| {
+            let [_, horizontal, lateral, _] = &forces.link.0;
+            let of = |link: Option<usize>| link.and_then(|link| lateral.get(link)).unwrap_or(&0.0);
+            forces.on_mass_x[i] - (of(Some(i)) - of(i.checked_sub(1)) - horizontal[i])
+        };
+        for j in 0..model.masses() {
+            for n in 0..3 {
+                let unit = |m: usize| f64::from(u8::from(n == m));
+                let motion = MeasuredMotion { x: unit(0), z: unit(1), rate_z: unit(2) };
+                let moved = |h: f64| {
+                    let mut moved = state.clone();
+                    moved.elongation_x[j] += h * motion.x;
+                    moved.elongation_z[j] += h * motion.z;
+                    moved.velocity_z[j] += h * motion.rate_z;
+                    forces(&model, &moved, &carrier)
+                };
+                let (up, down) = (moved(STEP), moved(-STEP));
+                let quotient = |of: &dyn Fn(&Forces) -> f64| (of(&up) - of(&down)) / (2.0 * STEP);
+                for i in j.saturating_sub(1)..(j + 2).min(model.masses()) {
+                    let found = match i.cmp(&j) {
+                        std::cmp::Ordering::Less => measure.by_next(&model.links, i, &motion),
+                        std::cmp::Ordering::Equal => measure.on_itself(&model.links, i, &motion),
+                        std::cmp::Ordering::Greater => measure.by_previous(&model.links, i, &motion),
+                    };
+                    assert_within(found[0], quotient(&|forces| along_x(i, forces)), ALLOWED);
+                    assert_within(found[1], quotient(&|forces| forces.on_mass_z[i]), ALLOWED);
+                }
+                let found = measure.on_carrier(&model.links, j, &motion);
+                assert_within(found, quotient(&|forces| forces.on_carrier(Axis::Z)), ALLOWED);
+            }
+        }
+        let lowered = |h: f64| {
+            let mut moved = state.clone();
+            moved.elongation_z.iter_mut().for_each(|e| *e -= h);
+            let carrier = CarrierPoint { z: Jet { speed: h, ..Jet::default() }, ..carrier };
+            forces(&model, &moved, &carrier)
+        };
+        let (up, down) = (lowered(STEP), lowered(-STEP));
+        for i in 0..model.masses() {
+            let found = measure.by_carrier(&model.links, i, &MeasuredMotion { x: 0.0, z: -1.0, rate_z: -1.0 });
+            for (found, of) in found.iter().zip([&up.on_mass_x, &up.on_mass_z].iter().zip([&down.on_mass_x, &down.on_mass_z])) {
+                assert_within(*found, (of.0[i] - of.1[i]) / (2.0 * STEP), ALLOWED);
+            }
+        }
     }
 }

@@ -21,7 +21,7 @@ pub struct Layer {
     pub mass: Option<f64>,
     /// How the links follow from the material; in the material form alone.
     pub foundation: Option<FoundationKind>,
-    /// By what spacing the links along z are measured; in the material form alone.
+    /// By what spacing the links along z are measured; `None` see [`Layer::kinematics`].
     pub kinematics: Option<Kinematics>,
     /// Thickness H, m; in the material form alone, and not of a half-space.
     pub thickness: Option<f64>,

@@ -37,6 +37,12 @@ pub(super) fn scene_with_memory() -> Scene {
     Scene::parse(&TEXT.replace("shear_force = 5e-5", law), FilePath::new("memory.toml")).unwrap()
 }
 
+/// The same with links along z in spatial measure.
+pub(super) fn scene_in_spatial_measure() -> Scene {
+    let text = TEXT.replace("[layer]", "[layer]\nkinematics = 'spatial'");
+    Scene::parse(&text, FilePath::new("spatial.toml")).unwrap()
+}
+
 /// Six masses of a material whose contacts touch on a part of their area.
 pub(super) fn scene_with_real_area() -> Scene {
     Scene::parse(&text_with_real_area(), FilePath::new("real-area.toml")).unwrap()

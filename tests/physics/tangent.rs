@@ -2,7 +2,7 @@
 //! against a difference quotient by rollback.
 
 use asperity::outputs::{Variable, variables};
-use asperity::scene::{Force, Path, Scene};
+use asperity::scene::{Force, Kinematics, Path, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
 use crate::common::runs::straight;
@@ -21,6 +21,13 @@ fn scene(friction: &str) -> Scene {
         .relative(1e-10)
         .outputs(&["forces", "contact", "tangent", "solver"])
         .scene()
+}
+
+/// The same with links along z in spatial measure.
+fn in_spatial_measure(friction: &str) -> Scene {
+    let mut scene = scene(friction);
+    scene.layer.kinematics = Some(Kinematics::Spatial);
+    scene
 }
 
 struct Run {
@@ -90,18 +97,22 @@ fn without_contact() {
 
 #[test]
 fn sticking() {
-    let run = Run::new(&scene(COULOMB), &[straight(4e-4, 0.0, -0.05), straight(1e-3, 0.0, 0.0)]);
-    for duration in [1e-8, 1e-6, 1e-5] {
-        run.check(&straight(duration, 1e-4, -1e-4));
+    for scene in [scene(COULOMB), in_spatial_measure(COULOMB)] {
+        let run = Run::new(&scene, &[straight(4e-4, 0.0, -0.05), straight(1e-3, 0.0, 0.0)]);
+        for duration in [1e-8, 1e-6, 1e-5] {
+            run.check(&straight(duration, 1e-4, -1e-4));
+        }
     }
 }
 
 #[test]
 fn slipping() {
     for friction in ["", COULOMB, BOTH, FALLING, REMEMBERING, RISING] {
-        let run = Run::new(&scene(friction), &[straight(4e-4, 0.0, -0.05), straight(1.01e-3, 0.3, 0.0)]);
-        for duration in [1e-8, 1e-6, 1e-5] {
-            run.check(&straight(duration, 0.3, 0.0));
+        for scene in [scene(friction), in_spatial_measure(friction)] {
+            let run = Run::new(&scene, &[straight(4e-4, 0.0, -0.05), straight(1.01e-3, 0.3, 0.0)]);
+            for duration in [1e-8, 1e-6, 1e-5] {
+                run.check(&straight(duration, 0.3, 0.0));
+            }
         }
     }
 }

@@ -67,8 +67,7 @@ const LAYER: &[Key] = &[
         .default("\"layer\"")
         .material(),
     word::<Kinematics>("kinematics", "By what spacing the links along z are measured: material, that at rest, or spatial")
-        .default("\"material\"")
-        .material(),
+        .default("\"material\""),
 ];
 
 const LINK: &[Key] = &[

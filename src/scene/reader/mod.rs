@@ -263,8 +263,7 @@ fn read_layer(table: &mut TableReader<'_>, scene: &mut Scene, found: &mut Findin
     let foundation = table.optional_choice("foundation")?.unwrap_or_default();
     scene.layer.foundation = table.is_material().then_some(foundation);
     check_thickness(table, foundation)?;
-    let kinematics = table.optional_choice("kinematics")?.unwrap_or_default();
-    scene.layer.kinematics = table.is_material().then_some(kinematics);
+    scene.layer.kinematics = table.optional_choice("kinematics")?;
     for kind in LinkKind::ALL {
         table.optional_table(kind.name(), |table| read_link(table, scene, At::link(kind)))?;
     }
