@@ -24,8 +24,7 @@ fn scene(friction: &str) -> Scene {
 }
 
 /// The same with links along z in spatial measure.
-fn in_spatial_measure(friction: &str) -> Scene {
-    let mut scene = scene(friction);
+fn in_spatial_measure(mut scene: Scene) -> Scene {
     scene.layer.kinematics = Some(Kinematics::Spatial);
     scene
 }
@@ -97,7 +96,7 @@ fn without_contact() {
 
 #[test]
 fn sticking() {
-    for scene in [scene(COULOMB), in_spatial_measure(COULOMB)] {
+    for scene in [scene(COULOMB), in_spatial_measure(scene(COULOMB))] {
         let run = Run::new(&scene, &[straight(4e-4, 0.0, -0.05), straight(1e-3, 0.0, 0.0)]);
         for duration in [1e-8, 1e-6, 1e-5] {
             run.check(&straight(duration, 1e-4, -1e-4));
@@ -108,7 +107,7 @@ fn sticking() {
 #[test]
 fn slipping() {
     for friction in ["", COULOMB, BOTH, FALLING, REMEMBERING, RISING] {
-        for scene in [scene(friction), in_spatial_measure(friction)] {
+        for scene in [scene(friction), in_spatial_measure(scene(friction))] {
             let run = Run::new(&scene, &[straight(4e-4, 0.0, -0.05), straight(1.01e-3, 0.3, 0.0)]);
             for duration in [1e-8, 1e-6, 1e-5] {
                 run.check(&straight(duration, 0.3, 0.0));
@@ -144,7 +143,7 @@ fn a_short_motion_meets_the_glassy_stiffness_and_the_damper_over_the_step() {
 /// The same for a carrier that is a body along both axes: by every input, of the forces and of its own motion.
 #[test]
 fn by_every_input_of_a_body() {
-    let scene = SceneText::new(5, 1e-4, 1e-7)
+    let material = SceneText::new(5, 1e-4, 1e-7)
         .vertical((2e3, 8e-3, [(1e3, 1e-4)]))
         .horizontal((1e3, 5e-3))
         .lateral_x((5e2, 2e-3))
@@ -156,6 +155,12 @@ fn by_every_input_of_a_body() {
         .relative(1e-10)
         .outputs(&["forces", "carrier", "tangent", "solver"])
         .scene();
+    for scene in [in_spatial_measure(material.clone()), material] {
+        every_input_of_a_body(&scene);
+    }
+}
+
+fn every_input_of_a_body(scene: &Scene) {
     let force = |rate| Force { start: None, change: Path { rate, ..Path::default() } };
     let names = ["F_x", "F_z", "carrier.u", "carrier.u_rate", "carrier.w", "carrier.w_rate", "solver.events"];
     let tangents = |by: &str| {
@@ -166,7 +171,7 @@ fn by_every_input_of_a_body() {
     for (ahead, some_free) in [(1e-5, false), (3e-4, false), (3e-4, true)] {
         let lift = if some_free { -0.045 } else { 0.0 };
         let run = Run::new(
-            &scene,
+            scene,
             &[straight(1e-3, ahead / 1e-3, 0.0), Motion { load: force(lift / 1e-4), ..straight(1e-4, 0.02, 0.0) }],
         );
         for duration in [1e-7, 1e-5] {
