@@ -12,8 +12,8 @@ use super::heat::StageHeat;
 use super::stage::{SlipVariation, SlippingMass, StagePoint, StageSolver};
 use super::stage_values::StageValues;
 use crate::model::{
-    Axis, ByAxis, DrivenBody, Forces, Input, LinkKind, LinkMotion, MaxwellRow, Mode, Model, SlipFriction, SlipHistory, SpeedMemory,
-    SpatialMeasure, State, SurfacePoint, TangentsOf,
+    Axis, ByAxis, DrivenBody, Forces, Input, LinkKind, LinkMotion, MaxwellRow, Mode, Model, SlipFriction, SlipHistory,
+    SpatialMeasure, SpeedMemory, State, SurfacePoint, TangentsOf,
 };
 
 /// The variation of the layer's state: dimensionless for positions, 1/s for velocities. Or its rate of change, each
@@ -443,7 +443,8 @@ impl Sensitivity {
 
 impl LinkVariation {
     fn new(model: &Model) -> Self {
-        let zeros = |kind: LinkKind| if model.is_measured(kind) { vec![0.0; kind.count(model.masses())] } else { Vec::new() };
+        let zeros =
+            |kind: LinkKind| if model.is_measured(kind) { vec![0.0; kind.count(model.masses())] } else { Vec::new() };
         Self {
             forces: Forces { spatial: None, ..Forces::new(model) },
             motion: Variation { maxwell: Vec::new(), ..Variation::new(model) },
@@ -454,13 +455,7 @@ impl LinkVariation {
 
     /// Computes the variation of the forces for those of the state, `of`, and of the carrier, at these forces and this
     /// state; `None`: of the forces on the carrier alone, at those of the last evaluation.
-    fn evaluate(
-        &mut self,
-        model: &Model,
-        of: &Variation,
-        carrier: &CarrierVariation,
-        at: Option<(&Forces, &State)>,
-    ) {
+    fn evaluate(&mut self, model: &Model, of: &Variation, carrier: &CarrierVariation, at: Option<(&Forces, &State)>) {
         // δe = δξ - δu and δζ - δw of the links to the carrier.
         for i in 0..model.masses() {
             self.motion.x[i] = of.x[i] - carrier.x[0];

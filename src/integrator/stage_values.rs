@@ -223,7 +223,8 @@ impl StageValues {
         let (kind, law) = (LinkKind::Vertical, &model.links[LinkKind::Vertical]);
         let of = |(i, &rate): (usize, &f64)| {
             let a = |row: &MaxwellRow| state.maxwell[row.range.start + i];
-            let force = law.force(state.elongation_z[i], rate) - model.frozen_force(kind, i) + model.element_force(kind, a);
+            let force =
+                law.force(state.elongation_z[i], rate) - model.frozen_force(kind, i) + model.element_force(kind, a);
             let change = law.force(rate, self.acceleration_z[i] - carrier)
                 + model.element_force(kind, |row| rate - a(row) / row.relaxation_time);
             // L is linear in the positions.

@@ -108,8 +108,15 @@ impl Model {
             friction: FrictionLaw::new(scene),
             flash: FlashKernel::new(scene),
             initial: layer.initial,
-            spatial: (layer.kinematics() == Kinematics::Spatial && k > 1).then_some(layer.spacing),
+            spatial: (layer.kinematics() == Kinematics::Spatial && k > 1 && Self::strains(scene))
+                .then_some(layer.spacing),
         }
+    }
+
+    /// Whether masses may move along x by what they touch: on slopes, with friction, or unevenly pressed.
+    fn strains(scene: &Scene) -> bool {
+        let is_flat = scene.surface.z().windows(2).all(|pair| pair[0] == pair[1]);
+        !(is_flat && scene.layer.roughness.is_empty() && scene.friction.is_none())
     }
 
     /// Takes over what depends on the temperature from `scene`, this model's at another one: relaxation times,

@@ -350,7 +350,6 @@ impl Model {
     pub fn is_measured(&self, kind: LinkKind) -> bool {
         self.spatial.is_some() && !kind.is_along_x()
     }
-
 }
 
 impl Forces {
@@ -484,7 +483,9 @@ mod tests {
         let (up, down) = (lowered(STEP), lowered(-STEP));
         for i in 0..model.masses() {
             let found = measure.by_carrier(&model.links, i, &MeasuredMotion { x: 0.0, z: -1.0, rate_z: -1.0 });
-            for (found, of) in found.iter().zip([&up.on_mass_x, &up.on_mass_z].iter().zip([&down.on_mass_x, &down.on_mass_z])) {
+            for (found, of) in
+                found.iter().zip([&up.on_mass_x, &up.on_mass_z].iter().zip([&down.on_mass_x, &down.on_mass_z]))
+            {
                 assert_within(*found, (of.0[i] - of.1[i]) / (2.0 * STEP), ALLOWED);
             }
         }

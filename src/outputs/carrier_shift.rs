@@ -189,7 +189,8 @@ impl Snapshot<'_> {
         let spring = |axis: Axis| {
             let (kind, elongations) = (axis.link(), self.state().elongation(axis));
             let stiffness = self.model.links[kind].stiffness;
-            let spring = |i: usize| self.measure(kind, i) * (stiffness * elongations[i] - self.model.frozen_force(kind, i));
+            let spring =
+                |i: usize| self.measure(kind, i) * (stiffness * elongations[i] - self.model.frozen_force(kind, i));
             shift.elongation[axis] * (0..elongations.len()).map(spring).sum::<f64>()
         };
         spring(Axis::X) + spring(Axis::Z) + self.maxwell_sum(shift, |row| row.stiffness)

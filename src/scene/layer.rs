@@ -42,9 +42,11 @@ impl Layer {
         self.origin + i as f64 * self.spacing
     }
 
-    /// By what spacing the links along z are measured.
+    /// By what spacing the links along z are measured: as it was set, or the present one where they stand for the surface
+    /// of a body, and that at rest where they are the paper's.
     pub fn kinematics(&self) -> Kinematics {
-        self.kinematics.unwrap_or_default()
+        let of_body = self.foundation.is_some_and(|foundation| foundation != FoundationKind::Springs);
+        self.kinematics.unwrap_or(if of_body { Kinematics::Spatial } else { Kinematics::Material })
     }
 }
 
@@ -144,11 +146,10 @@ impl Word for FoundationKind {
 }
 
 /// By what spacing of the masses the links along z are measured (docs/foundation.md, section 8).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kinematics {
     /// That at rest: links are linear in material coordinates.
-    #[default]
     Material,
     /// The present one.
     Spatial,

@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 
 use super::context::RunContext;
 use super::tests::{
-    WAVE, scene, scene_in_spatial_measure, scene_with_heat, scene_with_memory, scene_with_rate_shear, scene_with_real_area,
+    WAVE, scene, scene_in_spatial_measure, scene_with_heat, scene_with_memory, scene_with_rate_shear,
+    scene_with_real_area,
 };
 use crate::model::{ByAxis, Mode};
 use crate::outputs::{Output, dependencies, variables};

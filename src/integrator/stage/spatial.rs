@@ -58,8 +58,7 @@ impl StageSolver {
         let friction = self.friction.get_mut(n).filter(|_| !model.friction.is_linear());
         let law = friction.as_ref().map_or_else(|| model.friction.linear(), |slip| slip.friction.tangent());
         let mass = stage.slipping_mass_under(law, i);
-        let mut derivative =
-            mass.derivative(model, beta, forces.on_mass(i), ByAxis { x: -own.m11, z: -own.m21 });
+        let mut derivative = mass.derivative(model, beta, forces.on_mass(i), ByAxis { x: -own.m11, z: -own.m21 });
         if let Some(slip) = friction {
             slip.derivative_without = derivative;
             if model.friction.depends_on_speed() {
@@ -73,13 +72,7 @@ impl StageSolver {
 
     /// How the forces on mass `i` follow the unknowns of mass `j`: along x (first row) and z those that `measured` gives
     /// for a motion of it, and along x those of the links along x.
-    fn follow(
-        &self,
-        beta: f64,
-        i: usize,
-        j: usize,
-        measured: impl Fn(&MeasuredMotion) -> Varied,
-    ) -> Matrix2<f64> {
+    fn follow(&self, beta: f64, i: usize, j: usize, measured: impl Fn(&MeasuredMotion) -> Varied) -> Matrix2<f64> {
         let [by_x, by_z] = self.unknowns(j, beta).map(|motion| measured(&motion));
         let [_, horizontal, lateral, _] = self.weights.0;
         let along_x = match (self.state.mode[j], i == j) {
@@ -94,9 +87,7 @@ impl StageSolver {
     fn unknowns(&self, i: usize, beta: f64) -> [MeasuredMotion; 2] {
         let none = MeasuredMotion::default();
         match self.state.mode[i] {
-            Mode::Free => {
-                [MeasuredMotion { x: beta, ..none }, MeasuredMotion { z: beta, rate_z: 1.0, ..none }]
-            }
+            Mode::Free => [MeasuredMotion { x: beta, ..none }, MeasuredMotion { z: beta, rate_z: 1.0, ..none }],
             Mode::Stick => [none; 2],
             Mode::Forward | Mode::Backward => {
                 let (surface, v) = (&self.state.surface[i], self.state.velocity_x[i]);
