@@ -113,10 +113,10 @@ impl Model {
         }
     }
 
-    /// Whether masses may move along x by what they touch: on slopes, with friction, or unevenly pressed.
+    /// Whether what the masses touch strains the layer along x: on slopes of the profile or of its own roughness.
     fn strains(scene: &Scene) -> bool {
         let is_flat = scene.surface.z().windows(2).all(|pair| pair[0] == pair[1]);
-        !(is_flat && scene.layer.roughness.is_empty() && scene.friction.is_none())
+        !(is_flat && scene.layer.roughness.is_empty())
     }
 
     /// Takes over what depends on the temperature from `scene`, this model's at another one: relaxation times,

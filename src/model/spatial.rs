@@ -16,6 +16,10 @@
 use super::{Forces, LinkKind, LinkLaw, Model, State};
 use crate::scene::ByLink;
 
+/// The least ℓ over Δx. Closer masses are drawn together by what presses on them, without end: an incompressible surface
+/// folds at 0.54 (M. A. Biot, Appl. Sci. Res. A 12, 1963, 168).
+const LEAST_SPACING: f64 = 0.1;
+
 /// The measure at one instant, and what it makes of the links.
 #[derive(Clone, Debug, Default)]
 pub struct SpatialMeasure {
@@ -121,9 +125,9 @@ impl SpatialMeasure {
         }
     }
 
-    /// Whether no mass has passed its neighbour.
-    pub fn is_ordered(&self) -> bool {
-        self.spacing.iter().all(|&spacing| spacing > 0.0)
+    /// Whether all masses are as far apart as links in spatial measure bear.
+    pub fn is_borne(&self) -> bool {
+        self.spacing.iter().all(|&spacing| spacing > LEAST_SPACING * self.rest)
     }
 
     /// T_i, N.
@@ -344,6 +348,13 @@ impl Model {
             LinkKind::LateralZ => rest / (rest + longer(link)),
             _ => 1.0,
         }
+    }
+
+    /// The first of two neighbours in `state` that links in spatial measure hardly keep apart, if there are any.
+    pub fn folded(&self, state: &State) -> Option<usize> {
+        let rest = self.spatial?;
+        let pairs = state.elongation_x.windows(2);
+        pairs.into_iter().position(|pair| rest + (pair[1] - pair[0]) < 2.0 * LEAST_SPACING * rest)
     }
 
     /// Whether links of this kind are in spatial measure.

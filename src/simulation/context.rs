@@ -245,7 +245,11 @@ impl RunContext {
     }
 
     pub(super) fn step_too_small(&self, step: f64) -> SimulationError {
-        SimulationError::StepTooSmall { time: self.state.time(), step }
+        let time = self.state.time();
+        match self.model.folded(&self.state.layer.state) {
+            Some(mass) => SimulationError::Folded { time, mass: mass + 1 },
+            None => SimulationError::StepTooSmall { time, step },
+        }
     }
 
     /// The dense output of the event-driven step of length `h` (s) tried last.

@@ -345,8 +345,8 @@ impl StageSolver {
             self.iterate(model, point, test)?;
         }
         self.write_rates(model, point, rates);
-        let ordered = self.forces.spatial.as_ref().is_none_or(|measure| measure.is_ordered());
-        if ordered && self.slips_continuously() { Ok(()) } else { Err(NoConvergence) }
+        let is_borne = self.forces.spatial.as_ref().is_none_or(|measure| measure.is_borne());
+        if is_borne && self.slips_continuously() { Ok(()) } else { Err(NoConvergence) }
     }
 
     /// Whether no contact heats itself so much that the step may have other solutions.
