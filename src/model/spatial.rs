@@ -402,7 +402,7 @@ mod tests {
                   vertical = { stiffness = 2.0, damping = 0.7, maxwell = [{ stiffness = 3.0, relaxation_time = 0.2 }] },
                   horizontal = { stiffness = 1.5 }, lateral_x = { stiffness = 1.0, damping = 0.3 },
                   lateral_z = { stiffness = 1.0, damping = 0.4, maxwell = [{ stiffness = 1.5, relaxation_time = 1.0 }] } }
-        surface = { kind = 'flat' }";
+        surface = { kind = 'sinusoid', amplitude = 0.1, wavelength = 3.0 }";
     /// Central differences over this err by its square, some 1e-8 of forces of 1, and by rounding over it.
     const STEP: f64 = 1e-4;
     const ALLOWED: f64 = 1e-7;
