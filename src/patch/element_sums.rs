@@ -81,7 +81,8 @@ impl PatchRun {
             velocity = [0, 1].map(|axis| velocity[axis] - along[axis].times(totals.tread_speed));
         }
         let approach = -(now.height + arm[2]);
-        let place = self.law.place(size(velocity), T::constant(rise));
+        let log_speed = self.law.range().logarithm(size(velocity));
+        let place = self.law.place(log_speed, T::constant(rise));
         let law = self.law.at_place(&place, approach);
         ElementContact { area, velocity, approach, place, law, pressure: law.pressure }
     }
