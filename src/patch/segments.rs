@@ -13,7 +13,7 @@ use crate::math::Number;
 /// Segments of a piece, at least.
 const MIN_SEGMENTS: f64 = 4.0;
 /// Change of ln p over a segment, at most.
-const MAX_CHANGE: f64 = 0.125;
+const MAX_CHANGE: f64 = 0.25;
 /// Keeps quotients of numbers that vanish together finite.
 const TINY: f64 = 1e-300;
 
@@ -79,6 +79,7 @@ fn cuts<T: Number>(
     (begin, end): (&BlockContacts<T>, &BlockContacts<T>),
     lane: usize,
 ) -> [(T, f64); CUTS] {
+    let least_pressure = law.least_pressure();
     let mut beginning = |contacts: &BlockContacts<T>| {
         let place = law.place(law.range().logarithm(size(contacts.velocity_of(lane))), contacts.rise[lane]);
         let (touch, least) = law.beginning(&place);
@@ -90,15 +91,16 @@ fn cuts<T: Number>(
     let [from, to] = [begin.velocity_of(lane), end.velocity_of(lane)];
     let [dv_x, dv_y] = [to[0] - from[0], to[1] - from[1]];
     let slowest = -(from[0] * dv_x + from[1] * dv_y) / (dv_x * dv_x + dv_y * dv_y + T::constant(TINY));
-    let slowest = slowest.or(reverses(from, to), zero);
-    let straight = |from: T, to: T| from + (to - from) * slowest;
-    let velocity = [straight(from[0], to[0]), straight(from[1], to[1])];
-    let place = law.place(law.range().logarithm(size(velocity)), straight(begin.rise[lane], end.rise[lane]));
-    let there = law.at_place(&place, straight(begin.approach[lane], end.approach[lane])).pressure.value();
+    let mut pressure_at = |fraction: T| {
+        let straight = |from: T, to: T| from + (to - from) * fraction;
+        let velocity = [straight(from[0], to[0]), straight(from[1], to[1])];
+        let place = law.place(law.range().logarithm(size(velocity)), straight(begin.rise[lane], end.rise[lane]));
+        law.at_place(&place, straight(begin.approach[lane], end.approach[lane])).pressure.value()
+    };
     let mut cuts = [
         (crossing(before.0, after.0), 0.0),
-        (crossing(before.1, after.1), law.least_pressure()),
-        (slowest, there),
+        (crossing(before.1, after.1), least_pressure),
+        if reverses(from, to) { (slowest, pressure_at(slowest)) } else { (zero, 0.0) },
         (T::constant(1.0), end.pressure[lane].value()),
     ];
     cuts.sort_unstable_by(|a, b| a.0.value().total_cmp(&b.0.value()));
@@ -125,8 +127,8 @@ pub(super) struct SegmentLanes<T> {
     /// The fractions of the part where a segment begins and where it ends.
     fractions: [Lanes<T>; 2],
     /// The elements there.
-    here: BlockContacts<T>,
-    next: BlockContacts<T>,
+    here: Box<BlockContacts<T>>,
+    next: Box<BlockContacts<T>>,
 }
 
 impl<T: Number> SegmentLanes<T> {
@@ -137,8 +139,8 @@ impl<T: Number> SegmentLanes<T> {
             springs: BlockSprings::none(),
             slip: zero,
             fractions: [zero; 2],
-            here: BlockContacts::new(),
-            next: BlockContacts::new(),
+            here: Box::new(BlockContacts::new()),
+            next: Box::new(BlockContacts::new()),
         }
     }
 

@@ -224,7 +224,7 @@ impl ResampledLaw {
 
     /// Up to where elements are within the table.
     pub fn limits(&self) -> TableLimits {
-        TableLimits::new(self.largest_pressure(), self.law.speed_range.1)
+        TableLimits::new((self.least_pressure(), self.largest_pressure()), self.law.speed_range.1)
     }
 
     /// The least pressure of the table, Pa.
@@ -359,21 +359,23 @@ impl ResampledLaw {
     /// The coefficients of an interval of the pressure at a place.
     #[inline(always)]
     fn coefficients_at<T: Number>(&self, place: &LawPlace<T>, interval: usize) -> [T; COEFFICIENTS] {
-        let (fraction, pressures) = (place.fraction(), self.log_pressures.len());
-        let in_cell = |cell: usize| {
-            let [a, b, c] = &self.coefficients[cell * pressures + interval];
-            let mut coefficients = [T::constant(0.0); COEFFICIENTS];
-            for k in 0..COEFFICIENTS {
-                coefficients[k] = T::constant(a[k]) + fraction * (T::constant(b[k]) + fraction.times(c[k]));
-            }
-            coefficients
-        };
-        let mut coefficients = in_cell(place.cell.index);
+        let mut coefficients = self.coefficients_in(place.cell.index, place.fraction(), interval);
         if let Some(planes) = self.planes {
-            let next = in_cell(place.cell.index + planes.cells);
+            let next = self.coefficients_in(place.cell.index + planes.cells, place.fraction(), interval);
             for k in 0..COEFFICIENTS {
                 coefficients[k] = coefficients[k] + (next[k] - coefficients[k]) * place.way;
             }
+        }
+        coefficients
+    }
+
+    /// Those at a fraction of a cell of one plane.
+    #[inline(always)]
+    fn coefficients_in<T: Number>(&self, cell: usize, fraction: T, interval: usize) -> [T; COEFFICIENTS] {
+        let [a, b, c] = &self.coefficients[cell * self.log_pressures.len() + interval];
+        let mut coefficients = [T::constant(0.0); COEFFICIENTS];
+        for k in 0..COEFFICIENTS {
+            coefficients[k] = T::constant(a[k]) + fraction * (T::constant(b[k]) + fraction.times(c[k]));
         }
         coefficients
     }
