@@ -3,7 +3,8 @@
 //! The patch turns, rolls and slides so that every element bears, its law is looked up at both ends of each step, and
 //! most slip: what `common/patch_cost.c` does. That is compiled with the C compiler `cc` where there is one, with the
 //! instructions that this processor has, and run side by side; the least of several runs counts. On a table of several
-//! temperatures the same patch runs with heat and without.
+//! temperatures the same patch runs with heat and without. A wheel's tread, locked and rolling, with heat and without,
+//! makes the table of docs/patch.md.
 #![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout, reason = "a bench may fail and prints")]
 
 use std::fmt::Write as _;
@@ -72,14 +73,13 @@ const BACKED_LIFT: f64 = -2.5e-4;
 /// Seconds an element and step, of the processor and of the clock, of a patch raised by `lift` (m), on a table of
 /// several temperatures or of none and with more keys of `[patch]`.
 fn patch_times(side: usize, tread: bool, lift: f64, (temperatures, keys): (&[f64], &str)) -> [f64; 2] {
-    let folder = folder();
-    fs::write(folder.join("table.csv"), table(temperatures)).unwrap();
     let length = 1e-3 * side as f64;
-    let text = format!(
-        "name = \"bench\"\ntable = {{ path = \"table.csv\" }}\npatch = {{ shape = \"flat\", length = {length}, width = \
-         {length}, nx = {side}, ny = {side}, transport = {tread}{keys} }}\n[fmu]\noutputs = [\"forces\", \"dissipation\"]"
+    let patch = patch(
+        temperatures,
+        &format!(
+            "shape = \"flat\", length = {length}, width = {length}, nx = {side}, ny = {side}, transport = {tread}{keys}"
+        ),
     );
-    let patch = Patch::parse(&text, &folder.join("patch.toml")).unwrap();
     let pose = |k: f64| {
         let [x, y, z, roll, pitch, yaw] = pose(k);
         [x, y, z + lift, roll, pitch, yaw]
@@ -97,6 +97,60 @@ fn patch_times(side: usize, tread: bool, lift: f64, (temperatures, keys): (&[f64
     let (start, clock) = (ProcessTime::now(), Instant::now());
     (STEPS..2 * STEPS).for_each(|k| run.advance(&motions(k)).unwrap());
     [start.elapsed(), clock.elapsed()].map(|time| time.as_secs_f64() / f64::from(STEPS) / patch.count() as f64)
+}
+
+/// The patch of a file beside the table of the bench at these temperatures.
+fn patch(temperatures: &[f64], shape: &str) -> Patch {
+    let folder = folder();
+    fs::write(folder.join("table.csv"), table(temperatures)).unwrap();
+    let text = format!(
+        "name = \"bench\"\ntable = {{ path = \"table.csv\" }}\npatch = {{ {shape} }}\n[fmu]\noutputs = [\"forces\", \
+         \"dissipation\"]"
+    );
+    Patch::parse(&text, &folder.join("patch.toml")).unwrap()
+}
+
+/// Seconds of the processor that a cell of a tread of nx by ny takes in a step of 1 ms: of a wheel that rolls at a speed
+/// (m/s) with a tenth of slip or, locked, with all of it, 4.2 mm deep on a soft backing; the least of several runs.
+fn cell_time((nx, ny): (usize, usize), speed: f64, is_locked: bool, keys: &str) -> f64 {
+    let patch = patch(
+        TEMPERATURES,
+        &format!(
+            "shape = \"cylinder\", radius = 0.3, length = 0.13, width = 0.2, nx = {nx}, ny = {ny}, transport = true, \
+             backing = {{ normal = 5e7, shear = 8e7 }}{keys}"
+        ),
+    );
+    let (temperature, transport_speed) = (patch.temperature(), if is_locked { 0.0 } else { 0.9 * speed });
+    let start = PatchStart {
+        pose: Pose { place: [0.0, 0.0, 0.3 - 4.2e-3], angles: [0.0; 3] },
+        transport_speed,
+        temperature,
+        ..PatchStart::default()
+    };
+    let mut run = PatchRun::new(&patch, &start).unwrap();
+    let motion = PatchMotion { duration: H, rates: [speed, 0.0, 0.0, 0.0, 0.0, 0.0], transport_speed, temperature };
+    let mut time = || {
+        let start = ProcessTime::now();
+        (0..STEPS).for_each(|_| run.advance(&motion).unwrap());
+        start.elapsed().as_secs_f64() / f64::from(STEPS) / (nx * ny) as f64
+    };
+    // The law's intervals are computed as they are met.
+    time();
+    (0..RUNS).map(|_| time()).fold(f64::INFINITY, f64::min)
+}
+
+/// The cost of a cell and step of treads, over that of the second where it is locked and nothing warms.
+fn print_treads() {
+    let unit = cell_time((32, 10), 20.0, true, "");
+    println!("cells   locked, heat   10 m/s, heat   20 m/s, heat: a cell and step of 1 ms");
+    for (nx, ny) in [(25, 2), (32, 10), (45, 20)] {
+        print!("{:5}", nx * ny);
+        for (speed, is_locked) in [(20.0, true), (10.0, false), (20.0, false)] {
+            let [cold, warm] = ["", HEAT].map(|keys| cell_time((nx, ny), speed, is_locked, keys) / unit);
+            print!("{cold:9.2} {warm:5.2}");
+        }
+        println!();
+    }
 }
 
 fn patch_time(side: usize, tread: bool) -> f64 {
@@ -153,5 +207,6 @@ fn main() {
     // Large enough for several threads.
     let [work, time] = patch_times(4 * side, false, 0.0, COLD);
     println!("{:.1} ns with {} times the elements: by the clock {:.2} of that", 1e9 * work, 16, time / work);
+    print_treads();
     let _ = fs::remove_dir_all(folder());
 }

@@ -9,10 +9,10 @@ use super::law_points::{Intervals, LOG_PRESSURE, START};
 use crate::math::Number;
 use crate::scene::Backing;
 
-/// Steps of Halley's method. Of an exponential p one takes an error e of ln p to e³/12, and the step of Newton's method
-/// that follows squares what is left.
+/// Steps of Halley's method at most. Of an exponential p one takes an error e of ln p to e³/12, and the step of Newton's
+/// method that follows squares what is left.
 const STEPS: usize = 3;
-/// How far from the root the last of them may begin, by Newton's step there, as a share of the interval. Elements that are
+/// How far from the root the last of them may begin, at most, by Newton's step there, as a share of the interval. Elements that are
 /// farther off are solved for one by one: hardly any where p grows fourfold over an interval, one in a hundred where it
 /// grows tenfold.
 const LAST_STEP: f64 = 1e-3;
@@ -91,11 +91,16 @@ impl<'a, T: Number, const N: usize> SeriesIntervals<'a, T, N> {
             target[i] = if d > 0.0 && self.width[i] > 0.0 { d } else { 0.0 };
             x[i] = self.guess(i, target[i]);
         }
-        // By how much the last step began too far from the root.
-        let mut excess = [0.0; N];
+        // By how much the last step began too far from the root. Each element takes its own steps: what it comes to does not
+        // depend on those beside it.
+        let mut excess = [1.0; N];
         for _ in 0..STEPS {
             for i in 0..count {
-                (x[i], excess[i]) = self.halley_step(i, x[i], target[i]);
+                let (next, left) = self.halley_step(i, x[i], target[i]);
+                (x[i], excess[i]) = if excess[i] > 0.0 { (next, left) } else { (x[i], excess[i]) };
+            }
+            if excess[..count].iter().fold(0.0, |most: f64, excess| most.larger(*excess)) <= 0.0 {
+                break;
             }
         }
         for i in 0..count {

@@ -16,22 +16,6 @@ pub struct ElementLaw<T> {
     pub stiffness: T,
 }
 
-impl<T: Number> ElementLaw<T> {
-    /// p, μp and κ a fraction of the way to those of another.
-    #[inline(always)]
-    pub(super) fn towards(&self, other: &Self, fraction: T) -> Self {
-        let straight = |from: T, to: T| from + (to - from) * fraction;
-        let pressure = straight(self.pressure, other.pressure);
-        let limit = straight(self.pressure * self.friction, other.pressure * other.friction);
-        let bears = pressure.value() > 0.0;
-        Self {
-            pressure,
-            friction: (limit / pressure.or(bears, T::constant(1.0))).or(bears, self.friction),
-            stiffness: straight(self.stiffness, other.stiffness),
-        }
-    }
-}
-
 /// The law of elements, per unit area, of numbers or of numbers with their derivatives.
 #[derive(Clone, Copy, Debug)]
 pub struct LawPoints<T, const N: usize> {

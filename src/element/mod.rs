@@ -38,6 +38,6 @@ pub use point_contact::Clearance;
 pub use point_contact::{PointContact, dependencies, variables};
 pub use point_status::PointStatus;
 pub use quantity::Quantity;
-pub use resampled::{LawPlace, ResampledLaw, SpeedCell, SpeedRange};
+pub use resampled::{LawPlace, ResampledLaw, SpeedRange};
 pub use run::{Element, ElementError, ElementRestoreError, ElementState};
-pub(crate) use spring::{Advanced, Segment, SpringLaw, advance, apply_jump, damped, damper_loss};
+pub(crate) use spring::{Segment, SpringLaw, advance, apply_jump, damped, damper_loss};

@@ -5,7 +5,7 @@ use super::block_contacts::{BeyondTable, BlockContacts, Damping, FaceMotion, Ste
 use super::face::{BLOCK, Face, Lanes, lanes_of};
 use super::heat::{self, BlockHeat, StepHeat};
 use super::motion::{BodyKinematics, Substep};
-use super::segments::{advance_in_segments, half_turn, reverses};
+use super::segments::{SegmentLanes, half_turn, reverses};
 use crate::element::{ROUNDING, ResampledLaw, Segment, SpringLaw, advance, apply_jump, damped, damper_loss};
 use crate::math::Number;
 
@@ -35,6 +35,8 @@ pub(super) struct ElementBlock<T> {
     begin: Box<BlockContacts<T>>,
     /// At the end of the substep, or at the instant last evaluated.
     end: Box<BlockContacts<T>>,
+    /// Those whose pressures change much in the part.
+    segments: Box<SegmentLanes<T>>,
     /// Where slip warms the elements: how warm they are.
     pub(super) heat: BlockHeat<T>,
     /// Energy lost in the part by slip, J.
@@ -53,18 +55,18 @@ pub(super) struct BlockSprings<T> {
     /// K, their stiffnesses, N/m.
     pub(super) stiffness: Lanes<T>,
     /// 1 for those that slip, else 0.
-    slips: Lanes<f64>,
+    pub(super) slips: Lanes<f64>,
     /// Energy lost in the step by slip, J.
     slip: Lanes<f64>,
     /// Energy lost in the step with contacts that were released, J.
-    release: Lanes<f64>,
+    pub(super) release: Lanes<f64>,
     /// Energy lost in the step by dampers, J.
     damper: Lanes<f64>,
 }
 
 impl<T: Number> BlockSprings<T> {
     /// Relaxed springs without stiffness, that have lost nothing.
-    fn none() -> Self {
+    pub(super) fn none() -> Self {
         let zero = T::constant(0.0);
         Self {
             force: [[zero; BLOCK]; 2],
@@ -86,6 +88,7 @@ impl<T: Number> ElementBlock<T> {
             mode: [0; BLOCK],
             begin: Box::new(BlockContacts::new()),
             end: Box::new(BlockContacts::new()),
+            segments: Box::new(SegmentLanes::new()),
             heat: BlockHeat::new(),
             part_slip: [T::constant(0.0); BLOCK],
             part_duration: 0.0,
@@ -287,7 +290,7 @@ impl<T: Number> ElementBlock<T> {
         }
         // All elements as if their pressures changed in one segment.
         let displacement = self.displacements(step, (now, next), part);
-        let Self { springs, part_slip, begin, end, count, work, .. } = self;
+        let Self { springs, part_slip, begin, end, segments, work, .. } = self;
         // The law may have jumped since the springs followed it last, where a step begins: the motion has a kink there, and
         // the temperature given may be another.
         apply_jumps(springs, begin);
@@ -295,17 +298,10 @@ impl<T: Number> ElementBlock<T> {
         let in_segments = need_segments(begin, end, step.tread.speed_change != 0.0);
         advance_all(springs, part_slip, (begin, end), &displacement, &in_segments);
         // Those that need it once more, in segments.
-        for i in 0..*count {
-            if in_segments[i] {
-                let displacement = [displacement[0][i], displacement[1][i]];
-                let ends = (&begin.endpoint(i), &end.endpoint(i));
-                let (advanced, segments) = advance_in_segments(law, [before[0][i], before[1][i]], ends, displacement);
-                *work += WORK_OF_SEGMENT * u64::from(segments);
-                (springs.force[0][i], springs.force[1][i]) = (advanced.force[0], advanced.force[1]);
-                springs.slips[i] = if advanced.slips { 1.0 } else { 0.0 };
-                part_slip[i] = advanced.slip;
-                springs.release[i] += advanced.release;
-            }
+        if in_segments.contains(&true) {
+            let motion = (&before, &displacement);
+            let done = segments.advance(law, (springs, part_slip), (begin, end), motion, &in_segments);
+            *work += WORK_OF_SEGMENT * u64::from(done);
         }
         for i in 0..BLOCK {
             springs.slip[i] += part_slip[i].value();
@@ -454,8 +450,8 @@ impl<T: Number> ElementBlock<T> {
         let (begin, end) = (&*self.begin, &*self.end);
         let (mut force, mut pressure) = (self.springs.force, end.pressure);
         for i in 0..self.count {
-            let velocity = [end.velocity[0][i], end.velocity[1][i]];
-            [force[0][i], force[1][i]] = damped([force[0][i], force[1][i]], &end.law(i), velocity, damping.shear);
+            let (force_before, velocity) = ([force[0][i], force[1][i]], end.velocity_of(i));
+            [force[0][i], force[1][i]] = damped(force_before, &end.law(i), velocity, damping.shear);
         }
         // The rate of the pressure is that over the last part; at a start there is none. Nothing pulls.
         if self.part_duration > 0.0 && damping.normal > 0.0 {
@@ -484,9 +480,9 @@ fn total<T: Number>(lanes: &Lanes<T>) -> T {
 
 /// Lets all springs of a block follow a jump of their law to that of `contacts`.
 #[inline(always)]
-fn apply_jumps<T: Number>(springs: &mut BlockSprings<T>, contacts: &BlockContacts<T>) {
+pub(super) fn apply_jumps<T: Number>(springs: &mut BlockSprings<T>, contacts: &BlockContacts<T>) {
     let BlockSprings { force, stiffness, release, .. } = springs;
-    for i in 0..BLOCK {
+    for i in 0..lanes_of::<T>(contacts.count) {
         let (jumped, lost) = apply_jump([force[0][i], force[1][i]], stiffness[i], &contacts.law(i));
         (force[0][i], force[1][i]) = (jumped[0], jumped[1]);
         release[i] += lost;
@@ -496,7 +492,7 @@ fn apply_jumps<T: Number>(springs: &mut BlockSprings<T>, contacts: &BlockContact
 /// Takes all springs of a block from `begin` to `end` in one segment each; the losses of those that need segments of
 /// their own are left out, of slip (J) they are written to `part_slip`.
 #[inline(always)]
-fn advance_all<T: Number>(
+pub(super) fn advance_all<T: Number>(
     springs: &mut BlockSprings<T>,
     part_slip: &mut Lanes<T>,
     (begin, end): (&BlockContacts<T>, &BlockContacts<T>),
@@ -504,9 +500,8 @@ fn advance_all<T: Number>(
     in_segments: &Lanes<bool>,
 ) {
     let BlockSprings { force, slips, release, .. } = springs;
-    for i in 0..lanes_of(end.count) {
-        let before = [begin.velocity[0][i], begin.velocity[1][i]];
-        let after = [end.velocity[0][i], end.velocity[1][i]];
+    for i in 0..lanes_of::<T>(end.count) {
+        let (before, after) = (begin.velocity_of(i), end.velocity_of(i));
         let segment = Segment {
             begin: begin.law(i),
             end: end.law(i),
@@ -543,8 +538,7 @@ fn need_segments<T: Number>(
     }
     if tread_speed_changes {
         for i in 0..BLOCK {
-            let velocity = |at: &BlockContacts<T>| [at.velocity[0][i], at.velocity[1][i]];
-            found[i] |= reverses(velocity(begin), velocity(end));
+            found[i] |= reverses(begin.velocity_of(i), end.velocity_of(i));
         }
     }
     found

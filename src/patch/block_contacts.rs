@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use super::face::{BLOCK, Face, Lanes, TreadColumn, lanes_of};
 use super::heat::StepHeat;
 use super::motion::{BodyKinematics, PoseMotion, Substep, Substeps, TreadMotion};
-use super::segments::{Endpoint, size};
-use crate::element::{LawPoints, ResampledLaw, SpeedCell, SpringLaw};
+use super::segments::size;
+use crate::element::{LawPlace, LawPoints, ResampledLaw, SpringLaw};
 use crate::math::{Dual, Number};
 
 /// The elements of a block at an instant: where they are, how they move, and the contact law there.
@@ -127,51 +127,20 @@ impl<T: Number> BlockContacts<T> {
     /// keep the 0 that `reset` gave them.
     #[inline(always)]
     pub(super) fn look_up(&mut self, law: &mut ResampledLaw) {
-        let range = law.range();
-        for i in 0..lanes_of(self.count) {
+        let (range, lanes) = (law.range(), lanes_of::<T>(self.count));
+        for i in 0..lanes {
             self.log_speed[i] = range.logarithm(size([self.velocity[0][i], self.velocity[1][i]]));
         }
-        if law.has_planes() {
-            return self.look_up_between_planes(law);
+        let mut places = [LawPlace::first(); BLOCK];
+        for i in 0..lanes {
+            places[i] = law.place(self.log_speed[i], self.rise[i]);
         }
-        let mut cells = [SpeedCell::default(); BLOCK];
-        for i in 0..lanes_of(self.count) {
-            cells[i] = law.speed_cell(self.log_speed[i].value());
-        }
-        self.look_up_in(law, &cells);
-    }
-
-    /// Looks the law up in these cells.
-    #[inline(always)]
-    fn look_up_in(&mut self, law: &ResampledLaw, cells: &[SpeedCell; BLOCK]) {
-        let lanes = lanes_of(self.count);
-        let LawPoints { log_pressure, factor, friction, stiffness } =
-            law.points(lanes, cells, &self.log_speed, &self.approach);
+        let LawPoints { log_pressure, factor, friction, stiffness } = law.points(lanes, &places, &self.approach);
         for i in 0..lanes {
             let pressure = log_pressure[i].exp() * factor[i];
             self.pressure[i] = pressure;
             self.limit[i] = (pressure * friction[i]).times(self.area[i]);
             self.stiffness[i] = stiffness[i].times(self.area[i]);
-        }
-    }
-
-    /// Looks the law up where every element has its temperature: straight between the planes below and above it.
-    #[inline(always)]
-    fn look_up_between_planes(&mut self, law: &mut ResampledLaw) {
-        let (mut below, mut above) = ([SpeedCell::default(); BLOCK], [SpeedCell::default(); BLOCK]);
-        let mut fraction = [T::constant(0.0); BLOCK];
-        for i in 0..lanes_of(self.count) {
-            if let Some((cells, way)) = law.cells_between_planes(self.log_speed[i].value(), self.rise[i]) {
-                (below[i], above[i], fraction[i]) = (cells[0], cells[1], way);
-            }
-        }
-        self.look_up_in(law, &above);
-        let (pressure, limit, stiffness) = (self.pressure, self.limit, self.stiffness);
-        self.look_up_in(law, &below);
-        for i in 0..lanes_of(self.count) {
-            self.pressure[i] = self.pressure[i] + (pressure[i] - self.pressure[i]) * fraction[i];
-            self.limit[i] = self.limit[i] + (limit[i] - self.limit[i]) * fraction[i];
-            self.stiffness[i] = self.stiffness[i] + (stiffness[i] - self.stiffness[i]) * fraction[i];
         }
     }
 
@@ -186,13 +155,10 @@ impl<T: Number> BlockContacts<T> {
         SpringLaw { stiffness: self.stiffness[i], limit: self.limit[i] }
     }
 
-    pub(super) fn endpoint(&self, i: usize) -> Endpoint<T> {
-        Endpoint {
-            approach: self.approach[i],
-            velocity: [self.velocity[0][i], self.velocity[1][i]],
-            area: self.area[i],
-            rise: self.rise[i],
-        }
+    /// Along the plane, m/s.
+    #[inline(always)]
+    pub(super) fn velocity_of(&self, i: usize) -> [T; 2] {
+        [self.velocity[0][i], self.velocity[1][i]]
     }
 }
 

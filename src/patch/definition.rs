@@ -239,6 +239,12 @@ impl Patch {
         self.table.stick_time(self.backing)
     }
 
+    /// The time (s) in which a tread runs through its face at the largest speed of the table; `None` without one.
+    pub fn passage_time(&self) -> Option<f64> {
+        let Face::Tread(tread) = &*self.face else { return None };
+        Some(tread.length / self.table.grid.speeds.last()?)
+    }
+
     /// The largest tangential stiffness per area (Pa/m) of a contact at the largest pressure of the table, whatever its
     /// speed and temperature.
     pub fn contact_stiffness(&self) -> f64 {

@@ -26,8 +26,8 @@ struct Changes {
     real_area: Rate,
     /// The largest pressure on an element.
     pressure: Rate,
-    /// The part of the normal force on elements beyond the table.
-    beyond: Rate,
+    /// The part of the normal force on elements outside the table.
+    outside: Rate,
     /// Σ|G|.
     tangential: Rate,
     /// Σ|G|η with the share η of hysteresis in the friction coefficient.
@@ -120,8 +120,8 @@ impl PatchRun {
             changes.tangential = changes.tangential + tangential;
             let stored = rate(0.0, normal.value * approach.slopes[0]);
             changes.elastic = changes.elastic + (elongation * elongation * stiffness).times(0.5) + stored;
-            if limits.is_beyond(here.pressure, size(here.velocity)) {
-                changes.beyond = changes.beyond + normal;
+            if limits.is_outside(here.pressure, size(here.velocity)) {
+                changes.outside = changes.outside + normal;
             }
         }
         changes
@@ -188,7 +188,7 @@ impl Changes {
             transport: zero,
             real_area: zero,
             pressure: zero,
-            beyond: zero,
+            outside: zero,
             tangential: zero,
             hysteresis: zero,
             elastic: zero,
@@ -214,7 +214,7 @@ impl Changes {
             PatchOutput::TransportForce => self.transport,
             PatchOutput::RealArea => self.real_area,
             PatchOutput::Pressure => self.pressure,
-            PatchOutput::Beyond => share(self.beyond, z),
+            PatchOutput::Beyond => share(self.outside, z),
             PatchOutput::Friction => share(size([x, y]), z),
             PatchOutput::Hysteresis => share(self.hysteresis, self.tangential),
             PatchOutput::ElasticEnergy => self.elastic,

@@ -11,10 +11,11 @@ pub(super) const BLOCK: usize = 64;
 /// Values of the elements of a block.
 pub(super) type Lanes<T> = [T; BLOCK];
 
-/// The lanes that `count` elements take: up to whole vectors, which hold eight numbers at most.
+/// The lanes that `count` elements take: up to whole vectors, which hold eight numbers at most; those with derivatives are
+/// in none.
 #[inline(always)]
-pub(super) fn lanes_of(count: usize) -> usize {
-    count.next_multiple_of(8).min(BLOCK)
+pub(super) fn lanes_of<T>(count: usize) -> usize {
+    if size_of::<T>() > size_of::<f64>() { count } else { count.next_multiple_of(8).min(BLOCK) }
 }
 
 /// The elements of a patch.

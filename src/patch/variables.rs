@@ -35,7 +35,7 @@ pub enum PatchOutput {
     RealArea,
     /// The largest pressure, Pa.
     Pressure,
-    /// Share of the normal force that is borne beyond the table.
+    /// Share of the normal force that is borne outside the table's pressures or above its speeds.
     Beyond,
     /// The temperature of the warmest element that bears, K.
     LargestTemperature,
@@ -133,7 +133,7 @@ const TABLE: &[PatchOutputRow<PatchOutput>] = {
         row(Contact, PatchOutput::NominalArea, "contact.nominal_area", SquareMeter, Real, "Area of the elements that bear", All),
         row(Contact, PatchOutput::RealArea, "contact.area", SquareMeter, Real, "Real area of contact by the table's contact ratio", All),
         row(Contact, PatchOutput::Pressure, "contact.pressure", Pascal, Real, "Largest pressure on an element", All),
-        row(Contact, PatchOutput::Beyond, "contact.beyond", One, Real, "Share of force.z that is borne beyond the table", All),
+        row(Contact, PatchOutput::Beyond, "contact.beyond", One, Real, "Share of force.z that is borne outside the table: below its least pressure, above its largest, above its speeds", All),
         row(Contact, PatchOutput::LargestTemperature, "contact.temperature_largest", Kelvin, Real, "Temperature of the warmest element that bears", Warm),
         row(Contact, PatchOutput::MeanTemperature, "contact.temperature_mean", Kelvin, Real, "Mean temperature of the elements that bear", Warm),
         row(Friction, PatchOutput::Friction, "friction.coefficient", One, Real, "Tangential force over force.z", All),
@@ -325,7 +325,7 @@ impl PatchRun {
             PatchOutput::NominalArea => sums.nominal_area,
             PatchOutput::RealArea => sums.real_area,
             PatchOutput::Pressure => sums.pressure,
-            PatchOutput::Beyond => share(sums.beyond, sums.normal),
+            PatchOutput::Beyond => share(sums.outside, sums.normal),
             PatchOutput::LargestTemperature => totals.temperature + sums.warmest,
             PatchOutput::MeanTemperature => totals.temperature + share(sums.warmth, sums.nominal_area),
             PatchOutput::Friction => share(totals.wrench[0].hypot(totals.wrench[1]), totals.wrench[2]),

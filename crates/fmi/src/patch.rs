@@ -122,8 +122,12 @@ impl FmuModel for Patch {
         self.fmu_options()
     }
 
+    /// In steps in which a tread runs through a part of its face; one that stays sticks for a step.
     fn default_experiment(&self) -> Option<Experiment> {
-        self.stick_time().map(|step| Experiment { stop: None, tolerance: None, step })
+        /// Of the face, at the largest speed of the table: 500 steps, to which a default experiment goes, are ten passages.
+        const STEP: f64 = 0.02;
+        let step = self.passage_time().map(|time| STEP * time).or_else(|| self.stick_time())?;
+        Some(Experiment { stop: None, tolerance: None, step })
     }
 
     /// At the pose given, moving at the derivatives given, else at rest.

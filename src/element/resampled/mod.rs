@@ -5,14 +5,14 @@
 //! v. So an evaluation takes one logarithm, one exponential and polynomials, no division; with a backing what that takes
 //! besides. Cells are computed when they are first needed at a temperature.
 //!
-//! Where each element has a temperature of its own, the law is kept at several temperatures, planes, and is linear
-//! between two of them: p, μp and κ at an approach. Cells of a plane are computed when they are first met.
+//! Where each element has a temperature of its own, the law is kept at several temperatures, planes, and its
+//! coefficients are linear between two of them. Cells of a plane are computed when they are first met.
 
 mod speed_grid;
 #[cfg(test)]
 mod tests;
 
-pub use speed_grid::{SpeedCell, SpeedRange};
+pub use speed_grid::SpeedRange;
 
 use super::backing::{SeriesBacking, SeriesIntervals};
 use super::friction_table::FrictionTable;
@@ -22,8 +22,7 @@ use super::limits::TableLimits;
 use super::quantity::Quantity;
 use crate::math::Number;
 use crate::scene::Backing;
-use speed_grid::Planes;
-use speed_grid::SpeedGrid;
+use speed_grid::{Planes, SpeedCell, SpeedGrid};
 
 /// Width of a cell, in ln v, at most.
 ///
@@ -46,15 +45,28 @@ pub struct LawPlace<T> {
     /// ln v, v in m/s, limited to the speeds of the table.
     log_speed: T,
     cell: SpeedCell,
-    /// Between two planes: the cell in the other, and the fraction of the way to it.
-    next: Option<(SpeedCell, T)>,
+    /// Where there are planes: the fraction of the way from that of the cell to the next.
+    way: T,
+}
+
+impl<T: Number> LawPlace<T> {
+    /// The slowest speed and the lowest temperature, as a beginning.
+    #[inline(always)]
+    pub fn first() -> Self {
+        Self { log_speed: T::constant(0.0), cell: SpeedCell::default(), way: T::constant(0.0) }
+    }
+
+    /// The fraction of the speed's cell.
+    #[inline(always)]
+    fn fraction(&self) -> T {
+        (self.log_speed - T::constant(self.cell.start)).times(self.cell.density)
+    }
 }
 
 impl LawPlace<f64> {
     /// The same place for numbers with derivatives, all of them 0.
     pub fn constant<T: Number>(&self) -> LawPlace<T> {
-        let next = self.next.map(|(cell, fraction)| (cell, T::constant(fraction)));
-        LawPlace { log_speed: T::constant(self.log_speed), cell: self.cell, next }
+        LawPlace { log_speed: T::constant(self.log_speed), cell: self.cell, way: T::constant(self.way) }
     }
 }
 
@@ -181,7 +193,6 @@ impl ResampledLaw {
     }
 
     /// Whether elements have temperatures of their own.
-    #[inline(always)]
     pub fn has_planes(&self) -> bool {
         self.planes.is_some()
     }
@@ -213,7 +224,7 @@ impl ResampledLaw {
 
     /// Up to where elements are within the table.
     pub fn limits(&self) -> TableLimits {
-        TableLimits::new(self.largest_pressure(), self.law.speed_range.1)
+        TableLimits::new((self.least_pressure(), self.largest_pressure()), self.law.speed_range.1)
     }
 
     /// The least pressure of the table, Pa.
@@ -232,39 +243,22 @@ impl ResampledLaw {
         self.speeds.range(self.law.speed_range)
     }
 
-    /// The cell of a [logarithm of a speed](SpeedRange::logarithm), computed if it was not yet.
+    /// The place of a [logarithm of a speed](SpeedRange::logarithm) in the law, of an element that is warmer by `rise` (K);
+    /// its cells are computed if they were not yet.
     #[inline(always)]
-    pub fn speed_cell(&mut self, log_speed: f64) -> SpeedCell {
-        let cell = self.speeds.cell(log_speed);
-        self.compute_once(&cell);
-        cell
-    }
-
-    /// The cells of a logarithm of a speed in the planes below and above an element that is warmer by `rise` (K), and
-    /// the fraction of the way from the one to the other.
-    #[inline(always)]
-    pub fn cells_between_planes<T: Number>(&mut self, log_speed: f64, rise: T) -> Option<([SpeedCell; 2], T)> {
-        let Planes { first, distance, count, cells } = self.planes?;
-        let from_first = (rise + T::constant(self.temperature - first)).times(1.0 / distance);
-        // Beyond the temperatures of the table the law is that of its end.
-        let from_first = from_first.larger(T::constant(0.0)).smaller(T::constant((count - 1) as f64));
-        let plane = (from_first.value() as u32 as usize).min(count - 2);
-        let mut below = self.speeds.cell(log_speed);
-        below.index += plane * cells;
-        let above = SpeedCell { index: below.index + cells, ..below };
-        self.compute_once(&below);
-        self.compute_once(&above);
-        Some(([below, above], from_first - T::constant(plane as f64)))
-    }
-
-    /// The place of a speed (m/s) in the law, of an element that is warmer by `rise` (K).
-    #[inline(always)]
-    pub fn place<T: Number>(&mut self, speed: T, rise: T) -> LawPlace<T> {
-        let log_speed = self.range().logarithm(speed);
-        match self.cells_between_planes(log_speed.value(), rise) {
-            Some(([cell, next], fraction)) => LawPlace { log_speed, cell, next: Some((next, fraction)) },
-            None => LawPlace { log_speed, cell: self.speed_cell(log_speed.value()), next: None },
+    pub fn place<T: Number>(&mut self, log_speed: T, rise: T) -> LawPlace<T> {
+        let mut place = LawPlace { log_speed, cell: self.speeds.cell(log_speed.value()), way: T::constant(0.0) };
+        if let Some(Planes { first, distance, count, cells }) = self.planes {
+            let from_first = (rise + T::constant(self.temperature - first)).times(1.0 / distance);
+            // Beyond the temperatures of the table the law is that of its end.
+            let from_first = from_first.larger(T::constant(0.0)).smaller(T::constant((count - 1) as f64));
+            let plane = (from_first.value() as u32 as usize).min(count - 2);
+            place.cell.index += plane * cells;
+            place.way = from_first - T::constant(plane as f64);
+            self.compute_once(&SpeedCell { index: place.cell.index + cells, ..place.cell });
         }
+        self.compute_once(&place.cell);
+        place
     }
 
     #[inline(always)]
@@ -338,23 +332,46 @@ impl ResampledLaw {
         }
     }
 
+    /// From a cell to that of the next plane; 0 where there are none.
+    #[inline(always)]
+    fn to_next_plane(&self) -> usize {
+        self.planes.map_or(0, |planes| planes.cells)
+    }
+
     /// The index of the interval of the pressure at an approach: near the ends of intervals one or the other, which
     /// agree there.
     #[inline(always)]
-    fn pressure_interval(&self, cell: &SpeedCell, log_speed: f64, approach: f64) -> usize {
-        let (fraction, count) = (cell.fraction(log_speed), starts_of(self.log_pressures.len()));
+    fn pressure_interval<T: Number>(&self, place: &LawPlace<T>, approach: f64) -> usize {
+        let (fraction, way) = (place.fraction().value(), place.way.value());
+        let (cell, count) = (place.cell.index, starts_of(self.log_pressures.len()));
+        let starts_in = |cell: usize| &self.interval_starts[cell * count..(cell + 1) * count];
         let mut passed = [0_u64; WIDTH];
-        for IntervalStarts { start, growth } in &self.interval_starts[cell.index * count..(cell.index + 1) * count] {
+        for (below, above) in starts_in(cell).iter().zip(starts_in(cell + self.to_next_plane())) {
             for i in 0..WIDTH {
-                passed[i] += u64::from(approach >= start[i] + fraction * growth[i]);
+                let here = below.start[i] + fraction * below.growth[i];
+                let next = above.start[i] + fraction * above.growth[i];
+                passed[i] += u64::from(approach >= here + way * (next - here));
             }
         }
         passed.iter().sum::<u64>() as usize
     }
 
-    /// The coefficients of an interval of the pressure at a fraction of a cell.
+    /// The coefficients of an interval of the pressure at a place.
     #[inline(always)]
-    fn coefficients_at<T: Number>(&self, cell: usize, fraction: T, interval: usize) -> [T; COEFFICIENTS] {
+    fn coefficients_at<T: Number>(&self, place: &LawPlace<T>, interval: usize) -> [T; COEFFICIENTS] {
+        let mut coefficients = self.coefficients_in(place.cell.index, place.fraction(), interval);
+        if let Some(planes) = self.planes {
+            let next = self.coefficients_in(place.cell.index + planes.cells, place.fraction(), interval);
+            for k in 0..COEFFICIENTS {
+                coefficients[k] = coefficients[k] + (next[k] - coefficients[k]) * place.way;
+            }
+        }
+        coefficients
+    }
+
+    /// Those at a fraction of a cell of one plane.
+    #[inline(always)]
+    fn coefficients_in<T: Number>(&self, cell: usize, fraction: T, interval: usize) -> [T; COEFFICIENTS] {
         let [a, b, c] = &self.coefficients[cell * self.log_pressures.len() + interval];
         let mut coefficients = [T::constant(0.0); COEFFICIENTS];
         for k in 0..COEFFICIENTS {
@@ -363,29 +380,20 @@ impl ResampledLaw {
         coefficients
     }
 
-    /// The law at a logarithm of a speed, whose [`speed_cell`](Self::speed_cell) is given, and an approach (m).
-    #[inline(always)]
-    pub fn at<T: Number>(&self, cell: &SpeedCell, log_speed: T, approach: T) -> ElementLaw<T> {
-        let LawPoints { log_pressure: [log_pressure], factor: [factor], friction: [friction], stiffness: [stiffness] } =
-            self.points(1, &[*cell], &[log_speed], &[approach]);
-        ElementLaw { pressure: log_pressure.exp() * factor, friction, stiffness }
-    }
-
-    /// As [`at`](Self::at), of elements: the first `count` of N.
+    /// The law of elements at their places and approaches (m): of the first `count` of N.
     #[inline(always)]
     pub fn points<T: Number, const N: usize>(
         &self,
         count: usize,
-        cells: &[SpeedCell; N],
-        log_speeds: &[T; N],
+        places: &[LawPlace<T>; N],
         approaches: &[T; N],
     ) -> LawPoints<T, N> {
         let count = count.min(N);
         let mut intervals = [0; N];
         for i in 0..count {
-            intervals[i] = self.pressure_interval(&cells[i], log_speeds[i].value(), approaches[i].value());
+            intervals[i] = self.pressure_interval(&places[i], approaches[i].value());
         }
-        self.points_in(count, &intervals, cells, log_speeds, approaches)
+        self.points_in(count, &intervals, places, approaches)
     }
 
     /// As [`points`](Self::points), the intervals of the pressure being known.
@@ -394,21 +402,19 @@ impl ResampledLaw {
         &self,
         count: usize,
         intervals: &[usize; N],
-        cells: &[SpeedCell; N],
-        log_speeds: &[T; N],
+        places: &[LawPlace<T>; N],
         approaches: &[T; N],
     ) -> LawPoints<T, N> {
         let mut laws = Intervals::new(count);
         for i in 0..count {
-            let (cell, interval) = (&cells[i], intervals[i]);
-            let coefficients = self.coefficients_at(cell.index, cell.fraction(log_speeds[i]), interval);
-            laws.set(i, coefficients, self.log_pressures[interval], interval + 1 == self.log_pressures.len());
+            let (interval, is_last) = (intervals[i], intervals[i] + 1 == self.log_pressures.len());
+            laws.set(i, self.coefficients_at(&places[i], interval), self.log_pressures[interval], is_last);
         }
         let Some(backing) = &self.backing else { return laws.points(&laws.beyond_start(approaches)) };
         let mut series = SeriesIntervals::new(&laws);
         for i in 0..count {
             let next = (intervals[i] + 1).min(self.log_pressures.len() - 1);
-            series.set(i, backing, (intervals[i], next), self.start(&cells[i], next, log_speeds[i].value()));
+            series.set(i, backing, (intervals[i], next), self.start(&places[i], next));
         }
         let mut points = laws.points(&series.contacts_beyond_start(approaches));
         for i in 0..count {
@@ -420,29 +426,27 @@ impl ResampledLaw {
     /// The law at a place and an approach (m).
     #[inline(always)]
     pub fn at_place<T: Number>(&self, place: &LawPlace<T>, approach: T) -> ElementLaw<T> {
-        let here = self.at(&place.cell, place.log_speed, approach);
-        let Some((next, fraction)) = place.next else { return here };
-        here.towards(&self.at(&next, place.log_speed, approach), fraction)
+        let LawPoints { log_pressure: [log_pressure], factor: [factor], friction: [friction], stiffness: [stiffness] } =
+            self.points(1, &[*place], &[approach]);
+        ElementLaw { pressure: log_pressure.exp() * factor, friction, stiffness }
     }
 
     /// Where interval `i` starts without a backing, m.
     #[inline(always)]
-    fn start(&self, cell: &SpeedCell, i: usize, log_speed: f64) -> f64 {
-        let (fraction, powers) =
-            (cell.fraction(log_speed), &self.coefficients[cell.index * self.log_pressures.len() + i]);
-        powers[0][START] + fraction * (powers[1][START] + fraction * powers[2][START])
+    fn start<T: Number>(&self, place: &LawPlace<T>, i: usize) -> f64 {
+        let (fraction, pressures) = (place.fraction().value(), self.log_pressures.len());
+        let in_cell = |cell: usize| {
+            let [a, b, c] = &self.coefficients[cell * pressures + i];
+            a[START] + fraction * (b[START] + fraction * c[START])
+        };
+        let here = in_cell(place.cell.index);
+        here + place.way.value() * (in_cell(place.cell.index + self.to_next_plane()) - here)
     }
 
     /// The approaches (m) at a place where the contact begins and where it reaches the least pressure of the table.
     pub fn beginning<T: Number>(&self, place: &LawPlace<T>) -> (T, T) {
-        let at = |cell: &SpeedCell| {
-            let c = self.coefficients_at(cell.index, cell.fraction(place.log_speed), 0);
-            (c[START] - T::constant(2.0) / c[LOG_PRESSURE[0]], c[START] + T::constant(self.indentation(0)))
-        };
-        let here = at(&place.cell);
-        let Some((next, fraction)) = place.next else { return here };
-        let there = at(&next);
-        (here.0 + (there.0 - here.0) * fraction, here.1 + (there.1 - here.1) * fraction)
+        let c = self.coefficients_at(place, 0);
+        (c[START] - T::constant(2.0) / c[LOG_PRESSURE[0]], c[START] + T::constant(self.indentation(0)))
     }
 
     /// The energy of the normal springs over their area at a place and an approach (m), J/m²: ∫ p over the approaches of the
@@ -452,28 +456,13 @@ impl ResampledLaw {
         /// 25.4.30).
         const GAUSS: [(f64, f64); 2] =
             [(0.339_981_043_584_856, 0.652_145_154_862_546), (0.861_136_311_594_053, 0.347_854_845_137_454)];
-        // Where the law of a cell has its next end, rising: at the touch, and where an interval of the pressure begins.
-        let end = |cell: &SpeedCell, i: usize| match i.checked_sub(1) {
-            Some(i) => {
-                (i < self.log_pressures.len()).then(|| self.start(cell, i, place.log_speed) + self.indentation(i))
-            }
-            None => {
-                let c = self.coefficients_at(cell.index, cell.fraction(place.log_speed), 0);
-                Some(c[START] - 2.0 / c[LOG_PRESSURE[0]])
-            }
-        };
-        let mut cells = [Some(place.cell), place.next.map(|(next, _)| next)].map(|cell| (cell, 0));
-        let touches = cells.iter().filter_map(|(cell, _)| end(cell.as_ref()?, 0));
-        let (mut energy, mut from) = (0.0, touches.fold(f64::INFINITY, f64::min));
-        while from < approach {
-            // Up to the next end, before which p is smooth.
-            let mut to = approach;
-            for (cell, i) in &mut cells {
-                let Some(cell) = cell else { continue };
-                while end(cell, *i).is_some_and(|end| end <= from) {
-                    *i += 1;
-                }
-                to = end(cell, *i).map_or(to, |end| to.min(end));
+        let (mut energy, mut from) = (0.0, self.beginning(place).0);
+        let starts = (0..self.log_pressures.len()).map(|i| self.start(place, i) + self.indentation(i));
+        for end in starts.chain([f64::INFINITY]) {
+            // Up to where the next interval of the pressure begins, before which p is smooth.
+            let to = end.min(approach);
+            if to <= from {
+                continue;
             }
             let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
             let pressure = |x: f64| self.at_place(place, middle + half * x).pressure;
@@ -485,19 +474,18 @@ impl ResampledLaw {
 
     /// The share of hysteresis in the friction coefficient, and the contact ratio, at a place and an approach (m).
     pub fn shares(&self, place: &LawPlace<f64>, approach: f64) -> (f64, f64) {
-        let here = self.shares_in(&place.cell, place.log_speed, approach);
-        let Some((next, fraction)) = place.next else { return here };
-        let there = self.shares_in(&next, place.log_speed, approach);
-        (here.0 + (there.0 - here.0) * fraction, here.1 + (there.1 - here.1) * fraction)
-    }
-
-    fn shares_in(&self, cell: &SpeedCell, log_speed: f64, approach: f64) -> (f64, f64) {
-        let (fraction, i) = (cell.fraction(log_speed), self.pressure_interval(cell, log_speed, approach));
-        let points = self.points_in(1, &[i], &[*cell], &[log_speed], &[approach]);
+        let (fraction, i) = (place.fraction(), self.pressure_interval(place, approach));
+        let points = self.points_in(1, &[i], &[*place], &[approach]);
         let t = points.log_pressure[0] - self.log_pressures[i];
-        let powers = &self.shares[cell.index * self.log_pressures.len() + i];
-        let at = |k: usize| (0..SAMPLES).rev().fold(0.0, |sum, power| sum * fraction + powers[power][k]);
-        let along = |first: usize| (0..4).rev().fold(0.0, |sum, k| sum * t + at(first + k));
+        let along = |first: usize| {
+            let in_cell = |cell: usize| {
+                let powers = &self.shares[cell * self.log_pressures.len() + i];
+                let at = |k: usize| (0..SAMPLES).rev().fold(0.0, |sum, power| sum * fraction + powers[power][k]);
+                (0..4).rev().fold(0.0, |sum, k| sum * t + at(first + k))
+            };
+            let here = in_cell(place.cell.index);
+            here + place.way * (in_cell(place.cell.index + self.to_next_plane()) - here)
+        };
         let (hysteresis, ratio) = (along(HYSTERESIS), along(CONTACT_RATIO) * points.factor[0].min(1.0));
         (if points.friction[0] > 0.0 { hysteresis / points.friction[0] } else { 0.0 }, ratio)
     }

@@ -12,19 +12,12 @@ const MAX_BINS: f64 = 1e5;
 
 /// The cell in which a speed lies; the fraction of it is a straight function of ln v.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct SpeedCell {
+pub(super) struct SpeedCell {
     pub(super) index: usize,
     /// ln v where the cell begins.
     pub(super) start: f64,
     /// Cells per unit of ln v.
     pub(super) density: f64,
-}
-
-impl SpeedCell {
-    #[inline(always)]
-    pub(super) fn fraction<T: Number>(&self, log_speed: T) -> T {
-        (log_speed - T::constant(self.start)).times(self.density)
-    }
 }
 
 /// Between two speeds of the table, as logarithms.

@@ -28,9 +28,8 @@ fn close_speeds_of_a_table_are_told_apart() {
     std::fs::remove_file(&path).unwrap();
     let mut law = ResampledLaw::new(&table, 1.0, 0.0, None);
     for (j, speed) in speeds.iter().enumerate() {
-        let log_speed = law.range().logarithm(*speed);
-        let cell = law.speed_cell(log_speed);
-        let friction = law.at(&cell, log_speed, -1.5e-5).friction;
+        let place = law.place(law.range().logarithm(*speed), 0.0);
+        let friction = law.at_place(&place, -1.5e-5).friction;
         assert!((friction - 0.5 - 0.1 * j as f64).abs() < 1e-6, "{speed}: {friction}");
     }
 }
@@ -46,7 +45,7 @@ fn between_planes_it_is_the_law_of_the_table() {
         for step in 0..150 {
             let speed = (1e-4_f64.ln() + 0.1 * f64::from(step)).exp();
             let curve = LawAtSpeed::new(&law, speed);
-            let place = found.place(speed, rise);
+            let place = found.place(found.range().logarithm(speed), rise);
             for i in 1..40 {
                 let approach = curve.touch + (curve.closest() - curve.touch) * f64::from(i) / 36.0;
                 let exact = curve.at(approach);
@@ -79,9 +78,8 @@ fn it_is_the_law_of_the_table() {
                 for i in -2..40 {
                     let approach = from + (to - from) * f64::from(i) / 36.0;
                     let exact = curve.at(approach);
-                    let log_speed = found.range().logarithm(speed);
-                    let cell = found.speed_cell(log_speed);
-                    let point = found.at(&cell, log_speed, approach);
+                    let place = found.place(found.range().logarithm(speed), 0.0);
+                    let point = found.at_place(&place, approach);
                     // As shares of the largest values of the table.
                     let largest = found.largest_pressure() * area;
                     let close = |value: f64, expected: f64, scale: f64| {

@@ -369,20 +369,27 @@ mod tests_of_description {
 
     #[test]
     fn elements_and_patches_have_a_default_experiment() {
-        let ends_after_500_steps = |described: String| {
+        let end_after_500_steps = |described: String| {
             let number = |name: &str| -> f64 {
                 let (_, rest) = described.split_once(&format!(" {name}=\"")).unwrap();
                 rest.split('"').next().unwrap().parse().unwrap()
             };
             assert!((number("stopTime") / number("stepSize") - 500.0).abs() < 1e-9, "{described}");
+            number("stopTime")
         };
         let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("tests/reference/patch");
         let table = FrictionTable::load(&folder.join("block.table.csv")).unwrap();
-        ends_after_500_steps(description_of(&PointContact::new(table).into()));
+        end_after_500_steps(description_of(&PointContact::new(table).into()));
         let text = "name = 'pad'\ntable = { path = 'block.table.csv' }\n[patch]\nshape = 'flat'\nlength = 0.01\n\
                     width = 0.01\nnx = 1\nny = 1";
-        let patch = Patch::parse(text, &folder.join("patch.toml")).unwrap();
-        ends_after_500_steps(description_of(&patch.into()));
+        let end_of = |text: &str| {
+            let patch = Patch::parse(text, &folder.join("patch.toml")).unwrap();
+            end_after_500_steps(description_of(&patch.into()))
+        };
+        end_of(text);
+        // A tread runs through its 10 mm ten times at the table's 10 m/s, in steps that are rounded down from 20 to 20 µs.
+        let end = end_of(&format!("{text}\ntransport = true"));
+        assert!((end - 0.01).abs() < 1e-12, "{end}");
     }
 
     #[test]
