@@ -28,6 +28,7 @@
 //! | [`patch_history`] | decimals, picture, time_history | a run of a patch as a picture |
 //! | [`seal_history`] | decimals, picture, time_history | a run of a seal as a picture |
 //! | [`stribeck`] | decimals, error, picture, progress, values | friction, film and leak of a seal in steady motion |
+//! | [`tyre`] | decimals, error, files, picture, progress, values | slip curves of a patch, and tyre models fitted to them |
 //! | [`runner`] | progress, values | a scene along its excitation, row by row |
 //! | [`steady`] | | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
 //! | [`sweep`] | decimals, error, files, implausible, picture, progress, steady, uncertainty, values | friction over speed, load and temperature, as a table |
@@ -84,6 +85,7 @@ pub mod summary;
 pub mod surface;
 pub mod sweep;
 pub mod time_history;
+pub mod tyre;
 pub mod uncertainty;
 pub mod values;
 

@@ -1,0 +1,63 @@
+//! `asperity slip`: forces of a patch over slip and slip angle, and tyre models fitted to them.
+
+use std::path::PathBuf;
+
+use asperity_study::Error;
+use asperity_study::progress::Stop;
+use asperity_study::tyre::{Fit, SlipCurves, SlipOptions};
+use clap::Args;
+
+use super::cli::values::{self, Set, example};
+use super::files::{check_outputs, default_output, load_patch, named, picture_beside, print_beside, write};
+use super::picture;
+use super::terminal::{self, lines, warn};
+
+#[derive(Debug, Args)]
+#[command(
+    override_usage = "asperity slip [OPTIONS] --loads <VALUES> <--slips <VALUES>|--angles <VALUES>>\n       <PATCH.toml>"
+)]
+#[command(after_help = example!(
+    "asperity slip scenes/slip/tread.toml --loads 2000,4000,6000 --slips -0.3..0.3/41 \\\n\
+    \x20     --angles -12deg..12deg/25 --fit mf -o slip.csv"
+))]
+pub(crate) struct Slip {
+    /// The patch file, with transport = true.
+    #[arg(value_name = "PATCH.toml")]
+    pub(crate) patch: PathBuf,
+    #[command(flatten)]
+    pub(crate) options: SlipOptions,
+    /// Fits a model to the table, and writes its numbers beside it.
+    #[arg(long, value_name = "MODEL", value_enum)]
+    pub(crate) fit: Option<Fit>,
+    /// The table to write, - for standard output. Default: the patch's file name with .slip.csv.
+    #[arg(short, long, value_name = "TABLE.csv")]
+    pub(crate) output: Option<PathBuf>,
+    /// The picture to write, as SVG or PNG according to the file name. Default: the table's name with .svg.
+    #[arg(long, value_name = "OUT.svg", value_parser = values::picture())]
+    pub(crate) plot: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) set: Set,
+}
+
+/// Rolls the tread, writes table and picture.
+pub(crate) fn slip(command: &Slip) -> Result<(), Error> {
+    let patch = load_patch(&command.patch, &command.set)?;
+    let output = command.output.clone().unwrap_or_else(|| default_output(&command.patch, "slip.csv"));
+    let picture = picture_beside(&output, command.plot.as_ref());
+    check_outputs([&output].into_iter().chain(&picture), patch.sources(&command.patch))?;
+    let bar = terminal::bar(command.options.parts(&patch) as u64);
+    let found = SlipCurves::new(&patch, &command.options, (&Stop::default(), &|| bar.inc(1)));
+    bar.finish_and_clear();
+    let found = found?;
+    found.warnings(&patch).iter().for_each(|warning| warn(warning));
+    write(&output, found.table().text())?;
+    picture.as_ref().map_or(Ok(()), |path| picture::write(&found.picture(), path))?;
+    let files = [output.as_path()].into_iter().chain(picture.as_deref()).map(named).collect::<Vec<_>>().join(", ");
+    print_beside([&output], &lines(&[("Points", found.points.len().to_string()), ("Written", files)]))?;
+    match found.failures() {
+        Some((failed, problem)) => {
+            Err(Error::run(format!("{failed} of {} points have no result: {problem}", found.points.len())))
+        }
+        None => Ok(()),
+    }
+}
