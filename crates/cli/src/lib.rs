@@ -25,6 +25,7 @@
 //! | `contact` | cli, files, npz, picture, terminal | `contact` |
 //! | `sweep` | cli, files, interrupt, output, picture, table_file, terminal | `sweep` |
 //! | `slip` | cli, files, picture, terminal | `slip` |
+//! | `tir` | cli, files, terminal | `tir` |
 //! | `rank` | cli, files, output, picture, terminal | `rank` |
 //! | `converge` | cli, files, interrupt, output, picture, table_file, terminal | `converge` |
 //! | `fit` | cli, files, output, picture, terminal | `fit` |
@@ -65,6 +66,7 @@ mod surface;
 mod sweep;
 mod table_file;
 mod terminal;
+mod tir;
 mod verify;
 
 use std::error::Error;
@@ -129,6 +131,8 @@ pub(crate) enum Command {
     Rank(rank::Rank),
     /// Computes forces over slip and slip angle of a patch whose tread runs through, and fits tyre models to them.
     Slip(slip::Slip),
+    /// Scales a tyre property file to another road, temperature or compound by two tables of asperity slip.
+    Tir(tir::Tir),
     /// Draws where the rubber touches in steady sliding, and how hard.
     Contact(contact::Contact),
     /// Prints what completes commands and options in a shell: asperity completions bash >>
@@ -198,6 +202,7 @@ fn run(arguments: Arguments) -> Result<u8, Box<dyn Error>> {
         Command::Manual(command) => reference::manual(&command, Arguments::command())?,
         Command::Report(command) => report::report(&command)?,
         Command::Slip(command) => slip::slip(&command)?,
+        Command::Tir(command) => tir::tir(&command)?,
         Command::Surface(command) => surface::surface(&command)?,
         Command::Sweep(command) => sweep::sweep(&command)?,
     }

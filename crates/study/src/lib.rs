@@ -28,6 +28,8 @@
 //! | [`patch_history`] | decimals, picture, time_history | a run of a patch as a picture |
 //! | [`seal_history`] | decimals, picture, time_history | a run of a seal as a picture |
 //! | [`stribeck`] | decimals, error, picture, progress, values | friction, film and leak of a seal in steady motion |
+//! | `least_squares` | error | least squares of a formula, with standard errors |
+//! | [`friction_law`] | decimals, error, files, least_squares, stribeck | laws of friction fitted to friction in steady motion |
 //! | [`tyre`] | decimals, error, files, picture, progress, values | slip curves of a patch, and tyre models fitted to them |
 //! | [`runner`] | progress, values | a scene along its excitation, row by row |
 //! | [`steady`] | | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
@@ -60,12 +62,14 @@ pub mod decimals;
 mod error;
 pub mod files;
 pub mod fit;
+pub mod friction_law;
 pub mod friction_map;
 pub mod html;
 pub mod implausible;
 #[cfg(test)]
 #[path = "../../../src/in_tests.rs"]
 mod in_tests;
+mod least_squares;
 pub mod masses;
 pub mod material;
 pub mod motion;

@@ -166,6 +166,15 @@ pub fn length(text: &str) -> Result<f64, String> {
     above_zero(text, Dimension::Length).ok_or_else(|| "expected a length above 0, such as 5e-5 (in m) or 0.05mm".into())
 }
 
+/// A stiffness above 0, in N/m or in the unit behind it.
+///
+/// # Errors
+/// What was expected of the text.
+pub fn stiffness(text: &str) -> Result<f64, String> {
+    let found = above_zero(text, Dimension::Stiffness);
+    found.ok_or_else(|| "expected a stiffness above 0, such as 3e5 (in N/m) or 300N/mm".into())
+}
+
 /// A temperature above 0 K, in K or in the unit behind it.
 ///
 /// # Errors

@@ -43,6 +43,8 @@ pub struct Rolling {
     pub power: f64,
     /// Share of the load that elements bear beyond the pressures of the table.
     pub beyond: f64,
+    /// The nominal area of contact over the width of the tread, m.
+    pub contact_length: f64,
     /// The temperature of the warmest element, K, of a patch with heat.
     pub warmest: Option<f64>,
 }
@@ -69,7 +71,7 @@ pub(super) struct Roller<'a> {
     patch: Patch,
     variables: Vec<PatchVariable>,
     length: f64,
-    area: f64,
+    width: f64,
     cells: usize,
     /// Whether the arc has to be longer than the contact.
     is_cylinder: bool,
@@ -106,7 +108,7 @@ impl<'a> Roller<'a> {
             OUTPUTS.iter().filter_map(|&output| variables.iter().find(|variable| variable.output == output));
         Ok(Self {
             length: grid.length,
-            area: grid.length * grid.width,
+            width: grid.width,
             cells: grid.nx,
             is_cylinder: matches!(patch.shape(), FaceShape::Cylinder { .. }),
             variables: variables.cloned().collect(),
@@ -173,23 +175,23 @@ impl<'a> Roller<'a> {
         }
         let mut run = self.run(motion, height)?;
         self.pass(&mut run, motion, 1)?;
-        Ok(self.mean(&mut run, motion)?.0.force[2])
+        Ok(self.mean(&mut run, motion)?.force[2])
     }
 
     /// Rolls at a height (m) until means no longer change.
     fn steady(&self, motion: &Motion, height: f64) -> Result<Rolling, Error> {
         let mut run = self.run(motion, height)?;
         self.pass(&mut run, motion, self.cells + 1)?;
-        let mut before = self.mean(&mut run, motion)?.0;
+        let mut before = self.mean(&mut run, motion)?;
         for _ in 0..MOST_PASSAGES {
-            let (now, area) = self.mean(&mut run, motion)?;
+            let now = self.mean(&mut run, motion)?;
             if self.is_like(&before, &now, motion) {
-                let is_short = self.is_cylinder && area > (1.0 - 1e-9) * self.area;
+                let is_short = self.is_cylinder && now.contact_length > (1.0 - 1e-9) * self.length;
                 let problem = "the contact reaches both ends of the arc: expected a longer one";
                 return if is_short { Err(Error::run(problem)) } else { Ok(now) };
             }
             self.pass(&mut run, motion, self.cells)?;
-            before = self.mean(&mut run, motion)?.0;
+            before = self.mean(&mut run, motion)?;
         }
         Err(not_steady())
     }
@@ -236,8 +238,8 @@ impl<'a> Roller<'a> {
         Ok(run.advance(&PatchMotion { duration, rates: rates(motion), transport_speed, temperature })?)
     }
 
-    /// Means over the time of a cell, and the mean area of contact, m².
-    fn mean(&self, run: &mut PatchRun, motion: &Motion) -> Result<(Rolling, f64), Error> {
+    /// Means over the time of a cell.
+    fn mean(&self, run: &mut PatchRun, motion: &Motion) -> Result<Rolling, Error> {
         let (time, mut sums, mut values) = (self.cell_time(motion), [0.0; OUTPUTS.len()], [0.0; OUTPUTS.len()]);
         for _ in 0..STEPS {
             self.go(run, motion, time / f64::from(STEPS))?;
@@ -245,7 +247,7 @@ impl<'a> Roller<'a> {
             sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value / f64::from(STEPS));
         }
         let [x, y, z, moment_z, power, count, sticking, beyond, area, warmest] = sums;
-        let rolling = Rolling {
+        Ok(Rolling {
             height: run.pose().place[2],
             transport_speed: motion.transport_speed,
             force: [x, y, z],
@@ -253,9 +255,9 @@ impl<'a> Roller<'a> {
             sliding: if count > 0.0 { 1.0 - sticking / count } else { 0.0 },
             power,
             beyond,
+            contact_length: area / self.width,
             warmest: self.patch.heat().map(|_| warmest),
-        };
-        Ok((rolling, area))
+        })
     }
 }
 

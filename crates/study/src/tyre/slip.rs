@@ -282,7 +282,7 @@ const MUCH: f64 = 0.05;
 /// A column of numbers: its name, its unit, and what a point has of it.
 type NumberColumn = (&'static str, &'static str, fn(&SlipCurves, &SlipPoint) -> Option<f64>);
 
-const COLUMNS: [NumberColumn; 18] = [
+const COLUMNS: [NumberColumn; 19] = [
     ("temperature", "K", |_, point| point.at.temperature),
     ("speed", "m/s", |_, point| Some(point.at.speed)),
     ("load", "N", |_, point| Some(point.at.load)),
@@ -296,6 +296,7 @@ const COLUMNS: [NumberColumn; 18] = [
     ("sliding", "", |_, point| of(point, |rolling| rolling.sliding)),
     ("P_diss", "W", |_, point| of(point, |rolling| rolling.power)),
     ("beyond", "", |_, point| of(point, |rolling| rolling.beyond)),
+    ("contact_length", "m", |_, point| of(point, |rolling| rolling.contact_length)),
     ("temperature_largest", "K", |_, point| point.rolling.as_ref().ok()?.warmest),
     ("height", "m", |_, point| of(point, |rolling| rolling.height)),
     ("transport_speed", "m/s", |_, point| of(point, |rolling| rolling.transport_speed)),
@@ -321,6 +322,7 @@ fn point(table: &Table, row: usize) -> Result<SlipPoint, TableError> {
             sliding: number("sliding", "")?,
             power: number("P_diss", "W")?,
             beyond: number("beyond", "")?,
+            contact_length: number("contact_length", "m")?,
             warmest: optional("temperature_largest", "K")?,
         }),
         status => Err(status),
