@@ -10,6 +10,7 @@ mod elements;
 mod errors;
 mod fit;
 mod found;
+mod laws;
 mod options;
 mod pack;
 mod patch;
@@ -40,6 +41,8 @@ mod _native {
     use super::fit::{Fit, fit};
     #[pymodule_export]
     use super::found::{Picture, curves};
+    #[pymodule_export]
+    use super::laws::{fit_friction, scale_tir};
     #[pymodule_export]
     use super::patch::{Patch, PatchRun, PatchState};
     #[pymodule_export]

@@ -40,7 +40,7 @@ pub(crate) fn tir(command: &Tir) -> Result<(), Error> {
     let scaled = ScaledTyre::new(base, from, to, carcass)?;
     scaled.notes.iter().for_each(|text| note(text));
     files::write(output, scaled.bytes()?)?;
-    let mut rows = labelled("Scaled", scaled.conditions.iter().cloned());
+    let mut rows = vec![("Scaled", scaled.conditions.clone())];
     rows.extend(labelled("Numbers", scaled.scalings.iter().map(ToString::to_string)));
     rows.push(("Base", name_of(base)));
     rows.push(("Written", named(output)));

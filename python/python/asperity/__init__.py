@@ -15,6 +15,7 @@ from ._contact import Contact
 from ._convergence import Convergence
 from ._errors import SceneError, SimulationError
 from ._fit import Fit, fit
+from ._laws import FrictionFit, Scaling, fit_friction, scale_tir
 from ._moment import Moment
 from ._native import __version__
 from ._patch import Patch, PatchState
@@ -32,12 +33,14 @@ __all__ = [
     "Contact",
     "Convergence",
     "Fit",
+    "FrictionFit",
     "Moment",
     "Parameter",
     "Patch",
     "PatchState",
     "Ranking",
     "Result",
+    "Scaling",
     "Scene",
     "SceneError",
     "Seal",
@@ -50,7 +53,9 @@ __all__ = [
     "Table",
     "__version__",
     "fit",
+    "fit_friction",
     "fmi",
     "rank",
+    "scale_tir",
     "surface",
 ]

@@ -194,7 +194,10 @@ fn trimmed(text: &str, part: Range<usize>) -> Range<usize> {
 
 /// A line as any reader of such files takes it.
 fn in_ascii(line: &str) -> String {
-    line.chars().map(|character| if matches!(character, ' '..='~') { character } else { '?' }).collect()
+    line.replace('°', "deg")
+        .chars()
+        .map(|character| if matches!(character, ' '..='~') { character } else { '?' })
+        .collect()
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::tables::{FINITE, POSITIVE};
 
-use super::curve::{ForceCurve, NO_SLIP, Side};
+use super::curve::{ForceCurve, NO_SLIP};
 use super::property::PropertyFile;
 use super::slip::{SlipConditions, SlipCurves};
 use crate::decimals::{rounded, short, temperature_as_given};
@@ -87,8 +87,8 @@ pub struct ScaledTyre {
     file: PropertyFile,
     /// What is scaled.
     pub scalings: Vec<Scaling>,
-    /// From what to what: tables, load, conditions.
-    pub conditions: Vec<String>,
+    /// From what to what: tables, conditions, load.
+    pub conditions: String,
     /// What stays as it is, and why.
     pub notes: Vec<String>,
 }
@@ -119,23 +119,22 @@ impl ScaledTyre {
             if file.number(section, key, FINITE)?.is_none() {
                 return Err(file.error(None, format!("[{section}]: expected the Magic Formula with {key}, found none")));
             }
-            let [a, b] =
-                [(0, 1), (1, 0)].map(|(of, other)| tables[of].at(direction, load, &tables[other], carcass.copied()));
-            let [a, b] = [a?, b?];
-            let mut scale = |key, figures, of| -> Result<(), Error> {
+            let [from, to] = [&tables[0], &tables[1]].map(|table| table.at(direction, load, carcass.copied()));
+            let ([from_peak, from_slope], [to_peak, to_slope]) = (from?, to?);
+            let with = carcass.map_or(String::new(), |carcass| format!(" with a carcass of {carcass} N/m"));
+            for (key, figures, of) in [
+                (friction, [from_peak, to_peak], format!("peak of {force}")),
+                (stiffness, [from_slope, to_slope], format!("slope of {force} at zero {slip}{with}")),
+            ] {
                 let before = file.number(SECTION, key, POSITIVE)?.unwrap_or(1.0);
                 scalings.push(Scaling { key, before, figures, of });
-                Ok(())
-            };
-            let with = carcass.map_or(String::new(), |carcass| format!(" with a carcass of {carcass} N/m"));
-            scale(friction, [a.peak, b.peak], format!("peak of {force}"))?;
-            scale(stiffness, [a.stiffness, b.stiffness], format!("slope of {force} at zero {slip}{with}"))?;
+            }
         }
         if scalings.is_empty() {
             return Err(Error::value(notes.join("; ")));
         }
         let [from, to] = tables.map(|table| table.condition);
-        let conditions = vec![format!("from {from} to {to}"), format!("at FNOMIN, {} N", short(load, 6))];
+        let conditions = format!("from {from} to {to} at FNOMIN, {} N", short(load, 6));
         Ok(Self { file, scalings, conditions, notes })
     }
 
@@ -145,20 +144,11 @@ impl ScaledTyre {
     /// Where a number stands twice in the file, or in another section.
     pub fn bytes(&self) -> Result<Vec<u8>, Error> {
         let numbers: Vec<(&str, f64)> = self.scalings.iter().map(|of| (of.key, of.after())).collect();
-        let scaled = format!("Scaled by asperity tir {}", self.conditions.join(" "));
+        let scaled = format!("Scaled by asperity tir {}", self.conditions);
         let comment: Vec<String> =
             std::iter::once(scaled).chain(self.scalings.iter().map(ToString::to_string)).collect();
         self.file.with(SECTION, &numbers, &comment)
     }
-}
-
-/// What a tyre model has of a curve.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Figures {
-    /// N.
-    peak: f64,
-    /// N a slip of 1.
-    stiffness: f64,
 }
 
 /// Slip curves at one speed and temperature.
@@ -188,7 +178,7 @@ impl SlipTable {
         let mut loads: Vec<f64> = self.curves.points.iter().map(|point| point.at.load).collect();
         loads.sort_by(f64::total_cmp);
         loads.dedup();
-        loads.retain(|&load| self.curve(direction, load).sides().next().is_some());
+        loads.retain(|&load| !self.curve(direction, load).is_empty());
         loads
     }
 
@@ -197,46 +187,158 @@ impl SlipTable {
         let at_load = self.curves.steady().filter(|(point, _)| point.at.load == load);
         let slips = at_load.map(|(point, rolling)| ([point.slip, point.angle], rolling.force[direction.axis]));
         let pure = slips.filter(|(slips, _)| slips[1 - direction.axis].abs() < NO_SLIP);
-        ForceCurve::new(pure.map(|(slips, force)| (slips[direction.axis], force)).collect())
+        ForceCurve::new(&pure.map(|(slips, force)| (slips[direction.axis], force)).collect::<Vec<_>>())
     }
 
-    /// Peak and stiffness at a load (N): over the load straight between those of the table.
-    fn at(&self, direction: &Direction, load: f64, other: &Self, carcass: Option<f64>) -> Result<Figures, Error> {
+    /// Peak (N) and stiffness (N a slip of 1) at a load (N): over the load straight between those of the table.
+    fn at(&self, direction: &Direction, load: f64, carcass: Option<f64>) -> Result<[f64; 2], Error> {
         let loads = self.loads(direction);
         let below = loads.iter().copied().rfind(|&of| of <= load);
         let Some((below, above)) = below.zip(loads.iter().copied().find(|&of| of >= load)) else {
             let found = loads.iter().map(|&of| short(of, 6)).collect::<Vec<_>>().join(", ");
             return Err(self.error(format!("expected loads about the nominal one, {load} N, found {found} N")));
         };
-        let low = self.figures(direction, below, other, carcass)?;
-        let high = self.figures(direction, above, other, carcass)?;
+        let low = self.figures(direction, below, carcass)?;
+        let high = self.figures(direction, above, carcass)?;
         let part = if above > below { (load - below) / (above - below) } else { 0.0 };
-        let between = |low: f64, high: f64| load * (low / below + part * (high / above - low / below));
-        Ok(Figures { peak: between(low.peak, high.peak), stiffness: between(low.stiffness, high.stiffness) })
+        Ok([0, 1].map(|of| load * (low[of] / below + part * (high[of] / above - low[of] / below))))
     }
 
-    /// Those of a load of the table, in the mean of the sides that both tables have.
-    fn figures(&self, direction: &Direction, load: f64, other: &Self, carcass: Option<f64>) -> Result<Figures, Error> {
+    /// Peak and stiffness at a load of the table, the carcass in series.
+    fn figures(&self, direction: &Direction, load: f64, carcass: Option<f64>) -> Result<[f64; 2], Error> {
         let Direction { force, slip, .. } = direction;
         let curve = self.curve(direction, load);
-        let has = |side: &Side| other.loads(direction).iter().any(|&load| other.curve(direction, load).has(*side));
-        let sides: Vec<Side> = curve.sides().filter(has).collect();
-        let mean = |of: &dyn Fn(Side) -> Option<f64>| {
-            let found: Option<Vec<f64>> = sides.iter().map(|&side| of(side)).collect();
-            found.filter(|found| !found.is_empty()).map(|found| found.iter().sum::<f64>() / found.len() as f64)
-        };
         let refuse = |problem: String| self.error(format!("{force} at {load} N {problem}"));
-        let peak = mean(&|side| curve.peak(side)).ok_or_else(|| {
-            refuse(format!("still rises at the last {slip}, which is no peak: expected a wider range"))
-        })?;
-        let tread = mean(&|side| curve.stiffness(side)).filter(|stiffness| *stiffness > 0.0);
-        let tread = tread.ok_or_else(|| refuse(format!("has no slope at zero {slip}")))?;
+        let rises = || refuse(format!("still rises at the last {slip}, which is no peak: expected a wider range"));
+        let peak = curve.peak().ok_or_else(rises)?;
         let length = self.curves.steady().find(|(point, _)| point.at.load == load).map(|found| found.1.contact_length);
-        let softer = carcass.zip(length).map(|(carcass, length)| 1.0 / (1.0 / tread + 2.0 / (carcass * length)));
-        Ok(Figures { peak, stiffness: softer.unwrap_or(tread) })
+        let yielding = carcass.zip(length).map_or(0.0, |(carcass, length)| 2.0 / (carcass * length));
+        let stiffness = curve.stiffness().map(|tread| 1.0 / (1.0 / tread + yielding)).filter(|slope| *slope > 0.0);
+        let coarse = || refuse(format!("has too few values of {slip} below its peak for a slope at zero"));
+        Ok([peak, stiffness.ok_or_else(coarse)?])
     }
 
     fn error(&self, problem: String) -> Error {
         Error::in_file(&self.path, None, problem)
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests may fail")]
+mod tests {
+    use std::fs;
+
+    use super::super::{Rolling, SlipPoint};
+    use super::*;
+
+    const BASE: &str = "[UNITS]\nFORCE = 'newton'\n[VERTICAL]\nFNOMIN = 2750\n[SCALING_COEFFICIENTS]\nLMUX = 1\n\
+                        LMUY = 0.5\n[LONGITUDINAL_COEFFICIENTS]\nPCX1 = 1.5\nPDX1 = 1.1004\nPKX1 = 16.405\n\
+                        [LATERAL_COEFFICIENTS]\nPDY1 = 1.0\n";
+    /// m.
+    const LENGTH: f64 = 0.1;
+
+    /// The Magic Formula with C 1.5, PDX1 1.1004, PKX1 16.405, E 0.
+    fn formula(slip: f64, load: f64, friction: f64, stiffness: f64) -> f64 {
+        let (c, d, k) = (1.5, 1.1004 * friction * load, 16.405 * stiffness * load);
+        d * (c * (k / (c * d) * slip).atan()).sin()
+    }
+
+    /// Slip curves of the formula, of F_y half as stiff, over slips up to 0.3.
+    fn curves(loads: &[f64], steps: i32, [friction, stiffness]: [f64; 2]) -> SlipCurves {
+        let mut points = Vec::new();
+        for &load in loads {
+            let at = SlipConditions { temperature: Some(283.15), speed: 10.0, load };
+            for slip in (-steps..=steps).map(|i| 0.3 * f64::from(i) / f64::from(steps)) {
+                let rolling = |force| Ok(Rolling { force, contact_length: LENGTH, ..Rolling::default() });
+                let x = rolling([formula(slip, load, friction, stiffness), 0.0, load]);
+                let y = rolling([0.0, -formula(slip, load, friction, 0.5 * stiffness), load]);
+                points.push(SlipPoint { at, slip, angle: 0.0, free: Some(1.0), rolling: x });
+                points.push(SlipPoint { at, slip: 0.0, angle: slip, free: Some(1.0), rolling: y });
+            }
+        }
+        SlipCurves { name: "tread".into(), radius: None, points }
+    }
+
+    fn scaled(tables: [&SlipCurves; 2], base: &str, carcass: &[f64]) -> Result<ScaledTyre, Error> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::write(path("base.tir"), base).unwrap();
+        for (name, curves) in ["a.csv", "b.csv"].into_iter().zip(tables) {
+            fs::write(path(name), curves.table().text()).unwrap();
+        }
+        ScaledTyre::new(&path("base.tir"), &path("a.csv"), &path("b.csv"), carcass)
+    }
+
+    const LOADS: [f64; 2] = [2000.0, 4000.0];
+
+    #[test]
+    fn the_scaled_file_has_the_forces_of_the_formula() {
+        let tables = [&curves(&LOADS, 60, [1.0, 1.0]), &curves(&LOADS, 60, [0.8, 1.0])];
+        let scaled = scaled(tables, BASE, &[]).unwrap();
+        let found: Vec<(&str, f64)> = scaled.scalings.iter().map(|of| (of.key, of.after())).collect();
+        for ((key, after), expected) in
+            found.into_iter().zip([("LMUX", 0.8), ("LKX", 1.0), ("LMUY", 0.4), ("LKY", 1.0)])
+        {
+            assert_eq!(key, expected.0);
+            // Slips 0.005 apart: the parabola misses a peak by 1e-6, the polynomial a slope by 1e-4.
+            let tolerance = if key.starts_with("LM") { 2e-6 } else { 1.5e-4 };
+            assert!((after / expected.1 - 1.0).abs() < tolerance, "{key} {after}");
+        }
+        let bytes = scaled.bytes().unwrap();
+        let text = String::from_utf8(bytes.clone()).unwrap();
+        let said = "$ Scaled by asperity tir from a.csv (tread, 10 m/s, 10 degC) to b.csv (tread, 10 m/s, 10 degC) at FNOMIN, 2750 N\n\
+                    $ LMUX 1 -> 0.8";
+        assert!(text.contains(&said), "{text}");
+        let file = PropertyFile::parse(&bytes, Path::new("out.tir")).unwrap();
+        let factor = |key: &str| file.number(SECTION, key, POSITIVE).unwrap().unwrap();
+        for ([friction, stiffness], [peak, at, force]) in
+            [([1.0, 1.0], [3026.1, 0.17428, 1930.4]), ([factor("LMUX"), factor("LKX")], [2420.9, 0.13942, 1792.6])]
+        {
+            let of = |slip: f64| formula(slip, 2750.0, friction, stiffness);
+            // Half of the last digit, and of F(0.05) what LKX misses by; the peak is flat.
+            assert!((of(at) - peak).abs() < 0.05 && (of(0.05) - force).abs() < 0.25, "{} {}", of(at), of(0.05));
+            assert!(of(at) > of(at + 2e-3).max(of(at - 2e-3)));
+        }
+    }
+
+    #[test]
+    fn a_carcass_is_in_series_with_the_tread() {
+        let tables = [&curves(&LOADS, 60, [1.0, 1.0]), &curves(&LOADS, 60, [1.0, 2.0])];
+        let scaled = scaled(tables, BASE, &[4e5, 2e5]).unwrap();
+        for (key, tread, carcass) in [("LKX", 16.405, 4e5), ("LKY", 0.5 * 16.405, 2e5)] {
+            let series =
+                |load: f64, factor: f64| 1.0 / (1.0 / (tread * load * factor) + 2.0 / (carcass * LENGTH)) / load;
+            // Over the load straight between those of the table.
+            let at = |factor: f64| 0.625 * series(2000.0, factor) + 0.375 * series(4000.0, factor);
+            let ratio = scaled.scalings.iter().find(|of| of.key == key).unwrap().ratio();
+            assert!((ratio / (at(2.0) / at(1.0)) - 1.0).abs() < 1e-3, "{key} {ratio}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_scaled_is_refused_in_words() {
+        let usual = curves(&LOADS, 60, [1.0, 1.0]);
+        let told = |other: &SlipCurves, base: &str| scaled([&usual, other], base, &[]).unwrap_err().to_string();
+        let mut short = usual.clone();
+        short.points.retain(|point| point.slip.abs() < 0.15);
+        assert!(
+            told(&short, BASE).ends_with(
+                "b.csv: F_x at 2000 N still rises at the last slip, which is no peak: expected a wider range"
+            )
+        );
+        assert!(
+            told(&curves(&[4000.0, 6000.0], 60, [1.0; 2]), BASE)
+                .ends_with("expected loads about the nominal one, 2750 N, found 4000, 6000 N")
+        );
+        assert!(told(&curves(&LOADS, 2, [1.0; 2]), BASE).contains("too few values of slip below its peak"));
+        let mut warm = usual.clone();
+        warm.points[0].at.temperature = Some(300.0);
+        assert!(told(&warm, BASE).ends_with("expected one speed and one temperature, found several"));
+        assert!(told(&usual, &BASE.replace("PDX1", "LX")).contains("expected the Magic Formula with PDX1, found none"));
+        let mut ahead = usual.clone();
+        ahead.points.retain(|point| point.angle == 0.0);
+        let without = scaled([&usual, &ahead], BASE, &[]).unwrap();
+        assert_eq!(without.scalings.len(), 2);
+        assert_eq!(without.notes, ["LMUY and LKY stay: b.csv has no F_y from zero slip angle on"]);
     }
 }
