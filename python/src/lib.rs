@@ -41,7 +41,7 @@ mod _native {
     #[pymodule_export]
     use super::found::{Picture, curves};
     #[pymodule_export]
-    use super::patch::{Patch, PatchRun, PatchState};
+    use super::patch::{MagicFormula, Patch, PatchRun, PatchState, SlipCurves};
     #[pymodule_export]
     use super::rank::rank;
     #[pymodule_export]

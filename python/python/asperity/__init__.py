@@ -23,6 +23,7 @@ from ._result import Result
 from ._scene import Scene
 from ._seal import Seal, SealState, Stribeck
 from ._simulation import Simulation, State
+from ._slip import MagicFormula, SlipCurves
 from ._surface import Surface, surface
 from ._table import Table
 
@@ -32,6 +33,7 @@ __all__ = [
     "Contact",
     "Convergence",
     "Fit",
+    "MagicFormula",
     "Moment",
     "Parameter",
     "Patch",
@@ -44,6 +46,7 @@ __all__ = [
     "SealState",
     "Simulation",
     "SimulationError",
+    "SlipCurves",
     "State",
     "Stribeck",
     "Surface",
