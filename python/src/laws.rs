@@ -4,7 +4,8 @@ use std::fs;
 use std::path::PathBuf;
 
 use asperity_study::Error;
-use asperity_study::friction_law::{Determined, FrictionData, FrictionFit, FrictionLaw};
+use asperity_study::friction_law::{FrictionData, FrictionFit, FrictionLaw};
+use asperity_study::least_squares::Determined;
 use asperity_study::tyre::ScaledTyre;
 use pyo3::prelude::*;
 

@@ -44,7 +44,7 @@ mod _native {
     #[pymodule_export]
     use super::laws::{fit_friction, scale_tir};
     #[pymodule_export]
-    use super::patch::{Patch, PatchRun, PatchState};
+    use super::patch::{MagicFormula, Patch, PatchRun, PatchState, SlipCurves};
     #[pymodule_export]
     use super::rank::rank;
     #[pymodule_export]

@@ -1,16 +1,18 @@
 //! `asperity slip --fit stribeck|lugre`: laws of friction fitted to a table of friction in steady motion.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use asperity_study::Error;
 use asperity_study::decimals::{percent, short, temperature_as_given};
 use asperity_study::friction_law::{FrictionData, FrictionFit, FrictionLaw, friction_table};
 
-use super::files::{check_outputs, name_of, named, print_beside, write};
+use super::files::{check_outputs, default_output, name_of, named, print_beside, write};
 use super::terminal::{LabelledLine, lines, note};
 
 /// Fits the law to the table at each of its temperatures, writes the numbers and prints them.
-pub(crate) fn fit_friction(path: &Path, law: FrictionLaw, output: &PathBuf) -> Result<(), Error> {
+pub(crate) fn fit_friction(path: &Path, law: FrictionLaw, output: Option<&Path>) -> Result<(), Error> {
+    let ending = if law == FrictionLaw::LuGre { "lugre.csv" } else { "stribeck.csv" };
+    let output = &output.map_or_else(|| default_output(path, ending), Path::to_owned);
     check_outputs([output], vec![path.to_owned()])?;
     let data = FrictionData::read(path)?;
     let fits = data.fit(law)?;

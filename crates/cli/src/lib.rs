@@ -24,7 +24,8 @@
 //! | `describe` | cli, files, picture, simulate, terminal | `describe` |
 //! | `contact` | cli, files, npz, picture, terminal | `contact` |
 //! | `sweep` | cli, files, interrupt, output, picture, table_file, terminal | `sweep` |
-//! | `slip` | cli, files, picture, terminal | `slip` |
+//! | `friction_fit` | files, terminal | `slip` of laws of friction |
+//! | `slip` | cli, files, friction_fit, picture, terminal | `slip` |
 //! | `tir` | cli, files, terminal | `tir` |
 //! | `rank` | cli, files, output, picture, terminal | `rank` |
 //! | `converge` | cli, files, interrupt, output, picture, table_file, terminal | `converge` |
@@ -47,6 +48,7 @@ mod describe;
 mod draft;
 mod files;
 mod fit;
+mod friction_fit;
 mod interrupt;
 mod lock;
 mod material;

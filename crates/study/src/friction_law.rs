@@ -14,8 +14,7 @@ use asperity::table::{Cell, Column, Header, Table, TableError};
 use crate::decimals::temperature_as_given;
 use crate::error::Error;
 use crate::files;
-pub use crate::least_squares::Determined;
-use crate::least_squares::{Parameter, least_squares};
+use crate::least_squares::{Determined, Parameter, least_squares};
 use crate::stribeck::STRIBECK;
 
 /// What the header of a table of numbers begins with.

@@ -24,6 +24,7 @@ from ._result import Result
 from ._scene import Scene
 from ._seal import Seal, SealState, Stribeck
 from ._simulation import Simulation, State
+from ._slip import MagicFormula, SlipCurves
 from ._surface import Surface, surface
 from ._table import Table
 
@@ -34,6 +35,7 @@ __all__ = [
     "Convergence",
     "Fit",
     "FrictionFit",
+    "MagicFormula",
     "Moment",
     "Parameter",
     "Patch",
@@ -47,6 +49,7 @@ __all__ = [
     "SealState",
     "Simulation",
     "SimulationError",
+    "SlipCurves",
     "State",
     "Stribeck",
     "Surface",

@@ -25,6 +25,7 @@ impl ForceCurve {
             let sized = points.iter().map(|&(slip, force)| (sign * slip, force.abs()));
             let mut side: Side = sized.filter(|(slip, _)| *slip > -NO_SLIP).collect();
             side.sort_by(|a, b| a.0.total_cmp(&b.0));
+            side.dedup_by(|b, a| b.0 - a.0 < NO_SLIP);
             Some(side).filter(|side| side.len() >= FEWEST && side[0].0 < NO_SLIP)
         };
         Self([1.0, -1.0].into_iter().filter_map(side).collect())

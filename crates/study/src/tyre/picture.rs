@@ -1,5 +1,6 @@
 //! Slip curves as a picture.
 
+use super::magic::{Direction, MagicFormula};
 use super::rolling::Rolling;
 use super::slip::{SlipConditions, SlipCurves, SlipPoint};
 use crate::decimals::{short, temperature_as_given};
@@ -16,6 +17,8 @@ struct Side {
     /// How that is named.
     fixed: fn(f64) -> String,
     panels: [Shown; 2],
+    /// The first panel, and what that is off by.
+    fitted: (Direction, Of<'static>),
 }
 
 const SIDES: [Side; 2] = [
@@ -24,12 +27,14 @@ const SIDES: [Side; 2] = [
         of: |point| [point.slip, point.angle.to_degrees()],
         fixed: |angle| format!("α = {}°", short(angle, 3)),
         panels: [(("F_x", "N"), |rolling| rolling.force[0]), (("share that slides", ""), |rolling| rolling.sliding)],
+        fitted: (Direction::Along, ("F_x less fit", "N")),
     },
     Side {
         x: ("slip angle α", "°"),
         of: |point| [point.angle.to_degrees(), point.slip],
         fixed: |slip| format!("κ = {}", short(slip, 3)),
         panels: [(("F_y", "N"), |rolling| rolling.force[1]), (("M_z", "N m"), |rolling| rolling.moment_z)],
+        fitted: (Direction::Across, ("F_y less fit", "N")),
     },
 ];
 
@@ -41,28 +46,47 @@ struct Curve<'a> {
 }
 
 impl SlipCurves {
-    /// F_x and the share that slides over the slip, F_y and M_z over the slip angle: colours tell loads, strokes all else.
-    pub fn picture(&self) -> Picture {
-        let sides: Vec<[Panel; 2]> = SIDES.iter().filter_map(|side| self.panels(side)).collect();
+    /// F_x and the share that slides over the slip, F_y and M_z over the slip angle: colours tell loads, strokes all else. With
+    /// a formula that was fitted, points are rings, lines its coefficients over loads, and what these are off by is below.
+    pub fn picture(&self, fit: Option<&MagicFormula>) -> Picture {
+        let sides: Vec<Vec<Panel>> = SIDES.iter().filter_map(|side| self.panels(side, fit)).collect();
         let row = |i: usize| Row { panels: sides.iter().map(|panels| panels[i].clone()).collect(), ..Row::default() };
-        Picture::of(vec![row(0), row(1)]).titled(&self.name)
+        Picture::of((0..sides.first().map_or(0, Vec::len)).map(row).collect()).titled(&self.name)
     }
 
-    /// The panels of a side, if there is a curve over it.
-    fn panels(&self, side: &Side) -> Option<[Panel; 2]> {
+    /// The panels of a side from top to bottom, if there is a curve over it.
+    fn panels(&self, side: &Side, fit: Option<&MagicFormula>) -> Option<Vec<Panel>> {
         let curves = self.curves(side);
-        let x =
-            Axis::linear(side.x, curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.0)), Fit::Tight);
-        let panel = |(of, value): Shown| {
-            let mark = |curve: &Curve<'_>| {
-                let points = curve.points.iter().map(|&(x, rolling)| [x, value(rolling)]).collect();
-                let (name, look, stroke) = named(&curves, side, curve);
-                Mark::broken(name, look, points, stroke)
-            };
-            let marks: Vec<Mark> = curves.iter().map(mark).collect();
-            Panel::new(x.clone(), Axis::linear(of, ys(&marks), Fit::Round), marks).sized(420.0, 260.0)
+        let looks: Vec<Look> = curves.iter().map(|curve| look(&curves, side, curve)).collect();
+        let xs = curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.0));
+        let x = Axis::linear(side.x, xs, Fit::Tight);
+        let panel = |of: Of<'_>, marks: Vec<Mark>, height: f64| {
+            Panel::new(x.clone(), Axis::linear(of, ys(&marks), Fit::Round), marks).sized(420.0, height)
         };
-        (!curves.is_empty()).then(|| side.panels.map(panel))
+        let lines = |value: &dyn Fn(&Curve<'_>, f64, &Rolling) -> Option<f64>| -> Vec<Mark> {
+            let line = |(curve, (name, colour, stroke)): (&Curve<'_>, &Look)| {
+                let point = |&(x, rolling): &(f64, &Rolling)| Some([x, value(curve, x, rolling)?]);
+                Mark::broken(name.clone(), *colour, curve.points.iter().filter_map(point).collect(), *stroke)
+            };
+            curves.iter().zip(&looks).map(line).filter(|mark| mark.points().next().is_some()).collect()
+        };
+        let [(first, force), (second, value)] = side.panels;
+        let second = panel(second, lines(&|_, _, rolling| Some(value(rolling))), 260.0);
+        let (direction, off) = side.fitted;
+        let fitted = |curve: &Curve<'_>, x: f64| {
+            let of_loads = fit.filter(|_| curve.fixed == 0.0)?.over_loads(direction, curve.at)?;
+            Some(of_loads.force(curve.at.load, if direction == Direction::Across { x.to_radians() } else { x }))
+        };
+        if fit.is_none() {
+            return (!curves.is_empty())
+                .then(|| vec![panel(first, lines(&|_, _, rolling| Some(force(rolling))), 260.0), second]);
+        }
+        let mut marks = lines(&|curve, x, _| fitted(curve, x));
+        marks.extend(curves.iter().zip(&looks).map(|(curve, (_, colour, _))| {
+            Mark::rings("", *colour, curve.points.iter().map(|&(x, rolling)| [x, force(rolling)]).collect())
+        }));
+        let residual = lines(&|curve, x, rolling| Some(force(rolling) - fitted(curve, x)?));
+        (!curves.is_empty()).then(|| vec![panel(first, marks, 260.0), panel(off, residual, 130.0), second])
     }
 
     /// The curves of two points or more.
@@ -82,7 +106,9 @@ impl SlipCurves {
 }
 
 /// The name of a curve by what differs among all, its colour and its stroke.
-fn named(curves: &[Curve<'_>], side: &Side, curve: &Curve<'_>) -> (String, usize, Stroke) {
+type Look = (String, usize, Stroke);
+
+fn look(curves: &[Curve<'_>], side: &Side, curve: &Curve<'_>) -> Look {
     let others = |curve: &Curve<'_>| (curve.at.temperature, curve.at.speed, curve.fixed);
     let colour = place(curves.iter().map(|curve| curve.at.load), curve.at.load);
     let stroke = place(curves.iter().map(others), others(curve));

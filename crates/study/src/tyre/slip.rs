@@ -15,6 +15,7 @@ use super::rolling::{Motion, Roller, Rolling};
 use crate::decimals::{percent, short, temperature_as_given};
 use crate::error::{Error, ErrorKind};
 use crate::files;
+use crate::friction_law::FrictionLaw;
 use crate::progress::Stop;
 use crate::values::Values;
 
@@ -34,8 +35,10 @@ const LARGEST_SLIP: f64 = 100.0;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, Args)]
 pub struct SlipOptions {
     /// Vertical loads in N, or with their unit, as a list or as a..b/n, n values evenly spaced in the logarithm.
-    #[arg(long, value_name = "VALUES", value_parser = Values::of(Dimension::Force), required = true)]
-    pub loads: Values,
+    #[arg(long, value_name = "VALUES", value_parser = Values::of(Dimension::Force),
+        required_unless_present = "fit", required_if_eq("fit", "mf"))]
+    #[serde(default)]
+    pub loads: Option<Values>,
     /// Longitudinal slips κ, as a list or as a..b/n, n values evenly spaced: the rolling speed Ω R_e over that of travel ahead,
     /// less 1; R_e is found in free rolling.
     #[arg(long, value_name = "VALUES", value_parser = Values::signed(Dimension::Number), allow_hyphen_values = true)]
@@ -65,6 +68,21 @@ pub struct SlipOptions {
 pub enum Fit {
     /// The Magic Formula of Pacejka, pure slip: B, C, D, E per load, and coefficients of MF 5.2 and 6.1
     Mf,
+    /// The five numbers of a cylinder's friction, of the table of asperity sweep, also of a lip, in the place of a patch
+    Stribeck,
+    /// Those of LuGre that steady motion has, of the same tables
+    Lugre,
+}
+
+impl Fit {
+    /// Its law of friction, where it is one.
+    pub fn friction_law(self) -> Option<FrictionLaw> {
+        match self {
+            Self::Mf => None,
+            Self::Stribeck => Some(FrictionLaw::Stribeck),
+            Self::Lugre => Some(FrictionLaw::LuGre),
+        }
+    }
 }
 
 /// What a wheel rolls under.
@@ -105,6 +123,10 @@ pub struct SlipCurves {
 }
 
 impl SlipOptions {
+    fn loads(&self) -> &[f64] {
+        self.loads.as_ref().map_or(&[], |loads| &loads.0)
+    }
+
     fn speeds(&self) -> Vec<f64> {
         self.speeds.clone().map_or(vec![SPEED], |speeds| speeds.0)
     }
@@ -129,7 +151,7 @@ impl SlipOptions {
         let (speeds, mut all) = (self.speeds(), Vec::new());
         for temperature in temperatures {
             for &speed in &speeds {
-                all.extend(self.loads.0.iter().map(|&load| SlipConditions { temperature, speed, load }));
+                all.extend(self.loads().iter().map(|&load| SlipConditions { temperature, speed, load }));
             }
         }
         all
@@ -142,15 +164,15 @@ impl SlipOptions {
 
     /// Refuses what a patch cannot do.
     fn check(&self, patch: &Patch) -> Result<(), Error> {
-        if self.slips().is_empty() {
-            return Err(Error::value("expected `slips`, `angles` or both"));
+        if self.slips().is_empty() || self.loads().is_empty() {
+            return Err(Error::value("expected `loads`, and `slips`, `angles` or both"));
         }
         let check = |name: &str, values: &[f64], is_in: fn(f64) -> bool, expected: &str| {
             let wrong = values.iter().find(|value| !is_in(**value));
             wrong.map_or(Ok(()), |value| Err(Error::value(format!("`{name}`: expected {expected}, found {value:?}"))))
         };
         let positive = |value: f64| POSITIVE.holds(value);
-        check("loads", &self.loads.0, positive, "numbers above 0, in N")?;
+        check("loads", self.loads(), positive, "numbers above 0, in N")?;
         check("speeds", &self.speeds(), positive, "numbers above 0, in m/s")?;
         let slips = self.slips();
         let [slips, angles]: [Vec<f64>; 2] =

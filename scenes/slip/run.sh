@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# Sweeps the tables of both roads where they are not there, computes the tread's slip curves on each at 10 and 40 °C, and
+# fits the Magic Formula to them: all but the tables in FOLDER, by default target/slip.
+#
+#   scenes/slip/run.sh [FOLDER]
+set -euo pipefail
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+root=$(cd "$here/../.." && pwd)
+folder=${1:-$root/target/slip}
+mkdir -p "$folder"
+
+asperity=$("$root/scenes/program")
+sweep() {
+    "$asperity" sweep "$here/../patch-mujoco/road.toml" --speeds 1e-3..10/9 --pressures 5e3,5e4,2e5,6e5 \
+        --temperatures 10°C,40°C --points 2048 --set "surface.fine.shortest=$2" -o "$here/$1.table.csv" --plot "$folder/$1.sweep.svg"
+}
+sweep asphalt 5e-6
+sweep smooth 1e-5
+for road in asphalt smooth; do
+    "$asperity" slip "$here/$road.toml" --loads 2000,4000,6000 --slips -0.3..0.3/41 --angles -12deg..12deg/25 \
+        --temperatures 10°C,40°C --fit mf -o "$folder/$road.csv" --plot "$folder/$road.svg"
+done
+# A property file scaled to the other road and temperature belongs here.
+echo "$folder/asphalt.svg $folder/smooth.svg"
