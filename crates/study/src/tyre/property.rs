@@ -56,9 +56,12 @@ impl PropertyFile {
         if bytes.contains(&0) {
             return Err(read.error(None, "expected a text of one byte a character, found one with zeros (UTF-16?)"));
         }
+        let lengths: Vec<usize> = read.text.split_inclusive('\n').map(str::len).collect();
         let mut start = 0;
-        let lines: Vec<Range<usize>> = read.text.split_inclusive('\n').map(|line| advance(&mut start, line)).collect();
-        lines.into_iter().zip(1..).try_for_each(|(place, line)| read.add_line(place, line))?;
+        for (line, length) in (1..).zip(lengths) {
+            read.add_line(start..start + length, line)?;
+            start += length;
+        }
         Ok(read)
     }
 
@@ -167,12 +170,6 @@ impl PropertyFile {
     pub(super) fn error(&self, line: Option<usize>, problem: impl std::fmt::Display) -> Error {
         Error::in_file(&self.file, line, problem)
     }
-}
-
-/// Where a line is that begins at `start`, which goes on to the next one.
-fn advance(start: &mut usize, line: &str) -> Range<usize> {
-    *start += line.len();
-    *start - line.len()..*start
 }
 
 /// The length of a line up to its comment, which does not begin within quotation marks.

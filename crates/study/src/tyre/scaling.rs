@@ -243,7 +243,7 @@ mod tests {
         d * (c * (k / (c * d) * slip).atan()).sin()
     }
 
-    /// Slip curves of the formula, of F_y half as stiff, over slips up to 0.3.
+    /// Slip curves of the formula, of F_y three quarters as stiff, over slips up to 0.3.
     fn curves(loads: &[f64], steps: i32, [friction, stiffness]: [f64; 2]) -> SlipCurves {
         let mut points = Vec::new();
         for &load in loads {
@@ -251,7 +251,7 @@ mod tests {
             for slip in (-steps..=steps).map(|i| 0.3 * f64::from(i) / f64::from(steps)) {
                 let rolling = |force| Ok(Rolling { force, contact_length: LENGTH, ..Rolling::default() });
                 let x = rolling([formula(slip, load, friction, stiffness), 0.0, load]);
-                let y = rolling([0.0, -formula(slip, load, friction, 0.5 * stiffness), load]);
+                let y = rolling([0.0, -formula(slip, load, friction, 0.75 * stiffness), load]);
                 points.push(SlipPoint { at, slip, angle: 0.0, free: Some(1.0), rolling: x });
                 points.push(SlipPoint { at, slip: 0.0, angle: slip, free: Some(1.0), rolling: y });
             }
@@ -305,7 +305,7 @@ mod tests {
     fn a_carcass_is_in_series_with_the_tread() {
         let tables = [&curves(&LOADS, 60, [1.0, 1.0]), &curves(&LOADS, 60, [1.0, 2.0])];
         let scaled = scaled(tables, BASE, &[4e5, 2e5]).unwrap();
-        for (key, tread, carcass) in [("LKX", 16.405, 4e5), ("LKY", 0.5 * 16.405, 2e5)] {
+        for (key, tread, carcass) in [("LKX", 16.405, 4e5), ("LKY", 0.75 * 16.405, 2e5)] {
             let series =
                 |load: f64, factor: f64| 1.0 / (1.0 / (tread * load * factor) + 2.0 / (carcass * LENGTH)) / load;
             // Over the load straight between those of the table.
