@@ -10,6 +10,7 @@ mod elements;
 mod errors;
 mod fit;
 mod found;
+mod laws;
 mod options;
 mod pack;
 mod patch;
@@ -41,7 +42,9 @@ mod _native {
     #[pymodule_export]
     use super::found::{Picture, curves};
     #[pymodule_export]
-    use super::patch::{Patch, PatchRun, PatchState};
+    use super::laws::{fit_friction, scale_tir};
+    #[pymodule_export]
+    use super::patch::{MagicFormula, Patch, PatchRun, PatchState, SlipCurves};
     #[pymodule_export]
     use super::rank::rank;
     #[pymodule_export]

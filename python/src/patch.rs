@@ -2,16 +2,21 @@
 
 use std::ffi::OsString;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use asperity::patch::{PatchMotion, PatchStart, PatchVariable, Pose};
+use asperity_study::Error;
 use asperity_study::pack::FmuOptions;
 use asperity_study::summary::{LabelledLine, described_patch, missing_backing};
+use asperity_study::tyre::{self, SlipOptions};
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use crate::background::in_background;
 use crate::errors::{Raise as _, check_dt, no_output};
+use crate::found::{FoundColumn, Picture, columns};
 use crate::options::Options;
 use crate::pack::pack;
 use crate::state::state_class;
@@ -70,6 +75,64 @@ impl Patch {
     /// Writes an FMU.
     fn pack(&self, output: PathBuf, libraries: Vec<OsString>, options: Options<FmuOptions>) -> PyResult<Vec<String>> {
         pack(&self.patch.clone().into(), &self.file, &libraries, (&output, options))
+    }
+
+    /// Forces over slip and slip angle.
+    fn slip(&self, py: Python<'_>, options: Options<SlipOptions>, progress: Option<Py<PyAny>>) -> PyResult<SlipCurves> {
+        let (patch, Options(options)) = (self.patch.clone(), options);
+        let found = in_background(py, progress, move |task| {
+            let (parts, done) = (options.parts(&patch) as f64, AtomicUsize::new(0));
+            let tell = || task.report((1 + done.fetch_add(1, Ordering::Relaxed)) as f64 / parts);
+            tyre::SlipCurves::new(&patch, &options, (&task.stop(), &tell))
+        })?;
+        let curves = found.map_err(|error: Error| error.raise())?;
+        Ok(SlipCurves { warnings: curves.warnings(&self.patch), curves })
+    }
+}
+
+/// Slip curves of a patch.
+#[pyclass(frozen, module = "asperity._native")]
+#[derive(Debug)]
+pub(crate) struct SlipCurves {
+    curves: tyre::SlipCurves,
+    #[pyo3(get)]
+    warnings: Vec<String>,
+}
+
+/// The Magic Formula, fitted to them.
+#[pyclass(frozen, module = "asperity._native")]
+#[derive(Debug)]
+pub(crate) struct MagicFormula(tyre::MagicFormula);
+
+#[pymethods]
+impl SlipCurves {
+    fn columns<'py>(&self, py: Python<'py>) -> PyResult<Vec<FoundColumn<'py>>> {
+        columns(py, &self.curves.table())
+    }
+
+    /// The table as the program writes it.
+    fn text(&self) -> String {
+        self.curves.table().text()
+    }
+
+    fn picture(&self, fit: Option<&MagicFormula>) -> Picture {
+        Picture(self.curves.picture(fit.map(|fit| &fit.0)))
+    }
+
+    fn magic_formula(&self, nominal: Option<f64>) -> PyResult<MagicFormula> {
+        tyre::MagicFormula::new(&self.curves, nominal).map(MagicFormula).map_err(|error| error.raise())
+    }
+}
+
+#[pymethods]
+impl MagicFormula {
+    fn columns<'py>(&self, py: Python<'py>) -> PyResult<Vec<FoundColumn<'py>>> {
+        columns(py, &self.0.table())
+    }
+
+    /// The table as the program writes it.
+    fn text(&self) -> String {
+        self.0.table().text()
     }
 }
 

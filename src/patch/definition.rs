@@ -299,6 +299,11 @@ impl Patch {
         Self { face: Arc::new(face(&file)), file: Arc::new(file), ..self.clone() }
     }
 
+    /// The face as its file has it.
+    pub fn shape(&self) -> &FaceShape {
+        &self.file.shape
+    }
+
     /// Elements along and across the face, of a grid.
     pub fn grid(&self) -> Option<(usize, usize)> {
         match &self.file.shape {

@@ -9,6 +9,7 @@ mod damper;
 mod element;
 mod fit;
 mod gaps;
+mod laws;
 mod options;
 mod output_files;
 mod patch_check;

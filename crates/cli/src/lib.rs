@@ -24,6 +24,9 @@
 //! | `describe` | cli, files, picture, simulate, terminal | `describe` |
 //! | `contact` | cli, files, npz, picture, terminal | `contact` |
 //! | `sweep` | cli, files, interrupt, output, picture, table_file, terminal | `sweep` |
+//! | `friction_fit` | files, terminal | `slip` of laws of friction |
+//! | `slip` | cli, files, friction_fit, picture, terminal | `slip` |
+//! | `tir` | cli, files, terminal | `tir` |
 //! | `rank` | cli, files, output, picture, terminal | `rank` |
 //! | `converge` | cli, files, interrupt, output, picture, table_file, terminal | `converge` |
 //! | `fit` | cli, files, output, picture, terminal | `fit` |
@@ -45,6 +48,7 @@ mod describe;
 mod draft;
 mod files;
 mod fit;
+mod friction_fit;
 mod interrupt;
 mod lock;
 mod material;
@@ -59,10 +63,12 @@ mod reference;
 mod report;
 mod result_file;
 mod simulate;
+mod slip;
 mod surface;
 mod sweep;
 mod table_file;
 mod terminal;
+mod tir;
 mod verify;
 
 use std::error::Error;
@@ -125,6 +131,10 @@ pub(crate) enum Command {
     /// Ranks scenes by their friction: an index with its band, which is the largest and how surely. Exit status 0: the first
     /// two are told apart with a probability of 0.9; 3: they are not.
     Rank(rank::Rank),
+    /// Computes forces over slip and slip angle of a patch whose tread runs through, and fits tyre models to them.
+    Slip(slip::Slip),
+    /// Scales a tyre property file to another road, temperature or compound by two tables of asperity slip.
+    Tir(tir::Tir),
     /// Draws where the rubber touches in steady sliding, and how hard.
     Contact(contact::Contact),
     /// Prints what completes commands and options in a shell: asperity completions bash >>
@@ -193,6 +203,8 @@ fn run(arguments: Arguments) -> Result<u8, Box<dyn Error>> {
         Command::Completions(command) => reference::completions(&command, Arguments::command())?,
         Command::Manual(command) => reference::manual(&command, Arguments::command())?,
         Command::Report(command) => report::report(&command)?,
+        Command::Slip(command) => slip::slip(&command)?,
+        Command::Tir(command) => tir::tir(&command)?,
         Command::Surface(command) => surface::surface(&command)?,
         Command::Sweep(command) => sweep::sweep(&command)?,
     }

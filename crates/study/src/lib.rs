@@ -28,6 +28,9 @@
 //! | [`patch_history`] | decimals, picture, time_history | a run of a patch as a picture |
 //! | [`seal_history`] | decimals, picture, time_history | a run of a seal as a picture |
 //! | [`stribeck`] | decimals, error, picture, progress, values | friction, film and leak of a seal in steady motion |
+//! | [`least_squares`] | decimals, error | a formula's numbers fitted to data, and which of them these determine |
+//! | [`friction_law`] | decimals, error, files, least_squares, stribeck | laws of friction fitted to friction in steady motion |
+//! | [`tyre`] | decimals, error, files, friction_law, least_squares, picture, progress, values | slip curves of a patch, and tyre models fitted to them |
 //! | [`runner`] | progress, values | a scene along its excitation, row by row |
 //! | [`steady`] | | steady sliding, solved for as such: contact, friction, heat; Persson's theory |
 //! | [`sweep`] | decimals, error, files, implausible, picture, progress, steady, uncertainty, values | friction over speed, load and temperature, as a table |
@@ -59,12 +62,14 @@ pub mod decimals;
 mod error;
 pub mod files;
 pub mod fit;
+pub mod friction_law;
 pub mod friction_map;
 pub mod html;
 pub mod implausible;
 #[cfg(test)]
 #[path = "../../../src/in_tests.rs"]
 mod in_tests;
+pub mod least_squares;
 pub mod masses;
 pub mod material;
 pub mod motion;
@@ -84,6 +89,7 @@ pub mod summary;
 pub mod surface;
 pub mod sweep;
 pub mod time_history;
+pub mod tyre;
 pub mod uncertainty;
 pub mod values;
 

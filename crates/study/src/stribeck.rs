@@ -15,7 +15,7 @@ use crate::progress::{Stop, Stopped};
 use crate::values::Values;
 
 /// What the header of the table begins with.
-const STRIBECK: (&str, u64) = ("asperity stribeck", 1);
+pub(crate) const STRIBECK: (&str, u64) = ("asperity stribeck", 1);
 
 /// A run goes on by this part of the lip's width until its force changes by no more than [`STEADY`] over one of them, and at
 /// most for so many of them: what the outstroke lays is as long. Where little comes back it gathers before the lip for some

@@ -1,6 +1,6 @@
 //! Values of options as people write them: numbers with units, lists and ranges. An error says what was expected.
 
-use asperity::tables::{Dimension, NOT_NEGATIVE, NumberRange, POSITIVE, Unit, quantity};
+use asperity::tables::{ANY, Dimension, NOT_NEGATIVE, NumberRange, POSITIVE, Unit, quantity};
 use serde::{Deserialize, Serialize};
 
 use crate::decimals::rounded;
@@ -30,18 +30,24 @@ impl Values {
     /// # Errors
     /// What was expected of the text.
     pub fn parse(text: &str, dimension: Dimension) -> Result<Self, String> {
-        Self::parse_within(text, dimension, POSITIVE)
+        Self::parse_within(text, dimension, POSITIVE, false)
     }
 
-    fn parse_within(text: &str, dimension: Dimension, range: NumberRange) -> Result<Self, String> {
-        let mut numbers = Numbers { dimension, range, with_unit: None };
+    fn parse_within(text: &str, dimension: Dimension, range: NumberRange, is_even: bool) -> Result<Self, String> {
+        let is_even = is_even || dimension == Dimension::Temperature;
+        let mut numbers = Numbers { dimension, range, is_even, with_unit: None };
         let parts = text.split(',').map(|part| values(part.trim(), &mut numbers));
         Ok(parts.collect::<Result<Vec<_>, _>>()?.concat().into())
     }
 
     /// What reads values of a dimension of which 0 is one.
     pub fn from_zero(dimension: Dimension) -> impl Fn(&str) -> Result<Self, String> + Clone {
-        move |text| Self::parse_within(text, dimension, NOT_NEGATIVE)
+        move |text| Self::parse_within(text, dimension, NOT_NEGATIVE, false)
+    }
+
+    /// What reads values of a dimension of either sign, those between two ends evenly spaced as such.
+    pub fn signed(dimension: Dimension) -> impl Fn(&str) -> Result<Self, String> + Clone {
+        move |text| Self::parse_within(text, dimension, ANY, true)
     }
 
     /// What reads values of a dimension.
@@ -55,15 +61,18 @@ fn values(part: &str, numbers: &mut Numbers) -> Result<Vec<f64>, String> {
     let (high, count) = rest.rsplit_once('/').ok_or_else(|| wrong(part, "a..b/n, such as 1e-4..10/20"))?;
     let (low, high) = (numbers.read(low)?, numbers.read(high)?);
     let count: usize = count.trim().parse().map_err(|_| wrong(count, "a whole number of values"))?;
-    if low >= high || (low == 0.0 && numbers.dimension != Dimension::Temperature) || !(2..=MOST).contains(&count) {
+    if low >= high || (low == 0.0 && !numbers.is_even) || !(2..=MOST).contains(&count) {
         return Err(wrong(part, &format!("a..b/n with a < b and 2 to {MOST} values")));
     }
     let last = count - 1;
-    let at = |i: usize| match (i, numbers.dimension) {
-        (0, _) => low,
-        (i, _) if i == last => high,
-        (i, Dimension::Temperature) => rounded(low + (high - low) * (i as f64 / last as f64), DIGITS),
-        (i, _) => rounded(low * (high / low).powf(i as f64 / last as f64), DIGITS),
+    let share = |i: usize| i as f64 / last as f64;
+    // What is next to 0 but for rounding is 0.
+    let even = |i: usize| Some(low + (high - low) * share(i)).filter(|value| value.abs() > 1e-9 * (high - low));
+    let at = |i: usize| match i {
+        0 => low,
+        i if i == last => high,
+        i if numbers.is_even => rounded(even(i).unwrap_or(0.0), DIGITS),
+        i => rounded(low * (high / low).powf(share(i)), DIGITS),
     };
     Ok((0..count).map(at).collect())
 }
@@ -72,6 +81,8 @@ fn values(part: &str, numbers: &mut Numbers) -> Result<Vec<f64>, String> {
 struct Numbers {
     dimension: Dimension,
     range: NumberRange,
+    /// Whether values between two ends are evenly spaced; else their logarithms are.
+    is_even: bool,
     with_unit: Option<bool>,
 }
 
@@ -155,6 +166,15 @@ pub fn length(text: &str) -> Result<f64, String> {
     above_zero(text, Dimension::Length).ok_or_else(|| "expected a length above 0, such as 5e-5 (in m) or 0.05mm".into())
 }
 
+/// A stiffness above 0, in N/m or in the unit behind it.
+///
+/// # Errors
+/// What was expected of the text.
+pub fn stiffness(text: &str) -> Result<f64, String> {
+    let found = above_zero(text, Dimension::Stiffness);
+    found.ok_or_else(|| "expected a stiffness above 0, such as 3e5 (in N/m) or 300N/mm".into())
+}
+
 /// A temperature above 0 K, in K or in the unit behind it.
 ///
 /// # Errors
@@ -177,6 +197,9 @@ mod tests {
         assert_eq!(Values::parse("0 °C, 20°C", Dimension::Temperature).unwrap().0, [273.15, 293.15]);
         assert_eq!(Values::parse("1bar..4bar/3, 8 bar", Dimension::Pressure).unwrap().0, [1e5, 2e5, 4e5, 8e5]);
         assert_eq!(logarithm("1mm/s..1m/s/4"), [1e-3, 1e-2, 0.1, 1.0]);
+        let signed = |text| Values::signed(Dimension::Number)(text).unwrap().0;
+        assert_eq!(signed("-0.3..0.6/7"), [-0.3, -0.15, 0.0, 0.15, 0.3, 0.45, 0.6]);
+        assert_eq!(signed("0.1,-1,0..0.1/2"), [-1.0, 0.0, 0.1]);
         let even = logarithm("1e-2..10/20");
         // Rounded to six digits.
         let ratio = 10_f64.powf(3.0 / 19.0);

@@ -15,6 +15,7 @@ from ._contact import Contact
 from ._convergence import Convergence
 from ._errors import SceneError, SimulationError
 from ._fit import Fit, fit
+from ._laws import FrictionFit, Scaling, fit_friction, scale_tir
 from ._moment import Moment
 from ._native import __version__
 from ._patch import Patch, PatchState
@@ -23,6 +24,7 @@ from ._result import Result
 from ._scene import Scene
 from ._seal import Seal, SealState, Stribeck
 from ._simulation import Simulation, State
+from ._slip import MagicFormula, SlipCurves
 from ._surface import Surface, surface
 from ._table import Table
 
@@ -32,25 +34,31 @@ __all__ = [
     "Contact",
     "Convergence",
     "Fit",
+    "FrictionFit",
+    "MagicFormula",
     "Moment",
     "Parameter",
     "Patch",
     "PatchState",
     "Ranking",
     "Result",
+    "Scaling",
     "Scene",
     "SceneError",
     "Seal",
     "SealState",
     "Simulation",
     "SimulationError",
+    "SlipCurves",
     "State",
     "Stribeck",
     "Surface",
     "Table",
     "__version__",
     "fit",
+    "fit_friction",
     "fmi",
     "rank",
+    "scale_tir",
     "surface",
 ]

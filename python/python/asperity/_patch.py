@@ -6,10 +6,17 @@ import warnings
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from . import _native
 from ._arguments import Floats, described
 from ._moving import Moving
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ._arguments import Progress
+    from ._slip import SlipCurves
 
 PatchState = _native.PatchState
 Six = tuple[float, float, float, float, float, float]
@@ -97,6 +104,48 @@ class Patch(Moving[_native.PatchState]):
         self._run.advance(dt, pose, rates=rates, transport_speed=transport_speed, temperature=temperature)
         for text in self._run.take_warnings():
             warnings.warn(text, stacklevel=2)
+
+    def slip(
+        self,
+        loads: ArrayLike,
+        slips: ArrayLike | None = None,
+        angles: ArrayLike | None = None,
+        *,
+        speeds: ArrayLike | None = None,
+        temperatures: ArrayLike | None = None,
+        combined: bool = False,
+        progress: Progress = False,
+    ) -> SlipCurves:
+        """Forces over slip and slip angle in steady rolling at loads, as ``asperity slip`` has them.
+
+        Args:
+            loads: Vertical loads, N.
+            slips: Longitudinal slips κ, by the effective rolling radius.
+            angles: Slip angles, rad, of travel to the left of the wheel.
+            speeds: Speeds of travel, m/s; None: 10.
+            temperatures: Temperatures, K, or texts such as ``"20 °C"``; None: the patch's own.
+            combined: Each slip at each angle; else slips straight ahead, and angles in free rolling.
+            progress: As for :meth:`Scene.sweep`.
+
+        Raises:
+            SceneError: Where the patch has no tread that runs through.
+            ValueError: Where a value is out of range.
+        """
+        from ._arguments import axis, given, numbers, shown
+        from ._slip import SlipCurves
+
+        options = given(
+            loads=axis("loads", loads),
+            slips=None if slips is None else numbers("slips", slips),
+            angles=None if angles is None else numbers("angles", angles),
+            speeds=None if speeds is None else axis("speeds", speeds),
+            temperatures=None if temperatures is None else axis("temperatures", temperatures),
+            combined=combined,
+        )
+        found = self._definition.slip(options, shown(progress))
+        for text in found.warnings:
+            warnings.warn(text, stacklevel=2)
+        return SlipCurves(found)
 
     def describe(self) -> str:
         """What the patch is, in the lines of ``asperity describe --patch``."""

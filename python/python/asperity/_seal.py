@@ -5,16 +5,16 @@ from __future__ import annotations
 import warnings
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from . import _native
 from ._arguments import Floats, described
+from ._found import Found, FoundColumn
 from ._moving import Moving
 
 if TYPE_CHECKING:
-    import pandas as pd
     from matplotlib.figure import Figure
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
     from ._arguments import Progress
 
@@ -159,7 +159,7 @@ class Seal(Moving[_native.SealState]):
         return f"<asperity.Seal {self.name!r}: {len(self)} cells>"
 
 
-class Stribeck:
+class Stribeck(Found):
     """Friction, film and leak of a seal in steady motion: a row for each point and stroke.
 
     ``stribeck["friction"]`` is a column, an array of shape (rows,).
@@ -170,36 +170,15 @@ class Stribeck:
         status: "steady", or why not, of each row.
     """
 
-    def __init__(self, columns: list[tuple[str, str, Any]], picture: _native.Picture) -> None:
+    def __init__(self, columns: list[FoundColumn], picture: _native.Picture) -> None:
         """Of the columns and the picture that the native part has."""
-        self._columns = {name: values for name, _, values in columns}
+        super().__init__(columns)
         self._picture = picture
-        self.units = {name: unit for name, unit, _ in columns}
         self.stroke: list[str] = self._columns["stroke"]
         self.status: list[str] = self._columns["status"]
-
-    def __getitem__(self, name: str) -> NDArray[Any]:
-        """A column, shape (rows,)."""
-        import numpy as np
-
-        try:
-            return np.asarray(self._columns[name])
-        except KeyError:
-            raise KeyError(f"{name}: expected one of {', '.join(self._columns)}") from None
-
-    def to_pandas(self) -> pd.DataFrame:
-        """The rows."""
-        import pandas as pd
-
-        frame = pd.DataFrame(self._columns)
-        frame.attrs["units"] = dict(self.units)
-        return frame
 
     def plot(self) -> Figure:
         """Draws friction, film and the load on contacts over viscosity times speed, instrokes broken."""
         from ._plots import drawn
 
         return drawn(self._picture)
-
-    def __repr__(self) -> str:
-        return f"<asperity.Stribeck: {len(self.stroke)} rows; {', '.join(self._columns)}>"
