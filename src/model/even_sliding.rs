@@ -24,6 +24,8 @@ pub struct EvenSliding {
 
 /// Accuracy of the way, as a difference of its logarithm.
 const ACCURACY: f64 = 1e-3;
+/// The default memory over the way that even sliding takes.
+const MARGIN: f64 = 1.2;
 /// The ways that are looked at, m.
 const WAYS: (f64, f64) = (1e-12, 1e3);
 
@@ -69,10 +71,19 @@ impl EvenSliding {
         Self { speed, normal, least_memory: model.least_memory(normal, speed) }
     }
 
-    /// Adds the [warning](Self::warning) to those of a scene.
-    pub fn warn_of(scene: &mut Scene) {
-        let warning = Self::warning(scene);
-        scene.warnings.extend(warning);
+    /// Sets the [default memory](Scene::default_memory) of a scene of a material so that its contacts slide evenly at the
+    /// speeds of its excitation, and adds the [warning](Self::warning) to those of a scene that says its memory.
+    pub fn settle(scene: &mut Scene) {
+        if scene.memory_follows() {
+            scene.default_memory = Self::default_memory(Self::of(scene));
+        } else {
+            scene.warnings.extend(Self::warning(scene));
+        }
+    }
+
+    /// The way D, m, over which contacts of rubber are renewed that a scene says nothing of.
+    pub fn default_memory(found: impl IntoIterator<Item = Self>) -> f64 {
+        found.into_iter().map(|even| MARGIN * even.least_memory).fold(Scene::DEFAULT_MEMORY, f64::max)
     }
 
     /// The warning where the contacts of a scene do not slide evenly, at the speed of the excitation at which they do so
