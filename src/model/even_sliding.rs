@@ -186,4 +186,29 @@ mod tests {
         // Where it rises it needs none.
         assert_eq!(model.least_memory(0.0, 1e-4), 0.0);
     }
+
+    /// A memory that a scene says is used as it is, and warned of where it is too short.
+    #[test]
+    fn a_memory_that_is_not_said_is_enough_for_even_sliding() {
+        let settled = |memory: &str, strength: f64| {
+            let text = format!(
+                "name = 'a'
+                layer = {{ foundation = 'half_space', masses = 16, spacing = 6.25e-5, width = 1e-2 }}
+                material = {{ density = 1e3, poisson_ratio = 0.5, equilibrium_modulus = 1e6, prony = [] }}
+                surface = {{ kind = 'flat' }}
+                friction = {{ {memory} rate_shear = {{ strength = {strength}, reference_speed = 1e-3, sharpness = 0.1 }} }}
+                excitation = [{{ duration = 1.0, u_rate = 0.1 }}]"
+            );
+            let mut scene = Scene::parse(&text, "a.toml".as_ref()).unwrap_or_else(|error| unreachable!("{error}"));
+            EvenSliding::settle(&mut scene);
+            (EvenSliding::of(&scene)[0].least_memory, scene)
+        };
+        let (least, scene) = settled("", 5e6);
+        assert!(least > Scene::DEFAULT_MEMORY, "{least:e}");
+        assert_eq!((scene.memory_way(), scene.warnings.len()), (MARGIN * least, 0));
+        let (_, scene) = settled("memory = 6e-5,", 5e6);
+        assert_eq!((scene.memory_way(), scene.warnings.len()), (6e-5, 1));
+        let (least, scene) = settled("", 5e4);
+        assert!(least < Scene::DEFAULT_MEMORY && scene.memory_way() == Scene::DEFAULT_MEMORY, "{least:e}");
+    }
 }
