@@ -24,6 +24,8 @@ pub struct EvenSliding {
 
 /// Accuracy of the way, as a difference of its logarithm.
 const ACCURACY: f64 = 1e-3;
+/// The default memory over the way that even sliding takes.
+const MARGIN: f64 = 1.2;
 /// The ways that are looked at, m.
 const WAYS: (f64, f64) = (1e-12, 1e3);
 
@@ -69,10 +71,19 @@ impl EvenSliding {
         Self { speed, normal, least_memory: model.least_memory(normal, speed) }
     }
 
-    /// Adds the [warning](Self::warning) to those of a scene.
-    pub fn warn_of(scene: &mut Scene) {
-        let warning = Self::warning(scene);
-        scene.warnings.extend(warning);
+    /// Sets the [default memory](Scene::default_memory) of a scene of a material so that its contacts slide evenly at the
+    /// speeds of its excitation, and adds the [warning](Self::warning) to those of a scene that says its memory.
+    pub fn settle(scene: &mut Scene) {
+        if scene.memory_follows() {
+            scene.default_memory = Self::default_memory(Self::of(scene));
+        } else {
+            scene.warnings.extend(Self::warning(scene));
+        }
+    }
+
+    /// The way D, m, over which contacts of rubber are renewed that a scene says nothing of.
+    pub fn default_memory(found: impl IntoIterator<Item = Self>) -> f64 {
+        found.into_iter().map(|even| MARGIN * even.least_memory).fold(Scene::DEFAULT_MEMORY, f64::max)
     }
 
     /// The warning where the contacts of a scene do not slide evenly, at the speed of the excitation at which they do so
@@ -174,5 +185,30 @@ mod tests {
         assert!((found / expected - 1.0).abs() < 2.0 * ACCURACY, "{found:e} {expected:e}");
         // Where it rises it needs none.
         assert_eq!(model.least_memory(0.0, 1e-4), 0.0);
+    }
+
+    /// A memory that a scene says is used as it is, and warned of where it is too short.
+    #[test]
+    fn a_memory_that_is_not_said_is_enough_for_even_sliding() {
+        let settled = |memory: &str, strength: f64| {
+            let text = format!(
+                "name = 'a'
+                layer = {{ foundation = 'half_space', masses = 16, spacing = 6.25e-5, width = 1e-2 }}
+                material = {{ density = 1e3, poisson_ratio = 0.5, equilibrium_modulus = 1e6, prony = [] }}
+                surface = {{ kind = 'flat' }}
+                friction = {{ {memory} rate_shear = {{ strength = {strength}, reference_speed = 1e-3, sharpness = 0.1 }} }}
+                excitation = [{{ duration = 1.0, u_rate = 0.1 }}]"
+            );
+            let mut scene = Scene::parse(&text, "a.toml".as_ref()).unwrap_or_else(|error| unreachable!("{error}"));
+            EvenSliding::settle(&mut scene);
+            (EvenSliding::of(&scene)[0].least_memory, scene)
+        };
+        let (least, scene) = settled("", 5e6);
+        assert!(least > Scene::DEFAULT_MEMORY, "{least:e}");
+        assert_eq!((scene.memory_way(), scene.warnings.len()), (MARGIN * least, 0));
+        let (_, scene) = settled("memory = 6e-5,", 5e6);
+        assert_eq!((scene.memory_way(), scene.warnings.len()), (6e-5, 1));
+        let (least, scene) = settled("", 5e4);
+        assert!(least < Scene::DEFAULT_MEMORY && scene.memory_way() == Scene::DEFAULT_MEMORY, "{least:e}");
     }
 }

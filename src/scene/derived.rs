@@ -93,11 +93,16 @@ impl Scene {
         self.rate_shear().is_some() || self.fine.as_ref().is_some_and(|fine| fine.waves.has_bands())
     }
 
-    /// The way D over which contacts are renewed where their friction depends on the speed, m: as the scene says, else
-    /// [`DEFAULT_MEMORY`](Self::DEFAULT_MEMORY) of a material; 0: none, friction is that at the speed of slip.
+    /// The way D over which contacts are renewed where their friction depends on the speed, m: as the scene says, else the
+    /// [default](Self::default_memory); 0: none, friction is that at the speed of slip.
     pub fn memory_way(&self) -> f64 {
-        let of_form = if self.material.is_some() { Self::DEFAULT_MEMORY } else { 0.0 };
-        self.friction.as_ref().and_then(|friction| friction.memory).unwrap_or(of_form)
+        self.friction.as_ref().and_then(|friction| friction.memory).unwrap_or(self.default_memory)
+    }
+
+    /// Whether that way is the default of a material, by which contacts slide evenly.
+    pub fn memory_follows(&self) -> bool {
+        let is_said = self.friction.as_ref().is_some_and(|friction| friction.memory.is_some());
+        self.material.is_some() && !is_said && self.friction_depends_on_speed()
     }
 
     /// Whether friction follows the speed that contacts remember, and not that of slip.
@@ -105,8 +110,8 @@ impl Scene {
         self.memory_way() > 0.0 && self.friction_depends_on_speed()
     }
 
-    /// The way over which contacts of rubber are renewed where a scene does not say it, m: of the order of the diameter of
-    /// what touches.
+    /// The way over which contacts of rubber are renewed at least where a scene does not say it, m: of the order of the
+    /// diameter of what touches.
     pub const DEFAULT_MEMORY: f64 = 50.0e-6;
 
     /// Whether friction heats the contacts.

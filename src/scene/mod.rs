@@ -54,7 +54,7 @@ pub use fine_roughness::{
     Convention, FineBand, FineRoughness, FineWaves, LEAST_DENSITY, ModulusFactors, RoughnessSpectrum, SOFTENING,
     SPECTRUM, Softening, SofteningRow, SpectrumFactors, SplitError, SplitSurface, WaveModuli, decade_of,
 };
-pub use foundation::{ElasticBody, Foundation, Quality, Stiffness, Wave, Waves};
+pub use foundation::{ContactFit, ElasticBody, Foundation, Quality, Stiffness, Wave, Waves};
 pub use height_map::{HeightMap, MOST_HEIGHTS, MapError, peak_to_valley};
 pub use keys::{Absent, KeyEntry, patch_keys, scene_keys, seal_keys, similar_keys};
 pub use layer::{FoundationKind, Friction, Initial, Kinematics, Layer, Link, MaxwellElement, RateShear};
@@ -92,6 +92,9 @@ pub struct Scene {
     pub fine: Option<FineRoughness>,
     /// Friction in the contacts; `None` is frictionless.
     pub friction: Option<Friction>,
+    /// The way over which contacts are renewed where `friction.memory` does not say it, m; 0 in the direct form.
+    #[serde(skip)]
+    pub default_memory: f64,
     /// The integrator's settings.
     pub solver: Solver,
     /// How the carrier moves on when a master gives no rates.

@@ -97,7 +97,7 @@ impl Definition {
             Seal::load(path)?.into()
         } else {
             let mut scene = Scene::load(path)?;
-            EvenSliding::warn_of(&mut scene);
+            EvenSliding::settle(&mut scene);
             scene.into()
         };
         Ok((definition, found))

@@ -22,7 +22,7 @@ pub fn parse_scene(text: &str, file: &Path, set: &[Setting]) -> Result<Scene, Er
     let (_, warnings) = Uncertainty::of(&scene)?;
     scene.warnings.extend(warnings);
     scene.files.extend(covariance_file(&scene).map(SceneFile::not_carried));
-    EvenSliding::warn_of(&mut scene);
+    EvenSliding::settle(&mut scene);
     let passed = passed_phases(&scene);
     scene.warnings.extend(passed);
     Ok(scene)

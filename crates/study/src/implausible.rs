@@ -3,9 +3,9 @@
 use std::cmp::Ordering;
 
 use asperity::element::{Load, OperatingPoint};
-use asperity::scene::{Friction, Kinematics, Scene};
+use asperity::scene::{ContactFit, Friction, Kinematics, Scene};
 
-use crate::decimals::rounded;
+use crate::decimals::{rounded, with_prefix};
 
 /// No rubber is known to have a friction coefficient above it.
 const LARGEST_FRICTION: f64 = 3.0;
@@ -16,6 +16,9 @@ const WHOLE: f64 = 0.99;
 
 /// The part of friction that its strain may add to it before that is said.
 const STRAINED: f64 = 0.03;
+
+/// The factor by which links may make a contact too wide or too narrow before that is said.
+const MISFIT: f64 = 1.2;
 
 /// What was found at a point or in a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,6 +92,27 @@ pub fn strained(scene: &Scene, found: impl IntoIterator<Item = FoundFriction>) -
         more(found.len()),
         rounded(50.0 * excess(most), 2),
         rounded(100.0 * excess(most), 2)
+    ))
+}
+
+/// Where the links of a layer make contacts too wide or too narrow, of what was found to touch: the place, and the share of
+/// the masses there.
+pub fn misfitted(scene: &Scene, found: impl IntoIterator<Item = (String, f64)>) -> Option<String> {
+    let off = |fit: &ContactFit| fit.widening.ln().abs();
+    let fits = found.into_iter().filter_map(|(place, share)| Some((place, scene.contact_fit(share)?)));
+    let found: Vec<_> = fits.filter(|(_, fit)| off(fit) > MISFIT.ln()).collect();
+    let (place, fit) = found.iter().max_by(|a, b| off(&a.1).total_cmp(&off(&b.1)))?;
+    let (percent, way) = match fit.widening {
+        wide if wide > 1.0 => (wide - 1.0, "wide"),
+        narrow => (1.0 - narrow, "narrow"),
+    };
+    Some(format!(
+        "contacts of some {} come out {:.0} % too {way} {place}{}: the links are fitted to all waves of the profile, and against \
+         one of twice that length have {} times the stiffness of the surface; `sweep --method steady` has no links",
+        with_prefix(rounded(fit.length, 2), fit.length, "m"),
+        100.0 * percent,
+        more(found.len()),
+        rounded(fit.stiffness, 2)
     ))
 }
 
@@ -204,6 +228,17 @@ mod tests {
                          one more point: it comes out 2.2 to 4.4 % too large";
         assert!(said.starts_with(beginning), "{said}");
         assert_eq!(strained(&scene("kind = 'flat'", "coulomb = 5"), [found(5.0)]), None);
+    }
+
+    /// The links of a sine are stiffer than the surface against waves of an eighth of its length.
+    #[test]
+    fn contacts_that_the_links_do_not_fit_are_said_with_their_length() {
+        let mut fine = scene(SINE, "coulomb = 0.5");
+        (fine.layer.masses, fine.layer.spacing) = (256, 1e-3 / 256.0);
+        assert_eq!(misfitted(&fine, [("at the end".into(), 0.3)]), None);
+        let said = misfitted(&fine, [("at 1 m/s".into(), 0.0625), ("at 2 m/s".into(), 0.3)]).unwrap();
+        assert!(said.starts_with("contacts of some 63 µm come out"), "{said}");
+        assert!(said.contains("% too narrow at 1 m/s: the links"), "{said}");
     }
 
     /// Glass is smooth, and Coulomb's friction has no area.

@@ -9,7 +9,7 @@ use asperity::scene::{Method, Scene};
 use asperity::simulation::Simulation;
 
 use crate::decimals::{rounded, with_prefix};
-use crate::implausible::{FoundFriction, implausible, strained};
+use crate::implausible::{FoundFriction, implausible, misfitted, strained};
 use crate::summary::{LabelledLine, labelled};
 
 /// Forces and friction over the rows of a run.
@@ -126,20 +126,26 @@ impl RunFigures {
 
 /// What of a run of `scene` that has come to its end no rubber has, and why.
 pub fn implausible_run(scene: &Scene, figures: &RunFigures, simulation: &mut Simulation) -> Vec<String> {
-    let Some(friction) = figures.friction() else { return Vec::new() };
     let snapshot = simulation.snapshot();
     let value = |output: Output| {
         let mut value = [0.0];
         snapshot.evaluate(&[variable(output)?], &mut value);
         Some(value[0])
     };
+    let touching = value(Output::ContactCount).map(|count| count / scene.layer.masses as f64);
     let area = match (&scene.fine, scene.layer.area()) {
         (Some(_), Some(nominal)) => value(Output::RealArea).map(|area| area / nominal),
-        _ => value(Output::ContactCount).map(|count| count / scene.layer.masses as f64),
+        _ => touching,
     };
-    let place = "over the run".to_owned();
-    let found = FoundFriction { place, friction, area, rise: None };
-    implausible(scene, [found.clone()]).into_iter().chain(strained(scene, [found])).collect()
+    let found = figures.friction().map(|friction| {
+        let place = "over the run".to_owned();
+        FoundFriction { place, friction, area, rise: None }
+    });
+    implausible(scene, found.clone())
+        .into_iter()
+        .chain(strained(scene, found))
+        .chain(misfitted(scene, touching.map(|share| ("at the end".to_owned(), share))))
+        .collect()
 }
 
 /// What a run cost.

@@ -4,6 +4,7 @@
 pub mod elastic;
 pub mod film;
 pub mod heat;
+pub mod layer;
 pub mod oscillator;
 pub mod page;
 pub mod reference;
@@ -46,6 +47,8 @@ pub const ALL: &[Entry] = &[
     oscillator::BLOCK,
     springs::SPRINGS,
     reference::CASES,
+    layer::CATTANEO,
+    layer::RADOK,
     road::LAYER,
     road::TREAD,
 ];

@@ -50,7 +50,7 @@ fn layer() -> Comparison {
         Row::new(format!("friction at {} m/s", short(speed, 2)), [solver, layer], "", Claim::Share(3e-2))
     };
     Comparison {
-        about: "`scenes/road`, cold, under 3 bar: 64 masses with fitted links and a memory of contacts of 50 µm, \
+        about: "`scenes/road`, cold, under 3 bar: 64 masses with fitted links and contacts of the default memory, \
                 slid until the standard error of friction is 0.5 %, and the solver on the same profile. Expected is \
                 the solver's."
             .into(),

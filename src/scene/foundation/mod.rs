@@ -7,10 +7,12 @@ use serde::Serialize;
 use super::layer::{FoundationKind, Layer};
 use super::{LinkKind, Material, Surface};
 
+mod contacts;
 mod fit;
 mod warnings;
 mod waves;
 
+pub use contacts::ContactFit;
 pub use fit::{ElasticBody, Stiffness};
 pub use waves::{Wave, Waves};
 

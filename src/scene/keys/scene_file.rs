@@ -188,7 +188,7 @@ const FRICTION: &[Key] = &[
         Unit::Meter,
         "Way of slip over which contacts are renewed, so that friction follows the speed; 0: at once",
     )
-    .follows("50e-6 of a material, 0 in the direct form")
+    .follows("50e-6 of a material, or 1.2 times what even sliding takes if that is more; 0 in the direct form")
     .parameter(field!(|scene, _| scene.friction?.memory).counting_as(|scene, _| {
         let friction = scene.friction.as_ref().filter(|_| scene.friction_depends_on_speed());
         friction.and_then(|_| scene.memory_way().value())

@@ -153,6 +153,7 @@ fn read_root(mut root: TableReader<'_>, found: &mut Findings) -> Result<Scene> {
     let material = root.entry("material");
     if let Some(entry) = &material {
         entry.table(|table| read_material(table, &mut scene, found))?;
+        scene.default_memory = Scene::DEFAULT_MEMORY;
     }
     let surface = root.required("surface")?;
     let read = surface::read(&surface, found)?;
@@ -191,6 +192,7 @@ fn unread_scene() -> Scene {
         fine: None,
         carrier: CarrierBodies::default(),
         friction: None,
+        default_memory: 0.0,
         solver: Solver::default(),
         input_rule: InputRule::default(),
         temperature_input: false,

@@ -129,6 +129,7 @@ fn cases_of(scales: Scales, method: Method) -> impl Strategy<Value = Case> {
                 surface,
                 fine: None,
                 friction,
+                default_memory: 0.0,
                 solver,
                 input_rule: InputRule::default(),
                 temperature_input: false,

@@ -1,7 +1,8 @@
 //! A layer that slides at constant speed, block by block, and its tangential stiffness as it is set in motion; and the
 //! scenes of it.
 
-use asperity::element::OperatingPoint;
+use asperity::element::{Load, OperatingPoint};
+use asperity::model::{EvenSliding, Model};
 use asperity::outputs::{Output, Variable, variables};
 use asperity::scene::{Initial, LARGEST, OutputGroup, Path, Phase, Scene};
 use asperity::simulation::{Interrupt, Motion, Simulation, SimulationError, Start};
@@ -44,9 +45,10 @@ pub fn relevant(scene: Scene) -> Scene {
     scene
 }
 
-/// The scene of one point. `solver.reduce` depends on the speed and on the duration of its excitation: as steady motion
-/// has no end, no Maxwell element becomes a spring.
-pub(super) fn scene_at(scene: &Scene, point: &OperatingPoint) -> Scene {
+/// The scene of one point, its loads being of this kind. `solver.reduce` depends on the speed and on the duration of its
+/// excitation: as steady motion has no end, no Maxwell element becomes a spring. Contacts that are to slide evenly do so at
+/// that point.
+pub(super) fn scene_at(scene: &Scene, point: &OperatingPoint, load: Load) -> Scene {
     let mut scene = scene.with_temperature(point.temperature);
     let u = Path { rate: point.speed, ..Path::default() };
     scene.excitation = vec![Phase {
@@ -57,7 +59,16 @@ pub(super) fn scene_at(scene: &Scene, point: &OperatingPoint) -> Scene {
         until_pressure: None,
         ..Phase::default()
     }];
+    if scene.memory_follows() {
+        scene.default_memory = EvenSliding::default_memory([even_sliding(&scene, point, load)]);
+    }
     scene
+}
+
+/// What even sliding takes at a point whose scene this is.
+pub(super) fn even_sliding(scene: &Scene, point: &OperatingPoint, load: Load) -> EvenSliding {
+    let mean = load.force(point.load) / scene.layer.masses as f64;
+    EvenSliding::at(scene, &Model::new(scene), point.speed, mean)
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -36,7 +36,7 @@ pub fn steady_sliding(
     load: Load,
     bounds: StopBounds,
 ) -> Result<SteadySliding, NotSteady> {
-    let scene = scene_at(&relevant(scene.clone()), point);
+    let scene = scene_at(&relevant(scene.clone()), point, load);
     slid(&scene, point.speed, load.force(point.load), bounds, None)?.steady()
 }
 
@@ -48,7 +48,7 @@ pub(super) fn steady_sliding_at(
     load: Load,
     bounds: StopBounds,
 ) -> Result<SteadySliding, NotSteady> {
-    let scene = &without_carriers(&scene_at(&relevant(scene.clone()), point));
+    let scene = &without_carriers(&scene_at(&relevant(scene.clone()), point, load));
     let mut load = LoadSearch::estimated(load.force(point.load), scene, &Model::new(scene));
     load.w = w;
     let layer = Layer { scene, blocks: Blocks::new(scene, point.speed), interrupt: None };

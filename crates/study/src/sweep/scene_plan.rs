@@ -4,12 +4,12 @@ use std::f64::consts::PI;
 
 use asperity::element::{Load, OperatingPoint, Quantity, SWEEP, SweepGrid};
 use asperity::math::check_memory;
-use asperity::model::{EvenSliding, Model};
+use asperity::model::EvenSliding;
 use asperity::scene::{FineRoughness, Material, ParameterError, Scene, Surface, Wlf};
 use asperity::simulation::Interrupt;
 use asperity::table::Header;
 
-use super::layer::{relevant, scene_at};
+use super::layer::{even_sliding, relevant, scene_at};
 use super::load_search::separation_at_rest;
 use super::options::{Gaps, Method, SlidingOptions, SweepMethod, SweepOptions, check_possible, fingerprint};
 use super::point;
@@ -19,7 +19,7 @@ use super::table::{GAPS, SweepHeader, SweepRow};
 use crate::Error;
 use crate::decimals::short;
 use crate::error::Context as _;
-use crate::implausible::{FoundFriction, at, implausible, strained};
+use crate::implausible::{FoundFriction, at, implausible, misfitted, strained};
 use crate::values::Values;
 
 /// A sweep of a scene, its points not found yet.
@@ -58,7 +58,8 @@ impl ScenePlan {
         let keys = Header::new(SWEEP).with("scene", &scene.name).with("fingerprint", "").with("method", &in_words);
         let keys = options.sliding.settled(method.surface()).in_header(keys);
         let keys = keys.with_some(GAPS, options.gaps.map(Gaps::word));
-        let keys = rests_on(keys, &scene, convergence);
+        let is_even = matches!(method, Method::Layer) && scene.memory_follows();
+        let keys = rests_on(keys, &scene, convergence).with_some("memory", is_even.then_some(DEFAULT_MEMORY));
         let header = SweepHeader::new(keys, load, separation_at_rest(&scene), grid);
         let solved = match method {
             Method::Steady(surface) => {
@@ -95,7 +96,7 @@ impl ScenePlan {
         match &self.solved {
             Some(solved) => solved.row(*point, &self.header),
             None => {
-                let scene = scene_at(&self.scene, point);
+                let scene = scene_at(&self.scene, point, self.header.load);
                 point::row(&scene, *point, &self.header, self.bounds, interrupt)
             }
         }
@@ -138,34 +139,35 @@ impl ScenePlan {
     pub(super) fn warnings(&self, rows: &[SweepRow]) -> Vec<String> {
         let few = self.solved.as_ref().and_then(|solved| solved.few_points(rows, &self.header));
         let found: Vec<_> = rows.iter().filter_map(|row| found_friction(row, self.header.load)).collect();
-        let strained = if self.solved.is_none() { strained(&self.scene, found.clone()) } else { None };
-        let uneven = self.uneven(rows);
+        let of_layer = if self.solved.is_none() { self.of_layer(rows, &found) } else { Vec::new() };
         let alternating = self.solved.as_ref().and_then(|solved| solved.alternating(rows, &self.header));
-        few.into_iter()
-            .chain(alternating)
-            .chain(implausible(&self.scene, found))
-            .chain(strained)
-            .chain(uneven)
-            .collect()
+        few.into_iter().chain(alternating).chain(implausible(&self.scene, found)).chain(of_layer).collect()
+    }
+
+    /// Where the layer makes friction and contacts that the rubber has not.
+    fn of_layer(&self, rows: &[SweepRow], found: &[FoundFriction]) -> Vec<String> {
+        let touching = |row: &SweepRow| {
+            let share = row.value(Quantity::ContactRatio).filter(|_| row.is_result())?;
+            Some((at(&row.point, self.header.load), share))
+        };
+        let strained = strained(&self.scene, found.iter().cloned());
+        let misfitted = misfitted(&self.scene, rows.iter().filter_map(touching));
+        strained.into_iter().chain(misfitted).chain(self.uneven(rows)).collect()
     }
 
     /// The warning where a layer does not slide evenly at some of the rows.
     fn uneven(&self, rows: &[SweepRow]) -> Option<String> {
-        if self.solved.is_some() || !self.scene.friction_depends_on_speed() {
+        if !self.scene.friction_depends_on_speed() || self.scene.memory_follows() {
             return None;
         }
-        let masses = self.scene.layer.masses as f64;
-        let at = |row: &SweepRow| {
-            let (scene, point) = (scene_at(&self.scene, &row.point), &row.point);
-            let whole = match self.header.load {
-                Load::Pressure { area } => point.load * area,
-                Load::Force => point.load,
-            };
-            EvenSliding::at(&scene, &Model::new(&scene), point.speed, whole / masses)
-        };
+        let load = self.header.load;
+        let at = |row: &SweepRow| even_sliding(&scene_at(&self.scene, &row.point, load), &row.point, load);
         EvenSliding::warning_among(&self.scene, rows.iter().map(at))
     }
 }
+
+/// The way over which contacts are renewed where the scene does not say it.
+const DEFAULT_MEMORY: &str = "5e-5 m, or 1.2 times what even sliding takes at a point";
 
 /// What is in the row of a point that has a result.
 fn found_friction(row: &SweepRow, load: Load) -> Option<FoundFriction> {
