@@ -11,9 +11,9 @@ use crate::element::ResampledLaw;
 use crate::math::Number;
 
 /// Segments of a piece, at least.
-const MIN_SEGMENTS: f64 = 4.0;
+const MIN_SEGMENTS: f64 = 3.0;
 /// Change of ln p over a segment, at most.
-const MAX_CHANGE: f64 = 0.25;
+const MAX_CHANGE: f64 = 0.5;
 /// Keeps quotients of numbers that vanish together finite.
 const TINY: f64 = 1e-300;
 
