@@ -142,7 +142,7 @@ fn cell_time((nx, ny): (usize, usize), speed: f64, is_locked: bool, keys: &str) 
 /// The cost of a cell and step of treads, over that of the second where it is locked and nothing warms.
 fn print_treads() {
     let unit = cell_time((32, 10), 20.0, true, "");
-    println!("cells   locked, heat   10 m/s, heat   20 m/s, heat: a cell and step of 1 ms");
+    println!("cells   locked, heat  10 m/s, heat  20 m/s, heat: for each cell and step of 1 ms");
     for (nx, ny) in [(25, 2), (32, 10), (45, 20)] {
         print!("{:5}", nx * ny);
         for (speed, is_locked) in [(20.0, true), (10.0, false), (20.0, false)] {

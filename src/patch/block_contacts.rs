@@ -4,8 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::face::{BLOCK, Face, Lanes, TreadColumn, lanes_of};
 use super::heat::StepHeat;
-use super::motion::{BodyKinematics, PoseMotion, Substep, Substeps, TreadMotion};
-use super::segments::size;
+use super::motion::{BodyKinematics, PoseMotion, Substep, Substeps, TreadMotion, size};
 use crate::element::{LawPlace, LawPoints, ResampledLaw, SpringLaw};
 use crate::math::{Dual, Number};
 

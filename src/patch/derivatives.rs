@@ -6,9 +6,8 @@
 use super::block::ElementMode;
 use super::definition::ElementSite;
 use super::face::Face;
-use super::motion::{BodyKinematics, PoseMotion};
+use super::motion::{BodyKinematics, PoseMotion, size};
 use super::run::PatchRun;
-use super::segments::size;
 use super::variables::{PatchOutput, PatchVariable};
 use crate::element::{LawPlace, SpringLaw, damped};
 use crate::math::{Dual, Number};

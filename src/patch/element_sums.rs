@@ -2,9 +2,8 @@
 
 use super::definition::{ElementSite, Patch};
 use super::face::{Face, FixedPoints, Tread};
-use super::motion::{BodyKinematics, PoseMotion};
+use super::motion::{BodyKinematics, PoseMotion, size};
 use super::run::PatchRun;
-use super::segments::size;
 use super::state::{PatchRestoreError, PatchState, Totals};
 use crate::element::{ElementLaw, LawPlace, ROUNDING, SpringLaw, damped};
 use crate::math::Number;

@@ -12,9 +12,10 @@
 //! |------|---------------|
 //! | `motion` | motion of the body and of the tread over a step, its substeps |
 //! | `face` | where elements sit, how their face moves through a step, what they go through, counted and limited |
-//! | `segments` | an element whose pressure changes much in a substep |
 //! | `heat` | elements that slip warms |
 //! | `block_contacts` | elements of a block, side by side, at an instant, with their law, and what they add up to |
+//! | `block_springs` | their springs |
+//! | `segments` | those of them whose pressures change much in a substep |
 //! | `block` | a step of a block of elements |
 //! | `worker_pool` | a step of all blocks, by several threads |
 //! | `definition` | a patch: face, table, parameters |
@@ -26,6 +27,7 @@
 
 mod block;
 mod block_contacts;
+mod block_springs;
 mod definition;
 mod derivatives;
 mod element_sums;

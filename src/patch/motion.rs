@@ -15,6 +15,9 @@ const MAX_SLIP_CHANGE: f64 = 0.5;
 /// cell is then off its way by more than a hundredth of the tread's way in the step.
 const MAX_EVEN_CHANGE: f64 = 0.082;
 
+/// Keeps quotients of numbers that vanish together finite.
+pub(super) const TINY: f64 = 1e-300;
+
 /// The coordinates of a pose, x, y, z (m), roll, pitch, yaw (rad), as they run straight over a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PoseMotion<T> {
@@ -302,6 +305,30 @@ impl Substeps {
             Some(Substep { begin, end: all.end_in(stretch, done, count) })
         })
     }
+}
+
+/// Whether a velocity turns by more than a right angle: it has been at rest, or nearly, where friction may be another.
+#[inline(always)]
+pub(super) fn reverses<T: Number>(from: [T; 2], to: [T; 2]) -> bool {
+    (from[0] * to[0] + from[1] * to[1]).value() < 0.0
+}
+
+/// The size of a vector.
+#[inline(always)]
+pub(super) fn size<T: Number>(v: [T; 2]) -> T {
+    (v[0] * v[0] + v[1] * v[1]).sqrt()
+}
+
+/// The tangent of half the angle between two velocities, at most 1: where a motion turns by more than a right angle it
+/// passes near a stop, and which way it points meanwhile is not known.
+#[inline(always)]
+pub(super) fn half_turn<T: Number>(from: [T; 2], to: [T; 2]) -> T {
+    let cross = from[0] * to[1] - from[1] * to[0];
+    let dot = from[0] * to[0] + from[1] * to[1];
+    let square = |v: [T; 2]| v[0] * v[0] + v[1] * v[1];
+    let sizes = (square(from) * square(to)).sqrt();
+    let tangent = cross / (dot + sizes + T::constant(TINY));
+    tangent.larger(T::constant(-1.0)).smaller(T::constant(1.0))
 }
 
 #[cfg(test)]

@@ -83,7 +83,7 @@ impl Patch {
         /// Two springs.
         const ELEMENT: usize = 64;
         /// Of a thread's block, and of all sums.
-        const BLOCK: usize = 1 << 18;
+        const BLOCK: usize = 1 << 19;
         let laws = threads(self.work()).max(1);
         let is_warm = self.heat().is_some();
         let element = ELEMENT + if is_warm { 2 * size_of::<ElementHeat>() } else { 0 };

@@ -4,18 +4,17 @@
 
 use std::cmp::Reverse;
 
-use super::block::{BlockSprings, advance_all, apply_jumps};
 use super::block_contacts::BlockContacts;
+use super::block_springs::{BlockSprings, advance_all, apply_jumps};
 use super::face::{BLOCK, Lanes, lanes_of};
+use super::motion::{TINY, reverses, size};
 use crate::element::ResampledLaw;
 use crate::math::Number;
 
 /// Segments of a piece, at least.
-const MIN_SEGMENTS: f64 = 4.0;
+const MIN_SEGMENTS: f64 = 3.0;
 /// Change of ln p over a segment, at most.
-const MAX_CHANGE: f64 = 0.25;
-/// Keeps quotients of numbers that vanish together finite.
-const TINY: f64 = 1e-300;
+const MAX_CHANGE: f64 = 0.5;
 
 /// Cuts of a part at most, its end among them.
 const CUTS: usize = 4;
@@ -265,28 +264,4 @@ impl<T: Number> SegmentLanes<T> {
         springs.release[lane] += self.springs.release[j];
         part_slip[lane] = self.slip[j];
     }
-}
-
-/// Whether a velocity turns by more than a right angle: it has been at rest, or nearly, where friction may be another.
-#[inline(always)]
-pub(super) fn reverses<T: Number>(from: [T; 2], to: [T; 2]) -> bool {
-    (from[0] * to[0] + from[1] * to[1]).value() < 0.0
-}
-
-/// The size of a vector.
-#[inline(always)]
-pub(super) fn size<T: Number>(v: [T; 2]) -> T {
-    (v[0] * v[0] + v[1] * v[1]).sqrt()
-}
-
-/// The tangent of half the angle between two velocities, at most 1: where a motion turns by more than a right angle it
-/// passes near a stop, and which way it points meanwhile is not known.
-#[inline(always)]
-pub(super) fn half_turn<T: Number>(from: [T; 2], to: [T; 2]) -> T {
-    let cross = from[0] * to[1] - from[1] * to[0];
-    let dot = from[0] * to[0] + from[1] * to[1];
-    let square = |v: [T; 2]| v[0] * v[0] + v[1] * v[1];
-    let sizes = (square(from) * square(to)).sqrt();
-    let tangent = cross / (dot + sizes + T::constant(TINY));
-    tangent.larger(T::constant(-1.0)).smaller(T::constant(1.0))
 }

@@ -30,7 +30,7 @@ impl Patch {
         let factors = [
             (self.has_tread(), 1.2),
             (self.backing().is_some(), 1.3),
-            (self.heat().is_some(), 1.2),
+            (self.heat().is_some(), 1.3),
             (self.has_tangents(), 12.0),
         ];
         factors.into_iter().filter(|(is_there, _)| *is_there).map(|(_, factor)| factor).product()
