@@ -108,6 +108,23 @@ impl<'a> DenseOutput<'a> {
         }
     }
 
+    /// What follows from the state and the forces at the fraction `theta` where links are in spatial measure; `None`
+    /// elsewhere.
+    pub(super) fn of_measured_layer<T>(
+        &self,
+        theta: f64,
+        workspace: &mut DenseWorkspace,
+        of: impl FnOnce(&State, &Forces) -> T,
+    ) -> Option<T> {
+        let mut layer = workspace.layer.take()?;
+        let (state, forces) = &mut *layer;
+        self.state_at(theta, workspace, state);
+        forces.evaluate(self.model, state, &self.carrier.at(self.span.at(theta)));
+        let found = of(state, forces);
+        workspace.layer = Some(layer);
+        Some(found)
+    }
+
     /// Writes the masses as the polynomials through the values at the stages have them.
     fn write_polynomials(&self, theta: f64, workspace: &DenseWorkspace, state: &mut State) {
         let (start, masses) = (self.start, self.masses.clone());
@@ -391,6 +408,10 @@ impl<'a> DenseOutput<'a> {
     /// The contact forces of mass `i`, in contact, at the fraction `theta`: the same as in the state there, for this
     /// mass alone.
     pub fn contact(&self, i: usize, theta: f64, workspace: &mut DenseWorkspace) -> ContactForces {
+        let measured = |state: &State, forces: &Forces| forces.contact(self.model, state, i);
+        if let Some(contact) = self.of_measured_layer(theta, workspace, measured) {
+            return contact;
+        }
         self.set_weights(workspace, theta);
         let carrier = self.carrier_at(theta, workspace);
         let here = self.mass_at(i, &carrier, workspace);

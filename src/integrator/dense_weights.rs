@@ -6,7 +6,7 @@ use super::method::RungeKutta;
 use super::scheme::Scheme;
 use super::tableau::StageWeights;
 use crate::math::Relaxation;
-use crate::model::{ByLink, MaxwellRow, Model};
+use crate::model::{ByLink, Forces, MaxwellRow, Model, State};
 
 /// Workspace of [`DenseOutput`](super::DenseOutput): the weights of the stages at one fraction of a step.
 #[derive(Clone, Debug)]
@@ -25,6 +25,8 @@ pub struct DenseWorkspace {
     pub(super) of_rate: ByLink<StageWeights>,
     /// Of the masses that are meant: their accelerations in the defect, x and v_x in sums.
     pub(super) of_masses: [Vec<f64>; 2],
+    /// The layer and its forces at one fraction, where links are in spatial measure, so that no sums make these.
+    pub(super) layer: Option<Box<(State, Forces)>>,
 }
 
 impl DenseWorkspace {
@@ -38,6 +40,7 @@ impl DenseWorkspace {
             whole: vec![Relaxation::default(); model.relaxation_times.len()],
             of_rate: ByLink::default(),
             of_masses: [vec![0.0; model.masses()], vec![0.0; model.masses()]],
+            layer: model.spatial.map(|_| Box::new((State::new(model), Forces::new(model)))),
         }
     }
 

@@ -77,6 +77,8 @@ impl EnergySums {
             energy.fine += h * weight * exchange.fine;
             energy.input += h * weight * exchange.input;
             energy.carrier += h * weight * exchange.carrier;
+            energy.damper += h * weight * exchange.measured[0];
+            energy.maxwell += h * weight * exchange.measured[1];
         }
         energy
     }
@@ -131,7 +133,9 @@ impl EnergySums {
             for row in model.rows.iter().filter(|row| row.time_index == index) {
                 let (kind, first) = (row.kind, row.range.start + step.masses.start);
                 let a = &step.start.maxwell[first..first + row.kind.count(step.masses.len())];
-                sums.add(row, a, &rates[kind], &products[kind]);
+                if !model.is_measured(kind) {
+                    sums.add(row, a, &rates[kind], &products[kind]);
+                }
                 if h / row.relaxation_time > RESOLVED {
                     relaxing.add(row, a, rates[kind][0], changes[kind]);
                 }
@@ -216,7 +220,8 @@ impl Measure {
 fn rate_products<const N: usize>(model: &Model, rates: &[&[f64]; N], kind: LinkKind) -> RateProducts<N> {
     let mut products = [[0.0; N]; N];
     let all = model.rows_of(kind).next().is_some();
-    if !all && model.links[kind].damping == 0.0 {
+    // What links in spatial measure lose is summed up at the stages.
+    if model.is_measured(kind) || !all && model.links[kind].damping == 0.0 {
         return products;
     }
     // Each stage with the one that is so many behind it, around the end: half of the distances make all pairs.

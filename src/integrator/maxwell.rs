@@ -15,7 +15,7 @@
 use super::stage_values::StageValues;
 use super::tableau::{MAX_STAGES, StageWeights, Tableau};
 use crate::math::weighted_sum;
-use crate::model::{ByLink, LinkKind, MaxwellRow, Model};
+use crate::model::{ByLink, ElementSquares, LinkKind, MaxwellRow, Model, SpatialMeasure};
 
 /// Workspace for the Maxwell elements of a layer over one step.
 #[derive(Clone, Debug)]
@@ -120,6 +120,28 @@ impl Maxwell {
         }
     }
 
+    /// Writes the squares of the elongations of the links in spatial measure at stage `i` of a step from `start`, as far as
+    /// the earlier `stages` determine them.
+    pub(super) fn measured_squares(
+        &self,
+        model: &Model,
+        i: usize,
+        start: &[f64],
+        stages: &[StageValues],
+        squares: &mut MeasuredSquares,
+    ) {
+        squares.clear();
+        for row in &model.rows {
+            let Some(n) = SpatialMeasure::LINKS.iter().position(|&kind| kind == row.kind) else { continue };
+            let ElementCoefficients { start: of_start, rate, .. } = &self.coefficients[row.time_index];
+            let known = &mut squares.known[..row.range.len()];
+            let from = std::iter::once((of_start[i], &start[row.range.clone()]));
+            weighted_sum(known, from.chain(by_rate(row.kind, &rate[i][..i], stages)));
+            squares.energy[n].add(row.stiffness, known, rate[i][i]);
+            squares.power[n].add(row.stiffness / row.relaxation_time, known, rate[i][i]);
+        }
+    }
+
     /// The weights of the elements of one relaxation time in the sum of their elongations at the start, at stage `i`
     /// and at the end of a step.
     pub(super) fn weights_between(
@@ -135,6 +157,28 @@ impl Maxwell {
             *weight = of_stage * rate;
         }
         ElementWeights { ends, rates }
+    }
+}
+
+/// Σ c a² and Σ c a²/τ of the elements of the links in spatial measure at a stage.
+#[derive(Clone, Debug)]
+pub(super) struct MeasuredSquares {
+    /// Twice the energies, J.
+    pub energy: [ElementSquares; 2],
+    /// The powers lost, W.
+    pub power: [ElementSquares; 2],
+    /// Workspace for the known elongations of one row, m.
+    known: Vec<f64>,
+}
+
+impl MeasuredSquares {
+    pub(super) fn new(model: &Model) -> Self {
+        let squares = || SpatialMeasure::LINKS.map(|kind| ElementSquares::new(kind.count(model.masses())));
+        Self { energy: squares(), power: squares(), known: vec![0.0; model.masses()] }
+    }
+
+    fn clear(&mut self) {
+        self.energy.iter_mut().chain(&mut self.power).for_each(ElementSquares::clear);
     }
 }
 

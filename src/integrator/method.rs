@@ -103,10 +103,17 @@ impl RungeKutta {
             let mut point = stages.prepare(step, i, s, moved, weights);
             self.maxwell.known_forces(i, &stages.rates[..i], &mut stages.solver.history.force);
             self.heat.prepare(i, &stages.rates[..i], &mut stages.solver.flash);
+            if let Some(squares) = &mut stages.solver.measured {
+                self.maxwell.measured_squares(model, i, &state.maxwell, &stages.rates[..i], squares);
+            }
             stages.solver.memory.prepare(state, (tableau.c[i], span.length, beta), &stages.rates[..i], weights);
             stages.guess(step, i, &self.coefficients.initial_guess);
             // The velocities at the stage, and their sensitivities.
             stages.solve(step, &mut point, i, s, convergence)?;
+            if model.spatial.is_some() && !stages.tangents.is_empty() {
+                let Stages { rates, solver, .. } = stages;
+                self.maxwell.at_stage(model, i, &state.maxwell, rates, &mut solver.state.maxwell);
+            }
             stages.vary(step, &self.heat, &point, i, s, weights);
             if i < tableau.last() {
                 stages.keep_link_forces(i);
@@ -293,6 +300,7 @@ impl Stages {
             let solver = &self.solver;
             self.exchange[i] =
                 BoundaryPowers::with_friction(model, &solver.friction_power, &point.carrier, &solver.forces);
+            self.exchange[i].measured = solver.measured_powers(model, &self.rates[i]);
             self.exchange[i].add_bodies(model, carrier, s, &point.carrier);
         }
         Ok(())

@@ -12,8 +12,8 @@ use super::heat::StageHeat;
 use super::stage::{SlipVariation, SlippingMass, StagePoint, StageSolver};
 use super::stage_values::StageValues;
 use crate::model::{
-    Axis, ByAxis, DrivenBody, Forces, Input, LinkKind, LinkMotion, Mode, Model, SlipFriction, SlipHistory, SpeedMemory,
-    State, SurfacePoint, TangentsOf,
+    Axis, ByAxis, DrivenBody, Forces, Input, LinkKind, LinkMotion, MaxwellRow, Mode, Model, SlipFriction, SlipHistory,
+    SpatialMeasure, SpeedMemory, State, SurfacePoint, TangentsOf,
 };
 
 /// The variation of the layer's state: dimensionless for positions, 1/s for velocities. Or its rate of change, each
@@ -66,6 +66,10 @@ struct LinkVariation {
     forces: Forces,
     /// Positions relative to the carrier, and velocities where they are not those of the state; no elements.
     motion: Variation,
+    /// What links in spatial measure are measured by at the instant of the last evaluation.
+    measure: Option<Box<SpatialMeasure>>,
+    /// The variations of twice their energies, J.
+    energies: [Vec<f64>; 2],
 }
 
 impl Variation {
@@ -187,7 +191,7 @@ impl Sensitivity {
                 (self.start.z[i], self.start.v_x[i], self.start.v_z[i]) = (mass.z, mass.v_x, mass.v_z);
             }
         }
-        self.links.evaluate(model, &self.start, &carrier);
+        self.links.evaluate(model, &self.start, &carrier, Some((forces, state)));
         // All of δϑ is known at the start: the sum of its parts.
         for i in 0..self.known_flash.len() {
             self.known_flash[i] = self.start.flash.iter().skip(i).step_by(model.masses()).sum();
@@ -254,7 +258,7 @@ impl Sensitivity {
     /// The derivatives at the start of the next step, `s` seconds after the start of the motion.
     pub(super) fn tangents(&mut self, model: &Model, s: f64) -> TangentsOf {
         let carrier = self.carrier(model, s, &self.start.bodies);
-        self.links.evaluate(model, &self.start, &carrier);
+        self.links.evaluate(model, &self.start, &carrier, None);
         TangentsOf { force: ByAxis::from_fn(|axis| self.links.forces.on_carrier(axis)), body: self.start.bodies }
     }
 
@@ -329,7 +333,7 @@ impl Sensitivity {
     fn set_heat(&mut self, model: &Model, solver: &StageSolver, s: f64, stage: usize) {
         // δf at the solution; the forces were those of the known part.
         let carrier = self.carrier(model, s, &self.end.bodies);
-        self.links.evaluate(model, &self.end, &carrier);
+        self.links.evaluate(model, &self.end, &carrier, Some((&solver.forces, &solver.state)));
         for i in 0..model.masses() {
             let history = solver.slip_history(i);
             self.heat_fluxes[stage][i] = self.heat_flux(model, &solver.state, &solver.forces, i, &history, &self.end);
@@ -439,11 +443,19 @@ impl Sensitivity {
 
 impl LinkVariation {
     fn new(model: &Model) -> Self {
-        Self { forces: Forces::new(model), motion: Variation { maxwell: Vec::new(), ..Variation::new(model) } }
+        let zeros =
+            |kind: LinkKind| if model.is_measured(kind) { vec![0.0; kind.count(model.masses())] } else { Vec::new() };
+        Self {
+            forces: Forces { spatial: None, ..Forces::new(model) },
+            motion: Variation { maxwell: Vec::new(), ..Variation::new(model) },
+            measure: None,
+            energies: SpatialMeasure::LINKS.map(zeros),
+        }
     }
 
-    /// Computes the variation of the forces for those of the state, `of`, and of the carrier.
-    fn evaluate(&mut self, model: &Model, of: &Variation, carrier: &CarrierVariation) {
+    /// Computes the variation of the forces for those of the state, `of`, and of the carrier, at these forces and this
+    /// state; `None`: of the forces on the carrier alone, at those of the last evaluation.
+    fn evaluate(&mut self, model: &Model, of: &Variation, carrier: &CarrierVariation, at: Option<(&Forces, &State)>) {
         // δe = δξ - δu and δζ - δw of the links to the carrier.
         for i in 0..model.masses() {
             self.motion.x[i] = of.x[i] - carrier.x[0];
@@ -457,7 +469,29 @@ impl LinkVariation {
         for row in &model.rows {
             add(&mut self.forces.link[row.kind], row.stiffness, &of.maxwell[row.range.clone()]);
         }
-        self.forces.sum_on_masses();
+        self.measure(model, at, &of.x, false, |_, index| of.maxwell[index]);
+    }
+
+    /// Sums the variations up that are evaluated by the links' laws, in spatial measure where they are, at these forces
+    /// and this state: `x` (m) are the variations of positions, and `of_element` (m) those of the elements, the part by
+    /// the rates excepted where that is said to be `by_rate`.
+    fn measure(
+        &mut self,
+        model: &Model,
+        at: Option<(&Forces, &State)>,
+        x: &[f64],
+        by_rate: bool,
+        of_element: impl Fn(&MaxwellRow, usize) -> f64,
+    ) {
+        if let Some((Forces { spatial: Some(measure), .. }, state)) = at {
+            let rates = by_rate.then_some(&self.forces.rate);
+            measure.vary_energies(model, (&self.motion.z, rates), state, of_element, &mut self.energies);
+            self.measure.clone_from(&Some(measure.clone()));
+        }
+        match &self.measure {
+            Some(measure) => measure.vary(x, &self.energies, &mut self.forces),
+            None => self.forces.sum_on_masses(),
+        }
     }
 
     /// Computes the variation of the forces at a stage for the known part of the motion: δe* and δa* are in `history`, and
@@ -490,7 +524,10 @@ impl LinkVariation {
             let weight = row.stiffness * row.relaxation_time / (row.relaxation_time + beta);
             add(&mut self.forces.link[row.kind], weight, &history.maxwell[row.range.clone()]);
         }
-        self.forces.sum_on_masses();
+        let followed = |row: &MaxwellRow, index: usize| {
+            row.relaxation_time / (row.relaxation_time + beta) * history.maxwell[index]
+        };
+        self.measure(model, Some((&solver.forces, &solver.state)), &history.x, true, followed);
     }
 }
 

@@ -195,9 +195,10 @@ impl StageValues {
         };
     }
 
-    /// Ḟ_x and Ḟ_z of the layer on the carrier, N/s, for the Maxwell elongations `maxwell` (m):
-    /// Ḟ = Σ c ė + d ë + Σ_j c_j (ė - a_j/τ_j) over the links to the carrier.
-    pub fn on_carrier(&self, model: &Model, maxwell: &[f64], carrier: &CarrierPoint) -> ByAxis<f64> {
+    /// Ḟ_x and Ḟ_z of the layer on the carrier in `state`, N/s: Ḟ = Σ c ė + d ë + Σ_j c_j (ė - a_j/τ_j) over the links to
+    /// the carrier.
+    pub fn on_carrier(&self, model: &Model, state: &State, carrier: &CarrierPoint) -> ByAxis<f64> {
+        let maxwell = &state.maxwell;
         let of = |kind: LinkKind, acceleration: &[f64], rate_change: f64| {
             let law = &model.links[kind];
             let rate: f64 = self.elongation_rate[kind].iter().sum();
@@ -209,8 +210,28 @@ impl StageValues {
         };
         ByAxis {
             x: of(LinkKind::Horizontal, &self.acceleration_x, carrier.x.acceleration),
-            z: of(LinkKind::Vertical, &self.acceleration_z, carrier.z.acceleration),
+            z: if model.spatial.is_some() {
+                self.on_carrier_measured(model, state, carrier.z.acceleration)
+            } else {
+                of(LinkKind::Vertical, &self.acceleration_z, carrier.z.acceleration)
+            },
         }
+    }
+
+    /// Ḟ_z of vertical links in spatial measure, Σ L Ḟ + L̇ F, N/s, for this ẅ (m/s²).
+    fn on_carrier_measured(&self, model: &Model, state: &State, carrier: f64) -> f64 {
+        let (kind, law) = (LinkKind::Vertical, &model.links[LinkKind::Vertical]);
+        let of = |(i, &rate): (usize, &f64)| {
+            let a = |row: &MaxwellRow| state.maxwell[row.range.start + i];
+            let force =
+                law.force(state.elongation_z[i], rate) - model.frozen_force(kind, i) + model.element_force(kind, a);
+            let change = law.force(rate, self.acceleration_z[i] - carrier)
+                + model.element_force(kind, |row| rate - a(row) / row.relaxation_time);
+            // L is linear in the positions.
+            let lengthens = model.measure(kind, i, &self.velocity_x) - 1.0;
+            model.measure(kind, i, &state.elongation_x) * change + lengthens * force
+        };
+        self.elongation_rate[kind].iter().enumerate().map(of).sum()
     }
 }
 

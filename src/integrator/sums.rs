@@ -70,6 +70,10 @@ impl LayerSums {
     /// F_x and F_z of the masses, of `part`, at the fraction `theta` of `step`, N.
     pub fn on_carrier(&mut self, step: &mut LayerStep<'_>, part: &Model, theta: f64) -> ByAxis<f64> {
         let (dense, workspace) = step.restricted_to(&self.masses);
+        let measured = |_: &State, forces: &Forces| ByAxis::from_fn(|axis| forces.on_carrier(axis));
+        if let Some(on_carrier) = dense.of_measured_layer(theta, workspace, measured) {
+            return on_carrier;
+        }
         let (ends, heights) = ((dense.start, dense.end()), dense.method.scheme.contact_heights());
         self.carrier.collect(dense.model, &dense.masses, ends, dense.stages(), heights);
         let motion = dense.summed_motion(theta, &self.carrier, workspace);

@@ -28,8 +28,8 @@ impl Powers {
     /// The powers in `state` with the forces there.
     pub fn evaluate(model: &Model, state: &State, carrier: &CarrierPoint, forces: &Forces) -> Self {
         Self {
-            damper: LinkKind::ALL.map(|kind| damper(model, forces, kind)).iter().sum(),
-            maxwell: maxwell(model, state),
+            damper: LinkKind::ALL.map(|kind| damper(model, state, forces, kind)).iter().sum(),
+            maxwell: LinkKind::ALL.map(|kind| maxwell(model, state, kind)).iter().sum(),
             friction: FrictionPower::evaluate(model, state, forces).friction(),
             input: input(model, forces, carrier),
         }
@@ -109,12 +109,18 @@ pub struct BoundaryPowers {
     pub input: f64,
     /// P_c = D (u̇ - u̇_d)² and likewise along z, lost in the dampers from bodies to their drives, W.
     pub carrier: f64,
+    /// P_damper and P_maxwell of links in spatial measure, W: by their spacing at the instant, too.
+    pub measured: [f64; 2],
 }
 
 impl BoundaryPowers {
     /// The powers in `state` with the forces there.
     pub fn evaluate(model: &Model, state: &State, carrier: &CarrierPoint, forces: &Forces) -> Self {
-        Self::with_friction(model, &FrictionPower::evaluate(model, state, forces), carrier, forces)
+        let measured = LinkKind::ALL.into_iter().filter(|&kind| model.is_measured(kind));
+        let powers = measured.map(|kind| [damper(model, state, forces, kind), maxwell(model, state, kind)]);
+        let measured = powers.fold([0.0; 2], |sum, power| [sum[0] + power[0], sum[1] + power[1]]);
+        let boundary = Self::with_friction(model, &FrictionPower::evaluate(model, state, forces), carrier, forces);
+        Self { measured, ..boundary }
     }
 
     /// The powers where that of friction is known.
@@ -149,6 +155,7 @@ impl BoundaryPowers {
             fine: power.fine(),
             input,
             carrier: 0.0,
+            measured: [0.0; 2],
         }
     }
 
@@ -164,20 +171,27 @@ impl BoundaryPowers {
     }
 }
 
-fn damper(model: &Model, forces: &Forces, kind: LinkKind) -> f64 {
+fn damper(model: &Model, state: &State, forces: &Forces, kind: LinkKind) -> f64 {
     let damping = model.links[kind].damping;
-    if damping == 0.0 { 0.0 } else { damping * dot(&forces.rate[kind], &forces.rate[kind]) }
+    if damping == 0.0 { 0.0 } else { damping * square_sum_of(model, state, kind, &forces.rate[kind]) }
+}
+
+/// Σ value² of the links of a kind, each by its measure.
+fn square_sum_of(model: &Model, state: &State, kind: LinkKind, values: &[f64]) -> f64 {
+    if !model.is_measured(kind) {
+        return dot(values, values);
+    }
+    let of = |(link, value): (usize, &f64)| model.measure(kind, link, &state.elongation_x) * value * value;
+    values.iter().enumerate().map(of).sum()
 }
 
 fn square_sum(values: impl Iterator<Item = f64>) -> f64 {
     values.map(|v| v * v).sum()
 }
 
-fn maxwell(model: &Model, state: &State) -> f64 {
-    let row_power = |row: &super::MaxwellRow| {
-        row.stiffness * dot(&state.maxwell[row.range.clone()], &state.maxwell[row.range.clone()]) / row.relaxation_time
-    };
-    model.rows.iter().map(row_power).sum()
+fn maxwell(model: &Model, state: &State, kind: LinkKind) -> f64 {
+    let squares = |row: &super::MaxwellRow| square_sum_of(model, state, kind, &state.maxwell[row.range.clone()]);
+    model.rows_of(kind).map(|row| row.stiffness * squares(row) / row.relaxation_time).sum()
 }
 
 /// The power of a prescribed carrier into the layer, W. One at rest does no work, whatever the forces.
@@ -196,26 +210,33 @@ pub fn kinetic_energy(model: &Model, state: &State) -> f64 {
 
 /// V = Σ ½ c e² + Σ_j ½ c_j (e - y_j)², J, frozen dashpots included.
 pub fn elastic_energy(model: &Model, state: &State) -> f64 {
-    let springs: f64 = LinkKind::ALL.map(|kind| spring_energy(model, state, kind)).iter().sum();
     let row_energy = |row: &super::MaxwellRow| {
         0.5 * row.stiffness * dot(&state.maxwell[row.range.clone()], &state.maxwell[row.range.clone()])
     };
-    springs + model.rows.iter().map(row_energy).sum::<f64>()
+    let of_kind = |kind: LinkKind| {
+        if model.is_measured(kind) {
+            return (0..kind.count(model.masses())).map(|link| energy_along_z(model, state, kind, link)).sum();
+        }
+        spring_energy(model, state, kind) + model.rows_of(kind).map(row_energy).sum::<f64>()
+    };
+    LinkKind::ALL.map(of_kind).iter().sum()
 }
 
 /// ½ c e² + Σ_j ½ c_j (e - y_j)² of the links along z at mass `i`, J, frozen dashpots included.
 pub fn vertical_spring_energy_at(model: &Model, state: &State, i: usize) -> f64 {
-    let e = &state.elongation_z;
-    let of_link = |kind: LinkKind, link: usize, e: f64| {
-        let (stiffness, of_frozen) = (model.links[kind].stiffness, model.frozen_stiffness[kind]);
-        let frozen = if of_frozen == 0.0 { 0.0 } else { e - model.frozen_dashpot(kind, link) };
-        let of_row = |row: &super::MaxwellRow| row.stiffness * state.maxwell[row.range.start + link].powi(2);
-        let elements: f64 = model.rows_of(kind).map(of_row).sum();
-        0.5 * ((stiffness - of_frozen) * e * e + of_frozen * frozen * frozen + elements)
-    };
-    let beside = i.saturating_sub(1)..(i + 1).min(e.len() - 1);
-    let lateral: f64 = beside.map(|link| of_link(LinkKind::LateralZ, link, e[link + 1] - e[link])).sum();
-    of_link(LinkKind::Vertical, i, e[i]) + lateral
+    let lateral = LinkKind::LateralZ.links_on(i, model.masses());
+    let of_lateral: f64 = lateral.map(|link| energy_along_z(model, state, LinkKind::LateralZ, link)).sum();
+    energy_along_z(model, state, LinkKind::Vertical, i) + of_lateral
+}
+
+/// ½ c e² + Σ_j ½ c_j (e - y_j)² of one link along z by its measure, J.
+fn energy_along_z(model: &Model, state: &State, kind: LinkKind, link: usize) -> f64 {
+    let e = kind.difference(&state.elongation_z, 0.0, link);
+    let (stiffness, of_frozen) = (model.links[kind].stiffness, model.frozen_stiffness[kind]);
+    let frozen = if of_frozen == 0.0 { 0.0 } else { e - model.frozen_dashpot(kind, link) };
+    let elements = model.element_force(kind, |row| state.maxwell[row.range.start + link].powi(2));
+    let energy = 0.5 * ((stiffness - of_frozen) * e * e + of_frozen * frozen * frozen + elements);
+    model.measure(kind, link, &state.elongation_x) * energy
 }
 
 fn spring_energy(model: &Model, state: &State, kind: LinkKind) -> f64 {

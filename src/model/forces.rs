@@ -1,5 +1,6 @@
 //! The links (springs, dampers and Maxwell elements in parallel) and their forces at one instant.
 
+use super::spatial::SpatialMeasure;
 use super::{CarrierPoint, LinkLaw, Model, State};
 use crate::math::{add_weighted_sum, sum};
 use crate::scene::{Axis, ByAxis, ByLink, LinkKind};
@@ -15,6 +16,8 @@ pub struct Forces {
     pub on_mass_x: Vec<f64>,
     /// f_z,i of all links on mass i, N (4).
     pub on_mass_z: Vec<f64>,
+    /// What the links along z are measured by where that is their present spacing.
+    pub spatial: Option<Box<SpatialMeasure>>,
 }
 
 impl Forces {
@@ -22,7 +25,8 @@ impl Forces {
     pub fn new(model: &Model) -> Self {
         let of_masses = || vec![0.0; model.masses()];
         let (link, rate) = (Self::zeros_by_link(model), Self::zeros_by_link(model));
-        Self { link, rate, on_mass_x: of_masses(), on_mass_z: of_masses() }
+        let spatial = model.spatial.map(|rest| Box::new(SpatialMeasure::new(model, rest)));
+        Self { link, rate, on_mass_x: of_masses(), on_mass_z: of_masses(), spatial }
     }
 
     /// A zero for each link of `model` by kind; none of a kind that it has not.
@@ -47,6 +51,7 @@ impl Forces {
             let elements = model.rows_of(kind).map(|row| (row.stiffness, &state.maxwell[row.range.clone()]));
             add_weighted_sum(&mut self.link[kind], elements);
         }
+        self.measure_state(model, state);
         self.sum_on_masses();
         add_ends(&mut self.on_mass_x, carrier.ends.map(|end| end.x));
         add_ends(&mut self.on_mass_z, carrier.ends.map(|end| end.z));
@@ -85,10 +90,17 @@ impl Forces {
         let [vertical, horizontal, lateral_x, lateral_z] = &self.link.0;
         sum_on_masses(&mut self.on_mass_x, horizontal, lateral_x);
         sum_on_masses(&mut self.on_mass_z, vertical, lateral_z);
+        if let Some(measure) = &self.spatial {
+            measure.add_tensions(&mut self.on_mass_x);
+        }
     }
 
     /// Evaluates the forces of the links of mass `i`, and the sums on it and on its neighbours, anew.
     pub fn refresh(&mut self, model: &Model, state: &State, carrier: &CarrierPoint, i: usize) {
+        // Its position measures the links of its neighbours.
+        if self.spatial.is_some() {
+            return self.evaluate(model, state, carrier);
+        }
         let k = model.masses();
         let motion = LinkMotion::new(state, carrier);
         for kind in LinkKind::ALL {
@@ -108,17 +120,20 @@ impl Forces {
     pub fn add_velocity(&mut self, model: &Model, i: usize, change: ByAxis<f64>) {
         for kind in LinkKind::ALL.into_iter().filter(|&kind| model.has_link[kind]) {
             let by = model.links[kind].damping * change[kind.axis()];
+            let measure = self.spatial.as_deref().filter(|_| !kind.is_along_x());
+            let measured = |link: usize| measure.map_or(by, |measure| by * measure.factor(kind, link));
             let force = &mut self.link[kind];
             let on_mass = if kind.is_along_x() { &mut self.on_mass_x } else { &mut self.on_mass_z };
             if i < force.len() {
-                let sign = if kind.is_lateral() { -1.0 } else { 1.0 };
+                let (by, sign) = (measured(i), if kind.is_lateral() { -1.0 } else { 1.0 });
                 force[i] += sign * by;
                 on_mass[i] -= by;
             }
             if kind.is_lateral() && i < force.len() {
-                on_mass[i + 1] += by;
+                on_mass[i + 1] += measured(i);
             }
             if kind.is_lateral() && i > 0 {
+                let by = measured(i - 1);
                 force[i - 1] += by;
                 on_mass[i - 1] += by;
                 on_mass[i] -= by;

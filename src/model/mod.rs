@@ -14,6 +14,7 @@ mod reduction;
 mod scales;
 mod slip_curve;
 mod slip_history;
+mod spatial;
 mod state;
 
 pub use carrier::{BodyEnergy, BodyInterpolant, BodyStart, Carrier, CarrierPosition, Outside};
@@ -29,6 +30,7 @@ pub use reduction::{Reduction, Replaced, Replacement};
 pub use slip_curve::SlipCurve;
 pub use slip_history::{Flash, FlashKernel, FlashTerm, HeatParts, SURFACE_TERMS, SpeedShift, surface_kernel};
 pub use slip_history::{RememberedSpeed, SlipHistory, SpeedMemory, aged, memory_rate};
+pub use spatial::{ElementSquares, MeasuredMotion, SpatialMeasure, Varied};
 pub use state::EndForces;
 pub use state::{CarrierPoint, Mode, State, Tangents, TangentsOf};
 
@@ -36,7 +38,7 @@ use std::sync::Arc;
 
 use crate::math::Spline;
 pub use crate::scene::{Axis, ByAxis, ByLink, Input, LinkKind};
-use crate::scene::{Initial, Scene};
+use crate::scene::{Initial, Kinematics, Scene};
 
 /// A scene as numbers to compute with. It does not change through a run.
 #[derive(Clone, Debug)]
@@ -76,6 +78,8 @@ pub struct Model {
     /// Elongations of the vertical links at the start, m: those of the frozen dashpots, see
     /// [`frozen_stiffness`](Self::frozen_stiffness). Empty where there are none.
     pub frozen: Vec<f64>,
+    /// Δx of links along z that are in spatial measure, m; `None` where they are in material measure.
+    pub spatial: Option<f64>,
 }
 
 impl Model {
@@ -104,7 +108,15 @@ impl Model {
             friction: FrictionLaw::new(scene),
             flash: FlashKernel::new(scene),
             initial: layer.initial,
+            spatial: (layer.kinematics() == Kinematics::Spatial && k > 1 && Self::strains(scene))
+                .then_some(layer.spacing),
         }
+    }
+
+    /// Whether what the masses touch strains the layer along x: on slopes of the profile or of its own roughness.
+    fn strains(scene: &Scene) -> bool {
+        let is_flat = scene.surface.z().windows(2).all(|pair| pair[0] == pair[1]);
+        !(is_flat && scene.layer.roughness.is_empty())
     }
 
     /// Takes over what depends on the temperature from `scene`, this model's at another one: relaxation times,

@@ -84,10 +84,31 @@ impl ContactChange {
 
 /// The directional derivatives.
 impl Snapshot<'_> {
-    /// δF_x = -k (c + Σ c_j) δu of the horizontal links, δF_z likewise of the vertical ones.
+    /// δF_x = -k (c + Σ c_j) δu of the horizontal links, δF_z likewise of the vertical ones, each by its measure.
     pub(super) fn force_changes(&self, shift: &CarrierShift) -> ByAxis<f64> {
         let k = self.model.masses() as f64;
-        shift.on_mass.map(|change| -k * change)
+        let measures: f64 = (0..self.model.masses()).map(|i| self.measure(LinkKind::Vertical, i)).sum();
+        ByAxis { x: -k * shift.on_mass.x, z: -measures * shift.on_mass.z }
+    }
+
+    fn measure(&self, kind: LinkKind, link: usize) -> f64 {
+        self.model.measure(kind, link, &self.state().elongation_x)
+    }
+
+    /// Changes of the forces on mass `i`, N.
+    fn on_mass_change(&self, i: usize, shift: &CarrierShift) -> ByAxis<f64> {
+        let Some(spacing) = self.model.spatial else { return shift.on_mass };
+        // T_i changes with V = Σ c (e - y)² of the vertical links at both of its ends.
+        let energy = |i: usize| {
+            let (kind, e) = (LinkKind::Vertical, self.state().elongation_z[i]);
+            let elements = self.model.element_force(kind, |row| self.state().maxwell[row.range.start + i]);
+            let springs = self.model.links[kind].stiffness * e - self.model.frozen_force(kind, i);
+            2.0 * (springs + elements) * shift.elongation.z
+        };
+        let tension = |i: usize| (energy(i) + energy(i + 1)) / (4.0 * spacing);
+        let right = if i + 1 < self.model.masses() { tension(i) } else { 0.0 };
+        let left = if i > 0 { tension(i - 1) } else { 0.0 };
+        ByAxis { x: shift.on_mass.x + right - left, z: self.measure(LinkKind::Vertical, i) * shift.on_mass.z }
     }
 
     /// δR = K δu_d of the drive along `axis`.
@@ -122,7 +143,7 @@ impl Snapshot<'_> {
             return ContactChange { q: 1.0, ..ContactChange::default() };
         };
         let MassContact { mode, slope, forces: ContactForces { normal: pressing, tangential, q, .. }, .. } = contact;
-        let ByAxis { x: f_x, z: f_z } = shift.on_mass;
+        let ByAxis { x: f_x, z: f_z } = self.on_mass_change(i, shift);
         let normal = (slope * f_x - f_z) / q;
         let law = &self.model.friction;
         let by_normal = law.slip(pressing, contact.velocity.abs() * q, &contact.history).by_normal;
@@ -168,8 +189,9 @@ impl Snapshot<'_> {
         let spring = |axis: Axis| {
             let (kind, elongations) = (axis.link(), self.state().elongation(axis));
             let stiffness = self.model.links[kind].stiffness;
-            let force = stiffness * elongations.iter().sum::<f64>() - self.model.frozen_force_sum(kind);
-            shift.elongation[axis] * force
+            let spring =
+                |i: usize| self.measure(kind, i) * (stiffness * elongations[i] - self.model.frozen_force(kind, i));
+            shift.elongation[axis] * (0..elongations.len()).map(spring).sum::<f64>()
         };
         spring(Axis::X) + spring(Axis::Z) + self.maxwell_sum(shift, |row| row.stiffness)
     }
@@ -178,7 +200,8 @@ impl Snapshot<'_> {
     fn maxwell_sum(&self, shift: &CarrierShift, weight: impl Fn(&MaxwellRow) -> f64) -> f64 {
         let moved = |kind: LinkKind| if kind.is_lateral() { 0.0 } else { shift.elongation[kind.axis()] };
         let of_row = |row: &MaxwellRow| {
-            weight(row) * moved(row.kind) * self.state().maxwell[row.range.clone()].iter().sum::<f64>()
+            let a = self.state().maxwell[row.range.clone()].iter().enumerate();
+            weight(row) * moved(row.kind) * a.map(|(link, a)| self.measure(row.kind, link) * a).sum::<f64>()
         };
         self.model.rows.iter().map(of_row).sum()
     }

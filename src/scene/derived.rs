@@ -169,6 +169,7 @@ impl Scene {
                 thickness: None,
                 width: None,
                 foundation: None,
+                kinematics: Some(layer.kinematics()),
                 ..layer
             };
             if let Some(friction) = &mut scene.friction {

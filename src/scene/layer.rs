@@ -21,6 +21,8 @@ pub struct Layer {
     pub mass: Option<f64>,
     /// How the links follow from the material; in the material form alone.
     pub foundation: Option<FoundationKind>,
+    /// By what spacing the links along z are measured; `None` see [`Layer::kinematics`].
+    pub kinematics: Option<Kinematics>,
     /// Thickness H, m; in the material form alone, and not of a half-space.
     pub thickness: Option<f64>,
     /// Width B, m; in the material form alone.
@@ -38,6 +40,13 @@ impl Layer {
     /// Position X_i of mass `i` (from 0) at rest, m.
     pub fn rest_position(&self, i: usize) -> f64 {
         self.origin + i as f64 * self.spacing
+    }
+
+    /// By what spacing the links along z are measured: as it was set, or the present one where they stand for the surface
+    /// of a body, and that at rest where they are the paper's.
+    pub fn kinematics(&self) -> Kinematics {
+        let of_body = self.foundation.is_some_and(|foundation| foundation != FoundationKind::Springs);
+        self.kinematics.unwrap_or(if of_body { Kinematics::Spatial } else { Kinematics::Material })
     }
 }
 
@@ -134,6 +143,20 @@ pub enum FoundationKind {
 impl Word for FoundationKind {
     const WORDS: &'static [(&'static str, Self)] =
         &[("springs", Self::Springs), ("half_space", Self::HalfSpace), ("layer", Self::Layer)];
+}
+
+/// By what spacing of the masses the links along z are measured (docs/foundation.md, section 8).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kinematics {
+    /// That at rest: links are linear in material coordinates.
+    Material,
+    /// The present one.
+    Spatial,
+}
+
+impl Word for Kinematics {
+    const WORDS: &'static [(&'static str, Self)] = &[("material", Self::Material), ("spatial", Self::Spatial)];
 }
 
 impl FoundationKind {

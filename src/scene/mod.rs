@@ -57,7 +57,7 @@ pub use fine_roughness::{
 pub use foundation::{ContactFit, ElasticBody, Foundation, Quality, Stiffness, Wave, Waves};
 pub use height_map::{HeightMap, MOST_HEIGHTS, MapError, peak_to_valley};
 pub use keys::{Absent, KeyEntry, patch_keys, scene_keys, seal_keys, similar_keys};
-pub use layer::{FoundationKind, Friction, Initial, Layer, Link, MaxwellElement, RateShear};
+pub use layer::{FoundationKind, Friction, Initial, Kinematics, Layer, Link, MaxwellElement, RateShear};
 pub use material::{Heat, Material, PronyTerm, SERIES, Wlf, complex_stiffness};
 pub use motion_file::MOTION;
 pub use parameters::{KeyNumber, Parameter};

@@ -182,7 +182,7 @@ impl RunContext {
             self.start_from_forces();
         }
         let (layer, carrier) = (&self.state.layer, self.state.carrier.at(self.state.s));
-        layer.rates.on_carrier(&self.model, &layer.state.maxwell, &carrier)
+        layer.rates.on_carrier(&self.model, &layer.state, &carrier)
     }
 
     /// Energies through the channels up to the fraction `theta` of the step of length `h` (s) tried last, J.
@@ -245,7 +245,11 @@ impl RunContext {
     }
 
     pub(super) fn step_too_small(&self, step: f64) -> SimulationError {
-        SimulationError::StepTooSmall { time: self.state.time(), step }
+        let time = self.state.time();
+        match self.model.folded(&self.state.layer.state) {
+            Some(mass) => SimulationError::Folded { time, mass: mass + 1 },
+            None => SimulationError::StepTooSmall { time, step },
+        }
     }
 
     /// The dense output of the event-driven step of length `h` (s) tried last.

@@ -70,6 +70,17 @@ pub enum SimulationError {
         /// The step size, s.
         step: f64,
     },
+    /// The layer's surface folded.
+    #[error(
+        "masses {mass} and {} came within a fifth of their distance at rest at t = {time} s: the layer is pressed so hard, or \
+         its profile is so steep, that its surface folds; layer.kinematics = \"material\" does not see it", mass + 1
+    )]
+    Folded {
+        /// The time reached, s.
+        time: f64,
+        /// The first of the two masses, from 1.
+        mass: usize,
+    },
     /// It was stopped from outside.
     #[error("interrupted at t = {time} s")]
     Interrupted {

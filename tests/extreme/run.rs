@@ -80,6 +80,7 @@ impl From<SimulationError> for Stop {
         let name = match error {
             SimulationError::TooManySteps { .. } | SimulationError::TooMuchWork { .. } => "TooManySteps",
             SimulationError::StepTooSmall { .. } => "StepTooSmall",
+            SimulationError::Folded { .. } => "Folded",
             SimulationError::OutOfRange { .. } => "OutOfRange",
             SimulationError::Scene(_) => "Scene",
             SimulationError::Memory(_) => "Memory",

@@ -2,7 +2,7 @@
 //! against a difference quotient by rollback.
 
 use asperity::outputs::{Variable, variables};
-use asperity::scene::{Force, Path, Scene};
+use asperity::scene::{Force, Kinematics, Path, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
 use crate::common::runs::straight;
@@ -21,6 +21,12 @@ fn scene(friction: &str) -> Scene {
         .relative(1e-10)
         .outputs(&["forces", "contact", "tangent", "solver"])
         .scene()
+}
+
+/// The same with links along z in spatial measure.
+fn in_spatial_measure(mut scene: Scene) -> Scene {
+    scene.layer.kinematics = Some(Kinematics::Spatial);
+    scene
 }
 
 struct Run {
@@ -90,18 +96,22 @@ fn without_contact() {
 
 #[test]
 fn sticking() {
-    let run = Run::new(&scene(COULOMB), &[straight(4e-4, 0.0, -0.05), straight(1e-3, 0.0, 0.0)]);
-    for duration in [1e-8, 1e-6, 1e-5] {
-        run.check(&straight(duration, 1e-4, -1e-4));
+    for scene in [scene(COULOMB), in_spatial_measure(scene(COULOMB))] {
+        let run = Run::new(&scene, &[straight(4e-4, 0.0, -0.05), straight(1e-3, 0.0, 0.0)]);
+        for duration in [1e-8, 1e-6, 1e-5] {
+            run.check(&straight(duration, 1e-4, -1e-4));
+        }
     }
 }
 
 #[test]
 fn slipping() {
     for friction in ["", COULOMB, BOTH, FALLING, REMEMBERING, RISING] {
-        let run = Run::new(&scene(friction), &[straight(4e-4, 0.0, -0.05), straight(1.01e-3, 0.3, 0.0)]);
-        for duration in [1e-8, 1e-6, 1e-5] {
-            run.check(&straight(duration, 0.3, 0.0));
+        for scene in [scene(friction), in_spatial_measure(scene(friction))] {
+            let run = Run::new(&scene, &[straight(4e-4, 0.0, -0.05), straight(1.01e-3, 0.3, 0.0)]);
+            for duration in [1e-8, 1e-6, 1e-5] {
+                run.check(&straight(duration, 0.3, 0.0));
+            }
         }
     }
 }
@@ -133,7 +143,7 @@ fn a_short_motion_meets_the_glassy_stiffness_and_the_damper_over_the_step() {
 /// The same for a carrier that is a body along both axes: by every input, of the forces and of its own motion.
 #[test]
 fn by_every_input_of_a_body() {
-    let scene = SceneText::new(5, 1e-4, 1e-7)
+    let material = SceneText::new(5, 1e-4, 1e-7)
         .vertical((2e3, 8e-3, [(1e3, 1e-4)]))
         .horizontal((1e3, 5e-3))
         .lateral_x((5e2, 2e-3))
@@ -145,6 +155,12 @@ fn by_every_input_of_a_body() {
         .relative(1e-10)
         .outputs(&["forces", "carrier", "tangent", "solver"])
         .scene();
+    for scene in [in_spatial_measure(material.clone()), material] {
+        every_input_of_a_body(&scene);
+    }
+}
+
+fn every_input_of_a_body(scene: &Scene) {
     let force = |rate| Force { start: None, change: Path { rate, ..Path::default() } };
     let names = ["F_x", "F_z", "carrier.u", "carrier.u_rate", "carrier.w", "carrier.w_rate", "solver.events"];
     let tangents = |by: &str| {
@@ -155,7 +171,7 @@ fn by_every_input_of_a_body() {
     for (ahead, some_free) in [(1e-5, false), (3e-4, false), (3e-4, true)] {
         let lift = if some_free { -0.045 } else { 0.0 };
         let run = Run::new(
-            &scene,
+            scene,
             &[straight(1e-3, ahead / 1e-3, 0.0), Motion { load: force(lift / 1e-4), ..straight(1e-4, 0.02, 0.0) }],
         );
         for duration in [1e-7, 1e-5] {

@@ -68,12 +68,13 @@ fn full_contact_of_a_sine_converges_at_once() {
     assert_eq!(table.texts("masses"), ["32", "64", "128"]);
     assert_eq!(table.column("spacing"), [6.25e-5, 3.125e-5, 3.125e-5]);
     assert_eq!(table.column("length"), [2e-3, 2e-3, 4e-3]);
-    assert_eq!(table.column("area"), [1.0; 3]);
+    // The masses at the open ends lift for an instant.
+    assert!(table.column("area").iter().all(|area| *area > 0.999), "{file}");
     assert_eq!((table.text(0, "seed"), table.text(0, "friction_change")), ("", ""));
     // Im M = x/(1 + x²) E_1/(1 - ν²), x = q v τ = 1.005; q a = 0.1257.
     let exact = 0.1257_f64.powi(2) * 0.5 * 1e6 / 0.75 / (4.0 * 2e5);
     let friction = table.column("friction");
-    // What the fit misses at one wave, (1 + (2p/M)²) of tilted pressures and the open ends of the chain.
+    // What the fit misses at one wave and the open ends of the chain.
     assert!(friction.iter().all(|friction| (friction / exact - 1.0).abs() < 0.15), "{friction:?}, exact {exact}");
     let change = table.number(1, "friction_change");
     assert!((change - (friction[1] - friction[0]) / friction[1]).abs() < 1e-12);

@@ -140,7 +140,8 @@ impl Error {
             Self::Simulation(
                 SimulationError::TooManySteps { .. }
                 | SimulationError::TooMuchWork { .. }
-                | SimulationError::StepTooSmall { .. },
+                | SimulationError::StepTooSmall { .. }
+                | SimulationError::Folded { .. },
             ) => Status::Discard,
             Self::Element(ElementError::Pressure { within: true, .. }) => Status::Discard,
             Self::Motion(

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use asperity::element::{Load, OperatingPoint};
-use asperity::scene::{ContactFit, Friction, Scene};
+use asperity::scene::{ContactFit, Friction, Kinematics, Scene};
 
 use crate::decimals::{rounded, with_prefix};
 
@@ -76,16 +76,16 @@ pub fn implausible(scene: &Scene, found: impl IntoIterator<Item = FoundFriction>
 }
 
 /// Where friction draws the surface of a layer along the slopes of its profile by more than can be passed over: links that are
-/// linear in material coordinates have that strain, and not what elasticity adds at the same order (docs/steady.md).
+/// linear in material coordinates have that strain, and not what elasticity adds at the same order (docs/foundation.md, section 8).
 pub fn strained(scene: &Scene, found: impl IntoIterator<Item = FoundFriction>) -> Option<String> {
-    scene.foundation.as_ref()?;
+    scene.foundation.as_ref().filter(|_| scene.layer.kinematics() == Kinematics::Material)?;
     let slope = scene.surface.rms_slope();
     let excess = |one: &FoundFriction| one.friction * slope * slope;
     let found: Vec<FoundFriction> = found.into_iter().filter(|one| excess(one) > STRAINED).collect();
     let most = found.iter().max_by(|a, b| a.friction.total_cmp(&b.friction))?;
     Some(format!(
         "friction of {} on slopes of {} in the root mean square strains the layer along them, {}{}: it comes out {} to {} % too \
-         large, which finite strain and `sweep --method steady` have not",
+         large, which finite strain, layer.kinematics = \"spatial\" and `sweep --method steady` have not",
         rounded(most.friction, 3),
         rounded(slope, 3),
         most.place,
@@ -219,7 +219,9 @@ mod tests {
     fn friction_that_strains_a_layer_is_said_with_what_it_adds() {
         let found = |friction| FoundFriction { place: "at 1 m/s".into(), friction, area: None, rise: None };
         // The slope of 2π 5e-5/1e-3 has a mean square of 0.0493.
-        let steep = scene("kind = 'sinusoid', amplitude = 5e-5, wavelength = 1e-3", "coulomb = 0.9");
+        let mut steep = scene("kind = 'sinusoid', amplitude = 5e-5, wavelength = 1e-3", "coulomb = 0.9");
+        assert_eq!(strained(&steep, [found(0.9)]), None);
+        steep.layer.kinematics = Some(Kinematics::Material);
         assert_eq!(strained(&steep, [found(0.6)]), None);
         let said = strained(&steep, [found(0.7), found(0.9), found(0.5)]).unwrap();
         let beginning = "friction of 0.9 on slopes of 0.222 in the root mean square strains the layer along them, at 1 m/s and at \

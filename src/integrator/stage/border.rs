@@ -33,6 +33,8 @@ pub(super) struct Side {
     pub row: Vec<Vector2<f64>>,
     /// The derivative of the body's equation by its own unknown, kg/s.
     pub diagonal: f64,
+    /// The derivative of the other body's equation by this one's unknown, kg/s, beside what the masses make of it.
+    pub on_other: f64,
     /// Its negative residual, N.
     pub right: f64,
     /// Mass of the body with the free masses, kg.
@@ -63,6 +65,7 @@ impl Border {
                 column: zero.clone(),
                 row: zero,
                 diagonal: 0.0,
+                on_other: 0.0,
                 right: 0.0,
                 inertia: 0.0,
             })
@@ -95,7 +98,7 @@ impl Border {
         };
         let sides = [&self.sides.x, &self.sides.z];
         let element = |i: usize, j: usize| match (sides[i], sides[j]) {
-            (Some(row), Some(column)) => (if i == j { row.diagonal } else { 0.0 }) - product(row, column),
+            (Some(row), Some(column)) => (if i == j { row.diagonal } else { column.on_other }) - product(row, column),
             _ => f64::from(u8::from(i == j)),
         };
         let schur = Matrix2::from_fn(element);

@@ -14,6 +14,7 @@ mod border;
 mod motion;
 mod newton;
 mod slipping_mass;
+mod spatial;
 
 use std::ops::Range;
 
@@ -21,6 +22,7 @@ use nalgebra::Vector2;
 use slipping_mass::{NeighbourWeights, RowShares, StageFriction, largest_of};
 
 use super::heat::StageFlash;
+use super::maxwell::MeasuredSquares;
 use super::memory::StageMemory;
 use super::scheme::ContactModes;
 use super::stage_values::StageValues;
@@ -167,6 +169,8 @@ pub(super) struct StageSolver {
     pub flash: StageFlash,
     /// The speeds that the masses remember at the stage.
     pub memory: StageMemory,
+    /// The Maxwell elements of links in spatial measure; to be set before a stage is solved.
+    pub measured: Option<Box<MeasuredSquares>>,
     rows: Vec<RowShares>,
     columns: Vec<NeighbourWeights>,
     pub system: BlockTridiagonal,
@@ -208,6 +212,7 @@ impl StageSolver {
             friction: Vec::with_capacity(if model.friction.is_linear() { 0 } else { k }),
             flash: StageFlash::new(model),
             memory: StageMemory::new(model),
+            measured: model.spatial.map(|_| Box::new(MeasuredSquares::new(model))),
             rows: vec![RowShares::default(); k],
             columns: vec![NeighbourWeights::default(); k],
             system: BlockTridiagonal::new(k),
@@ -239,10 +244,15 @@ impl StageSolver {
         }
         self.assemble_constant_rows(model, beta);
         self.factors = Factors::Outdated;
-        if self.slips.is_empty() {
+        if self.is_linear() {
             self.system.factor_uncoupled();
             self.factor_border(model, beta);
         }
+    }
+
+    /// Whether the stages' equations are linear: no mass slips, and no link is measured by the present spacing.
+    fn is_linear(&self) -> bool {
+        self.slips.is_empty() && self.measured.is_none()
     }
 
     /// Lists the masses in contact, and those of them that slip.
@@ -328,14 +338,15 @@ impl StageSolver {
         self.move_bodies(Vector2::zeros(), point);
         self.start_sticks_from_rest();
         self.evaluate(model, point);
-        if self.slips.is_empty() {
+        if self.is_linear() {
             self.solve_linear(model, point)?;
         }
-        if !self.slips.is_empty() || self.change_modes(model, point) {
+        if !self.is_linear() || self.change_modes(model, point) {
             self.iterate(model, point, test)?;
         }
         self.write_rates(model, point, rates);
-        if self.slips_continuously() { Ok(()) } else { Err(NoConvergence) }
+        let is_borne = self.forces.spatial.as_ref().is_none_or(|measure| measure.is_borne());
+        if is_borne && self.slips_continuously() { Ok(()) } else { Err(NoConvergence) }
     }
 
     /// Whether no contact heats itself so much that the step may have other solutions.
@@ -407,7 +418,7 @@ impl StageSolver {
     /// Factors the Jacobian at the velocities of the last residuals. Friction that is not linear changes it too much
     /// for another stage.
     fn factor_slips(&mut self, model: &Model, beta: f64) {
-        self.assemble_slips(model, beta);
+        self.assemble(model, beta);
         self.system.factor();
         self.factor_border(model, beta);
         if self.factors == Factors::Outdated && model.friction.is_linear() {

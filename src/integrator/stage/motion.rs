@@ -21,6 +21,9 @@ impl StageSolver {
                 self.set_forces(point);
             },
         );
+        if let Some(squares) = &self.measured {
+            self.forces.measure_stage(model, &self.state, &point.carrier, &squares.energy);
+        }
     }
 
     /// Computes the positions from the velocities and puts the contact constraint in.

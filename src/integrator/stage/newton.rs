@@ -20,9 +20,9 @@ use crate::model::{
 impl StageSolver {
     /// Factors the Jacobian at the solution, for the tangents of the stage.
     pub(in crate::integrator) fn factor_at_solution(&mut self, model: &Model, beta: f64) {
-        // Without slip the factors of the step are those at every velocity.
-        if !self.slips.is_empty() {
-            self.assemble_slips(model, beta);
+        // Of linear equations the factors of the step are those at every velocity.
+        if !self.is_linear() {
+            self.assemble(model, beta);
             self.system.factor();
             self.factor_border(model, beta);
         }
@@ -159,8 +159,17 @@ impl StageSolver {
         }
     }
 
+    /// Assembles what is not constant at the velocities of the last residuals.
+    pub(super) fn assemble(&mut self, model: &Model, beta: f64) {
+        if self.measured.is_some() {
+            self.assemble_measured(model, beta);
+        } else {
+            self.assemble_slips(model, beta);
+        }
+    }
+
     /// Assembles the rows and columns of slipping masses at the velocities of the last residuals.
-    pub(super) fn assemble_slips(&mut self, model: &Model, beta: f64) {
+    fn assemble_slips(&mut self, model: &Model, beta: f64) {
         let Self { rows, columns, state, history, forces, laws, weights, slip_runs, system, .. } = self;
         let stage = Evaluated { model, state, history, forces, laws, weights, beta };
         // [8] of all slips with the law's own μ and A τ_0, where F_N has no part in these.
@@ -213,15 +222,15 @@ impl StageSolver {
 }
 
 /// What the equations of the slipping masses follow from.
-struct Evaluated<'a> {
-    model: &'a Model,
-    state: &'a State,
-    history: &'a MassHistory,
-    forces: &'a Forces,
-    laws: &'a ByLink<LinkLaw>,
-    weights: &'a ByLink<f64>,
+pub(super) struct Evaluated<'a> {
+    pub(super) model: &'a Model,
+    pub(super) state: &'a State,
+    pub(super) history: &'a MassHistory,
+    pub(super) forces: &'a Forces,
+    pub(super) laws: &'a ByLink<LinkLaw>,
+    pub(super) weights: &'a ByLink<f64>,
     /// β of the stage, s.
-    beta: f64,
+    pub(super) beta: f64,
 }
 
 impl Evaluated<'_> {
@@ -266,7 +275,7 @@ impl Evaluated<'_> {
 
     /// The equation of mass `i`, which slips under this law of friction.
     #[inline(always)]
-    fn slipping_mass_under(&self, law: LinearFriction, i: usize) -> SlippingMass {
+    pub(super) fn slipping_mass_under(&self, law: LinearFriction, i: usize) -> SlippingMass {
         let (sigma, surface) = (self.state.mode[i].direction(), &self.state.surface[i]);
         let motion = SlipMotion { velocity: self.state.velocity_x[i], acceleration: self.acceleration(i) };
         SlippingMass::under(law, sigma, surface, motion)
@@ -311,7 +320,7 @@ fn couple(upper: &mut [Matrix2<f64>], lower: &mut [Matrix2<f64>], rows: &[RowSha
 
 /// The number of neighbours of mass `i` of `k`.
 #[inline(always)]
-fn neighbours(i: usize, k: usize) -> f64 {
+pub(super) fn neighbours(i: usize, k: usize) -> f64 {
     f64::from(u8::from(i > 0) + u8::from(i + 1 < k))
 }
 
@@ -386,7 +395,7 @@ impl StageSolver {
         let Some(mut border) = self.border.take() else { return };
         for side in border.sides() {
             self.assemble_side(model, beta, side);
-            if self.slips.is_empty() {
+            if self.is_linear() {
                 self.system.solve_uncoupled_for(&mut side.column);
             } else {
                 self.system.solve_for(&mut side.column);
@@ -411,6 +420,9 @@ impl StageSolver {
         let modes = &self.state.mode;
         side.column.fill(Vector2::zeros());
         side.row.fill(Vector2::zeros());
+        if self.measured.is_some() {
+            return self.assemble_measured_side(model, beta, side);
+        }
         side.inertia = side.body.mass;
         side.diagonal = side.body.mass / beta + beta * side.body.stiffness + side.body.damping;
         for (i, mode) in modes.iter().enumerate() {

@@ -5,8 +5,8 @@ use super::field::{At, FieldValue, field};
 use super::surface::SURFACE;
 use crate::scene::values::{ANY, LOOSEST_TOLERANCE, NOT_NEGATIVE, POSITIVE, words};
 use crate::scene::{
-    Axis, CarrierInitial, DependencyList, Extrapolation, FoundationKind, Initial, IntegerType, LinkKind, Method,
-    OutputGroup, Scene, Unit,
+    Axis, CarrierInitial, DependencyList, Extrapolation, FoundationKind, Initial, IntegerType, Kinematics, LinkKind,
+    Method, OutputGroup, Scene, Unit,
 };
 
 pub(in crate::scene) const ROOT: &[Key] = &[
@@ -66,6 +66,11 @@ const LAYER: &[Key] = &[
     word::<FoundationKind>("foundation", "What the links stand for: springs, half_space or layer")
         .default("\"layer\"")
         .material(),
+    word::<Kinematics>(
+        "kinematics",
+        "By what spacing the links along z are measured: material, that at rest, or spatial",
+    )
+    .follows("spatial with foundation = \"half_space\" or \"layer\", else material"),
 ];
 
 const LINK: &[Key] = &[

@@ -107,7 +107,10 @@ impl Scene {
             let elements = scene.elements(list);
             values.set_all(&[Setting::new(list, elements), setting.clone()])?;
         }
-        Ok(Self { notes: scene.notes, ..read_scene(values)? })
+        let notes = scene.notes;
+        let mut scene = read_scene(values)?;
+        scene.notes = notes;
+        Ok(scene)
     }
 
     /// The number that the file has at a key, in SI units; `None` where it has none.
@@ -135,9 +138,11 @@ fn read_scene(mut values: FileValues) -> Result<Scene> {
     let form = if values.root.contains_key("material") { Form::Material } else { Form::Direct };
     let source = Source { values: &values, form, keys: ROOT };
     let mut found = Findings { named: values.files.clone(), ..Findings::default() };
-    let scene = read_root(TableReader::root(source)?, &mut found)?;
+    // Its fields are set one by one: threads of hosts may have small stacks, on which a scene is not small.
+    let mut scene = read_root(TableReader::root(source)?, &mut found)?;
     values.files = found.named;
-    Ok(Scene { values: Arc::new(values), files: found.files, notes: found.notes, ..scene })
+    (scene.values, scene.files, scene.notes) = (Arc::new(values), found.files, found.notes);
+    Ok(scene)
 }
 
 fn read_root(mut root: TableReader<'_>, found: &mut Findings) -> Result<Scene> {
@@ -265,6 +270,7 @@ fn read_layer(table: &mut TableReader<'_>, scene: &mut Scene, found: &mut Findin
     let foundation = table.optional_choice("foundation")?.unwrap_or_default();
     scene.layer.foundation = table.is_material().then_some(foundation);
     check_thickness(table, foundation)?;
+    scene.layer.kinematics = table.optional_choice("kinematics")?;
     for kind in LinkKind::ALL {
         table.optional_table(kind.name(), |table| read_link(table, scene, At::link(kind)))?;
     }

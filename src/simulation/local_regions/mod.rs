@@ -83,13 +83,15 @@ enum Cut {
 
 impl LocalRegions {
     /// The regions for a layer of `model`. There are none where they would not be much smaller than the layer, under a
-    /// carrier that is a body, through which every mass feels every other, and where tangents are asked for, which
+    /// carrier that is a body, through which every mass feels every other, with links whose forces follow the spacing of
+    /// their neighbours, and where tangents are asked for, which
     /// regions do not have.
     pub(super) fn new(model: &Model, settings: &Settings) -> Self {
         let Settings { method, tolerance, accounts, .. } = settings;
         let have_none = *method == Method::Step
             || accounts.tangents
             || model.has_bodies()
+            || model.spatial.is_some()
             || model.flash.is_some()
             || model.friction.memory.is_some();
         let reach = if have_none { None } else { reach(model, tolerance.relative) };

@@ -158,6 +158,7 @@ fn layer(scales: Scales) -> impl Strategy<Value = Layer> {
                 clearance: clearance * scales.height,
                 mass: Some(scales.mass),
                 foundation: None,
+                kinematics: None,
                 thickness: None,
                 width: None,
                 initial,
