@@ -7,7 +7,7 @@ from conftest import SCENES, program
 
 
 def test_a_property_file_is_scaled_as_by_the_program(tmp_path):
-    base, slips = SCENES / "slip" / "tread.tir", np.linspace(-0.3, 0.3, 21)
+    base, slips = SCENES / "slip" / "tread.tir", np.linspace(-0.3, 0.3, 41)
     for road in ("asphalt", "smooth"):
         asperity.Patch(SCENES / "slip" / f"{road}.toml").slip([4e3], slips).save(tmp_path / f"{road}.csv")
     tables = [tmp_path / "asphalt.csv", tmp_path / "smooth.csv"]

@@ -41,7 +41,7 @@ fn a_property_file_is_scaled() {
         others.map(str::to_owned).collect()
     };
     assert_eq!(kept(&before), kept(&after));
-    assert_names(&after, &format!("\n$ {line}\n | \nLMUX                     = 0.7              $Peak"));
+    assert_names(&after, &format!("\n$ {line}\n | \nLMUX                     = 0.7                $Peak"));
     // LMUY and LKY stay, which is said; a file is not written over.
     let (status, _, told) = ended(&mut tir);
     assert_eq!(status, 0);

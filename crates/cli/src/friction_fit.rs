@@ -33,6 +33,9 @@ fn fit_lines(fit: &FrictionFit, unit: &str) -> Vec<LabelledLine> {
     let place = fit.temperature.map_or(String::new(), |kelvin| format!("at {}, ", temperature_as_given(kelvin)));
     let (rms, share) = (short(fit.rms, 3), percent(fit.rms / fit.largest, 2));
     let mut rows = vec![("Fit", format!("{place}off by {rms} {unit} rms, {share} of the largest friction"))];
-    rows.extend(fit.numbers.iter().map(|(name, unit, number)| ("", format!("{name:<24}{number} {unit}"))));
+    rows.extend(fit.numbers.iter().map(|(name, unit, number)| {
+        let unit = if number.numbers().0.is_some() { unit } else { "" };
+        ("", format!("{name:<24}{number} {unit}").trim_end().to_owned())
+    }));
     rows
 }

@@ -10,7 +10,7 @@ use std::fmt::{self, Display, Formatter};
 use nalgebra::{DMatrix, DVector};
 use rmpfit::{MPConfig, MPFitter, MPPar, MPResult};
 
-use crate::decimals::rounded;
+use crate::decimals::short;
 use crate::error::Error;
 
 /// A singular value below this part of the largest is of a direction that is not determined.
@@ -68,8 +68,8 @@ impl Determined {
 impl Display for Determined {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::Fitted(value, error) => write!(f, "{} ± {}", rounded(value, 5), rounded(error, 2)),
-            Self::AtBound(value) => write!(f, "{} ({})", rounded(value, 5), self.words()),
+            Self::Fitted(value, error) => write!(f, "{} ± {}", short(value, 5), short(error, 2)),
+            Self::AtBound(value) => write!(f, "{} ({})", short(value, 5), self.words()),
             Self::Taken(value) => write!(f, "not determined, taken for {value}"),
             Self::Not => f.write_str(self.words()),
         }

@@ -71,7 +71,9 @@ fn values(part: &str, numbers: &mut Numbers) -> Result<Vec<f64>, String> {
     let at = |i: usize| match i {
         0 => low,
         i if i == last => high,
-        i if numbers.is_even => rounded(even(i).unwrap_or(0.0), DIGITS),
+        i if numbers.dimension == Dimension::Temperature => rounded(even(i).unwrap_or(0.0), DIGITS),
+        // Angles that were given in degrees have no few digits.
+        i if numbers.is_even => rounded(even(i).unwrap_or(0.0), 2 * DIGITS),
         i => rounded(low * (high / low).powf(share(i)), DIGITS),
     };
     Ok((0..count).map(at).collect())

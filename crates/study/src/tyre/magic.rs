@@ -10,11 +10,13 @@
 //! There are no shifts: free rolling is where F_x is 0, and a tread has no side. Each load counts as much as each other.
 
 use asperity::table::{Cell, Column, Header, Table};
+use asperity::tables::POSITIVE;
 
 use super::slip::{SlipConditions, SlipCurves};
 use crate::decimals::{percent, temperature_as_given};
 use crate::error::Error;
 use crate::least_squares::{Determined, Parameter, least_squares};
+use crate::values::Values;
 
 /// What the header of the table begins with.
 const MAGIC: (&str, u64) = ("asperity magic formula", 1);
@@ -201,11 +203,14 @@ impl MagicFormula {
     /// Where there is no curve of five points.
     pub fn new(curves: &SlipCurves, nominal: Option<f64>) -> Result<Self, Error> {
         let mut fits = Vec::new();
+        let loads = Values::from(curves.points.iter().map(|point| point.at.load).collect::<Vec<_>>()).0;
+        let load = nominal.or_else(|| loads.get(loads.len().saturating_sub(1) / 2).copied()).unwrap_or(f64::NAN);
+        if !POSITIVE.holds(load) {
+            return Err(Error::value(format!("`nominal`: expected {POSITIVE}, in N, found {load:?}")));
+        }
         for direction in [Direction::Along, Direction::Across] {
             for group in groups(curves, direction) {
-                let loads: Vec<f64> = group.iter().map(|(at, _)| at.load).collect();
                 let Some((at, _)) = group.first() else { continue };
-                let load = nominal.unwrap_or(loads[(loads.len() - 1) / 2]);
                 for (at, rows) in &group {
                     fits.push(MagicFit::of_curve(direction, *at, rows)?);
                 }

@@ -11,8 +11,8 @@ use asperity::scene::{FaceShape, PatchGroup};
 use crate::error::Error;
 use crate::progress::{Stop, Stopped};
 
-/// Steps in which a cell passes where means are taken.
-const STEPS: u32 = 8;
+/// Steps in which a cell passes: always as many, since what a cell has behind it depends on them in second order.
+const STEPS: u32 = 4;
 /// Passages after which what still changes is not steady.
 const MOST_PASSAGES: usize = 4;
 /// Most that means may change from one cell to the next, over the load and what it makes with length and speed.
@@ -226,23 +226,24 @@ impl<'a> Roller<'a> {
 
     /// Lets so many cells pass, one at least; of a tread that stands, one time.
     fn pass(&self, run: &mut PatchRun, motion: &Motion, cells: usize) -> Result<(), Error> {
-        let count = if motion.transport_speed == 0.0 { 1 } else { cells };
-        (0..count).try_for_each(|_| self.go(run, motion, self.cell_time(motion)))
+        let steps = STEPS as usize * if motion.transport_speed == 0.0 { 1 } else { cells };
+        (0..steps).try_for_each(|_| self.go(run, motion))
     }
 
-    fn go(&self, run: &mut PatchRun, motion: &Motion, duration: f64) -> Result<(), Error> {
+    fn go(&self, run: &mut PatchRun, motion: &Motion) -> Result<(), Error> {
         if self.stop.go_on().is_break() {
             return Err(Stopped.into());
         }
         let Motion { transport_speed, temperature, .. } = *motion;
+        let duration = self.cell_time(motion) / f64::from(STEPS);
         Ok(run.advance(&PatchMotion { duration, rates: rates(motion), transport_speed, temperature })?)
     }
 
     /// Means over the time of a cell.
     fn mean(&self, run: &mut PatchRun, motion: &Motion) -> Result<Rolling, Error> {
-        let (time, mut sums, mut values) = (self.cell_time(motion), [0.0; OUTPUTS.len()], [0.0; OUTPUTS.len()]);
+        let (mut sums, mut values) = ([0.0; OUTPUTS.len()], [0.0; OUTPUTS.len()]);
         for _ in 0..STEPS {
-            self.go(run, motion, time / f64::from(STEPS))?;
+            self.go(run, motion)?;
             run.evaluate(&self.variables, &mut values[..self.variables.len()]);
             sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value / f64::from(STEPS));
         }
