@@ -17,6 +17,8 @@ const STEPS: u32 = 4;
 const MOST_PASSAGES: usize = 4;
 /// Most that means may change from one cell to the next, over the load and what it makes with length and speed.
 const STEADY: f64 = 1e-4;
+/// Most that the warmest element may warm meanwhile, K: beyond its table friction no longer tells.
+const WARMED: f64 = 1e-2;
 /// How near a load is found, over itself.
 const LOAD: f64 = 1e-7;
 /// How far below the touch a height is looked for first, m.
@@ -197,8 +199,10 @@ impl<'a> Roller<'a> {
     fn is_like(&self, before: &Rolling, now: &Rolling, motion: &Motion) -> bool {
         let load = now.force[2].abs();
         let speed = motion.velocity[0].hypot(motion.velocity[1]);
+        let warmed = now.warmest.zip(before.warmest).map_or(0.0, |(new, old)| (new - old).abs());
         let forces = before.force.into_iter().zip(now.force).all(|(old, new)| (old - new).abs() <= STEADY * load);
         forces
+            && warmed <= WARMED
             && (before.moment_z - now.moment_z).abs() <= STEADY * load * self.length
             && (before.power - now.power).abs() <= STEADY * load * speed
     }
