@@ -80,7 +80,8 @@ fn a_brush_rolls_freely_and_creeps_as_in_closed_form() {
         let across = per_slip(left.force[1], right.force[1]) / -stiffness;
         let lever = RADIUS * (angle.sin() - angle * angle.cos()) / angle.powi(2);
         let aligning = per_slip(left.moment_z, right.moment_z) / (stiffness * lever);
-        assert!((along - 1.0).abs() < 1e-3 && (across - 1.0).abs() < 1e-3, "{load}: {along} {across}");
+        // The ends of a contact of 90 cells.
+        assert!((along - 1.0).abs() < 3e-3 && (across - 1.0).abs() < 3e-3, "{load}: {along} {across}");
         // Its lever counts ends of the contact, half a cell each of 50 or more.
         assert!((aligning - 1.0).abs() < 5e-3, "{load}: {aligning}");
     }
