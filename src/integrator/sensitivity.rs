@@ -489,7 +489,7 @@ impl LinkVariation {
             self.measure.clone_from(&Some(measure.clone()));
         }
         match &self.measure {
-            Some(measure) => measure.vary(x, &self.energies, &mut self.forces),
+            Some(measure) => self.forces.vary_measure(measure, x, &self.energies),
             None => self.forces.sum_on_masses(),
         }
     }

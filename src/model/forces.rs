@@ -1,6 +1,6 @@
 //! The links (springs, dampers and Maxwell elements in parallel) and their forces at one instant.
 
-use super::spatial::SpatialMeasure;
+use super::spatial::{ElementSquares, SpatialMeasure};
 use super::{CarrierPoint, LinkLaw, Model, State};
 use crate::math::{add_weighted_sum, sum};
 use crate::scene::{Axis, ByAxis, ByLink, LinkKind};
@@ -55,6 +55,38 @@ impl Forces {
         self.sum_on_masses();
         add_ends(&mut self.on_mass_x, carrier.ends.map(|end| end.x));
         add_ends(&mut self.on_mass_z, carrier.ends.map(|end| end.z));
+    }
+
+    /// Brings the links along z, evaluated by their laws, into spatial measure in `state`.
+    fn measure_state(&mut self, model: &Model, state: &State) {
+        let Some(measure) = &mut self.spatial else { return };
+        measure.set_spacing(&state.elongation_x);
+        measure.set_energies(model, state);
+        measure.measure(&mut self.link);
+    }
+
+    /// The same where they were evaluated by a stage's laws; `squares` are those of their elements.
+    pub fn measure_stage(
+        &mut self,
+        model: &Model,
+        state: &State,
+        carrier: &CarrierPoint,
+        squares: &[ElementSquares; 2],
+    ) {
+        let Some(measure) = &mut self.spatial else { return };
+        measure.set_spacing(&state.elongation_x);
+        let motion = (&state.elongation_z[..], &state.velocity_z[..], carrier.z.speed);
+        measure.set_energies_at_stage(model, motion, squares);
+        measure.measure(&mut self.link);
+        self.sum_on_masses();
+    }
+
+    /// Brings variations of the links' forces, evaluated by their laws, into the spatial `measure`, and sums them up: `x`
+    /// (m) are the variations of positions, `energies` (J) those of twice the energies by the laws.
+    pub fn vary_measure(&mut self, measure: &SpatialMeasure, x: &[f64], energies: &[Vec<f64>; 2]) {
+        measure.vary_links(x, &mut self.link);
+        self.sum_on_masses();
+        measure.add_varied_tensions(x, energies, &mut self.on_mass_x);
     }
 
     /// Evaluates ė and the force by its `law` of every link of a kind.

@@ -13,7 +13,7 @@
 //!
 //! which pushes mass i along x and pulls mass i + 1 back.
 
-use super::{Forces, LinkKind, LinkLaw, Model, State};
+use super::{LinkKind, LinkLaw, MaxwellRow, Model, State};
 use crate::scene::ByLink;
 
 /// The least ℓ over Δx. Closer masses are drawn together by what presses on them, without end: an incompressible surface
@@ -137,13 +137,13 @@ impl SpatialMeasure {
             - 0.5 * self.rest * lateral.energy[i] / (self.spacing[i] * self.spacing[i])
     }
 
-    fn set_spacing(&mut self, elongation_x: &[f64]) {
+    pub(super) fn set_spacing(&mut self, elongation_x: &[f64]) {
         let pairs = elongation_x.iter().zip(&elongation_x[1..]);
         self.spacing.iter_mut().zip(pairs).for_each(|(spacing, (e, next))| *spacing = self.rest + (next - e));
     }
 
     /// Sets the energies of the links in `state`.
-    fn set_energies(&mut self, model: &Model, state: &State) {
+    pub(super) fn set_energies(&mut self, model: &Model, state: &State) {
         for (kind, links) in Self::LINKS.into_iter().zip(&mut self.links) {
             for link in 0..links.energy.len() {
                 let e = kind.difference(&state.elongation_z, 0.0, link);
@@ -266,12 +266,12 @@ impl SpatialMeasure {
         own + (left - right) * motion.x
     }
 
-    /// Makes of the variations of the links' forces by their laws those in spatial measure, and adds what T changes by to
-    /// the forces on the masses: `x` (m) are the variations of positions, `energies` those of V (J).
-    pub(crate) fn vary(&self, x: &[f64], energies: &[Vec<f64>; 2], forces: &mut Forces) {
+    /// Makes of the variations of the links' forces by their laws those in spatial measure: `x` (m) are the variations of
+    /// positions.
+    pub(super) fn vary_links(&self, x: &[f64], forces: &mut ByLink<Vec<f64>>) {
         let varied = |i: usize| x[i + 1] - x[i];
         let beside = |i: Option<usize>| i.filter(|&i| i + 1 < x.len()).map_or(0.0, varied);
-        let [vertical, .., lateral] = &mut forces.link.0;
+        let [vertical, .., lateral] = &mut forces.0;
         for (i, force) in vertical.iter_mut().enumerate() {
             *force = self.factor(LinkKind::Vertical, i) * *force
                 + self.force_by_length(i) * (beside(i.checked_sub(1)) + beside(Some(i)));
@@ -280,13 +280,17 @@ impl SpatialMeasure {
             let by_length = self.links[1].force[i] / self.spacing[i];
             *force = self.factor(LinkKind::LateralZ, i) * (*force - by_length * varied(i));
         }
-        forces.sum_on_masses();
+    }
+
+    /// Adds what T changes by to the forces on the masses along x: `energies` (J) are the variations of V.
+    pub(super) fn add_varied_tensions(&self, x: &[f64], energies: &[Vec<f64>; 2], on_mass_x: &mut [f64]) {
         for i in 0..self.spacing.len() {
             let (length, of_lateral) = (self.spacing[i], &self.links[1].energy[i]);
-            let lateral = self.rest / (length * length) * (of_lateral / length * varied(i) - 0.5 * energies[1][i]);
-            let tension = (energies[0][i] + energies[0][i + 1]) / (4.0 * self.rest) + lateral;
-            forces.on_mass_x[i] += tension;
-            forces.on_mass_x[i + 1] -= tension;
+            let varied = of_lateral / length * (x[i + 1] - x[i]) - 0.5 * energies[1][i];
+            let vertical = (energies[0][i] + energies[0][i + 1]) / (4.0 * self.rest);
+            let tension = vertical + self.rest / (length * length) * varied;
+            on_mass_x[i] += tension;
+            on_mass_x[i + 1] -= tension;
         }
     }
 
@@ -297,14 +301,14 @@ impl SpatialMeasure {
         model: &Model,
         (elongation, rates): (&[f64], Option<&ByLink<Vec<f64>>>),
         state: &State,
-        of_element: impl Fn(&super::MaxwellRow, usize) -> f64,
+        of_element: impl Fn(&MaxwellRow, usize) -> f64,
         energies: &mut [Vec<f64>; 2],
     ) {
         for ((kind, links), energies) in Self::LINKS.into_iter().zip(&self.links).zip(energies) {
             for (link, energy) in energies.iter_mut().enumerate() {
                 let rate_z = rates.and_then(|rates| rates[kind].get(link).copied()).unwrap_or(0.0);
                 let motion = MeasuredMotion { x: 0.0, z: kind.difference(elongation, 0.0, link), rate_z };
-                let of_row = |row: &super::MaxwellRow| {
+                let of_row = |row: &MaxwellRow| {
                     2.0 * state.maxwell[row.range.start + link] * of_element(row, row.range.start + link)
                 };
                 *energy = links.energy_change(link, &motion) + model.element_force(kind, of_row);
@@ -363,38 +367,12 @@ impl Model {
     }
 }
 
-impl Forces {
-    /// Brings the links along z, evaluated by their laws, into spatial measure in `state`.
-    pub(super) fn measure_state(&mut self, model: &Model, state: &State) {
-        let Some(measure) = &mut self.spatial else { return };
-        measure.set_spacing(&state.elongation_x);
-        measure.set_energies(model, state);
-        measure.measure(&mut self.link);
-    }
-
-    /// Brings the links along z, evaluated by a stage's laws, into spatial measure; `squares` are those of their elements.
-    pub(crate) fn measure_stage(
-        &mut self,
-        model: &Model,
-        state: &State,
-        carrier: &super::CarrierPoint,
-        squares: &[ElementSquares; 2],
-    ) {
-        let Some(measure) = &mut self.spatial else { return };
-        measure.set_spacing(&state.elongation_x);
-        let motion = (&state.elongation_z[..], &state.velocity_z[..], carrier.z.speed);
-        measure.set_energies_at_stage(model, motion, squares);
-        measure.measure(&mut self.link);
-        self.sum_on_masses();
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::in_tests::assert_within;
     use crate::math::Jet;
-    use crate::model::{CarrierPoint, elastic_energy};
+    use crate::model::{CarrierPoint, Forces, elastic_energy};
     use crate::scene::{Axis, ByAxis};
 
     const SCENE: &str = "name = 'a'
