@@ -153,7 +153,7 @@ impl MagicFit {
             [b, c, d, e] => rows.iter().map(|&(load, x, force)| (magic([b, c, d, e], x) - force) / load).collect(),
             _ => Vec::new(),
         };
-        Self::fitted((direction, at, true), &parameters, &starts, (&residual, rows.len()))
+        Self::fitted((direction, at, true), &parameters, &starts, &residual, rows.len())
     }
 
     /// The coefficients over loads.
@@ -169,14 +169,15 @@ impl MagicFit {
             let off = |&(load, x, force): &Row| (magic(direction.at_load(values, at.load, load), x) - force) / load;
             rows.iter().map(off).collect()
         };
-        Self::fitted((direction, at, false), &parameters, &STARTS.map(start), (&residual, rows.len()))
+        Self::fitted((direction, at, false), &parameters, &STARTS.map(start), &residual, rows.len())
     }
 
     fn fitted(
         (direction, at, is_curve): (Direction, SlipConditions, bool),
         parameters: &[Parameter],
         starts: &[Vec<f64>],
-        (residuals, count): (&dyn Fn(&[f64]) -> Vec<f64>, usize),
+        residuals: &dyn Fn(&[f64]) -> Vec<f64>,
+        count: usize,
     ) -> Result<Self, Error> {
         let found = least_squares(parameters, starts, residuals)?;
         let rms = found.rms(count);

@@ -288,7 +288,7 @@ mod tests {
         let text = String::from_utf8(bytes.clone()).unwrap();
         let said = "$ Scaled by asperity tir from a.csv (tread, 10 m/s, 10 degC) to b.csv (tread, 10 m/s, 10 degC) at FNOMIN, 2750 N\n\
                     $ LMUX 1 -> 0.";
-        assert!(text.contains(&said), "{text}");
+        assert!(text.contains(said), "{text}");
         let file = PropertyFile::parse(&bytes, Path::new("out.tir")).unwrap();
         let factor = |key: &str| file.number(SECTION, key, POSITIVE).unwrap().unwrap();
         for ([friction, stiffness], [peak, at, force]) in
