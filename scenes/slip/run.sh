@@ -18,7 +18,7 @@ sweep() {
 sweep asphalt 5e-6
 sweep smooth 1e-5
 for road in asphalt smooth; do
-    "$asperity" slip "$here/$road.toml" --loads 2000,4000,6000 --slips -0.3..0.3/41 --angles -12deg..12deg/25 \
+    "$asperity" slip "$here/$road.toml" --loads 2000,4000,6000 --slips -0.3..0.3/41 --angles -20deg..20deg/41 \
         --temperatures 10°C,40°C --fit mf -o "$folder/$road.csv" --plot "$folder/$road.svg"
 done
 # tread.tir is of asphalt at 10 °C, and becomes that of the others: a table of one temperature each.

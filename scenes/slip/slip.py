@@ -9,7 +9,7 @@ import asperity
 import numpy as np
 
 here = Path(__file__).parent
-slips, angles = np.linspace(-0.3, 0.3, 41), np.radians(np.linspace(-12, 12, 25))
+slips, angles = np.linspace(-0.3, 0.3, 41), np.radians(np.linspace(-20, 20, 41))
 for road in ("asphalt", "smooth"):
     tread = asperity.Patch(here / f"{road}.toml")
     curves = tread.slip([2e3, 4e3, 6e3], slips, angles, temperatures=["10 °C", "40 °C"])

@@ -21,7 +21,7 @@ use super::terminal::{self, lines, warn};
                     asperity slip --fit <stribeck|lugre> [-o <TABLE.csv>] <TABLE.csv>"
 )]
 #[command(after_help = example!(
-    "asperity slip scenes/slip/tread.toml --loads 2000,4000,6000 --slips -0.3..0.3/41 \\\n\
+    "asperity slip scenes/slip/asphalt.toml --loads 2000,4000,6000 --slips -0.3..0.3/41 \\\n\
     \x20     --angles -12deg..12deg/25 --fit mf -o slip.csv"
 ))]
 pub(crate) struct Slip {
