@@ -237,7 +237,7 @@ mod tests {
         (fine.layer.masses, fine.layer.spacing) = (256, 1e-3 / 256.0);
         assert_eq!(misfitted(&fine, [("at the end".into(), 0.3)]), None);
         let said = misfitted(&fine, [("at 1 m/s".into(), 0.0625), ("at 2 m/s".into(), 0.3)]).unwrap();
-        assert!(said.starts_with("contacts of some 63 µm come out"), "{said}");
+        assert!(said.starts_with("contacts of some 66 µm come out"), "{said}");
         assert!(said.contains("% too narrow at 1 m/s: the links"), "{said}");
     }
 
