@@ -96,7 +96,7 @@ fn help_begins_with_what_the_command_does() {
     let commands = help.lines().filter_map(|line| line.strip_prefix("  ")?.split_once("  "));
     let commands: Vec<_> =
         commands.filter(|(name, _)| !name.is_empty() && !name.starts_with(['-', ' ']) && *name != "help").collect();
-    assert_eq!(commands.len(), 17, "{help}");
+    assert_eq!(commands.len(), 19, "{help}");
     for (name, summary) in commands {
         let first = run(asperity().args([name, "--help"]));
         let first = first.lines().next().unwrap();
