@@ -42,11 +42,11 @@ impl Layer {
         self.origin + i as f64 * self.spacing
     }
 
-    /// By what spacing the links along z are measured: as it was set, or the present one where they stand for the surface
-    /// of a body, and that at rest where they are the paper's.
+    /// By what spacing the links along z are measured: as it was set, or the present one where they stand for a half-space,
+    /// for which it is derived.
     pub fn kinematics(&self) -> Kinematics {
-        let of_body = self.foundation.is_some_and(|foundation| foundation != FoundationKind::Springs);
-        self.kinematics.unwrap_or(if of_body { Kinematics::Spatial } else { Kinematics::Material })
+        let of_half_space = self.foundation == Some(FoundationKind::HalfSpace);
+        self.kinematics.unwrap_or(if of_half_space { Kinematics::Spatial } else { Kinematics::Material })
     }
 }
 

@@ -17,7 +17,7 @@ use super::terminal::{self, lines, warn};
 
 #[derive(Debug, Args)]
 #[command(
-    override_usage = "asperity slip [OPTIONS] --loads <VALUES> <--slips <VALUES>|--angles <VALUES>>\n       <PATCH.toml>\n       \
+    override_usage = "asperity slip [OPTIONS] --loads <VALUES>\n       <--slips <VALUES>|--angles <VALUES>> <PATCH.toml>\n       \
                     asperity slip --fit <stribeck|lugre> [-o <TABLE.csv>] <TABLE.csv>"
 )]
 #[command(after_help = example!(

@@ -70,7 +70,7 @@ const LAYER: &[Key] = &[
         "kinematics",
         "By what spacing the links along z are measured: material, that at rest, or spatial",
     )
-    .follows("spatial with foundation = \"half_space\" or \"layer\", else material"),
+    .follows("spatial with foundation = \"half_space\", else material"),
 ];
 
 const LINK: &[Key] = &[
