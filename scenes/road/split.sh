@@ -18,7 +18,7 @@ while read -r cut_off masses rms; do
         "$asperity" sweep "$here/road.toml" --method "$method" --speeds 0.01,0.1,1,10 --pressures 3e5 \
             --set surface.cut_off_wavelength="$cut_off" --set layer.masses="$masses" \
             --set layer.spacing="$(awk "BEGIN { print 0.032 / $masses }")" --set surface.points=$((4 * masses)) \
-            --set surface.rms="$rms" -o "$folder/$method-$cut_off.csv"
+            --set surface.rms="$rms" --set 'layer.kinematics="material"' -o "$folder/$method-$cut_off.csv"
     done
 done << 'END'
 4e-3 64 2e-4
