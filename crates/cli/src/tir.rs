@@ -12,6 +12,7 @@ use super::files::{self, check_outputs, name_of, named, print_beside};
 use super::terminal::{labelled, lines, note};
 
 #[derive(Debug, Args)]
+#[command(override_usage = "asperity tir [OPTIONS] --from <A.csv> --to <B.csv>\n       --output <OUT.tir> <BASE.tir>")]
 #[command(after_help = example!("asperity tir scenes/slip/tread.tir --from dry.csv --to wet.csv -o wet.tir"))]
 pub(crate) struct Tir {
     /// The property file to scale, of the Magic Formula (MF 5.2, MF 6.1, PAC2002).
