@@ -49,11 +49,10 @@ def scale_tir(
         ValueError: Where a file is refused.
     """
     stiffnesses = list(carcass) if isinstance(carcass, Sequence) else [carcass]
-    paths = [Path(path) for path in (base, from_table, to_table, output)]
-    scaled, notes = _native.scale_tir(*paths, stiffnesses)
+    scaled, notes = _native.scale_tir(Path(base), Path(from_table), Path(to_table), Path(output), stiffnesses)
     for text in notes:
         warnings.warn(text, stacklevel=2)
-    return {key: Scaling(*rest) for key, *rest in scaled}
+    return {key: Scaling(before, after, why) for key, before, after, why in scaled}
 
 
 class FrictionFit(NamedTuple):
@@ -90,6 +89,11 @@ def fit_friction(table: str | PathLike[str], law: str = "stribeck") -> list[Fric
         raise ValueError(f"law: expected stribeck or lugre, found {law!r}")
     fits = _native.fit_friction(Path(table), law == "lugre")
     return [
-        FrictionFit(*figures, {name: None if value is None else (value, error) for name, value, error in numbers})
-        for *figures, numbers in fits
+        FrictionFit(
+            temperature,
+            rms,
+            largest,
+            {name: None if value is None else (value, error) for name, value, error in numbers},
+        )
+        for temperature, rms, largest, numbers in fits
     ]
