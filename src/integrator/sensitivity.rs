@@ -445,12 +445,11 @@ impl LinkVariation {
     fn new(model: &Model) -> Self {
         let zeros =
             |kind: LinkKind| if model.is_measured(kind) { vec![0.0; kind.count(model.masses())] } else { Vec::new() };
-        Self {
-            forces: Forces { spatial: None, ..Forces::new(model) },
-            motion: Variation { maxwell: Vec::new(), ..Variation::new(model) },
-            measure: None,
-            energies: SpatialMeasure::LINKS.map(zeros),
-        }
+        let mut forces = Forces::new(model);
+        // Variations are measured by that of the forces that are varied.
+        let measure = forces.spatial.take();
+        let motion = Variation { maxwell: Vec::new(), ..Variation::new(model) };
+        Self { forces, motion, measure, energies: SpatialMeasure::LINKS.map(zeros) }
     }
 
     /// Computes the variation of the forces for those of the state, `of`, and of the carrier, at these forces and this
@@ -483,15 +482,13 @@ impl LinkVariation {
         by_rate: bool,
         of_element: impl Fn(&MaxwellRow, usize) -> f64,
     ) {
-        if let Some((Forces { spatial: Some(measure), .. }, state)) = at {
+        let Some(measure) = &mut self.measure else { return self.forces.sum_on_masses() };
+        if let Some((Forces { spatial: Some(now), .. }, state)) = at {
             let rates = by_rate.then_some(&self.forces.rate);
-            measure.vary_energies(model, (&self.motion.z, rates), state, of_element, &mut self.energies);
-            self.measure.clone_from(&Some(measure.clone()));
+            now.vary_energies(model, (&self.motion.z, rates), state, of_element, &mut self.energies);
+            measure.copy_from(now);
         }
-        match &self.measure {
-            Some(measure) => self.forces.vary_measure(measure, x, &self.energies),
-            None => self.forces.sum_on_masses(),
-        }
+        self.forces.vary_measure(measure, x, &self.energies);
     }
 
     /// Computes the variation of the forces at a stage for the known part of the motion: δe* and δa* are in `history`, and

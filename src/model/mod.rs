@@ -115,8 +115,7 @@ impl Model {
 
     /// Whether what the masses touch strains the layer along x: on slopes of the profile or of its own roughness.
     fn strains(scene: &Scene) -> bool {
-        let is_flat = scene.surface.z().windows(2).all(|pair| pair[0] == pair[1]);
-        !(is_flat && scene.layer.roughness.is_empty())
+        !(scene.surface.is_level() && scene.layer.roughness.is_empty())
     }
 
     /// Takes over what depends on the temperature from `scene`, this model's at another one: relaxation times,

@@ -26,7 +26,7 @@ pub struct SpatialMeasure {
     /// Δx, m.
     rest: f64,
     /// ℓ_i, m.
-    pub spacing: Vec<f64>,
+    spacing: Vec<f64>,
     /// The links along z, vertical and lateral.
     links: [MeasuredLinks; 2],
 }
@@ -48,11 +48,11 @@ struct MeasuredLinks {
 #[derive(Clone, Debug, Default)]
 pub struct ElementSquares {
     /// Its value at ė = 0, by link.
-    pub constant: Vec<f64>,
+    constant: Vec<f64>,
     /// Half its derivative there.
-    pub linear: Vec<f64>,
+    linear: Vec<f64>,
     /// The factor of ė², the same of all links.
-    pub square: f64,
+    square: f64,
 }
 
 impl ElementSquares {
@@ -110,6 +110,17 @@ impl SpatialMeasure {
     pub(super) fn new(model: &Model, rest: f64) -> Self {
         let links = Self::LINKS.map(|kind| MeasuredLinks::zeros(kind.count(model.masses())));
         Self { rest, spacing: vec![rest; model.masses() - 1], links }
+    }
+
+    /// Copies `other`, that of the same model, without allocating.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.spacing.copy_from_slice(&other.spacing);
+        for (mine, theirs) in self.links.iter_mut().zip(&other.links) {
+            mine.force.copy_from_slice(&theirs.force);
+            mine.energy.copy_from_slice(&theirs.energy);
+            mine.by_elongation.copy_from_slice(&theirs.by_elongation);
+            mine.by_rate.copy_from_slice(&theirs.by_rate);
+        }
     }
 
     /// ℓ_i, or Δx beyond the ends.
@@ -204,16 +215,24 @@ impl SpatialMeasure {
 
     /// What mass i + 1 makes of T_i by its lateral link: -Δx V_l,i/2ℓ_i² varied. Mass i makes the opposite.
     fn by_lateral(&self, i: usize, motion: &MeasuredMotion) -> f64 {
-        let (lateral, length) = (&self.links[1], self.spacing[i]);
-        let per_length = self.rest / (length * length);
-        per_length * (lateral.energy[i] / length * motion.x - 0.5 * lateral.energy_change(i, motion))
+        self.lateral_tension_change(i, motion.x, self.links[1].energy_change(i, motion))
+    }
+
+    /// δ(-Δx V_l,i/2ℓ_i²), N, where ℓ_i changes by `length` (m) and V_l,i by `energy` (J).
+    fn lateral_tension_change(&self, i: usize, length: f64, energy: f64) -> f64 {
+        let spacing = self.spacing[i];
+        self.rest / (spacing * spacing) * (self.links[1].energy[i] / spacing * length - 0.5 * energy)
+    }
+
+    /// δ(R_i F_i), N, where ℓ_i changes by `length` (m) and F_i by `force` (N).
+    fn lateral_force_change(&self, i: usize, length: f64, force: f64) -> f64 {
+        self.factor(LinkKind::LateralZ, i) * (force - self.links[1].force[i] / self.spacing[i] * length)
     }
 
     /// What mass i + 1 makes of the force of its lateral link to mass i by the `law`: R_i F_i varied. Mass i makes the
     /// opposite.
     fn of_lateral(&self, law: &LinkLaw, i: usize, motion: &MeasuredMotion) -> f64 {
-        let factor = self.rest / self.spacing[i];
-        factor * (law.force(motion.z, motion.rate_z) - self.links[1].force[i] / self.spacing[i] * motion.x)
+        self.lateral_force_change(i, motion.x, law.force(motion.z, motion.rate_z))
     }
 
     /// How the forces on mass `i` follow its own `motion` under the laws of the links.
@@ -277,25 +296,23 @@ impl SpatialMeasure {
                 + self.force_by_length(i) * (beside(i.checked_sub(1)) + beside(Some(i)));
         }
         for (i, force) in lateral.iter_mut().enumerate() {
-            let by_length = self.links[1].force[i] / self.spacing[i];
-            *force = self.factor(LinkKind::LateralZ, i) * (*force - by_length * varied(i));
+            *force = self.lateral_force_change(i, varied(i), *force);
         }
     }
 
     /// Adds what T changes by to the forces on the masses along x: `energies` (J) are the variations of V.
     pub(super) fn add_varied_tensions(&self, x: &[f64], energies: &[Vec<f64>; 2], on_mass_x: &mut [f64]) {
         for i in 0..self.spacing.len() {
-            let (length, of_lateral) = (self.spacing[i], &self.links[1].energy[i]);
-            let varied = of_lateral / length * (x[i + 1] - x[i]) - 0.5 * energies[1][i];
             let vertical = (energies[0][i] + energies[0][i + 1]) / (4.0 * self.rest);
-            let tension = vertical + self.rest / (length * length) * varied;
+            let tension = vertical + self.lateral_tension_change(i, x[i + 1] - x[i], energies[1][i]);
             on_mass_x[i] += tension;
             on_mass_x[i + 1] -= tension;
         }
     }
 
-    /// Writes the variations of V by the links' elongations (m), rates (m/s) if they are given, and by `of_element`, what varies of their
-    /// elements (m) times a factor, J.
+    /// Writes the variations of V, J: by those of the links' elongations (m) and rates (m/s), which are `None` where the
+    /// elements' elongations are varied in whole, and by `of_element`, the variation of an element's elongation at its index
+    /// in the state (m).
     pub(crate) fn vary_energies(
         &self,
         model: &Model,

@@ -92,7 +92,7 @@ impl Surface {
     }
 
     /// Whether all its heights are the same.
-    pub(super) fn is_level(&self) -> bool {
+    pub fn is_level(&self) -> bool {
         self.z.windows(2).all(|pair| pair[0] == pair[1])
     }
 

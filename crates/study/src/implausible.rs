@@ -129,8 +129,7 @@ fn more(count: usize) -> String {
 
 /// Whether shear acts on a surface that is rough, by what is not its own shape.
 fn is_unresolved(scene: &Scene) -> bool {
-    let is_level = scene.surface.z().windows(2).all(|pair| pair[0] == pair[1]);
-    scene.friction.as_ref().is_some_and(has_shear) && (scene.fine.is_some() || !is_level)
+    scene.friction.as_ref().is_some_and(has_shear) && (scene.fine.is_some() || !scene.surface.is_level())
 }
 
 fn has_shear(friction: &Friction) -> bool {
